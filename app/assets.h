@@ -1,0 +1,16 @@
+// Where the program's own files are: assets/ and shaders/.
+#pragma once
+
+#include <filesystem>
+
+namespace limpid {
+
+// The folder that holds assets/ and shaders/: installed (PREFIX/share/limpid), or the source tree.
+// Throws std::runtime_error if neither is there.
+std::filesystem::path data_dir();
+
+inline std::filesystem::path default_device() { return data_dir() / "assets/devices/omni.urdf"; }
+inline std::filesystem::path default_scene() { return data_dir() / "assets/scenes/table.toml"; }
+inline std::filesystem::path default_hand() { return data_dir() / "assets/hands/touch.csv"; }
+
+}  // namespace limpid

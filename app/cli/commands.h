@@ -1,0 +1,24 @@
+// The commands; each declares its options on the command line and returns what runs it.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace limpid {
+
+// Returns the exit status.
+using Command = std::function<int()>;
+
+Command declare_run(CLI::App& app);
+Command declare_analyze(CLI::App& app);
+Command declare_info(CLI::App& app);
+Command declare_recover(CLI::App& app);
+Command declare_devices(CLI::App& app);
+Command declare_play(CLI::App& app);
+// The window: `limpid` without a command, with the options of the app itself.
+Command declare_desktop(CLI::App& app);
+
+}  // namespace limpid

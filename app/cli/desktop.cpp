@@ -1,0 +1,64 @@
+#include "app/desktop/desktop.h"
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.h"
+#include "app/cli/options.h"
+
+namespace limpid {
+namespace {
+
+struct WindowOptions {
+  InputOptions input;
+  DesktopOptions desktop;
+  std::string session;
+};
+
+void add(CLI::App& command, WindowOptions& options) {
+  options.input.add_world(command);
+  options.input.add_parameters(command);
+  command.add_option("--ui-scale", options.desktop.ui_scale, "size of text and panels; default: the screen's")
+      ->check(CLI::Range(0.5, 4.0));
+  command.add_flag("--print-state", options.desktop.print_state,
+                   "print the state as a line of JSON ten times a second");
+}
+
+int open_window(const WindowOptions& options) {
+  DesktopOptions desktop = options.desktop;
+  const InputOptions& input = options.input;
+  // What is wrong with the input is said before a window opens.
+  ArmDescription arm;
+  Scene scene;
+  read_world(input, arm, scene);
+  desktop.device = input.device;
+  desktop.scene = input.scene;
+  const bool own = !input.configs.empty() || !input.settings.empty() || !input.coupling.empty() ||
+                   input.eta || input.alpha;
+  if (own) desktop.parameters = make_parameters(input);
+  if (!options.session.empty()) {
+    if (read_session(options.session).size() == 0) {
+      throw FileError(options.session + ": holds no rows");
+    }
+    desktop.session = options.session;
+  }
+  run_desktop(desktop);
+  return 0;
+}
+
+}  // namespace
+
+Command declare_play(CLI::App& app) {
+  auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
+  auto options = std::make_shared<WindowOptions>();
+  command->add_option("session", options->session)->type_name("SESSION.h5")->required();
+  add(*command, *options);
+  return [options] { return open_window(*options); };
+}
+
+Command declare_desktop(CLI::App& app) {
+  auto options = std::make_shared<WindowOptions>();
+  add(app, *options);
+  return [options] { return open_window(*options); };
+}
+
+}  // namespace limpid

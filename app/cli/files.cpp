@@ -1,0 +1,83 @@
+// Commands about session files.
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "app/cli/commands.h"
+#include "app/run/summary.h"
+#include "devices/files/session.h"
+#include "devices/files/session_csv.h"
+
+namespace limpid {
+namespace {
+
+struct InfoOptions {
+  std::string session, csv;
+  bool force = false;
+};
+
+int info(const InfoOptions& options) {
+  const Session session = read_session(options.session);
+  const SessionInfo& i = session.info;
+  Summary summary(session.layout);
+  for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
+  fmt::print("{}\n", options.session);
+  fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
+  fmt::print("hand                     {}\n", i.source);
+  fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
+  fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
+  fmt::print("{}", summary.text());
+  for (const SettingChange& change : session.changes) {
+    fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,
+               change.setting);
+  }
+  if (!options.csv.empty()) {
+    write_csv(session, options.csv, options.force);
+    fmt::print("written as {}\n", options.csv);
+  }
+  return 0;
+}
+
+struct RecoverOptions {
+  std::string part;
+  bool force = false;
+};
+
+int recover(const RecoverOptions& options) {
+  const Recovered recovered = recover_session(options.part, options.force);
+  fmt::print("{} ticks recovered in {}\n", recovered.rows, recovered.file.string());
+  return 0;
+}
+
+}  // namespace
+
+Command declare_info(CLI::App& app) {
+  auto* command = app.add_subcommand("info", "what a recording holds");
+  auto options = std::make_shared<InfoOptions>();
+  command->add_option("session", options->session)->type_name("SESSION.h5")->required();
+  command->add_option("--csv", options->csv, "write it as a table")->type_name("OUT.csv");
+  command->add_flag("--force", options->force, "replace OUT.csv if it exists");
+  return [options] { return info(*options); };
+}
+
+Command declare_recover(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("recover", "what a killed recording left, as a proper session file");
+  auto options = std::make_shared<RecoverOptions>();
+  command->add_option("part", options->part)->type_name("SESSION.h5.part")->required();
+  command->add_flag("--force", options->force, "replace SESSION.h5 if it exists");
+  return [options] { return recover(*options); };
+}
+
+Command declare_devices(CLI::App& app) {
+  app.add_subcommand("devices", "what is connected, what can drive it");
+  return [] {
+    fmt::print("virtual arm   built in; any URDF chain of 1 to 32 revolute joints (--device), "
+               "driven by the mouse or a recorded hand\n");
+    return 0;
+  };
+}
+
+}  // namespace limpid

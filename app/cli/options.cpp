@@ -1,0 +1,173 @@
+#include "app/cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/assets.h"
+#include "app/run/replay.h"
+#include "core/dynamics/inverse_kinematics.h"
+#include "devices/files/config_file.h"
+#include "devices/files/scene_file.h"
+#include "devices/files/urdf_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLongestRun = 24 * 3600;  // [s]
+
+bool is_session(const std::string& file) {
+  return file.ends_with(".h5") || file.ends_with(".h5.part");
+}
+
+std::uint64_t ticks_in(double duration, double tick) {
+  return static_cast<std::uint64_t>(std::max(1LL, std::llround(duration / tick)));
+}
+
+// Refuses a path that leaves the reach of the arm, before anything is written.
+void check_reach(const RunPlan& plan) {
+  const Vec3 base = plan.arm.joints.front().origin.translation();
+  const double limit = reach(plan.arm);
+  for (std::size_t i = 0; i < plan.hand.position.size(); ++i) {
+    const double distance = (plan.hand.position[i] - base).norm();
+    if (distance <= limit) continue;
+    throw UsageError(fmt::format(
+        "{}: the point at {:.3f} s is {:.4f} m from the first joint; the arm {} reaches {:.4f} m",
+        plan.hand.source, plan.hand.time[i], distance, plan.arm.name, limit));
+  }
+  if (plan.start) return;
+  if (!inverse_kinematics(plan.arm, plan.hand.position.front(), rest_pose(plan.arm))) {
+    const Vec3& p = plan.hand.position.front();
+    throw UsageError(fmt::format(
+        "{}: the first point ({:.4f}, {:.4f}, {:.4f}) m is out of reach of the arm {} within its "
+        "joint limits",
+        plan.hand.source, p.x(), p.y(), p.z(), plan.arm.name));
+  }
+}
+
+// A session brings its own world and parameters; options override them.
+RunPlan plan_from_session(const InputOptions& options) {
+  const Session session = read_session(options.hand);
+  if (session.size() == 0) throw FileError(options.hand + ": holds no rows");
+  const Parameters chosen =
+      make_parameters(options, session_parameters(session, options.hand));
+  RunPlan plan = replay(session, options.hand, chosen);
+  if (chosen.tick != session.info.tick) {
+    const double ratio = session.info.tick / chosen.tick;
+    for (SettingChange& change : plan.changes) {
+      change.row = static_cast<std::uint64_t>(std::llround(static_cast<double>(change.row) * ratio));
+    }
+    plan.force.clear();
+    plan.parameters.tick = chosen.tick;
+  }
+  if (!options.device.empty()) {
+    plan.arm = read_urdf(options.device);
+    if (options.scene.empty()) {  // its joints and links may have other names here
+      plan.scene = parse_scene(session.info.scene, options.hand + " (scene)",
+                               data_dir() / "assets/scenes", plan.arm);
+    }
+    if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
+  }
+  if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);
+  return plan;
+}
+
+}  // namespace
+
+void InputOptions::add_parameters(CLI::App& command) {
+  command.add_option("--config", configs, "all parameters, from a TOML file")
+      ->type_name("FILE.toml")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--set", settings, "one parameter; repeatable")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--coupling", coupling, "standard or proposed (coupling.kind)")
+      ->type_name("KIND");
+  command.add_option("--eta", eta, "apparent inertia (coupling.eta)");
+  command.add_option("--alpha", alpha, "observer gain (observer.alpha)");
+}
+
+void InputOptions::add_world(CLI::App& command) {
+  command.add_option("--device", device, "the arm; default: the built-in Omni-like one")
+      ->type_name("FILE.urdf");
+  command.add_option("--scene", scene, "what can be touched; default: a table")
+      ->type_name("FILE.toml");
+}
+
+void InputOptions::add_hand(CLI::App& command) {
+  command.add_option("--hand", hand,
+                     "the hand's path: time_s,x_m,y_m,z_m per row, or a recorded session; default: "
+                     "touching the table")
+      ->type_name("FILE.csv|FILE.h5");
+  command.add_option("--duration", duration, "default: the length of the hand's path")
+      ->type_name("SECONDS");
+  command.add_option("--seed", seed, "for whatever is random")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+}
+
+Parameters make_parameters(const InputOptions& options, Parameters base) {
+  for (const std::string& file : options.configs) apply_config(base, file);
+  for (const std::string& setting : options.settings) apply_setting(base, setting);
+  if (!options.coupling.empty()) set_parameter(base, "coupling.kind", options.coupling);
+  if (options.eta) set_parameter(base, "coupling.eta", *options.eta);
+  if (options.alpha) set_parameter(base, "observer.alpha", *options.alpha);
+  return base;
+}
+
+void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene) {
+  arm = read_urdf(options.device.empty() ? default_device().string() : options.device);
+  scene = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
+}
+
+RunPlan make_plan(const InputOptions& options) {
+  RunPlan plan;
+  if (is_session(options.hand)) {
+    plan = plan_from_session(options);
+  } else {
+    read_world(options, plan.arm, plan.scene);
+    plan.parameters = make_parameters(options);
+    plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
+  }
+  check_reach(plan);
+  double duration = plan.hand.duration();
+  if (options.duration) {
+    duration = *options.duration;
+    if (!(duration > 0 && duration <= kLongestRun)) {
+      throw UsageError(fmt::format("--duration: {} is not allowed; allowed: more than 0, up to {} s",
+                                   duration, kLongestRun));
+    }
+  }
+  plan.rows = ticks_in(duration, plan.parameters.tick);
+  return plan;
+}
+
+SessionInfo session_info(const RunPlan& plan, std::int64_t seed) {
+  SessionInfo info;
+  info.tick = plan.parameters.tick;
+  info.dof = plan.arm.dof();
+  info.app_version = LIMPID_VERSION;
+  info.seed = static_cast<std::uint64_t>(seed);
+  info.source = plan.hand.source;
+  info.config = config_text(plan.parameters);
+  info.device_urdf = plan.arm.urdf;
+  info.scene = plan.scene.toml;
+  return info;
+}
+
+std::string parameter_help() {
+  std::string text = "Keys for --set and --config:\n";
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string value = parameter_text(Parameters{}, info);
+    text += fmt::format("  {:<22} default {:<12} {}\n", info.key,
+                        value.empty() ? "the arm's" : value,
+                        std::string(info.unit) == "-" ? "" : info.unit);
+  }
+  return text;
+}
+
+}  // namespace limpid

@@ -1,0 +1,53 @@
+// The options that several commands share, and what they amount to.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/run/simulate.h"
+
+namespace CLI {
+class App;
+}
+
+namespace limpid {
+
+// Wrong usage or bad input, refused before anything is written: exit status 2.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct InputOptions {
+  std::string device, scene, hand;  // files; empty: the default
+  std::vector<std::string> configs;
+  std::vector<std::string> settings;  // key=value
+  std::string coupling;
+  std::optional<double> eta, alpha;
+  std::optional<double> duration;
+  std::int64_t seed = 0;
+
+  // Declares --config, --set, --coupling, --eta, --alpha.
+  void add_parameters(CLI::App& command);
+  // Declares --device and --scene.
+  void add_world(CLI::App& command);
+  // Declares --hand, --duration, --seed.
+  void add_hand(CLI::App& command);
+};
+
+// Reads every file and checks every value. Errors: UsageError, FileError, ParameterError.
+// A session given as the hand brings its own device, scene and parameters; options override them.
+RunPlan make_plan(const InputOptions& options);
+// Parameters alone, over `base`.
+Parameters make_parameters(const InputOptions& options, Parameters base = {});
+// Device and scene alone.
+void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
+
+// What a recording of this plan says about itself.
+SessionInfo session_info(const RunPlan& plan, std::int64_t seed);
+
+// For the help text: every key with unit, range and meaning.
+std::string parameter_help();
+
+}  // namespace limpid

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <thread>
+
+#include "app/cli/commands.h"
+#include "app/cli/options.h"
+#include "app/run/recorder.h"
+#include "app/run/summary.h"
+
+namespace limpid {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// A signal can only reach something with a fixed address.
+std::atomic<bool> interrupted{false};
+void interrupt(int) { interrupted.store(true); }
+
+// "12.3 / 30.0 s" on a terminal, once a run takes over a second.
+class Progress {
+ public:
+  explicit Progress(double whole) : whole_(whole), shown_(isatty(STDERR_FILENO) != 0) {}
+  ~Progress() {
+    if (printed_) fmt::print(stderr, "\r{:60}\r", "");
+  }
+
+  void at(double time) {
+    if (!shown_ || ++calls_ % 64 != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(printed_ ? 200 : 1000)) return;
+    last_ = now;
+    printed_ = true;
+    const double elapsed = Seconds(now - began_).count();
+    const double left = time > 0 ? elapsed * (whole_ - time) / time : 0;
+    fmt::print(stderr, "\r{:.1f} of {:.1f} s simulated, {:.0f} s left ", time, whole_, left);
+    std::fflush(stderr);
+  }
+
+ private:
+  double whole_;
+  bool shown_;
+  bool printed_ = false;
+  unsigned calls_ = 0;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = began_;
+};
+
+struct RunOptions {
+  InputOptions input;
+  std::string record;
+  bool force = false;
+  bool realtime = false;
+};
+
+// What goes wrong from here on is a failed run, no bad input.
+void finish(Recorder& recorder) {
+  try {
+    recorder.finish();
+  } catch (const FileError& e) {
+    throw std::runtime_error(e.what());
+  }
+}
+
+int run(const RunOptions& options) {
+  const RunPlan plan = make_plan(options.input);
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) {
+    recorder.emplace(options.record, session_info(plan, options.input.seed), plan.parameters,
+                     options.force);
+  }
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+
+  Summary summary(RowLayout(plan.arm.dof()));
+  const auto began = std::chrono::steady_clock::now();
+  RunEnd end;
+  {
+    Progress progress(static_cast<double>(plan.rows) * plan.parameters.tick);
+    end = simulate(plan, {options.realtime, &interrupted},
+                   [&](std::span<const double> row, const Parameters* changed) {
+                     summary.add(row);
+                     if (!options.realtime) progress.at(summary.time());
+                     if (!recorder) return true;
+                     if (changed != nullptr) recorder->changed(*changed);
+                     // Without a clock to obey the run waits for the disk; nothing is dropped.
+                     while (!options.realtime && recorder->nearly_full() && !recorder->failed()) {
+                       std::this_thread::sleep_for(std::chrono::microseconds(200));
+                     }
+                     recorder->push(row);
+                     return !recorder->failed();
+                   });
+  }
+  const double took = Seconds(std::chrono::steady_clock::now() - began).count();
+  if (recorder) finish(*recorder);
+
+  fmt::print("{}", summary.text());
+  const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
+  fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
+  if (recorder) {
+    fmt::print("recorded {} ticks in {}\n", recorder->rows(), options.record);
+    if (recorder->dropped() > 0) {
+      fmt::print(stderr, "limpid: {} ticks found no room and are missing from {}\n",
+                 recorder->dropped(), options.record);
+      return 1;
+    }
+  }
+  if (end.diverged) {
+    fmt::print(stderr,
+               "limpid: the loop became unstable and was stopped at {:.3f} s; try a larger eta, a "
+               "smaller alpha or k_vc (`limpid analyze` shows the limits)\n",
+               summary.time());
+    return 1;
+  }
+  if (end.stopped) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());
+  return 0;
+}
+
+}  // namespace
+
+Command declare_run(CLI::App& app) {
+  auto* command = app.add_subcommand("run", "the same loop without a window, as fast as it goes");
+  auto options = std::make_shared<RunOptions>();
+  command->add_option("--record", options->record, "write every tick to this session file")
+      ->type_name("OUT.h5");
+  command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
+  command->add_flag("--realtime", options->realtime, "pace at the tick rate");
+  options->input.add_world(*command);
+  options->input.add_hand(*command);
+  options->input.add_parameters(*command);
+  command->footer(parameter_help());
+  return [options] { return run(*options); };
+}
+
+}  // namespace limpid

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/desktop/panels.h"
+#include "app/style/palette.h"
+#include "app/style/parameter_slider.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+// What is broken, by how much, and what would mend it; empty while the promise holds.
+std::string eta_broken(const Parameters& p, const Analysis& a) {
+  if (p.kind == CouplingKind::standard || a.passive) return {};
+  return fmt::format(
+      "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
+      "{:.3f}, lower alpha, or raise b_v.",
+      p.eta, a.eta_min, a.eta_min - p.eta);
+}
+
+std::string device_broken(const Analysis& a) {
+  if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
+  return fmt::format(
+      "Condition (3): b_d is {:.4g} N m s/rad short of 2 b_vc + k_vc T.\nLower k_vc or b_vc.",
+      -a.condition3.device_margin);
+}
+
+std::string proxy_broken(const Analysis& a) {
+  if (a.condition3.holds || a.condition3.proxy_margin >= 0) return {};
+  return fmt::format(
+      "Condition (3): b_v is {:.4g} N m s/rad short of k_vc T / 2.\nRaise b_v or lower k_vc.",
+      -a.condition3.proxy_margin);
+}
+
+void slider(Workbench& bench, const char* key, const std::string& broken = {}) {
+  const ParameterInfo& info = *find_parameter(key);
+  parameter_slider(info, bench.parameters, parameter_number(Parameters{}, info),
+                   broken.empty() ? nullptr : broken.c_str());
+}
+
+void kind_buttons(Workbench& bench) {
+  const Palette& colours = palette(current_theme());
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size((ImGui::GetContentRegionAvail().x - gap) / 2, ImGui::GetFrameHeight() * 1.35f);
+  for (const CouplingKind kind : {CouplingKind::standard, CouplingKind::proposed}) {
+    const bool chosen = bench.parameters.kind == kind;
+    if (kind == CouplingKind::proposed) ImGui::SameLine();
+    if (chosen) {
+      ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(colours.accent));
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(colours.accent));
+      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.panel));
+    }
+    if (ImGui::Button(kind == CouplingKind::standard ? "Standard" : "Proposed", size)) {
+      bench.parameters.kind = kind;
+    }
+    if (chosen) ImGui::PopStyleColor(3);
+    tooltip(kind == CouplingKind::standard
+                ? "Spring and damper alone, (1)-(2). C switches."
+                : "With feedforward of the observed human force and the contact force, (14)-(15). "
+                  "C switches.");
+  }
+}
+
+}  // namespace
+
+void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
+  begin_panel("coupling", rect);
+  const Analysis& a = bench.analysis;
+  const Parameters& p = bench.parameters;
+  heading("Coupling");
+  kind_buttons(bench);
+  ImGui::Spacing();
+  const std::string eta = eta_broken(p, a);
+  const std::string device = device_broken(a);
+  const std::string proxy = proxy_broken(a);
+  slider(bench, "coupling.eta", eta);
+  slider(bench, "observer.alpha");
+  slider(bench, "coupling.k_vc", device);
+  slider(bench, "coupling.b_vc", device);
+  slider(bench, "coupling.b_v", proxy);
+
+  heading("Passivity");
+  const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
+  read_out("observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
+           "alpha / m over the modes of the inertia at the rest pose, (18)");
+  const bool standard = p.kind == CouplingKind::standard;
+  read_out("\xCE\xB7_min, all frequencies",
+           fmt::format("{:.3f}{}", a.eta_min, standard ? "" : a.passive ? "  ok" : "  broken"), eta,
+           "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
+  const std::string unstable =
+      !standard && p.eta < a.eta_min_grip
+          ? fmt::format("eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
+                        "unstable while the hand holds. Raise eta or soften the grip.",
+                        p.eta, a.eta_min_grip)
+          : std::string();
+  read_out("\xCE\xB7_min in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
+           "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
+  const auto verdict = [](const std::string& broken, double margin) {
+    return broken.empty() ? fmt::format("ok  {:+.1e}", std::abs(margin) < 1e-12 ? 0.0 : margin)
+                          : fmt::format("broken  {:+.1e}", margin);
+  };
+  read_out("(3) device b_d", verdict(device, a.condition3.device_margin), device,
+           "b_d - 2 b_vc - k_vc T [N m s/rad]: not negative");
+  read_out("(3) proxy b_v", verdict(proxy, a.condition3.proxy_margin), proxy,
+           "b_v - k_vc T / 2 [N m s/rad]: not negative");
+
+  const std::span<const double> row = bench.row();
+  const RowLayout& layout = bench.shown().channels().layout();
+  const double total = layout.in(row, Column::energy_total)[0];
+  const double commanded = layout.in(row, Column::energy_commanded)[0];
+  const std::string active =
+      total > 1e-4 ? "The coupling has given more energy than it took: it is not passive." : "";
+  read_out("E_c total", fmt::format("{:.2f} mJ", 1e3 * total), active,
+           "Controller energy with the device's own damping: stays below zero while passive");
+  read_out("E_c commanded", fmt::format("{:.2f} mJ", 1e3 * commanded), {},
+           "Controller energy of motors and proxy alone, as instruments see it");
+  ImGui::End();
+}
+
+}  // namespace limpid

@@ -1,0 +1,157 @@
+#include "app/desktop/desktop.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "app/desktop/keys.h"
+#include "app/desktop/panels.h"
+#include "app/rtkit.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
+
+// A border between panels that can be dragged: changes `size` by the mouse's motion along one axis.
+void splitter(const char* name, const ScreenRect& rect, bool vertical, double direction, double& size,
+              double least, double most) {
+  ImGui::SetNextWindowPos(rect.min);
+  ImGui::SetNextWindowSize(rect.size());
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::InvisibleButton("grip", rect.size());
+  if (ImGui::IsItemActive() || ImGui::IsItemHovered()) {
+    ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+  }
+  if (ImGui::IsItemActive()) {
+    const ImVec2 delta = ImGui::GetIO().MouseDelta;
+    size += direction * static_cast<double>((vertical ? delta.x : delta.y) / current_scale());
+  }
+  size = std::clamp(size, least, most);
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void draw(Workbench& bench, Window& window, ViewPanel& view_panel) {
+  draw_menu_bar(bench, window);
+  int points_x = 0, points_y = 0;
+  window.size(points_x, points_y);
+  const auto width = static_cast<float>(points_x);
+  const auto height = static_cast<float>(points_y);
+  Settings& s = bench.settings;
+  const float scale = current_scale();
+  const auto scaled = [&](double size) { return static_cast<float>(size) * scale; };
+  const float top = ImGui::GetFrameHeight();
+  const float transport = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
+  const float bottom = height - transport;
+  const float middle = s.show_plots ? bottom - scaled(s.plots) : bottom;
+  const float left = s.show_left ? scaled(s.left) : 0;
+  const float right = s.show_right ? width - scaled(s.right) : width;
+
+  const ScreenRect view{{left, top}, {right, middle}};
+  view_panel.draw(bench, window, view);
+  if (s.show_left) draw_coupling_panel(bench, {{0, top}, {left, middle}});
+  if (s.show_right) draw_side_panel(bench, {{right, top}, {width, middle}}, window.frame_time());
+  if (s.show_plots) draw_plots(bench, window, {{0, middle}, {width, bottom}});
+  draw_transport(bench, {{0, bottom}, {width, height}});
+
+  const float grip = 3 * scale;
+  if (s.show_left) {
+    splitter("left grip", {{left - grip, top}, {left + grip, middle}}, true, 1, s.left, 220, 480);
+  }
+  if (s.show_right) {
+    splitter("right grip", {{right - grip, top}, {right + grip, middle}}, true, -1, s.right, 220, 480);
+  }
+  if (s.show_plots) {
+    splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120, 520);
+  }
+  draw_dialogs(bench);
+  draw_notices(bench, view);
+}
+
+// For scripts that drive the window.
+void print_state(Workbench& bench) {
+  const std::span<const double> row = bench.row();
+  const RowLayout& layout = bench.shown().channels().layout();
+  const LoopStatus status = bench.live.status();
+  std::vector<double> values(static_cast<std::size_t>(bench.shown().channels().count()));
+  bench.shown().channels().values(row, values);
+  const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
+  fmt::print(
+      "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
+      "\"energy_total\": {:.6g}, \"grip\": {:.2f}, \"force\": {}, \"recording\": {}, "
+      "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": {}, "
+      "\"slipped\": {}, \"dropped\": {}}}\n",
+      layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
+      channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
+      layout.in(row, Column::hand_grip)[0], bench.controls.force, bench.live.recording(),
+      bench.playing_back(), bench.playing_back() && !bench.playback->rerun.empty(), status.rate,
+      status.ticks, status.late, status.missed, status.slipped, bench.live.trace_dropped());
+  std::fflush(stdout);
+}
+
+void open_dropped(Workbench& bench, const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    if (file.extension() == ".toml") {
+      bench.open_scene(file);
+    } else {
+      bench.open_session(file);
+    }
+  }
+}
+
+}  // namespace
+
+void run_desktop(const DesktopOptions& options) {
+  std::string complaint;
+  Settings settings = load_settings(complaint);
+  if (options.parameters) settings.parameters = *options.parameters;
+  // The haptic thread comes first: what its scheduling allows decides how the window behaves, and
+  // OpenGL's own threads inherit that.
+  std::string why;
+  Workbench bench(std::move(settings), [&why](pid_t thread, int priority) {
+    return ask_rtkit(thread, priority, &why);
+  });
+  if (!bench.live.status().realtime.realtime()) yield_to_haptics();
+  Window window({.width = bench.settings.width,
+                 .height = bench.settings.height,
+                 .ui_scale = options.ui_scale > 0 ? options.ui_scale : bench.settings.ui_scale});
+  apply_theme(bench.settings.theme, current_scale());
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  const std::string& device = options.device.empty() ? bench.settings.device : options.device;
+  const std::string& scene = options.scene.empty() ? bench.settings.scene : options.scene;
+  bench.open_world(device, scene);
+  if (!complaint.empty()) bench.say(complaint, true);
+  bench.recover_leftovers();
+  if (!options.session.empty()) bench.open_session(options.session);
+
+  ViewPanel view;
+  double last = glfwGetTime();
+  int frame = 0;
+  while (window.begin_frame()) {
+    if (interrupted) window.close();
+    const double now = glfwGetTime();
+    handle_keys(bench, window);
+    open_dropped(bench, window.dropped());
+    bench.update(now - last);
+    last = now;
+    draw(bench, window, view);
+    window.end_frame();
+    if (options.print_state && ++frame % 6 == 0) print_state(bench);
+  }
+  if (!window.full_screen()) window.size(bench.settings.width, bench.settings.height);
+  if (const std::string error = save_settings(bench.settings); !error.empty()) {
+    fmt::print(stderr, "limpid: settings not saved: {}\n", error);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,24 @@
+// The desktop app.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/loop/parameters.h"
+
+namespace limpid {
+
+struct DesktopOptions {
+  std::string device, scene;                // files; empty: as last time
+  std::optional<Parameters> parameters;     // default: as last time
+  std::filesystem::path session;            // to play at once
+  bool print_state = false;                 // one line of JSON ten times a second
+  double ui_scale = 0;                      // 0: the screen's
+};
+
+// Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the
+// like for files that cannot be used.
+void run_desktop(const DesktopOptions& options);
+
+}  // namespace limpid

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/assets.h"
+#include "app/desktop/panels.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "devices/files/config_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(dir, none)) {
+    if (entry.path().extension() == extension) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+void file_menu(Workbench& bench, Window& window) {
+  if (!ImGui::BeginMenu("File")) return;
+  if (ImGui::MenuItem("Open session...", "Ctrl+O")) bench.show_open = true;
+  if (ImGui::MenuItem("Save picture", "F12")) bench.save_picture(window);
+  ImGui::Separator();
+  if (ImGui::MenuItem("Undo", "Ctrl+Z")) bench.undo();
+  if (ImGui::MenuItem("Redo", "Ctrl+Y")) bench.redo();
+  if (ImGui::MenuItem("All settings as in the paper")) bench.reset_parameters();
+  ImGui::Separator();
+  if (ImGui::MenuItem("Quit", "Ctrl+Q")) window.close();
+  ImGui::EndMenu();
+}
+
+void view_menu(Workbench& bench, Window& window) {
+  if (!ImGui::BeginMenu("View")) return;
+  Settings& s = bench.settings;
+  ImGui::MenuItem("Coupling panel", "F2", &s.show_left);
+  ImGui::MenuItem("Device panel", "F3", &s.show_right);
+  ImGui::MenuItem("Plots", "F4", &s.show_plots);
+  ImGui::Separator();
+  ImGui::MenuItem("Ghost of the device", "G", &s.show_ghost);
+  ImGui::MenuItem("Trail", nullptr, &s.show_trail);
+  ImGui::MenuItem("Forces", nullptr, &s.show_forces);
+  ImGui::MenuItem("Floor grid", nullptr, &s.show_grid);
+  ImGui::Separator();
+  if (ImGui::MenuItem("Front", "1")) bench.camera.look(Camera::View::front);
+  if (ImGui::MenuItem("Side", "2")) bench.camera.look(Camera::View::side);
+  if (ImGui::MenuItem("Top", "3")) bench.camera.look(Camera::View::top);
+  if (ImGui::MenuItem("Reset camera", "0")) {
+    bench.camera.reset(bench.shown().picture.bounds());
+  }
+  ImGui::Separator();
+  bool light = s.theme == Theme::light;
+  if (ImGui::MenuItem("Light theme", nullptr, &light)) {
+    s.theme = light ? Theme::light : Theme::dark;
+    apply_theme(s.theme, current_scale());
+  }
+  if (ImGui::MenuItem("Full screen", "F11", window.full_screen())) window.toggle_full_screen();
+  ImGui::EndMenu();
+}
+
+void session_menu(Workbench& bench) {
+  if (!ImGui::BeginMenu("Session")) return;
+  const bool recording = bench.live.recording();
+  if (ImGui::MenuItem(recording ? "Stop recording" : "Record", "R")) bench.toggle_recording();
+  if (ImGui::MenuItem("Play or pause", "P")) bench.toggle_playing();
+  if (ImGui::MenuItem("Re-run under present settings", "E", false, bench.playing_back())) {
+    bench.start_rerun();
+  }
+  if (ImGui::MenuItem("Write as table (CSV)", nullptr, false,
+                      bench.playing_back() && !bench.exporting.busy())) {
+    bench.export_csv();
+  }
+  if (ImGui::MenuItem("Back to live", "Backspace", false, bench.playing_back())) {
+    bench.close_playback();
+  }
+  ImGui::EndMenu();
+}
+
+void scene_menu(Workbench& bench) {
+  if (!ImGui::BeginMenu("Scene")) return;
+  for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
+    if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, bench.scene_file == file.string())) {
+      bench.open_scene(file);
+    }
+  }
+  ImGui::Separator();
+  ImGui::TextDisabled("Drop a scene's .toml on the window to open it.");
+  ImGui::EndMenu();
+}
+
+void device_menu(Workbench& bench) {
+  if (!ImGui::BeginMenu("Device")) return;
+  ImGui::TextDisabled("%s, virtual, %d joints", bench.stage->arm().name.c_str(),
+                      bench.stage->arm().dof());
+  if (ImGui::MenuItem(bench.controls.force ? "Force off" : "Force on",
+                      bench.controls.force ? "Esc" : "F")) {
+    bench.toggle_force();
+  }
+  if (ImGui::MenuItem("Start over", "Backspace", false, !bench.playing_back())) bench.start_over();
+  ImGui::EndMenu();
+}
+
+// Right-hand end of the menu bar: rate, late ticks, coupling, force.
+void status(Workbench& bench) {
+  const Palette& colours = palette(current_theme());
+  const LoopStatus loop = bench.live.status();
+  const Parameters& p = bench.parameters;
+  const bool recorded = bench.playing_back();
+  const auto row = bench.row();
+  const RowLayout& layout = bench.shown().channels().layout();
+  const bool proposed =
+      recorded ? layout.in(row, Column::kind)[0] != 0 : p.kind == CouplingKind::proposed;
+  const double eta = recorded ? layout.in(row, Column::eta)[0] : p.eta;
+  struct Part {
+    std::string text;
+    Rgb ink;
+    std::string help;
+  };
+  const bool rate_bad = !loop.running;
+  std::vector<Part> parts;
+  if (recorded) parts.push_back({"playing " + bench.playback->file.filename().string(), colours.text, ""});
+  parts.push_back({rate_bad ? "loop stopped" : fmt::format("{:.0f} Hz", loop.rate),
+                   rate_bad ? colours.broken : colours.muted, loop.failure});
+  parts.push_back({fmt::format("{} late", loop.missed),
+                   loop.missed > loop.ticks / 100 ? colours.broken : colours.muted,
+                   "Ticks that began after the next one was due"});
+  parts.push_back({proposed ? fmt::format("PROPOSED \xCE\xB7 {:.2f}", eta) : "STANDARD",
+                   colours.text, "C switches"});
+  parts.push_back({bench.controls.force ? "force on [Esc]" : "force off [F]",
+                   bench.controls.force ? colours.text : colours.muted,
+                   bench.controls.force ? "Esc or space cut it at once" : "F arms it"});
+  float width = 0;
+  const float gap = 1.4f * ImGui::GetFontSize();
+  for (const Part& part : parts) width += ImGui::CalcTextSize(part.text.c_str()).x + gap;
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width));
+  for (const Part& part : parts) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(part.ink));
+    ImGui::TextUnformatted(part.text.c_str());
+    ImGui::PopStyleColor();
+    if (!part.help.empty()) tooltip(part.help.c_str());
+    ImGui::SameLine(0, gap);
+  }
+}
+
+}  // namespace
+
+void draw_menu_bar(Workbench& bench, Window& window) {
+  if (!ImGui::BeginMainMenuBar()) return;
+  file_menu(bench, window);
+  view_menu(bench, window);
+  session_menu(bench);
+  scene_menu(bench);
+  device_menu(bench);
+  if (ImGui::BeginMenu("Help")) {
+    if (ImGui::MenuItem("Keys and mouse", "?")) bench.show_help = true;
+    if (ImGui::MenuItem("About Limpid")) bench.show_about = true;
+    ImGui::EndMenu();
+  }
+  status(bench);
+  ImGui::EndMainMenuBar();
+}
+
+}  // namespace limpid

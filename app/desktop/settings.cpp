@@ -1,0 +1,102 @@
+#include "app/desktop/settings.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <toml++/toml.h>
+
+#include "devices/files/config_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path home_dir(const char* variable, const char* below_home) {
+  if (const char* dir = std::getenv(variable); dir != nullptr && *dir != '\0') return dir;
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / below_home;
+}
+
+fs::path settings_file() { return home_dir("XDG_CONFIG_HOME", ".config") / "limpid/settings.toml"; }
+
+// Every setting but the parameters, once, for reading and writing.
+template <class S, class Visit>
+void each(S& s, Visit&& visit) {
+  visit("ui_scale", s.ui_scale);
+  visit("width", s.width);
+  visit("height", s.height);
+  visit("left", s.left);
+  visit("right", s.right);
+  visit("plots", s.plots);
+  visit("show_left", s.show_left);
+  visit("show_right", s.show_right);
+  visit("show_plots", s.show_plots);
+  visit("show_ghost", s.show_ghost);
+  visit("show_trail", s.show_trail);
+  visit("show_forces", s.show_forces);
+  visit("show_grid", s.show_grid);
+  visit("hold_on_release", s.hold_on_release);
+  visit("hint_seen", s.hint_seen);
+  visit("plot_length", s.plot_length);
+  visit("device", s.device);
+  visit("scene", s.scene);
+}
+
+}  // namespace
+
+Settings load_settings(std::string& complaint) {
+  Settings s;
+  const fs::path file = settings_file();
+  std::error_code none;
+  if (!fs::exists(file, none)) return s;
+  try {
+    const toml::table table = toml::parse_file(file.string());
+    each(s, [&](const char* key, auto& value) {
+      using T = std::remove_reference_t<decltype(value)>;
+      if (const auto found = table["window"][key].value<T>()) value = *found;
+    });
+    if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
+    if (const toml::table* parameters = table["parameters"].as_table()) {
+      std::ostringstream text;
+      text << toml::toml_formatter(*parameters);
+      apply_config_text(s.parameters, text.str(), file.string());
+      s.parameters.tick = Parameters{}.tick;
+      s.parameters.substeps = Parameters{}.substeps;
+    }
+  } catch (const std::exception& e) {
+    complaint = fmt::format("settings not read: {}", e.what());
+  }
+  return s;
+}
+
+std::string save_settings(const Settings& settings) {
+  const fs::path file = settings_file();
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  toml::table window;
+  each(settings, [&](const char* key, const auto& value) { window.insert(key, value); });
+  window.insert("theme", settings.theme == Theme::light ? "light" : "dark");
+  toml::table all;
+  all.insert("window", window);
+  all.insert("parameters", toml::parse(config_text(settings.parameters)));
+  // Written beside and moved over, so that a full disk cannot spoil the old one.
+  const fs::path fresh = file.string() + ".new";
+  {
+    std::ofstream out(fresh);
+    out << all << '\n';
+    if (!out.flush()) return fmt::format("{}: could not be written", fresh.string());
+  }
+  fs::rename(fresh, file, error);
+  return error ? fmt::format("{}: {}", file.string(), error.message()) : std::string();
+}
+
+fs::path sessions_dir() {
+  const fs::path dir = home_dir("XDG_DATA_HOME", ".local/share") / "limpid/sessions";
+  std::error_code error;
+  fs::create_directories(dir, error);
+  return dir;
+}
+
+}  // namespace limpid

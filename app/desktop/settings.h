@@ -1,0 +1,36 @@
+// What the window remembers from one start to the next.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/loop/parameters.h"
+#include "render/theme.h"
+
+namespace limpid {
+
+struct Settings {
+  Theme theme = Theme::dark;
+  double ui_scale = 0;          // 0: the screen's
+  int width = 1440, height = 900;
+  double left = 300, right = 290, plots = 250;  // sizes of the panels at scale 1 [px]
+  bool show_left = true, show_right = true, show_plots = true;
+  bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
+  bool hold_on_release = false;
+  bool hint_seen = false;
+  double plot_length = 10;      // [s]
+  std::string device, scene;    // files; empty: the default
+  Parameters parameters;
+};
+
+// $XDG_CONFIG_HOME/limpid/settings.toml. What cannot be read is left at its default; `complaint`
+// then says why.
+Settings load_settings(std::string& complaint);
+// Never throws; a settings file that cannot be written is not worth losing work over. Returns what
+// went wrong, empty if nothing did.
+std::string save_settings(const Settings& settings);
+
+// Where recordings go: $XDG_DATA_HOME/limpid/sessions, made if need be.
+std::filesystem::path sessions_dir();
+
+}  // namespace limpid

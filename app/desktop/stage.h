@@ -1,0 +1,51 @@
+// A world as it is seen: arm and scene, their picture, and the plots of what happens there.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/plot/history.h"
+#include "app/plot/plot.h"
+#include "app/plot/plot_group.h"
+#include "app/session/trace_channels.h"
+#include "app/view/row_view.h"
+#include "render/camera.h"
+#include "render/scene_view.h"
+
+namespace limpid {
+
+struct StageOptions {
+  double seconds = 60;  // of history to keep
+  double tick = 0.001;
+  double shown = 10;    // of it at first
+  bool rerun = false;   // room for a second run beside the first
+};
+
+class Stage {
+ public:
+  // Needs a current OpenGL context. Errors: std::runtime_error naming the file of a picture.
+  Stage(ArmDescription arm, Scene scene, const StageOptions& options);
+
+  const ArmDescription& arm() const { return arm_; }
+  const Scene& scene() const { return scene_; }
+  const RowView& rows() const { return rows_; }
+  const TraceChannels& channels() const { return channels_; }
+
+  // Adds a row, and the same row of a second run if there is one, to the plots.
+  void append(std::span<const double> row, std::span<const double> again = {});
+
+  SceneView picture;
+  ViewMemory memory;
+  History history;
+  PlotGroup group;
+  std::vector<Plot> plots;
+
+ private:
+  ArmDescription arm_;
+  Scene scene_;
+  RowView rows_;
+  TraceChannels channels_;
+  std::vector<double> values_;
+};
+
+}  // namespace limpid

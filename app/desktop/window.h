@@ -1,0 +1,60 @@
+// The window of the operating system with OpenGL and ImGui in it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace limpid {
+
+// A key pressed, with GLFW's names for key and modifiers.
+struct KeyPress {
+  int key;
+  int modifiers;
+};
+
+class Window {
+ public:
+  struct Options {
+    int width = 1440, height = 900;
+    double ui_scale = 0;  // 0: the screen's
+  };
+
+  // Throws std::runtime_error where there is no display or no OpenGL 3.3.
+  explicit Window(const Options& options);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  // Waits until the next of 60 frames a second, collects input and begins ImGui's frame. False
+  // once the user closes the window.
+  bool begin_frame();
+  // Draws ImGui over the picture and shows the frame.
+  void end_frame();
+
+  void close();
+  void toggle_full_screen();
+  bool full_screen() const;
+  // Keys pressed in this frame that no text field took.
+  const std::vector<KeyPress>& keys() const;
+  // Files dropped on the window in this frame.
+  const std::vector<std::filesystem::path>& dropped() const;
+  void size(int& width, int& height) const;              // in ImGui's coordinates
+  void framebuffer_size(int& width, int& height) const;  // in pixels
+  double frame_time() const;  // work of the last frame, without waiting [s]
+  // Saves what is between two corners [ImGui's coordinates] once the frame is drawn; without
+  // corners all of it. Errors surface from end_frame().
+  void save_picture(const std::filesystem::path& png);
+  void save_picture(const std::filesystem::path& png, double left, double top, double right,
+                    double bottom);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace limpid

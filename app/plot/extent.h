@@ -1,0 +1,28 @@
+// Smallest and largest of some values.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace limpid {
+
+struct Extent {
+  float low = std::numeric_limits<float>::infinity();
+  float high = -std::numeric_limits<float>::infinity();
+
+  bool empty() const { return low > high; }
+
+  // Not a number changes nothing.
+  void include(float value) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  void include(const Extent& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
+
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+}  // namespace limpid

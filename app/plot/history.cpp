@@ -1,0 +1,109 @@
+#include "app/plot/history.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace limpid {
+namespace {
+
+constexpr double kGapTicks = 1.5;
+constexpr double kResetGap = 0.2;      // shown between two runs [s]
+constexpr double kSameGesture = 0.5;   // marks of one key closer than this are one [s]
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+History::History(const Options& options) : tick_(options.tick) {
+  if (options.channels < 1 || !(options.seconds > 0) || !(options.tick > 0)) {
+    throw std::invalid_argument("history: channels, seconds and tick must be positive");
+  }
+  const auto rows = static_cast<std::size_t>(std::ceil(options.seconds / options.tick)) + 1;
+  rings_.assign(static_cast<std::size_t>(options.channels), MinMaxRing(rows));
+  times_.resize(rings_.front().capacity());
+}
+
+void History::append(double time, std::span<const double> values) {
+  if (values.size() != rings_.size()) {
+    throw std::invalid_argument("history: " + std::to_string(values.size()) + " values for " +
+                                std::to_string(rings_.size()) + " channels");
+  }
+  if (!std::isfinite(time)) throw std::invalid_argument("history: time is not finite");
+  if (!empty() && time + offset_ <= end_time()) {
+    offset_ = end_time() + kResetGap - time;
+    mark(time, "reset", "reset");
+  }
+  times_[static_cast<std::size_t>(end() % times_.size())] = time + offset_;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto value = static_cast<float>(values[i]);
+    rings_[i].append(std::isfinite(value) ? value : kNothing);
+  }
+  forget_old_marks();
+}
+
+void History::mark(double time, std::string label, std::string key) {
+  const double at = time + offset_;
+  if (!key.empty() && !marks_.empty() && marks_.back().key == key &&
+      at - marks_.back().time < kSameGesture) {
+    marks_.pop_back();
+  }
+  marks_.push_back({at, std::move(key), std::move(label)});
+}
+
+void History::forget_old_marks() {
+  while (!marks_.empty() && marks_.front().time < start_time()) marks_.pop_front();
+}
+
+void History::clear() {
+  for (MinMaxRing& each : rings_) each.clear();
+  marks_.clear();
+  offset_ = 0;
+}
+
+double History::time(SampleIndex index) const {
+  return times_[static_cast<std::size_t>(index % times_.size())];
+}
+
+bool History::gap_before(SampleIndex index) const {
+  return index <= first() || time(index) - time(index - 1) > kGapTicks * tick_;
+}
+
+SampleIndex History::lower_bound(double time_wanted) const {
+  return lower_bound(time_wanted, first());
+}
+
+SampleIndex History::lower_bound(double time_wanted, SampleIndex from) const {
+  // Gallop: the row is mostly close to `from`, and then a few steps are enough.
+  SampleIndex low = from;
+  SampleIndex high = from;
+  for (SampleIndex step = 1; high < end() && time(high) < time_wanted; step *= 2) {
+    low = high + 1;
+    high = std::min(end(), high + step);
+  }
+  while (low < high) {
+    const SampleIndex middle = low + (high - low) / 2;
+    if (time(middle) < time_wanted) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+SampleIndex History::nearest(double time_wanted) const {
+  const SampleIndex after = lower_bound(time_wanted);
+  if (after == first()) return after;
+  if (after == end()) return after - 1;
+  return time(after) - time_wanted < time_wanted - time(after - 1) ? after : after - 1;
+}
+
+Extent History::extent_between(int channel, double start, double stop) const {
+  const SampleIndex from = lower_bound(start);
+  SampleIndex to = lower_bound(stop, from);
+  if (to < end() && time(to) == stop) ++to;
+  return extent(channel, from, to);
+}
+
+}  // namespace limpid

@@ -1,0 +1,55 @@
+#include "app/plot/min_max_ring.h"
+
+namespace limpid {
+
+MinMaxRing::MinMaxRing(std::size_t at_least) {
+  const std::size_t blocks = std::max<std::size_t>((at_least + kLargestBlock - 1) / kLargestBlock, 1);
+  samples_.resize(blocks * kLargestBlock);
+  for (int level = 1; level <= kLevels; ++level) {
+    blocks_[static_cast<std::size_t>(level - 1)].resize(capacity() >> (kFanBits * level));
+  }
+}
+
+void MinMaxRing::append(float sample) {
+  std::size_t at = static_cast<std::size_t>(end_ - lap_);
+  samples_[at] = sample;
+  for (std::size_t level = 0; level < kLevels && at % kFan == kFan - 1; ++level) {
+    const std::size_t child = at - (kFan - 1);
+    Extent extent;
+    for (std::size_t i = child; i <= at; ++i) {
+      if (level == 0) {
+        extent.include(samples_[i]);
+      } else {
+        extent.include(blocks_[level - 1][i]);
+      }
+    }
+    at /= kFan;
+    blocks_[level][at] = extent;
+  }
+  ++end_;
+  if (end_ - lap_ == capacity()) lap_ = end_;
+}
+
+void MinMaxRing::include(Extent& extent, SampleIndex index, int level) const {
+  if (level == 0) {
+    extent.include(samples_[slot(index, 0)]);
+  } else {
+    extent.include(blocks_[static_cast<std::size_t>(level - 1)][slot(index, level)]);
+  }
+}
+
+Extent MinMaxRing::extent(SampleIndex from, SampleIndex to) const {
+  Extent extent;
+  for (int level = 0;; ++level) {
+    if (level == kLevels || to - from < 2 * kFan) {
+      while (from < to) include(extent, from++, level);
+      return extent;
+    }
+    while (from % kFan != 0) include(extent, from++, level);
+    while (to % kFan != 0) include(extent, --to, level);
+    from /= kFan;
+    to /= kFan;
+  }
+}
+
+}  // namespace limpid

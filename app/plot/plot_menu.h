@@ -1,0 +1,43 @@
+// What can be taken away from a plot: numbers on the clipboard, tables and pictures in files.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app/plot/plot_export.h"
+#include "app/plot/plot_frame.h"
+
+namespace limpid {
+
+struct PlotSaving {
+  std::filesystem::path folder;  // created when missing
+
+  // Asked to save what is on the screen between two corners [px, ImGui coordinates] as a PNG; it
+  // is called while the frame is built, so the pixels are to be read after it is drawn. Without
+  // it PNG is not offered.
+  std::function<void(const ScreenRect& box, const std::filesystem::path& file)> save_png;
+};
+
+struct PlotNotice {
+  std::string text;
+  bool bad = false;
+};
+
+enum class PlotWish { none, copy_csv, save_csv, save_svg, save_png, fit };
+
+// The items of the context menu inside an open pop-up; says what was chosen.
+PlotWish plot_menu_items(bool png_offered);
+
+// First free "folder/name-001.extension". Creates the folder. Throws std::runtime_error naming it
+// when that is not possible.
+std::filesystem::path free_file(const std::filesystem::path& folder, const std::string& name,
+                                const std::string& extension);
+
+// Does copy_csv, save_csv and save_svg; what there is to tell the person about it. Never throws
+// for a file that cannot be written: that is told, too.
+PlotNotice fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
+                  const PlotPicture& picture, const std::filesystem::path& folder);
+
+}  // namespace limpid

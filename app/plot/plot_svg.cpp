@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "app/plot/plot_export.h"
+#include "app/plot/ticks.h"
+#include "app/plot/trace.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kFont = 12;       // [px]
+constexpr double kLine = 1.4;      // [px]
+constexpr double kDash = 6;        // [px]
+constexpr int kColumnsPerPixel = 2;  // pictures are looked at closely
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
+    }
+  }
+  return out;
+}
+
+std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
+
+class SvgPlot {
+ public:
+  SvgPlot(const PlotSpec& spec, const History& history, const PlotPicture& picture)
+      : spec_(spec), history_(history), picture_(picture), right_(picture.width - 14.0),
+        bottom_(picture.height - 42.0) {}
+
+  std::string write() {
+    open();
+    time_axis();
+    value_axis();
+    add("<g clip-path=\"url(#area)\">\n");
+    marks();
+    curves();
+    thresholds();
+    add("</g>\n");
+    add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"{}\"/>\n", left_,
+        top_, right_ - left_, bottom_ - top_, hex(kLightPalette.axis));
+    legend();
+    return text_ + "</svg>\n";
+  }
+
+ private:
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+  }
+
+  void label(double x, double y, const char* anchor, Rgb rgb, const std::string& what,
+             const char* weight = "400") {
+    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-weight=\"{}\">{}</text>\n",
+        x, y, anchor, hex(rgb), weight, escaped(what));
+  }
+
+  void line(double x1, double y1, double x2, double y2, Rgb rgb, const char* dash = "none") {
+    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+        "stroke-dasharray=\"{}\"/>\n", x1, y1, x2, y2, hex(rgb), dash);
+  }
+
+  double x_of(double time) const {
+    return left_ + (time - picture_.start) / (picture_.stop - picture_.start) * (right_ - left_);
+  }
+  double y_of(double value) const {
+    const double up = (value - picture_.y.low) / picture_.y.span() * (bottom_ - top_);
+    return std::clamp(bottom_ - up, -1e4, 1e4);
+  }
+
+  void open() {
+    add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+        "viewBox=\"0 0 {0} {1}\" font-family=\"Inter, Helvetica, Arial, sans-serif\" "
+        "font-size=\"{2}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+        picture_.width, picture_.height, kFont);
+    add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+        left_, top_, right_ - left_, bottom_ - top_);
+    std::string unit = spec_.unit;
+    const int exponent = common_exponent(picture_.y.low * spec_.factor,
+                                         picture_.y.high * spec_.factor);
+    if (exponent != 0) unit = exponent_text(exponent) + " " + unit;
+    label(left_, 20, "start", kLightPalette.text, spec_.title + "  [" + unit + "]", "600");
+  }
+
+  void time_axis() {
+    const double offset = history_.offset();
+    const double low = picture_.start - offset;
+    const double high = picture_.stop - offset;
+    const bool clock = std::max(std::abs(low), std::abs(high)) >= 60;
+    const Ticks ticks = time_ticks(low, high, picture_.width / 90);
+    for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
+      const double x = x_of(ticks.at(i) + offset);
+      line(x, top_, x, bottom_, kLightPalette.grid);
+      label(x, bottom_ + 16, "middle", kLightPalette.muted, time_text(ticks.at(i), ticks.step, clock));
+    }
+  }
+
+  void value_axis() {
+    const double low = picture_.y.low * spec_.factor;
+    const double high = picture_.y.high * spec_.factor;
+    const Ticks ticks = nice_ticks(low, high, picture_.height / 45);
+    for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
+      const double y = y_of(ticks.at(i) / spec_.factor);
+      line(left_, y, right_, y, kLightPalette.grid);
+      label(left_ - 6, y + 4, "end", kLightPalette.muted,
+            tick_text(ticks.at(i), ticks.step, common_exponent(low, high)));
+    }
+    if (spec_.zero_line) line(left_, y_of(0), right_, y_of(0), kLightPalette.axis);
+  }
+
+  void marks() {
+    for (const Mark& mark : history_.marks()) {
+      if (mark.time < picture_.start || mark.time > picture_.stop) continue;
+      line(x_of(mark.time), top_, x_of(mark.time), bottom_, kLightPalette.muted, "2 3");
+      label(x_of(mark.time) + 4, bottom_ - 5, "start", kLightPalette.muted, mark.label);
+    }
+  }
+
+  void thresholds() {
+    for (const Threshold& each : spec_.thresholds) {
+      const Rgb rgb = ink(kLightPalette, each.ink);
+      line(left_, y_of(each.value), right_, y_of(each.value), rgb, "4 3");
+      label(right_ - 6, y_of(each.value) - 4, "end", rgb, each.label);
+    }
+  }
+
+  void curves() {
+    const int columns = kColumnsPerPixel * static_cast<int>(right_ - left_);
+    const double per_column = (picture_.stop - picture_.start) / columns;
+    const PixelWindow window{per_column,
+                             static_cast<std::int64_t>(std::floor(picture_.start / per_column)),
+                             columns + 1};
+    std::vector<SampleIndex> rows;
+    pixel_rows(history_, window, rows);
+    Trace trace;
+    for (const Curve& curve : spec_.curves) {
+      if (!curve.visible) continue;
+      make_trace(history_, curve, window, rows, kDash * kColumnsPerPixel, trace);
+      for (const TraceRun& run : trace.runs) {
+        if (run.faint) continue;
+        const auto points = std::span(trace.points).subspan(run.first, run.count);
+        const Rgb rgb = ink(kLightPalette, curve.ink, curve.shade);
+        trace.band ? band(points, window, rgb) : polyline(points, window, rgb);
+      }
+    }
+  }
+
+  void point(const TracePoint& p, const PixelWindow& window, float value) {
+    add("{:.2f},{:.2f} ", x_of(window.time(p.x)), y_of(value));
+  }
+
+  // The outline of the band, filled; its stroke gives thin bands the width of a line.
+  void band(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
+    add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" points=\"",
+        hex(rgb), kLine);
+    for (const TracePoint& p : points) point(p, window, p.high);
+    for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, window, p->low);
+    add("\"/>\n");
+  }
+
+  void polyline(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
+    add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" points=\"",
+        hex(rgb), kLine);
+    for (const TracePoint& p : points) point(p, window, p.low);
+    add("\"/>\n");
+  }
+
+  void legend() {
+    double x = left_;
+    for (const Curve& curve : spec_.curves) {
+      if (!curve.visible) continue;
+      const double y = picture_.height - 10;
+      add("<line x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"2\" "
+          "stroke-dasharray=\"{}\"/>\n", x, y - 4, x + 18, y - 4,
+          hex(ink(kLightPalette, curve.ink, curve.shade)), curve.dashed ? "5 3" : "none");
+      label(x + 23, y, "start", kLightPalette.text, curve.label);
+      x += 40 + 0.6 * kFont * static_cast<double>(curve.label.size());
+    }
+  }
+
+  const PlotSpec& spec_;
+  const History& history_;
+  const PlotPicture& picture_;
+  double left_ = 56;
+  double top_ = 32;
+  double right_;
+  double bottom_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
+  return SvgPlot(spec, history, picture).write();
+}
+
+}  // namespace limpid

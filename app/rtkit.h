@@ -1,0 +1,15 @@
+// Real-time priority for ordinary users, from RealtimeKit over D-Bus.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace limpid {
+
+// Asks RealtimeKit on the system bus to schedule thread `tid` of this process in real time. Waits a
+// second for the answer at most. False when there is no bus, no RealtimeKit or it refuses; `why`
+// (may be null) then gets one line saying so. The process must have limited RLIMIT_RTTIME before.
+bool ask_rtkit(pid_t tid, int priority, std::string* why);
+
+}  // namespace limpid

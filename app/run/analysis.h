@@ -1,0 +1,32 @@
+// Passivity and stability of a setting, without simulating, (3) and (22)-(25).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/coupling/coupling.h"
+#include "core/dynamics/arm_description.h"
+#include "core/loop/parameters.h"
+#include "core/passivity/eta_min.h"
+
+namespace limpid {
+
+struct Analysis {
+  std::vector<LockedMode> modes;      // lightest first
+  std::vector<double> w_f, w_c;       // of each mode [rad/s]
+  double b = 0;                       // b_d + b_v at the least damped joint [N m s/rad]
+  double eta_min = 0;                 // (25), the worst mode
+  std::optional<double> eta_min_band; // where only frequencies up to w_b count
+  double eta_min_grip = 0;            // Routh, for hand.stiffness and hand.damping
+  Condition3 condition3;
+  bool passive = false;               // eta >= eta_min
+};
+
+// At configuration x, the hand's spring and damper at the tip. w_b [rad/s].
+Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                 std::optional<double> w_b);
+// For a scalar inertia [kg m^2]; the hand's stiffness and damping count in joint space.
+Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
+                 std::optional<double> w_b);
+
+}  // namespace limpid

@@ -1,0 +1,94 @@
+#include "app/run/recorder.h"
+
+#include <bit>
+#include <chrono>
+#include <exception>
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kBlockRows = 512;
+
+// Half a minute at 1 kHz for a small arm, and never more than 64 MiB.
+std::size_t ring_rows(int stride) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20;
+  const std::size_t fit = kBytes / (static_cast<std::size_t>(stride) * sizeof(double));
+  return std::min(std::size_t{1} << 15, std::bit_floor(fit));
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
+                   const Parameters& initial, bool force)
+    : out_(out),
+      writer_(out, info, force),
+      ring_(ring_rows(RowLayout(info.dof).stride()),
+            static_cast<std::size_t>(RowLayout(info.dof).stride())),
+      known_(initial),
+      block_(kBlockRows * ring_.stride()),
+      thread_([this] { live(); }) {}
+
+Recorder::~Recorder() {
+  stop_.store(true);
+  if (thread_.joinable()) thread_.join();
+}
+
+bool Recorder::push(std::span<const double> row) noexcept {
+  if (!ring_.push(row)) return false;
+  pushed_.fetch_add(1, std::memory_order_release);
+  return true;
+}
+
+bool Recorder::changed(const Parameters& now) noexcept {
+  const bool kept = changes_.push({pushed_.load(std::memory_order_relaxed), now});
+  if (!kept) lost_changes_.fetch_add(1);
+  return kept;
+}
+
+std::string Recorder::error() const {
+  const std::lock_guard lock(error_mutex_);
+  return error_;
+}
+
+void Recorder::finish() {
+  stop_.store(true);
+  if (thread_.joinable()) thread_.join();
+  if (failed()) throw FileError(error());
+  writer_.close();
+}
+
+void Recorder::live() {
+  try {
+    while (true) {
+      const bool last_round = stop_.load();
+      write_changes();
+      write_rows();
+      if (last_round) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  } catch (const std::exception& e) {
+    const std::lock_guard lock(error_mutex_);
+    error_ = e.what();
+    failed_.store(true, std::memory_order_release);
+  }
+}
+
+void Recorder::write_rows() {
+  while (const std::size_t rows = ring_.pop(block_)) {
+    writer_.append(std::span<const double>(block_).first(rows * ring_.stride()));
+  }
+}
+
+void Recorder::write_changes() {
+  while (const auto change = changes_.pop()) {
+    for (const ParameterInfo& info : parameter_table()) {
+      const std::string text = parameter_text(change->parameters, info);
+      if (text == parameter_text(known_, info)) continue;
+      // An empty text gives a value back to the arm.
+      writer_.append(SettingChange{change->row, std::string(info.key) + " = " + text});
+    }
+    known_ = change->parameters;
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,64 @@
+// Writes every tick to a session file, from a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/loop/parameters.h"
+#include "core/loop/trace_ring.h"
+#include "devices/files/session.h"
+
+namespace limpid {
+
+// The loop hands rows over without waiting; what finds no room is counted by the ring. Parameters
+// that change travel beside the rows.
+class Recorder {
+ public:
+  // Opens the file at once, so that what cannot be written is known before the first tick.
+  // Errors: FileError.
+  Recorder(const std::filesystem::path& out, const SessionInfo& info, const Parameters& initial,
+           bool force);
+  ~Recorder();  // without finish(): leaves what was written as OUT.h5.part
+
+  // The loop's side: allocates and waits for nothing. False if there was no room.
+  bool push(std::span<const double> row) noexcept;
+  bool changed(const Parameters& now) noexcept;  // holds from the next row pushed on
+  bool nearly_full() const noexcept { return ring_.size() > ring_.capacity() * 3 / 4; }
+
+  // The owner's side.
+  std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
+  std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
+  bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
+  std::string error() const;  // once failed
+  const std::filesystem::path& out() const { return out_; }
+  // Writes what is left, closes and renames. Errors: FileError, also for what failed before.
+  void finish();
+
+ private:
+  struct Change {
+    std::uint64_t row = 0;
+    Parameters parameters;
+  };
+
+  void live();
+  void write_rows();
+  void write_changes();
+
+  std::filesystem::path out_;
+  SessionWriter writer_;
+  TraceRing ring_;
+  SpscQueue<Change> changes_{256};
+  Parameters known_;  // the writing thread's
+  std::vector<double> block_;
+  std::atomic<std::uint64_t> pushed_{0};
+  std::atomic<std::uint64_t> lost_changes_{0};
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> failed_{false};
+  mutable std::mutex error_mutex_;
+  std::string error_;
+  std::thread thread_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,59 @@
+#include "app/run/replay.h"
+
+#include "app/assets.h"
+#include "devices/files/config_file.h"
+#include "devices/files/scene_file.h"
+#include "devices/files/urdf_file.h"
+
+namespace limpid {
+
+Parameters session_parameters(const Session& session, const std::string& where) {
+  Parameters own;
+  apply_config_text(own, session.info.config, where + " (config)");
+  own.tick = session.info.tick;
+  return own;
+}
+
+namespace {
+
+// What the text inside a session says, with the built-in pictures where it names those.
+template <class Parse>
+auto with_pictures(const std::filesystem::path& folder, const Parse& parse) {
+  try {
+    return parse(folder);
+  } catch (const FileError&) {
+    return parse(std::filesystem::path());
+  }
+}
+
+}  // namespace
+
+RunPlan replay(const Session& session, const std::string& where, const Parameters& chosen) {
+  const std::filesystem::path assets = data_dir() / "assets";
+  RunPlan plan;
+  plan.arm = with_pictures(assets / "devices", [&](const std::filesystem::path& folder) {
+    return parse_urdf(session.info.device_urdf, where + " (device_urdf)", folder);
+  });
+  plan.scene = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
+    return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm);
+  });
+  plan.hand = hand_of(session, where);
+  plan.parameters = chosen;
+  plan.parameters.tick = session.info.tick;
+  plan.start = start_of(session.layout, session.row(0));
+  plan.rows = session.size();
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
+  }
+
+  const Parameters own = session_parameters(session, where);
+  for (const SettingChange& change : session.changes) {
+    const ParameterInfo* info = find_parameter(change.key());
+    if (info != nullptr && parameter_text(own, *info) == parameter_text(chosen, *info)) {
+      plan.changes.push_back(change);
+    }
+  }
+  return plan;
+}
+
+}  // namespace limpid

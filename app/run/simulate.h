@@ -1,0 +1,48 @@
+// A run without a window: a hand's path through the rig, as fast as it goes or paced.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/loop/parameters.h"
+#include "devices/files/hand_file.h"
+#include "devices/files/session.h"
+#include "devices/rig.h"
+
+namespace limpid {
+
+// All that decides a run: the same plan gives the same rows, bit for bit.
+struct RunPlan {
+  ArmDescription arm;
+  Scene scene;
+  HandPath hand;
+  Parameters parameters;               // at the first row
+  std::vector<SettingChange> changes;  // later ones, of a recording that is run again
+  std::vector<bool> force;             // armed at each row of a recording; empty: always
+  std::optional<RigStart> start;       // default: at rest, the tip on the hand's first point
+  std::uint64_t rows = 0;              // how many ticks
+};
+
+// Called with each row in turn, and with the parameters if they have just changed. False ends the
+// run.
+using RowSink = std::function<bool(std::span<const double> row, const Parameters* changed)>;
+
+struct RunEnd {
+  std::uint64_t rows = 0;  // that were run
+  bool diverged = false;   // unstable at the last of them
+  bool stopped = false;    // by the sink or by `stop`
+};
+
+struct RunPace {
+  bool realtime = false;                     // paced at the tick rate by the haptic thread
+  const std::atomic<bool>* stop = nullptr;   // set it to end early
+};
+
+// Errors: std::invalid_argument if the hand's first point cannot be reached; ParameterError in a
+// recorded change.
+RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink);
+
+}  // namespace limpid

@@ -1,0 +1,58 @@
+// Where playback of a recording stands.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/files/session.h"
+
+namespace limpid {
+
+class Player {
+ public:
+  explicit Player(Session session) : session_(std::move(session)) {}
+
+  const Session& session() const { return session_; }
+  double duration() const {
+    return static_cast<double>(session_.size()) * session_.info.tick;
+  }
+  double time() const { return time_; }  // [s]
+  std::size_t index() const {
+    const auto k = static_cast<std::size_t>(std::max(0.0, time_ / session_.info.tick + 1e-6));
+    return std::min(k, session_.size() - 1);
+  }
+  std::span<const double> row() const { return session_.row(index()); }
+
+  bool playing() const { return playing_; }
+  void play() {
+    if (time_ >= duration() - session_.info.tick) time_ = 0;
+    playing_ = true;
+  }
+  void pause() { playing_ = false; }
+  void seek(double time) { time_ = std::clamp(time, 0.0, duration() - session_.info.tick); }
+  void step(int ticks) {
+    pause();
+    seek(time_ + ticks * session_.info.tick);
+  }
+  void advance(double dt) {
+    if (!playing_) return;
+    time_ += dt * speed;
+    if (time_ < duration()) return;
+    if (loop) {
+      time_ = std::fmod(time_, duration());
+    } else {
+      seek(duration());
+      playing_ = false;
+    }
+  }
+
+  double speed = 1;  // 0.1 to 10
+  bool loop = false;
+
+ private:
+  Session session_;
+  double time_ = 0;
+  bool playing_ = false;
+};
+
+}  // namespace limpid

@@ -1,0 +1,81 @@
+#include "app/session/trace_channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+double norm(std::span<const double> v) {
+  double sum = 0;
+  for (const double x : v) sum += x * x;
+  return std::sqrt(sum);
+}
+
+constexpr int kMostJointCurves = 7;
+
+}  // namespace
+
+TraceChannels::TraceChannels(const RowLayout& layout) : layout_(layout) {}
+
+void TraceChannels::values(std::span<const double> row, std::span<double> into) const {
+  const auto at = [&](Column c) { return layout_.in(row, c); };
+  const auto put = [&](Channel c, double value) { into[static_cast<std::size_t>(c)] = value; };
+  const auto x1 = at(Column::device_position);
+  const auto x2 = at(Column::proxy_position);
+  const std::span<double> joints = into.subspan(static_cast<std::size_t>(Channel::joints));
+  std::ranges::transform(x1, x2, joints.begin(), std::minus{});
+  put(Channel::kind, at(Column::kind)[0]);
+  put(Channel::error, norm(joints.first(x1.size())));
+  put(Channel::energy_total, at(Column::energy_total)[0]);
+  put(Channel::energy_commanded, at(Column::energy_commanded)[0]);
+  put(Channel::human, norm(at(Column::hand_torque)));
+  put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
+  put(Channel::contact, norm(at(Column::contact_torque)));
+}
+
+std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
+  const auto curve = [&](Channel c, std::string label, Ink ink, float shade, bool again) {
+    Curve result;
+    result.channel = static_cast<int>(c) + (again ? count() : 0);
+    result.label = again ? "re-run " + label : std::move(label);
+    result.ink = ink;
+    result.shade = again ? shade - 0.45f : shade;
+    result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
+    return result;
+  };
+  PlotSpec error{.title = "coordination error |x_E|",
+                 .unit = "mrad",
+                 .factor = 1e3,
+                 .file_name = "coordination-error",
+                 .smallest_span = 2e-3};
+  PlotSpec energy{.title = "controller energy E_c",
+                  .unit = "mJ",
+                  .factor = 1e3,
+                  .file_name = "controller-energy",
+                  .smallest_span = 1e-3};
+  PlotSpec torque{.title = "human and contact torque",
+                  .unit = "N m",
+                  .factor = 1,
+                  .file_name = "torque",
+                  .smallest_span = 0.05};
+  for (const bool again : {false, true}) {
+    if (again && !rerun) break;
+    error.curves.push_back(curve(Channel::error, "|x_E|", Ink::proxy, 0, again));
+    energy.curves.push_back(curve(Channel::energy_total, "total", Ink::energy, 0, again));
+    energy.curves.push_back(curve(Channel::energy_commanded, "commanded", Ink::energy, 0.5f, again));
+    torque.curves.push_back(curve(Channel::human, "|f1|", Ink::hand, 0, again));
+    torque.curves.push_back(curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
+    torque.curves.push_back(curve(Channel::contact, "|f2|", Ink::contact, 0, again));
+  }
+  for (int j = 0; j < std::min(layout_.dof(), kMostJointCurves); ++j) {
+    Curve joint = curve(Channel::joints, "joint " + std::to_string(j + 1), Ink::neutral,
+                        0.3f - 0.25f * static_cast<float>(j), false);
+    joint.channel += j;
+    joint.visible = false;
+    error.curves.push_back(joint);
+  }
+  return {error, energy, torque};
+}
+
+}  // namespace limpid

@@ -1,0 +1,42 @@
+// The quantities the plots show, worked out from a row of the trace.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "app/plot/history.h"
+#include "app/plot/plot_spec.h"
+#include "core/loop/row.h"
+
+namespace limpid {
+
+// Channels of one run, in this order; the joints' follow one by one.
+enum class Channel : std::uint8_t {
+  kind,           // 0 standard, 1 proposed
+  error,          // |x_E| [rad]
+  energy_total,   // [J]
+  energy_commanded,
+  human,          // |f1| [N m]
+  human_estimate, // |f1_hat|
+  contact,        // |f2|
+  joints,         // x_E of each joint [rad]
+};
+
+class TraceChannels {
+ public:
+  explicit TraceChannels(const RowLayout& layout);
+
+  int count() const { return static_cast<int>(Channel::joints) + layout_.dof(); }
+  // Fills count() values.
+  void values(std::span<const double> row, std::span<double> into) const;
+  const RowLayout& layout() const { return layout_; }
+
+  // The three plots: coordination error, controller energy, torques. With `rerun` a second run's
+  // channels follow the first one's and are drawn beside them.
+  std::vector<PlotSpec> plots(bool rerun) const;
+
+ private:
+  RowLayout layout_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,103 @@
+// One colour per thing, the same in the 3D view, the plots and the panels.
+//
+// The inks are Okabe and Ito's palette, which colour-blind eyes tell apart too, each in a tint that
+// reads well on its background. Red is kept for broken promises.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "render/theme.h"
+
+namespace limpid {
+
+struct Rgb {
+  std::uint8_t r = 0;
+  std::uint8_t g = 0;
+  std::uint8_t b = 0;
+
+  friend constexpr bool operator==(Rgb, Rgb) = default;
+};
+
+constexpr Rgb rgb(std::uint32_t hex) {
+  return {static_cast<std::uint8_t>(hex >> 16), static_cast<std::uint8_t>(hex >> 8),
+          static_cast<std::uint8_t>(hex)};
+}
+
+// `part` 0 gives a, 1 gives b.
+constexpr Rgb mix(Rgb a, Rgb b, float part) {
+  const auto blend = [part](std::uint8_t from, std::uint8_t to) {
+    const auto f = static_cast<float>(from);
+    return static_cast<std::uint8_t>(f + (static_cast<float>(to) - f) * part + 0.5f);
+  };
+  return {blend(a.r, b.r), blend(a.g, b.g), blend(a.b, b.b)};
+}
+
+enum class Ink : std::uint8_t { device, proxy, hand, contact, energy, neutral, count_ };
+
+struct Palette {
+  Rgb backdrop;  // behind the panels
+  Rgb panel;
+  Rgb raised;  // pop-ups, tooltips, legends
+  Rgb frame;   // sliders, inputs, buttons
+  Rgb frame_hovered;
+  Rgb frame_active;
+  Rgb border;
+  Rgb grid;
+  Rgb axis;  // the zero line and ticks
+  Rgb text;
+  Rgb muted;
+  Rgb accent;  // what is switched on; no thing's own colour
+  Rgb broken;
+  std::array<Rgb, static_cast<std::size_t>(Ink::count_)> inks;
+};
+
+inline constexpr Palette kDarkPalette{
+    .backdrop = rgb(0x0f1114),
+    .panel = rgb(0x16191d),
+    .raised = rgb(0x1e2227),
+    .frame = rgb(0x252a30),
+    .frame_hovered = rgb(0x2f353d),
+    .frame_active = rgb(0x3a424c),
+    .border = rgb(0x2b3138),
+    .grid = rgb(0x23282e),
+    .axis = rgb(0x56606b),
+    .text = rgb(0xdfe4ea),
+    .muted = rgb(0x8f99a4),
+    .accent = rgb(0xc3ccd6),
+    .broken = rgb(0xff5263),
+    .inks = {rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
+             rgb(0xb4bcc6)},
+};
+
+inline constexpr Palette kLightPalette{
+    .backdrop = rgb(0xe9ebee),
+    .panel = rgb(0xf8f9fa),
+    .raised = rgb(0xffffff),
+    .frame = rgb(0xe7eaee),
+    .frame_hovered = rgb(0xdadfe5),
+    .frame_active = rgb(0xcbd2da),
+    .border = rgb(0xd3d8de),
+    .grid = rgb(0xe4e7eb),
+    .axis = rgb(0x98a1ab),
+    .text = rgb(0x1d2329),
+    .muted = rgb(0x5f6973),
+    .accent = rgb(0x39424c),
+    .broken = rgb(0xc8102e),
+    .inks = {rgb(0xc98600), rgb(0x0072b2), rgb(0x00855f), rgb(0xd55e00), rgb(0xb8619a),
+             rgb(0x59636e)},
+};
+
+constexpr const Palette& palette(Theme theme) {
+  return theme == Theme::dark ? kDarkPalette : kLightPalette;
+}
+
+// `shade` tells curves of one thing apart, such as its joints: above 0 towards the text's colour,
+// below 0 towards the background; -1 to 1.
+constexpr Rgb ink(const Palette& palette, Ink which, float shade = 0) {
+  const Rgb pure = palette.inks[static_cast<std::size_t>(which)];
+  return shade >= 0 ? mix(pure, palette.text, shade) : mix(pure, palette.panel, -shade);
+}
+
+}  // namespace limpid

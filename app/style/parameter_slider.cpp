@@ -1,0 +1,296 @@
+#include "app/style/parameter_slider.h"
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "app/plot/ticks.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* kSliderId = "##slider";  // below the key, which parameter_slider() pushes
+
+double slider_low(const ParameterInfo& info) {
+  if (!info.logarithmic || info.slider_minimum > 0) return info.slider_minimum;
+  return 1e-6 * info.slider_maximum;
+}
+
+bool is_int(const ParameterInfo& info) {
+  return std::holds_alternative<int Parameters::*>(info.field);
+}
+
+std::string with_unit(const ParameterInfo& info, double value) {
+  if (std::isnan(value)) return "arm's own";
+  std::string text = is_int(info) ? std::to_string(std::lround(value)) : three_digits(value);
+  if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;
+  return text;
+}
+
+void show_tooltip(const ParameterInfo& info, double paper_value, const char* broken) {
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
+  if (broken != nullptr) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
+    ImGui::TextUnformatted(broken);
+    ImGui::PopStyleColor();
+    ImGui::Spacing();
+  }
+  ImGui::TextUnformatted(info.meaning);
+  ImGui::Spacing();
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
+  if (number) {
+    const std::string range =
+        three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
+    ImGui::Text("%s, %s", info.key, range.c_str());
+    ImGui::Text("Paper: %s (right click). Double click to type.",
+                with_unit(info, paper_value).c_str());
+  } else {
+    ImGui::Text("%s. Right click: as in the paper.", info.key);
+  }
+  if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void draw_track(const ImRect& track, const ParameterInfo& info, double value, double paper_value,
+                bool broken, bool hovered, bool held) {
+  const Palette& p = current_palette();
+  const float scale = current_scale();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float middle = std::round(track.GetCenter().y);
+  const float r = 2 * scale;
+  const auto x_of = [&](double v) {
+    return track.Min.x + static_cast<float>(slider_place(info, v)) * track.GetWidth();
+  };
+  list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
+                     colour(hovered ? p.frame_active : p.frame_hovered), r);
+  if (!std::isnan(paper_value)) {
+    const float x = std::round(x_of(paper_value));
+    list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
+                       {x + 0.75f * scale, middle + 6 * scale}, colour(p.muted));
+  }
+  if (std::isnan(value)) return;
+  const float x = x_of(value);
+  const Rgb main = broken ? p.broken : held ? p.text : p.accent;
+  list.AddRectFilled({track.Min.x, middle - r}, {x, middle + r},
+                     colour(broken ? p.broken : mix(p.axis, p.accent, 0.35f)), r);
+  list.AddCircleFilled({x, middle}, (held ? 6.5f : 5.5f) * scale, colour(p.panel), 24);
+  list.AddCircleFilled({x, middle}, (held ? 5.5f : 4.5f) * scale, colour(main), 24);
+}
+
+// Label and value above the track; the value is shortened first where the panel is narrow.
+void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bool broken) {
+  const Palette& p = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(box.Min, colour(p.text), info.label);
+  const float room = box.GetWidth() - ImGui::CalcTextSize(info.label).x - ImGui::GetFontSize();
+  std::string text = with_unit(info, value);
+  if (ImGui::CalcTextSize(text.c_str()).x > room) text = text.substr(0, text.find(' '));
+  const float width = ImGui::CalcTextSize(text.c_str()).x;
+  const Rgb rgb = broken ? p.broken : std::isnan(value) ? p.muted : p.text;
+  list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
+}
+
+void draw_broken_frame(const ImRect& box) {
+  const float pad = 3 * current_scale();
+  ImRect frame = box;
+  frame.Expand({pad, 1});
+  ImGui::GetWindowDrawList()->AddRect(frame.Min, frame.Max, colour(current_palette().broken),
+                                      ImGui::GetStyle().FrameRounding, 0, current_scale());
+}
+
+// A number with a point or a comma; nothing else around it.
+bool parse_number(std::string text, double& value) {
+  std::ranges::replace(text, ',', '.');
+  const auto from = text.find_first_not_of(' ');
+  const auto to = text.find_last_not_of(' ');
+  if (from == std::string::npos) return false;
+  const char* end = text.data() + to + 1;
+  double parsed = 0;
+  const auto result = std::from_chars(text.data() + from, end, parsed);
+  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(parsed)) return false;
+  value = parsed;
+  return true;
+}
+
+// Number typed over the slider; true while the input is open. The value changes when typing is
+// done, not with every key: nobody wants to feel the 0 on the way to 0.6.
+bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin, double& value,
+            bool& changed) {
+  if (!begin && !ImGui::TempInputIsActive(id)) return false;
+  const double from = std::isnan(value) ? slider_value(info, 0.5) : value;
+  std::array<char, 32> text{};
+  const int length = std::snprintf(text.data(), text.size(), "%.6g", from);
+  const std::string before(text.data(), static_cast<std::size_t>(length));
+  ImGui::TempInputText(box, id, kSliderId, text.data(), static_cast<int>(text.size()),
+                       ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
+  const bool done = !begin && !ImGui::TempInputIsActive(id);
+  if (done && before != text.data()) changed = parse_number(text.data(), value);
+  return true;
+}
+
+bool number_slider(const ParameterInfo& info, double& value, double paper_value, bool broken) {
+  ImGuiWindow* window = ImGui::GetCurrentWindow();
+  const float text = ImGui::GetTextLineHeight();
+  const float scale = current_scale();
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, text + 16 * scale};
+  const ImVec2 at = window->DC.CursorPos;
+  const ImRect box(at, {at.x + size.x, at.y + size.y});
+  const ImGuiID id = window->GetID(kSliderId);
+  ImGui::ItemSize(size);
+  if (!ImGui::ItemAdd(box, id, nullptr, ImGuiItemFlags_Inputable)) return false;
+
+  const bool hovered = ImGui::ItemHoverable(box, id);
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool type = hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]);
+  const float r = 6 * scale;
+  const ImRect track({box.Min.x + r, box.Min.y + text + 2 * scale}, {box.Max.x - r, box.Max.y});
+  bool changed = false;
+  if (typing(box, id, info, type, value, changed)) return changed;
+  bool over = false;
+  bool held = false;
+  ImGui::ButtonBehavior(box, id, &over, &held);
+  // Only the track is for dragging: a click on the caption leaves the value alone.
+  const bool from_track = held && io.MouseClickedPos[0].y >= track.Min.y;
+  if (from_track && (io.MouseDelta.x != 0 || io.MouseClicked[0])) {
+    const double wanted = slider_value(info, (io.MousePos.x - track.Min.x) / track.GetWidth());
+    changed = wanted != value;
+    value = wanted;
+  }
+  if (over && io.MouseClicked[1]) {
+    changed = !(value == paper_value || (std::isnan(value) && std::isnan(paper_value)));
+    value = paper_value;
+  }
+  draw_caption(box, info, value, broken);
+  draw_track(track, info, value, paper_value, broken, over, from_track);
+  if (broken) draw_broken_frame(box);
+  return changed;
+}
+
+void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered) {
+  const Palette& p = current_palette();
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (chosen || hovered) {
+    list.AddRectFilled(box.Min, box.Max, colour(chosen ? p.accent : p.frame_active), rounding);
+  }
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const ImVec2 at{std::round(box.GetCenter().x - 0.5f * size.x),
+                  std::round(box.GetCenter().y - 0.5f * size.y)};
+  const Rgb rgb = chosen ? p.panel : hovered ? p.text : p.muted;
+  list.PushClipRect(box.Min, box.Max, true);
+  list.AddText(at, colour(rgb), text);
+  list.PopClipRect();
+}
+
+// Radio buttons side by side, of which one is pressed in.
+template <class Enum>
+bool choices(const ParameterInfo& info, Enum& value, Enum last) {
+  ImGui::TextUnformatted(info.label);
+  const int count = static_cast<int>(last) + 1;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
+                                            colour(current_palette().frame),
+                                            ImGui::GetStyle().FrameRounding);
+  bool changed = false;
+  for (int i = 0; i < count; ++i) {
+    const auto choice = static_cast<Enum>(i);
+    const float left = std::round(size.x * static_cast<float>(i) / static_cast<float>(count));
+    const float right = std::round(size.x * static_cast<float>(i + 1) / static_cast<float>(count));
+    ImGui::SetCursorScreenPos({at.x + left, at.y});
+    if (ImGui::InvisibleButton(name(choice), {right - left, size.y})) {
+      changed = value != choice;
+      value = choice;
+    }
+    const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
+    draw_choice(box, name(choice), value == choice, ImGui::IsItemHovered());
+  }
+  return changed;
+}
+
+}  // namespace
+
+double slider_place(const ParameterInfo& info, double value) {
+  const double low = slider_low(info);
+  const double high = info.slider_maximum;
+  const double inside = std::clamp(value, low, high);
+  if (!info.logarithmic) return (inside - low) / (high - low);
+  return std::log(inside / low) / std::log(high / low);
+}
+
+double slider_value(const ParameterInfo& info, double place) {
+  const double low = slider_low(info);
+  const double high = info.slider_maximum;
+  const double at = std::clamp(place, 0.0, 1.0);
+  const double value =
+      info.logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
+  return is_int(info) ? std::round(value) : value;
+}
+
+double parameter_number(const Parameters& parameters, const ParameterInfo& info) {
+  return std::visit([&](auto field) { return static_cast<double>(parameters.*field); }, info.field);
+}
+
+void set_parameter_number(Parameters& parameters, const ParameterInfo& info, double number) {
+  const double allowed = std::clamp(number, info.minimum, info.maximum);  // kFromArm passes
+  std::visit(
+      [&](auto field) {
+        using Value = std::remove_reference_t<decltype(parameters.*field)>;
+        parameters.*field = static_cast<Value>(std::is_same_v<Value, double> ? allowed
+                                                                            : std::round(allowed));
+      },
+      info.field);
+}
+
+bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double paper_value,
+                      const char* broken) {
+  ImGui::PushID(info.key);
+  ImGui::BeginGroup();
+  bool changed = false;
+  if (const auto* flag = std::get_if<bool Parameters::*>(&info.field)) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * current_scale(), 2 * current_scale()});
+    changed = ImGui::Checkbox(info.label, &(parameters.**flag));
+    ImGui::PopStyleVar();
+  } else if (const auto* kind = std::get_if<CouplingKind Parameters::*>(&info.field)) {
+    changed = choices(info, parameters.**kind, CouplingKind::proposed);
+  } else if (const auto* source = std::get_if<VelocitySource Parameters::*>(&info.field)) {
+    changed = choices(info, parameters.**source, VelocitySource::adaptive);
+  } else {
+    double value = parameter_number(parameters, info);
+    changed = number_slider(info, value, paper_value, broken != nullptr);
+    if (changed) set_parameter_number(parameters, info, value);
+  }
+  ImGui::EndGroup();
+  const bool is_choice =
+      !std::holds_alternative<double Parameters::*>(info.field) && !is_int(info);
+  if (is_choice && broken != nullptr) {
+    draw_broken_frame({ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
+  }
+  if (ImGui::IsItemHovered()) {
+    if (is_choice && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+      changed = parameter_number(parameters, info) != paper_value;
+      set_parameter_number(parameters, info, paper_value);
+    }
+    const bool busy = ImGui::IsAnyItemActive();
+    if (!busy && ImGui::GetCurrentContext()->HoveredIdTimer > 0.5f) {
+      show_tooltip(info, paper_value, broken);
+    }
+  }
+  ImGui::PopID();
+  return changed;
+}
+
+}  // namespace limpid

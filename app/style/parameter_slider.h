@@ -1,0 +1,26 @@
+// One parameter as a slider, a check box or a row of choices.
+#pragma once
+
+#include "core/loop/parameters.h"
+
+namespace limpid {
+
+// Draws the widget for `info` at ImGui's cursor over the width left, and changes `parameters`;
+// returns whether it did. `paper_value` is marked on the slider and a right click goes back to it
+// (enumerations by number, bool as 0 or 1, kFromArm for the arm's own). A double click or
+// Ctrl+click takes typed numbers. `broken`: the promise that the value breaks, nullptr for none;
+// it is shown in red.
+bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double paper_value,
+                      const char* broken = nullptr);
+
+// Where a value lies on the slider of `info`, 0 to 1, and back; beyond the ends it is held there.
+// A logarithmic slider whose range begins at zero begins at a millionth of its end.
+double slider_place(const ParameterInfo& info, double value);
+double slider_value(const ParameterInfo& info, double place);
+
+// A parameter as a number, the way `paper_value` is: enumerations by their place, bool as 0 or 1.
+double parameter_number(const Parameters& parameters, const ParameterInfo& info);
+// Inverse of it; held within the allowed range.
+void set_parameter_number(Parameters& parameters, const ParameterInfo& info, double number);
+
+}  // namespace limpid

@@ -1,0 +1,116 @@
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr float kTextSize = 16;  // [px] at scale 1
+
+void set_colours(const Palette& p, ImVec4* colours) {
+  const auto set = [colours](ImGuiCol which, Rgb rgb, float alpha = 1) {
+    colours[which] = colour_vector(rgb, alpha);
+  };
+  set(ImGuiCol_Text, p.text);
+  set(ImGuiCol_TextDisabled, p.muted);
+  set(ImGuiCol_WindowBg, p.panel);
+  set(ImGuiCol_ChildBg, p.panel, 0);
+  set(ImGuiCol_PopupBg, p.raised);
+  set(ImGuiCol_Border, p.border);
+  set(ImGuiCol_BorderShadow, p.border, 0);
+  set(ImGuiCol_FrameBg, p.frame);
+  set(ImGuiCol_FrameBgHovered, p.frame_hovered);
+  set(ImGuiCol_FrameBgActive, p.frame_active);
+  set(ImGuiCol_TitleBg, p.backdrop);
+  set(ImGuiCol_TitleBgActive, p.backdrop);
+  set(ImGuiCol_TitleBgCollapsed, p.backdrop);
+  set(ImGuiCol_MenuBarBg, p.backdrop);
+  set(ImGuiCol_ScrollbarBg, p.panel, 0);
+  set(ImGuiCol_ScrollbarGrab, p.frame_hovered);
+  set(ImGuiCol_ScrollbarGrabHovered, p.frame_active);
+  set(ImGuiCol_ScrollbarGrabActive, p.axis);
+  set(ImGuiCol_CheckMark, p.accent);
+  set(ImGuiCol_SliderGrab, p.accent);
+  set(ImGuiCol_SliderGrabActive, p.text);
+  set(ImGuiCol_Button, p.frame);
+  set(ImGuiCol_ButtonHovered, p.frame_hovered);
+  set(ImGuiCol_ButtonActive, p.frame_active);
+  set(ImGuiCol_Header, p.frame);
+  set(ImGuiCol_HeaderHovered, p.frame_hovered);
+  set(ImGuiCol_HeaderActive, p.frame_active);
+  set(ImGuiCol_Separator, p.border);
+  set(ImGuiCol_SeparatorHovered, p.axis);
+  set(ImGuiCol_SeparatorActive, p.accent);
+  set(ImGuiCol_ResizeGrip, p.border, 0);
+  set(ImGuiCol_ResizeGripHovered, p.axis);
+  set(ImGuiCol_ResizeGripActive, p.accent);
+  set(ImGuiCol_Tab, p.panel);
+  set(ImGuiCol_TabHovered, p.frame_hovered);
+  set(ImGuiCol_TabActive, p.frame);
+  set(ImGuiCol_TabUnfocused, p.panel);
+  set(ImGuiCol_TabUnfocusedActive, p.frame);
+  set(ImGuiCol_PlotLines, ink(p, Ink::neutral));
+  set(ImGuiCol_PlotLinesHovered, p.text);
+  set(ImGuiCol_PlotHistogram, ink(p, Ink::neutral));
+  set(ImGuiCol_PlotHistogramHovered, p.text);
+  set(ImGuiCol_TableHeaderBg, p.raised);
+  set(ImGuiCol_TableBorderStrong, p.border);
+  set(ImGuiCol_TableBorderLight, p.grid);
+  set(ImGuiCol_TableRowBg, p.panel, 0);
+  set(ImGuiCol_TableRowBgAlt, p.frame, 0.35f);
+  set(ImGuiCol_TextSelectedBg, p.axis, 0.5f);
+  set(ImGuiCol_DragDropTarget, p.accent);
+  set(ImGuiCol_NavHighlight, p.accent, 0.8f);
+  set(ImGuiCol_NavWindowingHighlight, p.accent, 0.8f);
+  set(ImGuiCol_NavWindowingDimBg, p.backdrop, 0.5f);
+  set(ImGuiCol_ModalWindowDimBg, p.backdrop, 0.6f);
+}
+
+}  // namespace
+
+void apply_theme(Theme theme, float scale) {
+  ImGuiStyle style;
+  style.WindowPadding = {10, 10};
+  style.FramePadding = {8, 4};
+  style.CellPadding = {6, 3};
+  style.ItemSpacing = {8, 6};
+  style.ItemInnerSpacing = {6, 4};
+  style.IndentSpacing = 14;
+  style.ScrollbarSize = 11;
+  style.GrabMinSize = 10;
+  style.WindowRounding = 4;
+  style.ChildRounding = 4;
+  style.FrameRounding = 4;
+  style.PopupRounding = 4;
+  style.ScrollbarRounding = 6;
+  style.GrabRounding = 4;
+  style.TabRounding = 4;
+  style.WindowTitleAlign = {0, 0.5f};
+  style.WindowMenuButtonPosition = ImGuiDir_None;
+  style.ScaleAllSizes(scale);
+  style.WindowBorderSize = 1;
+  style.ChildBorderSize = 1;
+  style.PopupBorderSize = 1;
+  style.FrameBorderSize = 0;
+  style.TabBorderSize = 0;
+  set_colours(palette(theme), style.Colors);
+  ImGui::GetStyle() = style;
+}
+
+Theme current_theme() {
+  const ImVec4& background = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+  return background.y < 0.5f ? Theme::dark : Theme::light;
+}
+
+const Palette& current_palette() { return palette(current_theme()); }
+
+float current_scale() { return ImGui::GetFontSize() / kTextSize; }
+
+ImU32 colour(Rgb rgb, float alpha) {
+  return IM_COL32(rgb.r, rgb.g, rgb.b, static_cast<int>(alpha * 255 + 0.5f));
+}
+
+ImVec4 colour_vector(Rgb rgb, float alpha) {
+  return {static_cast<float>(rgb.r) / 255, static_cast<float>(rgb.g) / 255,
+          static_cast<float>(rgb.b) / 255, alpha};
+}
+
+}  // namespace limpid

@@ -1,0 +1,34 @@
+// How the window looks: colours, spacing and fonts of ImGui.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+
+#include "app/style/palette.h"
+
+namespace limpid {
+
+// Sets every colour and size of ImGui's style; `scale` 1 for ordinary screens, 2 for 200 %.
+void apply_theme(Theme theme, float scale);
+
+// The theme and the scale in use, read back from ImGui.
+Theme current_theme();
+const Palette& current_palette();
+float current_scale();
+
+// `alpha` 0 to 1.
+ImU32 colour(Rgb rgb, float alpha = 1);
+ImVec4 colour_vector(Rgb rgb, float alpha = 1);
+
+enum class Face : std::uint8_t { regular, semibold, small };
+
+// Loads Inter at `scale`, or ImGui's own font where Inter is not installed, in place of all fonts
+// loaded before. Call it before the first frame, or between frames followed by a new font texture.
+// Returns whether Inter was found.
+bool load_fonts(float scale);
+
+// The regular face where load_fonts() was never called.
+ImFont* font(Face face);
+
+}  // namespace limpid

@@ -1,0 +1,86 @@
+#include "app/view/row_view.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kTrail = 1.0;        // [s]
+constexpr double kSamePlace = 0.015;  // a contact that moved less is the same one [m]
+constexpr double kPause = 0.05;       // a contact away for less has not ended [s]
+
+Vec<kAnyDof> joints(std::span<const double> x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+}  // namespace
+
+RowView::RowView(const ArmDescription& arm) : arm_(arm) {}
+
+ArmPose RowView::pose(std::span<const double> x) const {
+  Arm<kAnyDof>::Frames f;
+  arm_.frames(joints(x), f);
+  ArmPose pose;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Pose link = Pose::Identity();
+    link.linear() = f.R[i];
+    link.translation() = f.p[i];
+    pose.links.push_back(link);
+  }
+  pose.tip = arm_.tip(f);
+  return pose;
+}
+
+Vec3 RowView::tip(std::span<const double> x) const {
+  Arm<kAnyDof>::Frames f;
+  arm_.frames(joints(x), f);
+  return arm_.tip(f);
+}
+
+Vec3 RowView::tip_force(std::span<const double> x, std::span<const double> torque) const {
+  Arm<kAnyDof>::Frames f;
+  arm_.frames(joints(x), f);
+  Jacobian<kAnyDof> J;
+  arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
+  Mat3 A = J * J.transpose();
+  A.diagonal().array() += 1e-9 * A.trace();
+  return A.ldlt().solve(J * joints(torque));
+}
+
+ViewState RowView::view(const RowLayout& layout, std::span<const double> row) const {
+  const auto at = [&](Column c) { return layout.in(row, c); };
+  ViewState view;
+  view.device = pose(at(Column::device_position));
+  view.proxy = pose(at(Column::proxy_position));
+  const auto target = at(Column::hand_target);
+  view.hand_target = Vec3(target[0], target[1], target[2]);
+  view.hand_grips = view.show_hand = at(Column::hand_grip)[0] > 0.5;
+  view.hand_force = tip_force(at(Column::device_position), at(Column::hand_torque));
+  return view;
+}
+
+void ViewMemory::clear() {
+  touches_.clear();
+  tips_.clear();
+}
+
+void ViewMemory::update(ViewState& view, std::span<const ContactForce> contacts, double time) {
+  if (!tips_.empty() && (time < tips_.back().time || time > tips_.back().time + 1)) clear();
+  tips_.push_back({time, view.device.tip, view.proxy.tip});
+  while (tips_.front().time < time - kTrail) tips_.pop_front();
+  for (const Tips& tips : tips_) {
+    view.device.trail.push_back(tips.device);
+    view.proxy.trail.push_back(tips.proxy);
+  }
+
+  for (const ContactForce& contact : contacts) {
+    if (contact.force.isZero()) continue;
+    const auto same = [&](const Touch& t) { return (t.point - contact.point).norm() < kSamePlace; };
+    auto touch = std::ranges::find_if(touches_, same);
+    if (touch == touches_.end()) touch = touches_.insert(touch, {contact.point, time, time});
+    touch->point = contact.point;
+    touch->seen = time;
+    view.contacts.push_back({contact.point, contact.force, time - touch->began});
+  }
+  std::erase_if(touches_, [&](const Touch& t) { return t.seen < time - kPause; });
+}
+
+}  // namespace limpid

@@ -1,0 +1,49 @@
+// From a row of the trace to what the 3D view shows.
+#pragma once
+
+#include <deque>
+#include <span>
+
+#include "core/dynamics/arm.h"
+#include "core/loop/row.h"
+#include "devices/rig.h"
+#include "render/view_state.h"
+
+namespace limpid {
+
+class RowView {
+ public:
+  explicit RowView(const ArmDescription& arm);
+
+  ArmPose pose(std::span<const double> x) const;
+  Vec3 tip(std::span<const double> x) const;
+  // Torque at the joints as a force at the tip there, least squares [N].
+  Vec3 tip_force(std::span<const double> x, std::span<const double> torque) const;
+  // Both arms, the hand and its force; no contacts, no trails.
+  ViewState view(const RowLayout& layout, std::span<const double> row) const;
+
+ private:
+  Arm<kAnyDof> arm_;
+};
+
+// Remembers when each contact began and where the tips were in the last second.
+class ViewMemory {
+ public:
+  void clear();
+  void update(ViewState& view, std::span<const ContactForce> contacts, double time);
+
+ private:
+  struct Touch {
+    Vec3 point;
+    double began;
+    double seen;
+  };
+  struct Tips {
+    double time;
+    Vec3 device, proxy;
+  };
+  std::vector<Touch> touches_;
+  std::deque<Tips> tips_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,87 @@
+// Kinematics and dynamics of a chain of n revolute joints.
+//
+// Everything is expressed in the base frame about its origin O. A joint's motion is the spatial
+// axis S_j = (a_j, o_j): turning at rate 1 gives the body angular velocity a_j and gives the point
+// of the body that is at O the velocity o_j = p_j x a_j.
+//
+// M and C are sums over the links of J_k^T I_k J_k and J_k^T (I_k Jdot_k + B_k J_k), with
+//     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],
+// the factorisation for which C equals the Christoffel one (Echeandia & Wensing, 2021), hence
+// Mdot = C + C^T and Mdot - 2C skew. About O its blocks collapse: B acts on the angular part only,
+// B (a, o) = (B11 a, -h x a), h the link's momentum. Adding the links up from the tip (composite
+// bodies) makes each entry one dot product.
+#pragma once
+
+#include <array>
+
+#include "core/dynamics/arm_description.h"
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+template <int N>
+class Arm {
+ public:
+  // Where the links are at a configuration x.
+  struct Frames {
+    std::array<Mat3, kCapacity<N>> R;  // link axes in the base frame
+    std::array<Vec3, kCapacity<N>> p;  // link origins [m]
+    std::array<Vec3, kCapacity<N>> a;  // joint axes, unit
+    std::array<Vec3, kCapacity<N>> o;  // velocity of O for unit rate, p x a [m]
+  };
+
+  // Precondition: 1 to 32 joints, and exactly N unless N is kAnyDof.
+  explicit Arm(const ArmDescription& description);
+
+  int dof() const { return dof_; }
+
+  void frames(const Vec<N>& x, Frames& f) const;
+
+  // M(x) [kg m^2].
+  void inertia(const Frames& f, Mat<N>& M) const;
+  // M(x), and C(x, v) with Mdot - 2C skew [kg m^2/s].
+  void inertia_coriolis(const Frames& f, const Vec<N>& v, Mat<N>& M, Mat<N>& C) const;
+  // M(x), and the torque C(x, v) v alone: cheaper where the matrix is not needed [N m].
+  void inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const;
+
+  Vec3 tip(const Frames& f) const { return point(f, dof_ - 1, tip_); }
+  static Vec3 point(const Frames& f, int link, const Vec3& in_link) {
+    const auto i = static_cast<std::size_t>(link);
+    return f.p[i] + f.R[i] * in_link;
+  }
+  // Velocity of a point fixed to `link`, now at `world`, per joint rate [m]; J is 3 x n.
+  void point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const;
+
+ private:
+  // A joint's rotation is Rf (I + sin q K + (1 - cos q) K^2), K = [axis]x.
+  struct JointModel {
+    Mat3 R0, Rs, Rc;  // Rf, Rf K, Rf K^2
+    Vec3 offset;      // origin in the previous link's frame [m]
+    Vec3 axis;        // in the joint's frame
+  };
+  // A body about O: mass, first moment, inertia; B11 and momentum while it moves.
+  struct Body {
+    double m;
+    Vec3 mc;
+    Mat3 I;
+    Mat3 B11;
+    Vec3 h;
+  };
+
+  Body body(const Frames& f, std::size_t i) const;
+
+  int dof_;
+  std::array<JointModel, kCapacity<N>> joints_;
+  std::array<double, kCapacity<N>> mass_;
+  std::array<Vec3, kCapacity<N>> com_;
+  std::array<Mat3, kCapacity<N>> inertia_;
+  Vec3 tip_;
+};
+
+extern template class Arm<3>;
+extern template class Arm<kAnyDof>;
+
+// The middle of each joint's limits, 0 where there are none [rad].
+Eigen::VectorXd rest_pose(const ArmDescription& arm);
+
+}  // namespace limpid

@@ -1,0 +1,60 @@
+// An arm as its file gives it: a chain of revolute joints. Fixed joints are already merged.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+struct Joint {
+  std::string name;
+  Pose origin = Pose::Identity();  // joint frame in the frame of the previous link [m, rad]
+  Vec3 axis = Vec3::UnitZ();       // unit, in the joint frame
+  double lower = -std::numeric_limits<double>::infinity();  // [rad]
+  double upper = std::numeric_limits<double>::infinity();   // [rad]
+  double effort = 0;                                        // torque limit [N m]
+  double damping = 0;                                       // viscous, b_d [N m s/rad]
+  double friction = 0;                                      // Coulomb [N m]
+};
+
+struct Link {
+  std::string name;
+  double mass = 0;                 // [kg]
+  Vec3 com = Vec3::Zero();         // centre of mass in the link frame [m]
+  Mat3 inertia = Mat3::Zero();     // about the centre of mass, axes of the link [kg m^2]
+};
+
+// What to draw: one shape fixed to a link. `size` is the box's edges, (radius, length, -) of a
+// cylinder along z, (radius, -, -) of a sphere, or the scale of a mesh.
+struct Visual {
+  enum class Shape { mesh, box, cylinder, sphere };
+  int link = -1;                   // index into links, -1 the base
+  Pose origin = Pose::Identity();  // in the link frame
+  Shape shape = Shape::mesh;
+  std::string mesh;                // absolute path of a glTF file
+  Vec3 size = Vec3::Ones();
+};
+
+// A named frame of the file: every URDF link, also those merged through fixed joints.
+struct NamedFrame {
+  std::string name;
+  int link = -1;                   // -1: does not move
+  Pose origin = Pose::Identity();  // in the frame of `link`
+};
+
+struct ArmDescription {
+  std::string name;
+  std::vector<Joint> joints;       // n, base first
+  std::vector<Link> links;         // n, link i is moved by joint i; its frame is that of joint i
+  Pose tip = Pose::Identity();     // in the last link's frame
+  std::vector<NamedFrame> frames;
+  std::vector<Visual> visuals;
+  std::string urdf;                // the text it came from
+
+  int dof() const { return static_cast<int>(joints.size()); }
+};
+
+}  // namespace limpid

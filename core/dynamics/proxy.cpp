@@ -1,0 +1,139 @@
+#include "core/dynamics/proxy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/solve.h"
+
+namespace limpid {
+
+template <int N>
+Proxy<N>::Proxy(const ArmDescription& arm, const Scene& scene)
+    : arm_(arm), contacts_(arm, scene), forces_(contacts_.capacity()),
+      touching_(std::make_unique<bool[]>(contacts_.capacity())) {
+  place(Vec<N>::Zero(arm.dof()), Vec<N>::Zero(arm.dof()), ratio_);
+}
+
+template <int N>
+void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
+  ratio_ = ratio;
+  x_ = x;
+  tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
+  arm_.frames(x_, frames_);
+  arm_.inertia(frames_, M_);
+  M_ *= ratio_;
+  L_ = cholesky<N>(M_);
+  nu_ = L_.transpose() * v;
+  v_ = v;  // to the last bit: a recording's first row is a starting point
+  update_skew();
+  find_contacts();
+  std::fill(forces_.begin(), forces_.end(), 0.0);
+}
+
+template <int N>
+void Proxy<N>::set_ratio(double ratio) {
+  if (ratio == ratio_) return;
+  nu_ *= std::sqrt(ratio / ratio_);
+  ratio_ = ratio;
+  update_model();
+}
+
+// M, L, v, C and S where it now is.
+template <int N>
+void Proxy<N>::update_model() {
+  arm_.frames(x_, frames_);
+  arm_.inertia(frames_, M_);
+  M_ *= ratio_;
+  L_ = cholesky<N>(M_);
+  v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  update_skew();
+}
+
+// C, and S = C - L Ldot^T with Ldot = L Phi(L^-1 Mdot L^-T), Phi the lower triangle with half the
+// diagonal.
+template <int N>
+void Proxy<N>::update_skew() {
+  arm_.inertia_coriolis(frames_, v_, M_, C_);
+  M_ *= ratio_;
+  C_ *= ratio_;
+  const auto lower = L_.template triangularView<Eigen::Lower>();
+  Mat<N> A = C_ + C_.transpose();  // Mdot
+  A = lower.solve(A).eval();
+  A = lower.solve(A.transpose()).eval();
+  A.template triangularView<Eigen::StrictlyUpper>().setZero();
+  A.diagonal() *= 0.5;
+  const Mat<N> LA = L_ * A;  // Ldot
+  S_.noalias() = C_ - L_ * LA.transpose();
+}
+
+template <int N>
+std::span<const double> Proxy<N>::contact_forces() const {
+  return {forces_.data(), contacts_.list().size()};
+}
+
+template <int N>
+void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
+  find_contacts();
+  const std::span<const Contact<N>> near = contacts_.list();
+  for (std::size_t i = 0; i < near.size(); ++i) touching_[i] = near[i].depth > 0;
+  // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
+  // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
+  // none ever pulls.
+  constexpr int kRounds = 4;
+  for (int round = 0; !solve_step(T, drive); ++round) {
+    bool changed = false;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const bool deep = near[i].depth + 0.5 * T * near[i].gradient.dot(vbar_) > 0;
+      if (deep == touching_[i] || (deep && round >= kRounds)) continue;
+      touching_[i] = deep;
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  // The torque as it acted, from the momentum it made: the balance then holds to round-off.
+  const Vec<N> nu_before = nu_;
+  nu_ = 2 * (L_.transpose() * vbar_) - nu_before;
+  const Vec<N> impulse = L_ * (nu_ - nu_before) / T;
+  tau_ = impulse + S_ * vbar_ - f_;
+  x_ += T * vbar_;
+  update_model();
+}
+
+// Solves for vbar with the contacts now thought to touch. True if they are the ones that are deep
+// at the midpoint.
+template <int N>
+bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
+  const std::span<const Contact<N>> near = contacts_.list();
+  const Eigen::Index n = x_.size();
+  Mat<N> stiffness = Mat<N>::Zero(n, n);  // d f2 / d vbar, negative
+  Vec<N> f2 = Vec<N>::Zero(n);            // where vbar is zero
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!touching_[i]) continue;
+    const Contact<N>& c = near[i];
+    f2 -= c.stiffness * c.depth * c.gradient;
+    stiffness.noalias() += (0.5 * T * c.stiffness) * c.gradient * c.gradient.transpose();
+  }
+  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2
+  Mat<N> A = 2 / T * M_ + S_ + stiffness;
+  A.noalias() += drive.from_f2 * stiffness;
+  A.diagonal().array() += drive.damping;
+  Vec<N> b = 2 / T * (L_ * nu_) + drive.constant + f2;
+  b.noalias() += drive.from_f2 * f2;
+  vbar_ = solve<N>(A, b);
+
+  f_ = Vec<N>::Zero(n);
+  bool settled = true;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Contact<N>& c = near[i];
+    const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar_);
+    forces_[i] = touching_[i] ? c.stiffness * depth : 0;
+    f_ -= forces_[i] * c.gradient;
+    settled = settled && (depth > 0) == touching_[i];
+  }
+  return settled;
+}
+
+template class Proxy<3>;
+template class Proxy<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,108 @@
+// When ticks happen: tick k is due at start + k T, to the nanosecond, for ever.
+//
+// Deadlines are never set from "now", so nothing adds up to a drift, and one tick is always one T:
+// after a stall the ticks that were missed run back to back, without sleeping, until the schedule
+// is met again. At most kMaxCatchUp ticks run so, for at most as many periods; what would still be
+// overdue then is given up: the schedule slips, all later deadlines move by whole periods.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+
+namespace limpid {
+
+using std::chrono::nanoseconds;
+
+// CLOCK_MONOTONIC. Clock takes any class with these two functions in its place.
+struct MonotonicTime {
+  nanoseconds now() const noexcept;
+  void sleep_until(nanoseconds moment) const noexcept;  // returns at once if it has passed
+};
+
+inline double in_seconds(nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+struct Wake {
+  std::int64_t tick;    // 0, 1, 2, ..., none left out
+  nanoseconds moment;   // when the tick began
+  nanoseconds latency;  // how long after its deadline, slips not deducted
+};
+
+struct ClockCounts {
+  std::int64_t late = 0;     // ticks that began more than Clock::kLate after their deadline
+  std::int64_t missed = 0;   // those of them that began after the next one's deadline
+  std::int64_t slipped = 0;  // periods by which the schedule has moved
+};
+
+template <class Time = MonotonicTime>
+class Clock {
+ public:
+  static constexpr nanoseconds kLate{200'000};
+  static constexpr std::int64_t kMaxCatchUp = 20;  // ticks, and periods
+  static constexpr nanoseconds kSpin{100'000};
+
+  // start: deadline of tick 0; period: T > 0; spin: how long before a deadline to stop sleeping and
+  // to watch the clock instead. kSpin pays under real-time scheduling; else 0, or it does harm.
+  Clock(nanoseconds start, nanoseconds period, nanoseconds spin, Time time = {})
+      : deadline_(start), period_(period), spin_(spin), time_(time) {}
+
+  // Returns when the next tick is to begin.
+  Wake wait() noexcept {
+    const nanoseconds due = deadline_;
+    nanoseconds now = wait_for_deadline();
+    slip(now);
+    if (now < deadline_) now = wait_for_deadline();
+    count(now - due);
+    deadline_ += period_;
+    ++series_ticks_;
+    return {tick_++, now, now - due};
+  }
+
+  nanoseconds next_deadline() const noexcept { return deadline_; }
+  const ClockCounts& counts() const noexcept { return counts_; }
+
+ private:
+  // Too near a deadline to sleep before spinning, it sleeps right up to it: a real-time thread that
+  // never sleeps takes the processor from everybody.
+  nanoseconds wait_for_deadline() noexcept {
+    nanoseconds now = time_.now();
+    if (now >= deadline_) {
+      if (series_ticks_ <= 1) catch_up_start_ = now;
+      return now;
+    }
+    time_.sleep_until(deadline_ - now > spin_ ? deadline_ - spin_ : deadline_);
+    do now = time_.now();
+    while (now < deadline_);
+    catch_up_start_ = now;
+    series_ticks_ = 0;
+    return now;
+  }
+
+  // Time counts as well as ticks: ticks that take longer than a period never catch up.
+  void slip(nanoseconds now) noexcept {
+    const std::int64_t overdue = (now - deadline_) / period_ + 1;
+    const std::int64_t series = std::max(series_ticks_, (now - catch_up_start_) / period_);
+    const std::int64_t allowed = std::max<std::int64_t>(1 + kMaxCatchUp - series, 0);
+    const std::int64_t given_up = std::max<std::int64_t>(overdue - allowed, 0);
+    deadline_ += given_up * period_;
+    counts_.slipped += given_up;
+  }
+
+  void count(nanoseconds latency) noexcept {
+    if (latency > kLate) ++counts_.late;
+    if (latency >= period_) ++counts_.missed;
+  }
+
+  nanoseconds deadline_;
+  nanoseconds period_;
+  nanoseconds spin_;
+  Time time_;
+  std::int64_t tick_ = 0;
+  std::int64_t series_ticks_ = 0;  // since the last sleep: the one after it, then those catching up
+  nanoseconds catch_up_start_{0};
+  ClockCounts counts_;
+};
+
+}  // namespace limpid

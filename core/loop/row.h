@@ -1,0 +1,133 @@
+// What one tick leaves behind: one row of the session file, as consecutive doubles.
+//
+// Row k holds the state at t_k and the torques held over [t_k, t_k+1). The columns below are the
+// single list that the tick fills, the recorder writes, the plots read and `info --csv` prints.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+enum class Column : std::uint8_t {
+  time,
+  device_position,
+  device_velocity,
+  measured_position,
+  measured_velocity,
+  commanded_torque,
+  motor_torque,
+  proxy_position,
+  proxy_velocity,
+  proxy_torque,
+  contact_torque,
+  hand_target,
+  hand_torque,
+  hand_torque_estimate,
+  hand_grip,
+  force_wanted,
+  kind,
+  eta,
+  alpha,
+  energy_total,
+  energy_commanded,
+  proxy_kinetic,
+  contact_potential,
+  wake_latency,
+  compute,
+  count_,
+};
+
+inline constexpr int kColumns = static_cast<int>(Column::count_);
+
+enum class ColumnWidth : std::uint8_t { one, three, dof };
+
+struct ColumnInfo {
+  Column column;
+  const char* path;  // dataset in the session file
+  ColumnWidth width;
+  const char* unit;  // "-" for none
+  const char* what;
+  bool byte = false;  // stored as uint8
+};
+
+inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
+    {Column::time, "/time", ColumnWidth::one, "s", "t_k"},
+    {Column::device_position, "/device/position", ColumnWidth::dof, "rad", "x1, true"},
+    {Column::device_velocity, "/device/velocity", ColumnWidth::dof, "rad/s", "v1, true"},
+    {Column::measured_position, "/device/measured_position", ColumnWidth::dof, "rad",
+     "x1 as the loop saw it"},
+    {Column::measured_velocity, "/device/measured_velocity", ColumnWidth::dof, "rad/s",
+     "velocity estimate the observer used"},
+    {Column::commanded_torque, "/device/commanded_torque", ColumnWidth::dof, "N m",
+     "tau1 of (1) or (14) without the device's own damping"},
+    {Column::motor_torque, "/device/motor_torque", ColumnWidth::dof, "N m", "what the motors got"},
+    {Column::proxy_position, "/proxy/position", ColumnWidth::dof, "rad", "x2"},
+    {Column::proxy_velocity, "/proxy/velocity", ColumnWidth::dof, "rad/s", "v2"},
+    {Column::proxy_torque, "/proxy/torque", ColumnWidth::dof, "N m", "tau2 over the tick"},
+    {Column::contact_torque, "/proxy/contact_torque", ColumnWidth::dof, "N m", "f2 over the tick"},
+    {Column::hand_target, "/hand/target", ColumnWidth::three, "m", "where the hand wants the tip"},
+    {Column::hand_torque, "/hand/torque", ColumnWidth::dof, "N m", "f1, mean over the tick"},
+    {Column::hand_torque_estimate, "/hand/torque_estimate", ColumnWidth::dof, "N m",
+     "f1_hat used at t_k"},
+    {Column::hand_grip, "/hand/grip", ColumnWidth::one, "-", "1 the hand holds, 0 it let go"},
+    {Column::force_wanted, "/device/force_wanted", ColumnWidth::one, "-",
+     "1 force armed, 0 force off", true},
+    {Column::kind, "/coupling/kind", ColumnWidth::one, "-", "0 standard, 1 proposed", true},
+    {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "inertia scaling"},
+    {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
+    {Column::energy_total, "/energy/controller_total", ColumnWidth::one, "J",
+     "E_c with the device's own damping"},
+    {Column::energy_commanded, "/energy/controller_commanded", ColumnWidth::one, "J",
+     "E_c of motors and proxy"},
+    {Column::proxy_kinetic, "/energy/proxy_kinetic", ColumnWidth::one, "J",
+     "kinetic energy of the proxy"},
+    {Column::contact_potential, "/energy/contact_potential", ColumnWidth::one, "J",
+     "energy stored in the contacts"},
+    {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
+     "how late the tick began"},
+    {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
+}};
+
+// Where each column lies in a row of an arm with n joints.
+class RowLayout {
+ public:
+  explicit constexpr RowLayout(int dof) : dof_(dof) {
+    int at = 0;
+    for (const ColumnInfo& info : kColumnInfo) {
+      offset_[static_cast<std::size_t>(info.column)] = at;
+      at += width(info.column);
+    }
+    stride_ = at;
+  }
+
+  constexpr int dof() const { return dof_; }
+  constexpr int stride() const { return stride_; }  // doubles per row
+  constexpr int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
+  constexpr int width(Column c) const {
+    switch (kColumnInfo[static_cast<std::size_t>(c)].width) {
+      case ColumnWidth::one: return 1;
+      case ColumnWidth::three: return 3;
+      case ColumnWidth::dof: return dof_;
+    }
+    return 0;
+  }
+
+  template <class T>  // T: double or const double
+  std::span<T> in(std::span<T> row, Column c) const {
+    return row.subspan(static_cast<std::size_t>(offset(c)), static_cast<std::size_t>(width(c)));
+  }
+
+ private:
+  int dof_;
+  int stride_ = 0;
+  std::array<int, kColumns> offset_{};
+};
+
+// Largest row there is, for storage of fixed size.
+inline constexpr int kMaxStride = RowLayout(kMaxDof).stride();
+
+}  // namespace limpid

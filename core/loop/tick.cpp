@@ -1,0 +1,134 @@
+#include "core/loop/tick.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+template <int N>
+Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
+  Vec<N> values = Vec<N>::Zero(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) values[i] = arm.joints[static_cast<std::size_t>(i)].*field;
+  return values;
+}
+
+}  // namespace
+
+template <int N>
+Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
+    : layout_(arm.dof()),
+      arm_(arm),
+      arm_damping_(of_joints<N>(arm, &Joint::damping)),
+      arm_limit_(of_joints<N>(arm, &Joint::effort)),
+      velocity_(arm.dof()),
+      observer_(arm.dof()),
+      proxy_(arm, scene),
+      motors_(arm.dof()) {
+  start(Parameters{}, Start<N>::at_rest(Vec<N>::Zero(arm.dof())));
+}
+
+template <int N>
+void Tick<N>::start(const Parameters& p, const Start<N>& start) {
+  const Vec<N> zero = Vec<N>::Zero(start.x1.size());
+  proxy_.place(start.x2, start.v2, p.inertia_ratio);
+  velocity_.reset(start.x1);
+  observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
+  motors_.start(start.armed);
+  books_ = {};
+  x1_before_ = start.x1;
+  f1_hat_ = start.f1_hat;
+  tau1_ = vbar2_ = zero;
+  b_d_ = resolve<N>(p.damping, arm_damping_);
+  kind_ = p.kind;
+  k_ = 0;
+  diverged_ = false;
+}
+
+template <int N>
+const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force_wanted,
+                           std::span<double> row) {
+  const double T = p.tick;
+  if (k_ > 0) close_books(in, T);
+  proxy_.set_ratio(p.inertia_ratio);
+  if (p.kind != kind_) motors_.begin_slew();
+  kind_ = p.kind;
+  b_d_ = resolve<N>(p.damping, arm_damping_);
+  const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
+
+  // The device, (5), as the controller believes it to be.
+  if (k_ > 0) velocity_.update(in.measured, T, p.velocity, p.encoder_step);
+  device_.v = velocity_.estimate();
+  arm_.frames(in.measured, frames_);
+  arm_.inertia_coriolis(frames_, device_.v, device_.M, device_.C);
+  device_.M *= p.inertia_error;
+  device_.C *= p.inertia_error;
+  const Vec<N>& v1 = velocity_.raw();
+
+  // Human force, (16)-(18).
+  f1_hat_ = k_ > 0 ? observer_.estimate(p.alpha, T, device_.M, device_.C, device_.v, b_d_)
+                   : observer_.present();
+
+  // The coupling, (7)-(15); the proxy, (4), with the springs and dampers of (2) at the midpoint.
+  x2_ = proxy_.x();
+  v2_ = proxy_.v();
+  kinetic_ = proxy_.kinetic_energy();
+  const Decomposition<N> d(device_, {proxy_.M(), proxy_.C(), v2_});
+  const Feedforward<N> ff = feedforward(p, d, f1_hat_);
+  const ProxyDrive<N> drive{p.b_vc * v1 - p.k_vc * (x2_ - in.measured) + ff.tau2,
+                            p.b_v + p.b_vc + p.k_vc * T / 2, ff.from_f2_2};
+  proxy_.advance(T, drive);
+  potential_ = proxy_.contact_potential();
+  command_ = device_torque<N>(p, in.measured, v1, x2_, vbar2_) + ff.tau1 +
+             ff.from_f2_1 * proxy_.f();
+  vbar2_ = proxy_.vbar();
+
+  diverged_ = diverged_ || !command_.allFinite();
+  tau1_ = motors_.pass(command_, limit, force_wanted && !diverged_, T);
+  observer_.applied(p.anti_windup ? tau1_ : command_);
+  write_row(p, in, force_wanted, row);
+  x1_before_ = in.x;
+  ++k_;
+  return tau1_;
+}
+
+template <int N>
+void Tick<N>::close_books(const Reading<N>& in, double T) {
+  const Vec<N> dx1 = in.x - x1_before_;
+  const Vec<N> dx2 = proxy_.x() - x2_;
+  books_.add(tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
+}
+
+template <int N>
+void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, bool force_wanted,
+                        std::span<double> row) const {
+  const auto put = [&](Column c, const Vec<N>& values) {
+    std::copy_n(values.data(), values.size(), layout_.in(row, c).begin());
+  };
+  const auto set = [&](Column c, double value) { layout_.in(row, c)[0] = value; };
+  set(Column::time, static_cast<double>(k_) * p.tick);
+  put(Column::device_position, in.x);
+  put(Column::device_velocity, in.v);
+  put(Column::measured_position, in.measured);
+  put(Column::measured_velocity, velocity_.estimate());
+  put(Column::commanded_torque, command_);
+  put(Column::motor_torque, tau1_);
+  put(Column::proxy_position, x2_);
+  put(Column::proxy_velocity, v2_);
+  put(Column::proxy_torque, proxy_.tau());
+  put(Column::contact_torque, proxy_.f());
+  put(Column::hand_torque_estimate, f1_hat_);
+  set(Column::force_wanted, force_wanted ? 1 : 0);
+  set(Column::kind, static_cast<double>(p.kind));
+  set(Column::eta, p.eta);
+  set(Column::alpha, p.alpha);
+  set(Column::energy_total, books_.total);
+  set(Column::energy_commanded, books_.commanded);
+  set(Column::proxy_kinetic, kinetic_);
+  set(Column::contact_potential, potential_);
+}
+
+template class Tick<3>;
+template class Tick<kAnyDof>;
+
+}  // namespace limpid

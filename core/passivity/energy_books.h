@@ -1,0 +1,24 @@
+// The paper's controller energy E_c, kept twice.
+#pragma once
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+// E_c = sum over ticks of tau1 . dx1 + tau2 . dx2. Commanded: motors and proxy, what instruments
+// see. Total: with the device's own damping, -b_d/T dx1 . dx1 a tick.
+template <int N>
+struct EnergyBooks {
+  double commanded = 0;  // [J]
+  double total = 0;      // [J]
+
+  // tau1 the motor torque held over the tick, dx the motion over it, b_d the device's damping.
+  void add(const Vec<N>& tau1, const Vec<N>& dx1, const Vec<N>& tau2, const Vec<N>& dx2,
+           const Vec<N>& b_d, double T) {
+    const double work = tau1.dot(dx1) + tau2.dot(dx2);
+    commanded += work;
+    total += work - b_d.cwiseProduct(dx1).dot(dx1) / T;
+  }
+};
+
+}  // namespace limpid

@@ -1,0 +1,176 @@
+#include "devices/files/scene_file.h"
+
+#include <fmt/format.h>
+
+#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
+#include "devices/files/toml_reader.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
+constexpr std::size_t kMostContacts = 64;
+constexpr std::size_t kMostProbes = 64;  // with the tip
+
+constexpr Range kPosition{-10, 10, false, "m"};
+constexpr Range kAngle{-100, 100, false, "rad"};
+constexpr Range kLength{0, 10, true, "m"};
+constexpr Range kRadius{0, 1, false, "m"};
+constexpr Range kStiffness{0, 1e6, true, "N/m"};
+constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
+constexpr Range kScale{0, 1e4, true, ""};
+constexpr Range kDirection{-1e6, 1e6, false, ""};
+
+Mat3 rotation(const Vec3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+Pose pose(const TomlTable& t, const Vec3& position) {
+  Pose p = Pose::Identity();
+  p.translation() = position;
+  if (const auto rpy = t.vector("rpy", kAngle)) p.linear() = rotation(*rpy);
+  return p;
+}
+
+Vec3 point(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
+double stiffness(const TomlTable& t, const Range& range) {
+  return t.need(t.number("stiffness", range), "stiffness");
+}
+std::string name(const TomlTable& t) { return t.need(t.text("name"), "name"); }
+
+Plane plane(const TomlTable& t) {
+  t.allow_only({"name", "point", "normal", "stiffness"});
+  const Vec3 normal = t.need(t.vector("normal", kDirection), "normal");
+  if (!(normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
+  return {name(t), point(t, "point"), normal.normalized(), stiffness(t, kStiffness)};
+}
+
+Sphere sphere(const TomlTable& t) {
+  t.allow_only({"name", "center", "radius", "stiffness"});
+  return {name(t), point(t, "center"), t.need(t.number("radius", kLength), "radius"),
+          stiffness(t, kStiffness)};
+}
+
+Box box(const TomlTable& t) {
+  t.allow_only({"name", "center", "size", "rpy", "stiffness"});
+  return {name(t), pose(t, point(t, "center")), t.need(t.vector("size", kLength), "size"),
+          stiffness(t, kStiffness)};
+}
+
+int joint_index(const TomlTable& t, const ArmDescription& arm) {
+  std::vector<std::string> names;
+  for (const Joint& joint : arm.joints) names.push_back(joint.name);
+  const std::string allowed =
+      fmt::format("{}, or a number from 1 to {}", fmt::join(names, ", "), arm.dof());
+  const toml::node* node = t.find("joint");
+  if (node == nullptr) t.refuse_missing("joint");
+  if (const auto wanted = node->value_exact<std::string>()) {
+    for (int i = 0; i < arm.dof(); ++i) {
+      if (arm.joints[static_cast<std::size_t>(i)].name == *wanted) return i;
+    }
+  }
+  const auto number = node->value_exact<std::int64_t>();
+  if (!number || *number < 1 || *number > arm.dof()) t.refuse("joint", allowed);
+  return static_cast<int>(*number) - 1;
+}
+
+JointContact joint_contact(const TomlTable& t, const ArmDescription& arm) {
+  t.allow_only({"name", "joint", "angle", "side", "stiffness"});
+  const std::string side = t.need(t.text("side"), "side");
+  if (side != "above" && side != "below") t.refuse("side", "\"above\", \"below\"");
+  return {name(t), joint_index(t, arm), t.need(t.number("angle", kAngle), "angle"),
+          side == "above" ? 1.0 : -1.0, stiffness(t, kJointStiffness)};
+}
+
+// Links of the file that were merged into a moving one will do: the ends are moved along.
+const NamedFrame& frame(const TomlTable& t, const ArmDescription& arm) {
+  const std::string wanted = t.need(t.text("link"), "link");
+  std::vector<std::string> names;
+  for (const NamedFrame& each : arm.frames) {
+    if (each.link < 0) continue;
+    if (each.name == wanted) return each;
+    names.push_back(each.name);
+  }
+  t.refuse("link", fmt::format("a link that moves: {}", fmt::join(names, ", ")));
+}
+
+Probe probe(const TomlTable& t, const ArmDescription& arm) {
+  t.allow_only({"name", "link", "from", "to", "radius"});
+  const NamedFrame& at = frame(t, arm);
+  const Vec3 from = point(t, "from");
+  const Vec3 to = t.vector("to", kPosition).value_or(from);
+  return {name(t), at.link, at.origin * from, at.origin * to,
+          t.need(t.number("radius", kRadius), "radius")};
+}
+
+// False for one that is left out.
+bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
+  t.allow_only({"file", "position", "rpy", "scale"});
+  const fs::path file = t.need(t.text("file"), "file");
+  out.pose = pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
+  out.scale = t.number("scale", kScale).value_or(1);
+  if (file.extension() != ".glb" && file.extension() != ".gltf") {
+    t.refuse("file", "a glTF file (.glb, .gltf)");
+  }
+  if (base_dir.empty() && file.is_relative()) return false;
+  const fs::path absolute = fs::absolute(base_dir / file).lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(absolute, error)) {
+    t.refuse("file", fmt::format("a file that exists; there is no {}", absolute.string()));
+  }
+  out.file = absolute.string();
+  return true;
+}
+
+void check_counts(const Scene& scene, const std::string& where) {
+  const std::size_t contacts = scene.planes.size() + scene.spheres.size() + scene.boxes.size() +
+                               scene.joint_contacts.size();
+  if (contacts > kMostContacts) {
+    throw FileError(fmt::format("{}: {} planes, spheres, boxes and joint contacts; at most {}",
+                                where, contacts, kMostContacts));
+  }
+  if (scene.probes.size() + 1 > kMostProbes) {
+    throw FileError(fmt::format("{}: {} probes; at most {} besides the tip", where,
+                                scene.probes.size(), kMostProbes - 1));
+  }
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& file, const ArmDescription& arm) {
+  return parse_scene(read_text(file, kLongestScene), file.string(),
+                     fs::absolute(file).parent_path(), arm);
+}
+
+Scene parse_scene(const std::string& text, const std::string& where, const fs::path& base_dir,
+                  const ArmDescription& arm) {
+  const toml::table table = parse_toml(text, where);
+  const TomlTable t(table, where, "");
+  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "joint_contact",
+                "probe", "visual"});
+  Scene scene;
+  scene.title = t.text("title").value_or("");
+  scene.about = t.text("about").value_or("");
+  scene.tip_radius = t.number("tip_radius", kRadius).value_or(0);
+  for (const TomlTable& each : t.tables("plane")) scene.planes.push_back(plane(each));
+  for (const TomlTable& each : t.tables("sphere")) scene.spheres.push_back(sphere(each));
+  for (const TomlTable& each : t.tables("box")) scene.boxes.push_back(box(each));
+  for (const TomlTable& each : t.tables("joint_contact")) {
+    scene.joint_contacts.push_back(joint_contact(each, arm));
+  }
+  for (const TomlTable& each : t.tables("probe")) scene.probes.push_back(probe(each, arm));
+  for (const TomlTable& each : t.tables("visual")) {
+    SceneVisual seen;
+    if (visual(each, base_dir, seen)) scene.visuals.push_back(std::move(seen));
+  }
+  check_counts(scene, where);
+  scene.toml = text;
+  return scene;
+}
+
+}  // namespace limpid

@@ -1,0 +1,38 @@
+#include "devices/files/text_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "devices/files/file_error.h"
+
+namespace limpid {
+
+std::string read_text(const std::filesystem::path& file, std::size_t limit) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    throw FileError(fmt::format("{}: {}", file.string(),
+                                error ? error.message() : "no such file"));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw FileError(fmt::format("{}: not a file that can be read", file.string()));
+  }
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw FileError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
+
+  const auto size = std::filesystem::file_size(file);
+  if (size > limit) {
+    throw FileError(fmt::format("{}: {} bytes long, at most {} are read", file.string(), size,
+                                limit));
+  }
+  std::string text(size, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  return text;
+}
+
+}  // namespace limpid

@@ -1,0 +1,152 @@
+#include "devices/files/toml_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+std::string allowed_text(const Range& range) {
+  const std::string unit = *range.unit ? fmt::format(" {}", range.unit) : "";
+  return fmt::format("a number {} {} up to {}{}", range.exclusive_minimum ? "above" : "from",
+                     range.minimum, range.maximum, unit);
+}
+
+std::optional<double> number_in(const toml::node& node, const Range& range) {
+  if (!node.is_number()) return std::nullopt;
+  const double x = *node.value<double>();
+  const bool inside = range.exclusive_minimum ? x > range.minimum : x >= range.minimum;
+  return inside && x <= range.maximum ? std::optional(x) : std::nullopt;
+}
+
+// Edit distance: the fewest letters to insert, drop or change.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& where) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw FileError(fmt::format("{}:{}: not TOML: {}", where, error.source().begin.line,
+                                error.description()));
+  }
+}
+
+std::string found_text(const toml::node& node) {
+  if (const auto x = node.value_exact<bool>()) return *x ? "true" : "false";
+  if (const auto x = node.value_exact<std::int64_t>()) return std::to_string(*x);
+  if (const auto x = node.value_exact<double>()) return fmt::format("{}", *x);
+  if (const auto x = node.value_exact<std::string>()) return fmt::format("\"{:.60}\"", *x);
+  if (const toml::array* list = node.as_array()) {
+    std::string all;
+    for (const toml::node& each : *list) {
+      all += (all.empty() ? "" : ", ") + found_text(each);
+      if (all.size() > 60) return "[" + all.substr(0, 60) + "...]";
+    }
+    return "[" + all + "]";
+  }
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& among) {
+  std::optional<std::string> best;
+  std::size_t fewest = 1 + std::max<std::size_t>(2, word.size() / 3);
+  if (word.size() > 200) return best;
+  for (const std::string& candidate : among) {
+    const std::size_t steps = distance(word, candidate);
+    if (steps < fewest) {
+      fewest = steps;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string TomlTable::full(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+void TomlTable::allow_only(std::initializer_list<const char*> keys) const {
+  for (const auto& [key, node] : table_) {
+    const auto same = [&, name = key.str()](const char* allowed) { return name == allowed; };
+    if (std::any_of(keys.begin(), keys.end(), same)) continue;
+    throw FileError(fmt::format("{}:{}: {}: no such key; allowed: {}", where_,
+                                key.source().begin.line, full(key.str()), fmt::join(keys, ", ")));
+  }
+}
+
+std::optional<std::string> TomlTable::text(const char* key) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_string()) refuse(key, "text in quotes");
+  return *node->value<std::string>();
+}
+
+std::optional<double> TomlTable::number(const char* key, const Range& range) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto x = number_in(*node, range);
+  if (!x) refuse(key, allowed_text(range));
+  return x;
+}
+
+std::optional<Vec3> TomlTable::vector(const char* key, const Range& each) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* list = node->as_array();
+  Vec3 v;
+  bool good = list != nullptr && list->size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const auto x = number_in(*list->get(i), each);
+    good = x.has_value();
+    if (good) v[static_cast<Eigen::Index>(i)] = *x;
+  }
+  if (!good) refuse(key, fmt::format("a list of 3, each {}", allowed_text(each)));
+  return v;
+}
+
+std::vector<TomlTable> TomlTable::tables(const char* key) const {
+  std::vector<TomlTable> all;
+  const toml::node* node = find(key);
+  if (node == nullptr) return all;
+  const toml::array* list = node->as_array();
+  const std::string allowed = fmt::format("tables, each under [[{}]]", full(key));
+  if (list == nullptr) refuse(key, allowed);
+  for (const toml::node& each : *list) {
+    if (!each.is_table()) refuse(key, allowed);
+    all.emplace_back(*each.as_table(), where_, full(key));
+  }
+  return all;
+}
+
+void TomlTable::refuse(const char* key, const std::string& allowed) const {
+  const toml::node& node = *find(key);
+  throw FileError(fmt::format("{}:{}: {}: {} is not allowed; allowed: {}", where_,
+                              node.source().begin.line, full(key), found_text(node), allowed));
+}
+
+void TomlTable::refuse_missing(const char* key) const {
+  throw FileError(
+      fmt::format("{}:{}: {}: missing", where_, table_.source().begin.line, full(key)));
+}
+
+}  // namespace limpid

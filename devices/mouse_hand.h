@@ -1,0 +1,48 @@
+// A hand moved by the mouse: its 60 to 125 events a second become a smooth path at the tick rate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/virtual_arm.h"
+
+namespace limpid {
+
+// The target follows the mouse as a critically damped second-order system of a hand's bandwidth,
+// stepped exactly; the grip closes and opens within a twentieth of a second. A hand that has let
+// go stays with the tip, so that it takes hold again where it is.
+class MouseHand {
+ public:
+  void reset(const Vec3& at) {
+    target_ = at;
+    rate_.setZero();
+    grip_ = 0;
+  }
+
+  // One tick of length T [s]: `goal` is where the mouse wants the tip, `tip` where it is [m].
+  HandInput step(bool grab, const Vec3& goal, const Vec3& tip, double T) {
+    grip_ = std::clamp(grip_ + (grab ? T : -T) / kGripTime, 0.0, 1.0);
+    if (grip_ == 0) {
+      target_ = tip;
+      rate_.setZero();
+    } else if (grab) {
+      // x(t) = goal + (c0 + c1 t) exp(-w t)
+      const Vec3 c0 = target_ - goal;
+      const Vec3 c1 = rate_ + kBandwidth * c0;
+      const double decay = std::exp(-kBandwidth * T);
+      target_ = goal + (c0 + c1 * T) * decay;
+      rate_ = (c1 - kBandwidth * (c0 + c1 * T)) * decay;
+    }
+    return {target_, grip_};
+  }
+
+ private:
+  static constexpr double kBandwidth = 2 * 3.14159265358979323846 * 8;  // [rad/s]
+  static constexpr double kGripTime = 0.05;                             // [s]
+
+  Vec3 target_ = Vec3::Zero();
+  Vec3 rate_ = Vec3::Zero();
+  double grip_ = 0;
+};
+
+}  // namespace limpid

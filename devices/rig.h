@@ -1,0 +1,72 @@
+// A device, the loop that drives it and the hand that holds it: one step is one tick of all three.
+//
+// Live threads, headless runs, re-runs and tests all call the same step.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/loop/tick.h"
+#include "devices/virtual_arm.h"
+
+namespace limpid {
+
+// What reaches the loop from outside in one tick.
+struct RigInput {
+  HandInput hand;
+  bool force = true;  // armed
+};
+
+// Where a contact is and how hard it pushes on the proxy.
+struct ContactForce {
+  Vec3 point;  // [m]
+  Vec3 force;  // [N]; zero in joint space
+};
+
+// A starting point of any size, e.g. the first row of a recording.
+struct RigStart {
+  Eigen::VectorXd x1, v1, x2, v2;  // [rad, rad/s]
+  Eigen::VectorXd f1_hat;          // [N m]
+  Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
+  bool armed = true;
+};
+
+class Rig {
+ public:
+  Rig(const ArmDescription& arm, const Scene& scene);
+
+  int dof() const { return layout().dof(); }
+  const RowLayout& layout() const;
+
+  void start(const Parameters& p, const RigStart& start);
+  // Where it stands now, as a starting point; a recording of a running loop begins so. `into` has
+  // vectors of this size already: nothing is allocated.
+  void present(RigStart& into) const;
+  // Reads the device, runs the tick, lives through it; writes the row (not its timing). Allocates
+  // nothing.
+  void step(const Parameters& p, const RigInput& input, std::span<double> row) noexcept;
+
+  Vec3 tip() const;       // of the device [m]
+  bool steady() const;    // nothing fades, no coupling is being switched
+  bool diverged() const;  // the loop went unstable; force is off
+  // Copies where the proxy is touched, as many as fit; returns how many.
+  std::size_t contacts(std::span<ContactForce> into) const noexcept;
+
+ private:
+  template <int N>
+  struct Of {
+    Tick<N> tick;
+    VirtualArm<N> arm;
+    RigInput input;
+  };
+  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;
+};
+
+// At rest, the tip on `target`. Throws std::invalid_argument if it cannot be reached.
+RigStart rest_at(const ArmDescription& arm, const Vec3& target);
+// What the first row of a recording says.
+RigStart start_of(const RowLayout& layout, std::span<const double> row);
+
+}  // namespace limpid

@@ -1,0 +1,112 @@
+#include "devices/virtual_arm.h"
+
+#include <cmath>
+
+#include "core/math/solve.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
+constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
+
+}  // namespace
+
+template <int N>
+VirtualArm<N>::VirtualArm(const ArmDescription& arm) : arm_(arm) {
+  const int n = arm.dof();
+  damping_ = friction_ = effort_ = lower_ = upper_ = Vec<N>::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    damping_[i] = joint.damping;
+    friction_[i] = joint.friction;
+    effort_[i] = joint.effort;
+    lower_[i] = joint.lower;
+    upper_[i] = joint.upper;
+  }
+  place(Vec<N>::Zero(n), Vec<N>::Zero(n), Vec3::Zero());
+}
+
+template <int N>
+void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) {
+  x_ = x;
+  v_ = v;
+  target_ = target;
+  hand_torque_ = Vec<N>::Zero(x.size());
+}
+
+template <int N>
+Reading<N> VirtualArm<N>::read(double encoder_step) const {
+  Reading<N> reading{x_, x_, v_};
+  if (encoder_step > 0) {
+    reading.measured = (x_ / encoder_step).array().round().matrix() * encoder_step;
+  }
+  return reading;
+}
+
+template <int N>
+Vec3 VirtualArm<N>::tip() const {
+  typename Arm<N>::Frames f;
+  arm_.frames(x_, f);
+  return arm_.tip(f);
+}
+
+// The joints' own resistance around the middle of a substep: damping, friction, stops.
+template <int N>
+typename VirtualArm<N>::Resistance VirtualArm<N>::resistance(const Vec<N>& b_d,
+                                                             const Vec<N>& friction,
+                                                             const Vec<N>& x_mid) const {
+  Resistance r{Vec<N>::Zero(x_.size()), b_d, Vec<N>::Zero(x_.size())};
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    if (friction[i] > 0) r.damping[i] += friction[i] / std::max(std::abs(v_[i]), kStictionSpeed);
+    const double beyond = std::max(x_mid[i] - upper_[i], 0.0) + std::min(x_mid[i] - lower_[i], 0.0);
+    if (beyond != 0) {
+      r.stiffness[i] = effort_[i] / kStopDepth;
+      r.torque[i] = -r.stiffness[i] * beyond;
+      r.damping[i] += std::sqrt(r.stiffness[i] * M_(i, i));
+    }
+  }
+  return r;
+}
+
+template <int N>
+void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
+  const double h = p.tick / p.substeps;
+  const double k_h = hand.grip * p.hand_stiffness;
+  const double b_h = hand.grip * p.hand_damping;
+  const Vec<N> b_d = resolve<N>(p.damping, damping_);
+  const Vec<N> friction = resolve<N>(p.friction, friction_);
+  const Vec3 target_rate = (hand.target - target_) / p.tick;
+  hand_torque_.setZero();
+  for (int s = 0; s < p.substeps; ++s) {
+    // Everything at the middle of the substep as v would have it; dv then corrects:
+    // x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
+    const Vec<N> x_mid = x_ + h / 2 * v_;
+    arm_.frames(x_mid, frames_);
+    arm_.inertia_bias(frames_, v_, M_, Cv_);
+    const Vec3 tip = arm_.tip(frames_);
+    arm_.point_jacobian(frames_, arm_.dof() - 1, tip, J_);
+    const Vec3 target = target_ + (s + 0.5) * h * target_rate;
+    const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_);
+    const Resistance r = resistance(b_d, friction, x_mid);
+
+    Mat<N> A = M_;
+    A.noalias() += (h / 2 * b_h + h * h / 4 * k_h) * J_.transpose() * J_;
+    A.diagonal() += h / 2 * r.damping + h * h / 4 * r.stiffness;
+    Vec<N> b = torque - Cv_ + r.torque - r.damping.cwiseProduct(v_);
+    b.noalias() += J_.transpose() * pull;
+    b *= h;
+    const Vec<N> dv = solve<N>(A, b);
+
+    const Vec3 force = pull - (b_h / 2 + h / 4 * k_h) * (J_ * dv);
+    hand_torque_.noalias() += J_.transpose() * force / p.substeps;
+    x_ += h * (v_ + dv / 2);
+    v_ += dv;
+  }
+  target_ = hand.target;
+}
+
+template class VirtualArm<3>;
+template class VirtualArm<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,56 @@
+// The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
+#pragma once
+
+#include "core/dynamics/arm.h"
+#include "core/loop/parameters.h"
+#include "core/loop/tick.h"
+
+namespace limpid {
+
+// What the hand does over a tick: it goes on from where it wanted the tip a tick ago to `target`.
+struct HandInput {
+  Vec3 target = Vec3::Zero();  // [m]
+  double grip = 1;             // 1 holds, 0 has let go; scales stiffness and damping
+};
+
+// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring and damper at the
+// tip; gravity counts as compensated. Integrated in substeps of the tick with the motor torque
+// held: linearly implicit midpoint rule, second order and without numerical damping, stable for
+// every grip.
+template <int N>
+class VirtualArm {
+ public:
+  explicit VirtualArm(const ArmDescription& arm);
+
+  // Puts it somewhere, the hand's target on the tip [rad, rad/s].
+  void place(const Vec<N>& x, const Vec<N>& v, const Vec3& target);
+  // As the encoders and as a god see it.
+  Reading<N> read(double encoder_step) const;
+  // Lives through one tick under this motor torque [N m].
+  void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
+  Vec3 tip() const;
+  // f1, the mean over the tick [N m].
+  const Vec<N>& hand_torque() const { return hand_torque_; }
+
+ private:
+  struct Resistance {
+    Vec<N> torque;   // at v = 0 [N m]
+    Vec<N> damping;  // [N m s/rad]
+    Vec<N> stiffness;  // [N m/rad]
+  };
+  Resistance resistance(const Vec<N>& b_d, const Vec<N>& friction, const Vec<N>& x_mid) const;
+
+  Arm<N> arm_;
+  Vec<N> damping_, friction_, effort_, lower_, upper_;
+  Vec<N> x_, v_, hand_torque_;
+  Vec3 target_ = Vec3::Zero();
+  typename Arm<N>::Frames frames_;
+  Mat<N> M_;
+  Vec<N> Cv_;
+  Jacobian<N> J_;
+};
+
+extern template class VirtualArm<3>;
+extern template class VirtualArm<kAnyDof>;
+
+}  // namespace limpid

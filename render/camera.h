@@ -1,0 +1,73 @@
+// An orbiting camera, z up. Pixels are counted from the top left corner of the viewport, y down.
+#pragma once
+
+#include <optional>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+using Bounds = Eigen::AlignedBox3d;
+
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;  // unit
+};
+
+class Camera {
+ public:
+  // front looks at the device from +x, side from -y, top from +z; iso from front, right and above.
+  enum class View { front, top, side, iso };
+
+  // Size of the viewport in pixels, at least 1 x 1.
+  void resize(double width, double height);
+
+  // What the mouse does, in pixels moved. These act at once and end a transition under way.
+  void orbit(double dx, double dy);
+  void pan(double dx, double dy);
+  // One wheel notch is one step, positive comes closer; what is under the cursor stays there.
+  void zoom(double steps, const Eigen::Vector2d& pixel);
+
+  // Smooth moves; advance() carries them out. frame() shows all of `bounds` with room around.
+  void look(View view);
+  void frame(const Bounds& bounds);
+  void reset(const Bounds& bounds);  // iso view of `bounds`
+  void advance(double dt);           // [s]
+  void finish();                     // be at the goal now
+
+  Vec3 eye() const;
+  Vec3 target() const { return now_.target; }
+  Vec3 forward() const;  // unit, into the picture: the direction of depth
+  Vec3 right() const;    // unit
+  Vec3 up() const;       // unit
+  double distance() const { return now_.distance; }
+  double width() const { return width_; }
+  double height() const { return height_; }
+
+  Eigen::Matrix4d view() const;
+  Eigen::Matrix4d projection() const;  // OpenGL clip space
+
+  // Nothing when the point is behind the eye.
+  std::optional<Eigen::Vector2d> project(const Vec3& point) const;
+  Ray ray(const Eigen::Vector2d& pixel) const;
+  // Where the mouse ray meets the plane through `through` that is parallel to the image.
+  Vec3 plane_drag(const Eigen::Vector2d& pixel, const Vec3& through) const;
+  // How large one pixel is at this point [m].
+  double meters_per_pixel(const Vec3& point) const;
+
+ private:
+  struct Placement {
+    Vec3 target = Vec3::Zero();
+    double azimuth = -1.05;    // of the eye about z, from x [rad]
+    double elevation = 0.42;   // of the eye above the horizon [rad]
+    double distance = 0.9;     // [m]
+  };
+  void move_now(const Placement& placement);
+  void go_to(const Placement& placement);
+
+  Placement now_, from_, goal_;
+  double progress_ = 1;  // of the transition from from_ to goal_, 0 to 1
+  double width_ = 1280, height_ = 720;
+};
+
+}  // namespace limpid

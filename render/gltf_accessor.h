@@ -1,0 +1,48 @@
+// Numbers out of a glTF file's buffers, with every reference and every range checked.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+// What a typed element of an accessor looks like in memory, after all of it was checked.
+struct Elements {
+  const unsigned char* first;
+  std::size_t count, stride;
+  int components, component_type;
+  bool normalized;
+};
+
+class GltfAccessor {
+ public:
+  // `name` stands for the file in messages; both outlive this.
+  GltfAccessor(const tinygltf::Model& gltf, const std::string& name) : gltf_(gltf), name_(name) {}
+
+  // All of these throw std::runtime_error naming the file for what does not exist or fit.
+  Elements elements(int accessor) const;
+  Eigen::Vector4f element(const Elements& e, std::size_t i) const;  // missing parts: 0 0 0 1
+  std::uint32_t index(const Elements& e, std::size_t i) const;
+
+  template <class List>
+  const auto& at(const List& list, int index, const char* what) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= list.size())
+      refuse(std::string(what) + " " + std::to_string(index) + " does not exist, the file has " +
+             std::to_string(list.size()));
+    return list[static_cast<std::size_t>(index)];
+  }
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw std::runtime_error(name_ + ": " + why);
+  }
+
+ private:
+  const tinygltf::Model& gltf_;
+  const std::string& name_;
+};
+
+}  // namespace limpid

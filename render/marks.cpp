@@ -1,0 +1,142 @@
+#include "render/marks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/glm_door.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kMetersPerNewton = 0.02;
+constexpr double kLeastForce = 0.02;     // [N], below it there is nothing to point at
+constexpr double kLeastError = 0.0004;   // [m]
+constexpr double kFlashTime = 0.25;      // [s]
+
+glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
+
+palette::Rgb lighter(const palette::Rgb& c, float by) {
+  return {c[0] + by * (1 - c[0]), c[1] + by * (1 - c[1]), c[2] + by * (1 - c[2])};
+}
+
+// A unit shape along z, scaled across and along, with its z turned to `direction`.
+glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double along) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.block<3, 3>(0, 0) = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), direction)
+                            .toRotationMatrix() *
+                        Vec3(across, across, along).asDiagonal();
+  m.block<3, 1>(0, 3) = at;
+  return to_glm(m);
+}
+
+void add_arrow(const Vec3& from, const Vec3& force, const palette::Rgb& color, double size,
+               std::vector<SolidMark>& out) {
+  if (!from.allFinite() || !(force.norm() > kLeastForce) || !force.allFinite()) return;
+  const double length = kMetersPerNewton * force.norm();
+  const double head = std::min(0.019 * size, 0.6 * length), radius = 0.36 * head;
+  const Vec3 direction = force.normalized();
+  out.push_back({SolidMark::Shape::tube, place(from, direction, 0.36 * radius, length - head),
+                 color});
+  out.push_back({SolidMark::Shape::cone, place(from + (length - head) * direction, direction,
+                                               radius, head),
+                 color});
+}
+
+void add_trail(const std::vector<Vec3>& trail, const palette::Rgb& color, LineBatch& lines) {
+  const auto alpha = [&](std::size_t i) {
+    const float t = static_cast<float>(i) / static_cast<float>(trail.size() - 1);
+    return 0.85f * t * t;
+  };
+  for (std::size_t i = 1; i < trail.size(); ++i)
+    if (trail[i - 1].allFinite() && trail[i].allFinite())
+      lines.add(to_glm(trail[i - 1]), to_glm(trail[i]), 2.2f, with_alpha(color, alpha(i - 1)),
+                with_alpha(color, alpha(i)), LineBatch::Ends::flat);
+}
+
+}  // namespace
+
+Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale) {
+  Marks marks;
+  const double size = 1200 * pixel_scale * camera.meters_per_pixel(camera.target());
+  if (state.show_hand && state.hand_target.allFinite())
+    marks.solids.push_back({SolidMark::Shape::ball,
+                            place(state.hand_target, Vec3::UnitZ(), 0.0085 * size, 0.0085 * size),
+                            palette::kHand});
+  for (const ContactMark& contact : state.contacts) {
+    if (!contact.position.allFinite() || !(contact.force.norm() > 0)) continue;
+    if (state.show_forces)
+      add_arrow(contact.position, contact.force, palette::kContact, size, marks.solids);
+    const double age = std::clamp(contact.age / kFlashTime, 0.0, 1.0);
+    const double radius = 0.026 * size;
+    marks.flashes.push_back({place(contact.position, contact.force.normalized(), radius, radius),
+                             glm::vec2(1 - age, 0.25 + 0.65 * age)});
+  }
+  if (state.show_forces)
+    add_arrow(state.device.tip, state.hand_force, palette::kHand, size, marks.solids);
+  return marks;
+}
+
+void add_trails(const ViewState& state, LineBatch& lines) {
+  const float lift = state.theme == Theme::dark ? 0.45f : 0.0f;
+  if (state.show_ghost) add_trail(state.device.trail, palette::kDevice, lines);
+  add_trail(state.proxy.trail, lighter(palette::kProxy, lift), lines);
+  if (state.rerun) add_trail(state.rerun->trail, palette::kRerun, lines);
+}
+
+void add_lines_on_top(const ViewState& state, LineBatch& lines) {
+  if (state.show_hand && state.hand_grips && state.hand_target.allFinite())
+    lines.add(to_glm(state.hand_target), to_glm(state.device.tip), 2.5f,
+              with_alpha(palette::kHand, 1), with_alpha(palette::kHand, 1));
+  const Vec3 error = state.device.tip - state.proxy.tip;
+  if (!state.show_error || !(error.norm() > kLeastError)) return;
+  const bool dark = state.theme == Theme::dark;
+  const glm::vec4 core = dark ? glm::vec4(1, 1, 1, 1) : glm::vec4(0.05, 0.05, 0.06, 1);
+  const glm::vec4 edge = dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
+  const glm::vec3 from = to_glm(state.device.tip), to = to_glm(state.proxy.tip);
+  lines.add(from, to, 6.5f, edge, edge);
+  lines.add(from, to, 3.5f, core, core);
+  // Each end carries the colour of its arm.
+  const auto dot = [&](const glm::vec3& at, const palette::Rgb& color) {
+    lines.add(at, at, 10.0f, edge, edge);
+    lines.add(at, at, 7.0f, with_alpha(color, 1), with_alpha(color, 1));
+  };
+  dot(from, palette::kDevice);
+  dot(to, lighter(palette::kProxy, dark ? 0.25f : 0.0f));
+}
+
+void add_grid(const Bounds& area, Theme theme, LineBatch& lines) {
+  constexpr double kStep = 0.05;
+  constexpr double kLift = 0.0003;  // over the floor, so that it is not half hidden by it [m]
+  constexpr int kMost = 60;         // lines each way
+  const float ink = theme == Theme::dark ? 1.0f : 0.0f;
+  const Vec3 middle = area.center(), half = 0.5 * area.sizes();
+  const auto color = [&](const Vec3& p, bool strong) {
+    const Vec3 off = (p - middle).cwiseAbs();
+    const double edge = std::min((half.x() - off.x()) / half.x(), (half.y() - off.y()) / half.y());
+    const double fade = std::clamp(2.5 * edge + 0.15, 0.0, 1.0);
+    return glm::vec4(ink, ink, ink, fade * (strong ? 0.20 : 0.085));
+  };
+  for (int axis = 0; axis < 2; ++axis) {
+    const int other = 1 - axis;
+    const auto first = static_cast<int>(std::ceil(area.min()[axis] / kStep));
+    const auto last = static_cast<int>(std::floor(area.max()[axis] / kStep));
+    for (int line = first; line <= std::min(last, first + kMost); ++line) {
+      // Each line in pieces, as the fading is linear along a piece.
+      constexpr int kPieces = 10;
+      for (int piece = 0; piece < kPieces; ++piece) {
+        const auto point = [&](int k) {
+          Vec3 p = middle + kLift * Vec3::UnitZ();
+          p[axis] = line * kStep;
+          p[other] = area.min()[other] + 2 * half[other] * k / kPieces;
+          return p;
+        };
+        const Vec3 a = point(piece), b = point(piece + 1);
+        const bool strong = line % 2 == 0;
+        lines.add(to_glm(a), to_glm(b), 1.2f, color(a, strong), color(b, strong),
+                  LineBatch::Ends::flat);
+      }
+    }
+  }
+}
+
+}  // namespace limpid

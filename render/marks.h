@@ -1,0 +1,40 @@
+// Signs that explain the picture: arrows for forces, the hand, contacts, trails, the grid.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/line_batch.h"
+#include "render/palette.h"
+#include "render/view_state.h"
+
+namespace limpid {
+
+struct SolidMark {
+  enum class Shape { tube, cone, ball };
+  Shape shape;
+  glm::mat4 place;
+  palette::Rgb color;
+};
+
+struct FlashMark {
+  glm::mat4 place;
+  glm::vec2 pulse;  // strength and radius of the ring, 0 to 1
+};
+
+struct Marks {
+  std::vector<SolidMark> solids;
+  std::vector<FlashMark> flashes;
+};
+
+// Sizes are in pixels, so that marks stay readable; the lengths of arrows are not (2 cm/N).
+Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale);
+
+// Lines that others can hide, and lines on top of everything.
+void add_trails(const ViewState& state, LineBatch& lines);
+void add_lines_on_top(const ViewState& state, LineBatch& lines);
+// Lines at multiples of 5 cm in a flat box, fading towards its edges.
+void add_grid(const Bounds& area, Theme theme, LineBatch& lines);
+
+}  // namespace limpid

@@ -1,0 +1,33 @@
+// Pictures without a display: an EGL context without a surface, and files for what was drawn.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace limpid {
+
+// Makes an OpenGL 3.3 core context current on this thread for as long as it lives, with a
+// framebuffer of the given size bound. Throws std::runtime_error where EGL cannot give one.
+class OffscreenContext {
+ public:
+  OffscreenContext(int width, int height);
+  ~OffscreenContext();
+  OffscreenContext(const OffscreenContext&) = delete;
+  OffscreenContext& operator=(const OffscreenContext&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The rectangle (0, 0, width, height) of the bound framebuffer, four bytes a pixel, top row
+// first, opaque.
+std::vector<unsigned char> read_rgba(int width, int height);
+
+// Throws std::runtime_error naming the file when it cannot be written, std::invalid_argument when
+// the sizes do not agree.
+void write_png(const std::filesystem::path& path, int width, int height,
+               const std::vector<unsigned char>& rgba);
+
+}  // namespace limpid

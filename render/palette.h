@@ -1,0 +1,22 @@
+// One colour per thing, the same in the 3D view, the plots and the panels, safe for colour-blind
+// eyes (Okabe and Ito). Values are sRGB, 0 to 1.
+#pragma once
+
+#include <array>
+
+namespace limpid::palette {
+
+using Rgb = std::array<float, 3>;
+
+constexpr Rgb from_hex(unsigned hex) {
+  return {static_cast<float>((hex >> 16) & 255u) / 255.0f,
+          static_cast<float>((hex >> 8) & 255u) / 255.0f, static_cast<float>(hex & 255u) / 255.0f};
+}
+
+inline constexpr Rgb kDevice = from_hex(0xE69F00);   // orange
+inline constexpr Rgb kProxy = from_hex(0x0072B2);    // blue
+inline constexpr Rgb kHand = from_hex(0x009E73);     // green
+inline constexpr Rgb kContact = from_hex(0xD55E00);  // vermilion
+inline constexpr Rgb kRerun = from_hex(0x56B4E9);    // sky blue
+
+}  // namespace limpid::palette

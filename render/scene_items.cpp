@@ -1,0 +1,228 @@
+#include "render/scene_items.h"
+
+#include <algorithm>
+#include <map>
+
+#include "render/gltf_model.h"
+#include "render/mesh_shapes.h"
+
+namespace limpid {
+namespace {
+
+const Paint kObject{{0.85f, 0.84f, 0.82f}, 0, 0.5f};
+const Paint kPlainArm{{0.75f, 0.76f, 0.78f}, 0, 0.4f};
+
+Bounds moved(const Bounds& box, const Eigen::Affine3d& by) {
+  Bounds out;
+  for (int i = 0; i < 8; ++i) out.extend(by * box.corner(static_cast<Bounds::CornerType>(i)));
+  return out;
+}
+
+// Link frames at q = 0.
+std::vector<Pose> zero_poses(const ArmDescription& arm) {
+  std::vector<Pose> poses;
+  Pose pose = Pose::Identity();
+  for (const Joint& joint : arm.joints) poses.push_back(pose = pose * joint.origin);
+  return poses;
+}
+
+Pose pose_of(const std::vector<Pose>& links, int link) {
+  return link < 0 ? Pose::Identity() : links[static_cast<std::size_t>(link)];
+}
+
+// Where link i ends, in its own frame: at the next joint, the last one at the tip.
+Vec3 end_of(const ArmDescription& arm, std::size_t i) {
+  return i + 1 < arm.joints.size() ? Vec3(arm.joints[i + 1].origin.translation())
+                                   : Vec3(arm.tip.translation());
+}
+
+double reach_of(const ArmDescription& arm) {
+  double reach = 0;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) reach += end_of(arm, i).norm();
+  return std::max(reach, 0.05);
+}
+
+Model model_of(const Visual& visual) {
+  switch (visual.shape) {
+    case Visual::Shape::box: return make_box(visual.size, 0.1 * visual.size.minCoeff(), kPlainArm);
+    case Visual::Shape::cylinder: return make_cylinder(visual.size.x(), visual.size.y(), kPlainArm);
+    case Visual::Shape::sphere: return make_sphere(visual.size.x(), kPlainArm);
+    case Visual::Shape::mesh: break;
+  }
+  Model model = load_gltf(visual.mesh);
+  for (Vertex& v : model.vertices) {
+    const Eigen::Vector3f scale = visual.size.cast<float>();
+    v.position = v.position.cwiseProduct(scale);
+    v.normal = v.normal.cwiseQuotient(scale).normalized();
+  }
+  return model;
+}
+
+void add_arm(const ArmDescription& arm, SceneItems& items) {
+  for (const Visual& visual : arm.visuals)
+    (visual.link < 0 ? items.base : items.moving)
+        .push_back({model_of(visual), visual.origin, visual.link});
+  if (!arm.visuals.empty()) return;
+
+  const double n = static_cast<double>(std::max(1, arm.dof()));
+  const double radius = std::clamp(0.16 * reach_of(arm) / n, 0.003, 0.03);
+  items.base.push_back({make_sphere(1.5 * radius, kPlainArm), Pose::Identity(), -1});
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const bool last = i + 1 == arm.joints.size();
+    Model link = make_capsule(Vec3::Zero(), end_of(arm, i), last ? 0.7 * radius : radius,
+                              kPlainArm);
+    if (last) {
+      Model tip = make_sphere(radius, kPlainArm);
+      transform(tip, Eigen::Affine3d(Eigen::Translation3d(end_of(arm, i))));
+      append(link, tip);
+    }
+    items.moving.push_back({std::move(link), Pose::Identity(), static_cast<int>(i)});
+  }
+}
+
+// A touchable shape that a model of the scene already shows is not drawn twice.
+bool shown_by_visual(const Plane& plane, const std::vector<Bounds>& visuals) {
+  return std::any_of(visuals.begin(), visuals.end(), [&](const Bounds& box) {
+    double highest = -1e9;
+    for (int i = 0; i < 8; ++i)
+      highest = std::max(highest, plane.normal.dot(box.corner(
+                                      static_cast<Bounds::CornerType>(i)) - plane.point));
+    return std::abs(highest) < 0.002;
+  });
+}
+
+bool shown_by_visual(const Bounds& shape, const std::vector<Bounds>& visuals) {
+  const double close = 0.1 * shape.sizes().maxCoeff();
+  return std::any_of(visuals.begin(), visuals.end(), [&](const Bounds& box) {
+    return (box.min() - shape.min()).cwiseAbs().maxCoeff() < close &&
+           (box.max() - shape.max()).cwiseAbs().maxCoeff() < close;
+  });
+}
+
+Item slab(const Plane& plane, double reach) {
+  const double edge = 2.2 * reach, thickness = 0.07 * reach;
+  const Vec3 normal = plane.normal.normalized();
+  const Vec3 ahead = 0.45 * reach * Vec3::UnitX();
+  Pose pose = Pose::Identity();
+  pose.translation() =
+      ahead - normal.dot(ahead - plane.point) * normal - 0.5 * thickness * normal;
+  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+  return {make_box({edge, edge, thickness}, 0.25 * thickness, kObject), pose, -1};
+}
+
+void add_scene(const Scene& scene, double reach, SceneItems& items) {
+  std::vector<Bounds> visuals;
+  for (const SceneVisual& visual : scene.visuals) {
+    Item item{load_gltf(visual.file), visual.pose, -1};
+    transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
+    visuals.push_back(moved(item.model.bounds(), item.pose));
+    items.world.push_back(std::move(item));
+  }
+  for (const Plane& plane : scene.planes)
+    if (!shown_by_visual(plane, visuals)) items.world.push_back(slab(plane, reach));
+  for (const Sphere& sphere : scene.spheres) {
+    const Vec3 r = Vec3::Constant(sphere.radius);
+    if (shown_by_visual(Bounds(sphere.center - r, sphere.center + r), visuals)) continue;
+    Pose pose = Pose::Identity();
+    pose.translation() = sphere.center;
+    items.world.push_back({make_sphere(sphere.radius, kObject), pose, -1});
+  }
+  for (const Box& box : scene.boxes) {
+    const Bounds edges(-0.5 * box.size, 0.5 * box.size);
+    if (shown_by_visual(moved(edges, box.pose), visuals)) continue;
+    items.world.push_back({make_box(box.size, 0.04 * box.size.minCoeff(), kObject), box.pose, -1});
+  }
+}
+
+// The direction, in the frame of joint j at zero, in which the arm leaves the joint's axis.
+Vec3 lever(const ArmDescription& arm, std::size_t j) {
+  Vec3 along = Vec3::Zero();
+  Pose pose = Pose::Identity();
+  for (std::size_t i = j; i < arm.joints.size(); ++i) {
+    along = pose * end_of(arm, i);
+    along -= arm.joints[j].axis * arm.joints[j].axis.dot(along);
+    if (along.norm() > 1e-3) return along;
+    if (i + 1 < arm.joints.size()) pose = pose * arm.joints[i + 1].origin;
+  }
+  return arm.joints[j].axis.unitOrthogonal() * 0.05;
+}
+
+void add_joint_walls(const ArmDescription& arm, const Scene& scene, SceneItems& items) {
+  for (const JointContact& contact : scene.joint_contacts) {
+    if (contact.joint < 0 || contact.joint >= arm.dof()) continue;
+    const auto j = static_cast<std::size_t>(contact.joint);
+    const Vec3 axis = arm.joints[j].axis.normalized(), arm_of = lever(arm, j);
+    const Vec3 x = arm_of.normalized();
+    Mat3 frame;
+    frame << x, axis.cross(x), axis;
+    Pose pose = arm.joints[j].origin;
+    pose.rotate(Eigen::AngleAxisd(contact.angle, axis).toRotationMatrix() * frame);
+    const double length = arm_of.norm();
+    const double angle = contact.direction < 0 ? -0.5 : 0.5;
+    items.walls.push_back({make_sector(0.15 * length, 0.8 * length, angle, 0.2 * length, {}), pose,
+                           contact.joint - 1});
+  }
+}
+
+Bounds bounds_of(const ArmDescription& arm, const SceneItems& items, double reach) {
+  const std::vector<Pose> links = zero_poses(arm);
+  Bounds box;
+  for (const auto* list : {&items.base, &items.moving})
+    for (const Item& item : *list)
+      box.extend(moved(item.model.bounds(), pose_of(links, item.link) * item.pose));
+  // The room in front of the arm, where the hand will be.
+  const Vec3 root = links.empty() ? Vec3::Zero() : Vec3(links[0].translation());
+  box.extend(root + reach * Vec3(0.25, -0.26, 0.0));
+  box.extend(root + reach * Vec3(0.85, 0.26, 0.28));
+  // Of what can be touched only what stands in that room: a desk may be larger than the picture.
+  const Bounds near(box.center() - 0.6 * reach * Vec3::Ones(),
+                    box.center() + 0.6 * reach * Vec3::Ones());
+  for (const Item& item : items.world) {
+    const Bounds part = moved(item.model.bounds(), item.pose);
+    if (near.contains(part)) box.extend(part);
+  }
+  return box;
+}
+
+// The grid lies on the highest level plane, as far as the model that shows the plane goes;
+// without one, on the ground.
+void add_grid_area(const Scene& scene, SceneItems& items) {
+  const Vec3 half = 0.7 * items.bounds.diagonal().norm() * Vec3(1, 1, 0);
+  Vec3 middle = items.bounds.center();
+  middle.z() = items.ground;
+  items.grid = Bounds(middle - half, middle + half);
+  for (const Plane& plane : scene.planes) {
+    const double height = plane.point.z();
+    if (plane.normal.normalized().z() < 0.999 || height < items.grid.max().z()) continue;
+    middle.z() = height;
+    items.grid = Bounds(middle - half, middle + half);
+    for (const Item& item : items.world) {
+      const Bounds box = moved(item.model.bounds(), item.pose);
+      if (std::abs(box.max().z() - height) > 0.002) continue;
+      const Vec3 margin(0.012, 0.012, 0);
+      items.grid = Bounds(box.min() + margin, box.max() - margin);
+      items.grid.min().z() = items.grid.max().z() = height;
+    }
+  }
+}
+
+}  // namespace
+
+SceneItems collect_items(const ArmDescription& arm, const Scene& scene) {
+  SceneItems items;
+  const double reach = reach_of(arm);
+  add_arm(arm, items);
+  add_scene(scene, reach, items);
+  add_joint_walls(arm, scene, items);
+  for (const Probe& probe : scene.probes)
+    items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
+                            Pose::Identity(), probe.link});
+  items.bounds = bounds_of(arm, items, reach);
+  items.ground = items.bounds.min().z();
+  for (const Item& item : items.world)
+    items.ground = std::min(items.ground, moved(item.model.bounds(), item.pose).min().z());
+  add_grid_area(scene, items);
+  return items;
+}
+
+}  // namespace limpid

@@ -1,0 +1,33 @@
+// What there is to draw for an arm and a scene, as meshes fixed to links.
+#pragma once
+
+#include <vector>
+
+#include "core/dynamics/arm_description.h"
+#include "core/dynamics/scene.h"
+#include "render/camera.h"
+#include "render/model.h"
+
+namespace limpid {
+
+struct Item {
+  Model model;
+  Pose pose = Pose::Identity();  // in the frame of `link`
+  int link = -1;                 // -1 the base, which is the world
+};
+
+struct SceneItems {
+  std::vector<Item> base;    // of the arm, does not move
+  std::vector<Item> moving;  // of the arm
+  std::vector<Item> world;   // what can be touched, solid
+  std::vector<Item> walls;   // stops of joints, translucent; `link` is the one before the joint
+  std::vector<Item> probes;  // parts of the arm that touch, translucent
+  Bounds bounds;             // to be framed by a camera [m]
+  double ground = 0;         // height of the floor under everything [m]
+  Bounds grid;               // where the floor grid is, flat [m]
+};
+
+// Throws std::runtime_error naming the file that cannot be loaded.
+SceneItems collect_items(const ArmDescription& arm, const Scene& scene);
+
+}  // namespace limpid

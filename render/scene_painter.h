@@ -1,0 +1,82 @@
+// The passes a frame is made of. Everything here is on the graphics card already.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/gpu_model.h"
+#include "render/line_batch.h"
+#include "render/marks.h"
+#include "render/mood.h"
+#include "render/palette.h"
+#include "render/quality.h"
+#include "render/scene_items.h"
+#include "render/shader_program.h"
+#include "render/shadow_map.h"
+
+namespace limpid {
+
+struct Drawable {
+  GpuModel model;
+  glm::mat4 pose;  // in the frame of `link`
+  int link;        // -1: the world
+};
+
+// The link frames of one arm; empty if it is not drawn.
+using Links = std::vector<glm::mat4>;
+
+class ScenePainter {
+ public:
+  ScenePainter(const std::filesystem::path& shaders, const SceneItems& items);
+
+  // What all passes share: camera, light, colours. First of all.
+  void begin_frame(const Mood& mood, const Camera& camera);
+  void draw_shadows(const Links& proxy);
+  // Proxy, base, scene, ground and backdrop.
+  void draw_solid(const Mood& mood, const Links& proxy);
+  // A translucent arm of which only the outermost surface shows.
+  void draw_ghost(const Links& links, const palette::Rgb& color);
+  // Stops of joints and the arm's touching parts.
+  void draw_glass(const Links& proxy);
+  void draw_marks(const Marks& marks);
+  // Those hidden by what is in front of them, or those on top of everything.
+  void draw_lines(LineBatch& lines, bool on_top);
+
+  const Quality& quality() const { return quality_; }
+  void set_quality(const Quality& quality);
+  double pixel_scale() const { return pixel_scale_; }
+  void set_pixel_scale(double scale) { pixel_scale_ = static_cast<float>(scale); }
+
+ private:
+  // What depends on the quality, made anew when it changes.
+  struct Lighting {
+    Lighting(const std::filesystem::path& shaders, const Quality& quality);
+    ShaderProgram lit, matte, ground;
+    ShadowMap shadow;
+  };
+  template <class Draw>
+  void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one) const;
+  void draw_lit(const ShaderProgram& program, const std::vector<Drawable>& list,
+                const Links& links, const glm::vec4& tint) const;
+  void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
+                        const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
+  void draw_ground() const;
+  void draw_solid_marks(const Marks& marks, float alpha) const;
+
+  std::filesystem::path shaders_;
+  Quality quality_;
+  ShaderProgram depth_only_, ghost_depth_, ghost_, flash_, line_, backdrop_;
+  std::unique_ptr<Lighting> lighting_;
+  GlBuffer frame_block_;
+  GlVertexArray no_vertices_;
+  GlTexture white_;
+  GpuModel ball_, cone_, tube_, patch_;
+  std::vector<Drawable> base_, moving_, world_, walls_, probes_;
+  Bounds bounds_;
+  float ground_height_, pixel_scale_ = 1;
+  bool textured_world_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,26 @@
+// Brings the finished picture to where it belongs; where it has no samples of its own, edges are
+// found by their contrast and blurred along themselves (after Lottes' FXAA, with fewer samples).
+uniform sampler2D picture;
+uniform vec2 origin;  // of the rectangle in the target
+out vec4 color;
+
+// Green is nearly all of the brightness, and one channel is quick to read.
+float brightness(ivec2 p) {
+  return texelFetch(picture, clamp(p, ivec2(0), ivec2(view.xy) - 1), 0).g;
+}
+
+void main() {
+  vec2 pixel = gl_FragCoord.xy - origin;
+  ivec2 p = ivec2(pixel);
+#ifdef SMOOTH
+  float nw = brightness(p + ivec2(-1, 1)), ne = brightness(p + ivec2(1, 1));
+  float sw = brightness(p + ivec2(-1, -1)), se = brightness(p + ivec2(1, -1));
+  vec2 along = vec2(sw + se - nw - ne, ne + se - nw - sw);  // across the gradient
+  float flat_part = max(0.03 * (nw + ne + sw + se), 0.008);
+  along = clamp(along / (min(abs(along.x), abs(along.y)) + flat_part), -1.6, 1.6) / view.xy;
+  vec2 uv = pixel / view.xy;
+  color = vec4(0.5 * (texture(picture, uv - along).rgb + texture(picture, uv + along).rgb), 1.0);
+#else
+  color = vec4(texelFetch(picture, p, 0).rgb, 1.0);
+#endif
+}

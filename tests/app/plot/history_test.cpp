@@ -1,0 +1,163 @@
+#include "app/plot/history.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace limpid {
+namespace {
+
+constexpr double kTick = 0.001;
+
+// What the history should know, kept the plain way.
+struct Plain {
+  std::vector<double> times;
+  std::vector<float> values;
+};
+
+Extent brute_force(const Plain& plain, std::size_t from, std::size_t to) {
+  Extent extent;
+  for (std::size_t i = from; i < to; ++i) extent.include(plain.values[i]);
+  return extent;
+}
+
+Plain fill(History& history, int rows, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  Plain plain;
+  for (int i = 0; i < rows; ++i) {
+    const double value = i % 97 == 0 ? std::numeric_limits<double>::quiet_NaN() : noise(random);
+    plain.times.push_back(i * kTick);
+    plain.values.push_back(static_cast<float>(value));
+    history.append(plain.times.back(), std::array{value});
+  }
+  return plain;
+}
+
+void compare_random_windows(const History& history, const Plain& plain, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const SampleIndex first = history.first();
+  for (int i = 0; i < 3000; ++i) {
+    SampleIndex from = first + random() % (history.end() - first + 1);
+    SampleIndex to = first + random() % (history.end() - first + 1);
+    if (from > to) std::swap(from, to);
+    if (i % 2 == 0) to = std::min(to, from + i % 60);
+    EXPECT_EQ(history.extent(0, from, to), brute_force(plain, from, to)) << from << ' ' << to;
+  }
+}
+
+TEST(History, ExtentsOfRandomWindowsAreThoseOfTheSamples) {
+  History history({.seconds = 60, .tick = kTick});
+  const Plain plain = fill(history, 30011, 1);
+  EXPECT_EQ(history.first(), 0u);
+  compare_random_windows(history, plain, 2);
+}
+
+TEST(History, ExtentsStayRightAfterTheOldestSamplesWereOverwritten) {
+  for (const int rows : {8192, 8193, 12000, 16384, 30011}) {
+    History history({.seconds = 8, .tick = kTick});
+    const Plain plain = fill(history, rows, 3);
+    EXPECT_EQ(history.end(), static_cast<SampleIndex>(rows));
+    EXPECT_GE(history.end() - history.first(), 8000u);
+    compare_random_windows(history, plain, 4);
+  }
+}
+
+TEST(History, RemembersSamplesByNumberAndTime) {
+  History history({.seconds = 8, .tick = kTick});
+  const Plain plain = fill(history, 20000, 5);
+  for (SampleIndex i = history.first(); i < history.end(); i += 37) {
+    EXPECT_EQ(history.time(i), plain.times[i]);
+    if (std::isfinite(plain.values[i])) {
+      EXPECT_EQ(history.value(0, i), plain.values[i]);
+    }
+    EXPECT_EQ(history.nearest(plain.times[i] + 0.3 * kTick), i);
+    EXPECT_EQ(history.lower_bound(plain.times[i]), i);
+  }
+  EXPECT_EQ(history.nearest(-100), history.first());
+  EXPECT_EQ(history.nearest(1e6), history.end() - 1);
+}
+
+TEST(History, LowerBoundFromAnyRowBeforeIsTheSame) {
+  History history({.seconds = 8, .tick = kTick});
+  fill(history, 5000, 6);
+  for (SampleIndex from = 0; from < 4000; from += 333) {
+    EXPECT_EQ(history.lower_bound(4.0005, from), 4001u);
+  }
+  EXPECT_EQ(history.lower_bound(99), history.end());
+}
+
+TEST(History, ExtentBetweenTimesHasBothEnds) {
+  History history({.seconds = 1, .tick = kTick});
+  for (int i = 0; i < 10; ++i) history.append(i * 0.5, std::array{static_cast<double>(i)});
+  const Extent extent = history.extent_between(0, 1.0, 3.0);
+  EXPECT_EQ(extent.low, 2);
+  EXPECT_EQ(extent.high, 6);
+}
+
+TEST(History, DroppedTicksAreAGap) {
+  History history({.tick = kTick});
+  for (const double time : {0.0, 0.001, 0.002, 0.005, 0.006}) history.append(time, std::array{1.0});
+  EXPECT_FALSE(history.gap_before(1));
+  EXPECT_FALSE(history.gap_before(2));
+  EXPECT_TRUE(history.gap_before(3));
+  EXPECT_FALSE(history.gap_before(4));
+}
+
+TEST(History, TimeThatStartsAgainGoesOnAfterAGapAndIsMarked) {
+  History history({.tick = kTick});
+  for (int i = 0; i < 100; ++i) history.append(i * kTick, std::array{1.0});
+  for (int i = 0; i < 100; ++i) history.append(i * kTick, std::array{2.0});
+  EXPECT_TRUE(history.gap_before(100));
+  EXPECT_GT(history.time(100), history.time(99));
+  EXPECT_NEAR(history.time(150) - history.offset(), 0.050, 1e-12);
+  for (SampleIndex i = 1; i < history.end(); ++i) EXPECT_GT(history.time(i), history.time(i - 1));
+  ASSERT_EQ(history.marks().size(), 1u);
+  EXPECT_EQ(history.marks().front().time, history.time(100));
+}
+
+TEST(History, MarksOfOneGestureBecomeOneAndOldOnesAreForgotten) {
+  History history({.seconds = 2, .tick = kTick});
+  history.append(0, std::array{0.0});
+  for (int i = 0; i < 10; ++i) history.mark(i * 0.1, "eta " + std::to_string(i), "eta");
+  history.mark(0.95, "standard", "kind");
+  ASSERT_EQ(history.marks().size(), 2u);
+  EXPECT_EQ(history.marks().front().label, "eta 9");
+  for (int i = 1; i < 20000; ++i) history.append(i * kTick, std::array{0.0});
+  EXPECT_TRUE(history.marks().empty());
+}
+
+TEST(History, ClearForgetsEverything) {
+  History history({.seconds = 1, .tick = kTick});
+  fill(history, 5000, 7);
+  history.mark(5, "here");
+  history.clear();
+  EXPECT_TRUE(history.empty());
+  EXPECT_TRUE(history.marks().empty());
+  const Plain plain = fill(history, 700, 8);
+  compare_random_windows(history, plain, 9);
+}
+
+TEST(History, InfiniteValuesDoNotSpoilTheExtent) {
+  History history({.tick = kTick});
+  history.append(0, std::array{1.0});
+  history.append(kTick, std::array{std::numeric_limits<double>::infinity()});
+  history.append(2 * kTick, std::array{3.0});
+  EXPECT_EQ(history.extent(0, 0, 3).high, 3);
+}
+
+TEST(History, RefusesRowsOfTheWrongWidthAndTimesThatAreNone) {
+  History history({.channels = 2});
+  EXPECT_THROW(history.append(0, std::array{1.0}), std::invalid_argument);
+  EXPECT_THROW(history.append(std::nan(""), std::array{1.0, 2.0}), std::invalid_argument);
+  EXPECT_THROW(History({.channels = 0}), std::invalid_argument);
+  EXPECT_THROW(History({.tick = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,152 @@
+// The axes over time: autoscale, the window shared by the plots, and files beside one another.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "app/plot/autoscale.h"
+#include "app/plot/plot_group.h"
+#include "app/plot/plot_menu.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kFrame = 1.0 / 60;
+
+TEST(Autoscale, NeverCutsDataOff) {
+  Autoscale autoscale;
+  for (int i = 0; i < 500; ++i) {
+    const double size = 1 + 100 * std::abs(std::sin(0.3 * i));
+    const Limits shown = autoscale.update({-size, 2 * size}, 1e-3, kFrame);
+    EXPECT_LE(shown.low, -size);
+    EXPECT_GE(shown.high, 2 * size);
+  }
+}
+
+TEST(Autoscale, StandsStillWhileTheDataOnlyBreathes) {
+  Autoscale autoscale;
+  const Limits first = autoscale.update({-1, 1}, 1e-3, kFrame);
+  for (int i = 0; i < 600; ++i) {
+    const double size = 0.9 + 0.1 * std::sin(0.1 * i);
+    EXPECT_EQ(autoscale.update({-size, size}, 1e-3, kFrame), first);
+  }
+}
+
+TEST(Autoscale, ShrinksAfterAWhileAndSettles) {
+  Autoscale autoscale;
+  const Limits wide = autoscale.update({-100, 100}, 1e-3, kFrame);
+  EXPECT_EQ(autoscale.update({-1, 1}, 1e-3, kFrame), wide) << "not at once";
+  Limits shown;
+  for (int i = 0; i < 300; ++i) shown = autoscale.update({-1, 1}, 1e-3, kFrame);
+  EXPECT_LT(shown.span(), 3);
+  EXPECT_EQ(autoscale.update({-1, 1}, 1e-3, kFrame), shown);
+}
+
+TEST(Autoscale, ShowsAtLeastTheSmallestSpan) {
+  Autoscale autoscale;
+  EXPECT_GE(autoscale.update({0, 0}, 0.5, kFrame).span(), 0.5);
+}
+
+History seconds_of_data(double seconds) {
+  History history({.seconds = 120});
+  for (int i = 0; i <= static_cast<int>(seconds * 1000); ++i) {
+    history.append(i * 0.001, std::array{0.0});
+  }
+  return history;
+}
+
+TEST(PlotGroup, FollowsTheNewestDataOnceTheWindowIsFull) {
+  PlotGroup group(10);
+  group.begin_frame(seconds_of_data(4));
+  EXPECT_DOUBLE_EQ(group.start(), 0);
+  EXPECT_DOUBLE_EQ(group.stop(), 10);
+  group.begin_frame(seconds_of_data(30));
+  EXPECT_DOUBLE_EQ(group.stop(), 30);
+}
+
+TEST(PlotGroup, PanningBackStopsFollowingAndForwardResumes) {
+  const History history = seconds_of_data(30);
+  PlotGroup group(10);
+  group.begin_frame(history);
+  group.pan(-5);
+  EXPECT_FALSE(group.following());
+  group.begin_frame(history);
+  EXPECT_DOUBLE_EQ(group.stop(), 25);
+  group.pan(6);
+  EXPECT_TRUE(group.following());
+  group.begin_frame(history);
+  EXPECT_DOUBLE_EQ(group.stop(), 30);
+}
+
+TEST(PlotGroup, ZoomKeepsTheTimeUnderTheMouse) {
+  const History history = seconds_of_data(30);
+  PlotGroup group(10);
+  group.begin_frame(history);
+  group.pan(-5);
+  const double around = 18;
+  const double before = (around - group.start()) / group.length();
+  group.zoom(0.5, around);
+  EXPECT_NEAR((around - group.start()) / group.length(), before, 1e-12);
+  EXPECT_DOUBLE_EQ(group.length(), 5);
+}
+
+TEST(PlotGroup, SomeDataStaysInViewHoweverFarOnePans) {
+  const History history = seconds_of_data(30);
+  PlotGroup group(10);
+  group.begin_frame(history);
+  for (const double far : {-1000.0, 2000.0}) {
+    group.set_following(false);
+    group.pan(far);
+    group.begin_frame(history);
+    EXPECT_LT(group.start(), 30);
+    EXPECT_GT(group.stop(), 0);
+  }
+}
+
+TEST(PlotGroup, KeepsPlaybackInViewWhenZoomedIn) {
+  const History history = seconds_of_data(30);
+  PlotGroup group(30);
+  group.begin_frame(history, 0.0);
+  group.zoom(0.1, 0);
+  for (const double playback : {0.0, 4.0, 17.0, 30.0}) {
+    group.begin_frame(history, playback);
+    EXPECT_LE(group.start(), playback);
+    EXPECT_GE(group.stop(), playback);
+  }
+}
+
+TEST(PlotMenu, NeverOverwritesAFile) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-free-file" / "deep";
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(free_file(folder, "energy", "csv"), folder / "energy-001.csv");
+  std::ofstream(folder / "energy-001.csv") << "x";
+  EXPECT_EQ(free_file(folder, "energy", "csv"), folder / "energy-002.csv");
+}
+
+TEST(PlotMenu, SaysWhichFolderCannotBeMade) {
+  try {
+    free_file("/dev/null/plots", "energy", "csv");
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("/dev/null/plots"), std::string::npos);
+  }
+}
+
+TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-fulfil";
+  std::filesystem::remove_all(folder);
+  const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
+  const History history = seconds_of_data(1);
+  const PlotNotice good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, folder);
+  EXPECT_FALSE(good.bad);
+  EXPECT_TRUE(std::filesystem::exists(folder / "energy-001.csv"));
+  EXPECT_NE(good.text.find("energy-001.csv"), std::string::npos);
+  const PlotNotice bad = fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, "/dev/null/x");
+  EXPECT_TRUE(bad.bad);
+}
+
+}  // namespace
+}  // namespace limpid

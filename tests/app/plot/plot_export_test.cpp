@@ -1,0 +1,112 @@
+#include "app/plot/plot_export.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace limpid {
+namespace {
+
+History two_channels() {
+  History history({.channels = 2, .seconds = 5});
+  for (int i = 0; i < 3000; ++i) {
+    history.append(i * 0.001, std::array{0.001 * i, i == 1 ? std::nan("") : -2.0});
+  }
+  history.mark(1.5, "eta < 0.6 & \"more\"");
+  return history;
+}
+
+PlotSpec spec() {
+  return {.title = "Error <|x_E|>",
+          .unit = "mrad",
+          .factor = 1000,
+          .curves = {{.channel = 0, .label = "joint 1"},
+                     {.channel = 1, .label = "joint 2, \"other\"", .dashed = true},
+                     {.channel = 1, .label = "hidden", .visible = false}},
+          .thresholds = {{1.5, "limit"}}};
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) all.push_back(line);
+  return all;
+}
+
+// Every tag is closed in order, no stray < or &; enough to catch a writer that forgets escaping.
+void expect_well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t at = 0; (at = xml.find_first_of("<&", at)) != std::string::npos; ++at) {
+    if (xml[at] == '&') {
+      const std::string entity = xml.substr(at, xml.find(';', at) - at + 1);
+      EXPECT_TRUE(entity == "&amp;" || entity == "&lt;" || entity == "&gt;" || entity == "&quot;")
+          << entity;
+      continue;
+    }
+    const std::size_t end = xml.find('>', at);
+    ASSERT_NE(end, std::string::npos);
+    const std::string tag = xml.substr(at + 1, end - at - 1);
+    EXPECT_EQ(tag.find('<'), std::string::npos) << tag;
+    if (tag.front() == '?' || tag.back() == '/') continue;
+    if (tag.front() == '/') {
+      ASSERT_FALSE(open.empty());
+      EXPECT_EQ(open.back(), tag.substr(1));
+      open.pop_back();
+    } else {
+      open.push_back(tag.substr(0, tag.find_first_of(" \n")));
+    }
+  }
+  EXPECT_TRUE(open.empty());
+}
+
+TEST(PlotCsv, HasAHeaderWithUnitsAndOneLineForEachRow) {
+  const auto all = lines(plot_csv(spec(), two_channels(), 1.0, 1.002));
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0], "time [s],joint 1 [mrad],\"joint 2, \"\"other\"\" [mrad]\"");
+  EXPECT_EQ(all[1], "1.000000,1000,-2000");
+  EXPECT_EQ(all[3], "1.002000,1002,-2000");
+}
+
+TEST(PlotCsv, LeavesMissingValuesEmpty) {
+  const auto all = lines(plot_csv(spec(), two_channels(), 0, 0.002));
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[2], "0.001000,1,");
+}
+
+TEST(PlotCsv, KnowsItsLengthBeforehand) {
+  EXPECT_EQ(plot_csv_rows(two_channels(), 0.5, 1.5), 1001u);
+  EXPECT_EQ(plot_csv_rows(two_channels(), 100, 200), 0u);
+}
+
+TEST(PlotSvg, IsWellFormedWhateverTheLabelsSay) {
+  const PlotPicture whole{0, 3, {-3, 3}};
+  expect_well_formed(plot_svg(spec(), two_channels(), whole));
+  const PlotPicture close{1.0, 1.1, {-3, 3}};
+  expect_well_formed(plot_svg(spec(), two_channels(), close));
+}
+
+TEST(PlotSvg, DrawsBandsFromAfarAndLinesFromClose) {
+  const std::string far = plot_svg(spec(), two_channels(), {0, 3, {-3, 3}});
+  EXPECT_NE(far.find("<polygon"), std::string::npos);
+  EXPECT_EQ(far.find("<polyline"), std::string::npos);
+  const std::string close = plot_svg(spec(), two_channels(), {1.0, 1.1, {-3, 3}});
+  EXPECT_NE(close.find("<polyline"), std::string::npos);
+}
+
+TEST(PlotSvg, LeavesHiddenCurvesOut) {
+  const std::string svg = plot_svg(spec(), two_channels(), {0, 3, {-3, 3}});
+  EXPECT_EQ(svg.find("hidden"), std::string::npos);
+  EXPECT_NE(svg.find("joint 1"), std::string::npos);
+}
+
+TEST(PlotSvg, OfAnEmptyHistoryIsStillAPicture) {
+  expect_well_formed(plot_svg(spec(), History({.channels = 2}), {0, 10, {-1, 1}}));
+}
+
+}  // namespace
+}  // namespace limpid

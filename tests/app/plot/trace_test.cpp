@@ -1,0 +1,119 @@
+#include "app/plot/trace.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace limpid {
+namespace {
+
+constexpr double kTick = 0.001;
+
+Trace trace_of(const History& history, const Curve& curve, const PixelWindow& window) {
+  std::vector<SampleIndex> rows;
+  pixel_rows(history, window, rows);
+  Trace trace;
+  make_trace(history, curve, window, rows, 6, trace);
+  return trace;
+}
+
+TEST(Trace, WindowsEndWithinAPixelAndKeepTheirGridWhenTheyMove) {
+  const PixelWindow a = pixel_window(12.3456, 10, 400);
+  const PixelWindow b = pixel_window(12.5, 10, 400);
+  EXPECT_NEAR(a.stop(), 12.3456, a.per_pixel);
+  EXPECT_GE(a.stop(), 12.3456);
+  const double pixels = (b.start() - a.start()) / a.per_pixel;
+  EXPECT_NEAR(pixels, std::round(pixels), 1e-6);
+  EXPECT_NEAR(a.time(a.pixel(7.7)), 7.7, 1e-9);
+}
+
+TEST(Trace, BandsHoldEverySampleOfTheirPixel) {
+  History history({.seconds = 20});
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise;
+  for (int i = 0; i < 20000; ++i) history.append(i * kTick, std::array{noise(random)});
+  const PixelWindow window = pixel_window(19, 15, 333);
+  const Trace trace = trace_of(history, {.channel = 0}, window);
+  ASSERT_TRUE(trace.band);
+  ASSERT_EQ(trace.runs.size(), 1u);
+  ASSERT_EQ(trace.points.size(), 333u);
+  for (SampleIndex row = 0; row < history.end(); ++row) {
+    const double x = std::floor(window.pixel(history.time(row)) + 1e-9);
+    if (x < 1 || x >= 332) continue;
+    // The neighbours are in for times that lie on the border of two pixels.
+    const auto at = static_cast<std::size_t>(x);
+    bool inside = false;
+    for (std::size_t i = at - 1; i <= at + 1; ++i) {
+      const float value = history.value(0, row);
+      inside = inside || (value >= trace.points[i].low && value <= trace.points[i].high);
+    }
+    EXPECT_TRUE(inside) << row;
+  }
+}
+
+TEST(Trace, NeighbouringBandsTouchHoweverSteepTheSignal) {
+  History history({.seconds = 20});
+  for (int i = 0; i < 20000; ++i) {
+    history.append(i * kTick, std::array{(i / 700) % 2 == 0 ? 0.0 : 1.0});
+  }
+  const Trace trace = trace_of(history, {.channel = 0}, pixel_window(20, 20, 500));
+  for (std::size_t i = 1; i < trace.points.size(); ++i) {
+    EXPECT_LE(trace.points[i].low, trace.points[i - 1].high);
+    EXPECT_GE(trace.points[i].high, trace.points[i - 1].low);
+  }
+}
+
+TEST(Trace, AGapEndsARunInBothKindsOfTraces) {
+  History history({.seconds = 20});
+  for (int i = 0; i < 10000; ++i) {
+    if (i < 4000 || i >= 5000) history.append(i * kTick, std::array{1.0});
+  }
+  EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(10, 10, 500)).runs.size(), 2u);
+  const Trace close = trace_of(history, {.channel = 0}, pixel_window(5.1, 1.2, 4000));
+  EXPECT_FALSE(close.band);
+  EXPECT_EQ(close.runs.size(), 2u);
+}
+
+TEST(Trace, MissingValuesAreAGapOfTheirCurveAlone) {
+  History history({.channels = 2, .seconds = 20});
+  for (int i = 0; i < 10000; ++i) {
+    const bool missing = i >= 4000 && i < 5000;
+    history.append(i * kTick, std::array{missing ? std::nan("") : 1.0, 2.0});
+  }
+  EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(10, 10, 500)).runs.size(), 2u);
+  EXPECT_EQ(trace_of(history, {.channel = 1}, pixel_window(10, 10, 500)).runs.size(), 1u);
+}
+
+TEST(Trace, DashesFollowTheCouplingKind) {
+  History history({.channels = 2, .seconds = 20});
+  for (int i = 0; i < 10000; ++i) {
+    history.append(i * kTick, std::array{1.0, i < 5000 ? 0.0 : 1.0});
+  }
+  for (const int pixels : {500, 20000}) {
+    const PixelWindow window = pixel_window(10, 10, pixels);
+    const Trace trace = trace_of(history, {.channel = 0, .dash_channel = 1}, window);
+    const double switched = window.pixel(5);
+    for (const TraceRun& run : trace.runs) {
+      const float begin = trace.points[run.first].x;
+      if (begin > switched + 1) {
+        EXPECT_FALSE(run.faint);
+      }
+      if (begin < switched - 10) {
+        const float end = trace.points[run.first + run.count - 1].x;
+        EXPECT_LT(end - begin, 12) << "no dash is longer than that";
+      }
+    }
+    EXPECT_GT(trace.runs.size(), 10u);
+  }
+}
+
+TEST(Trace, AnEmptyHistoryLeavesNoTrace) {
+  const History history({.channels = 1});
+  EXPECT_TRUE(trace_of(history, {.channel = 0}, pixel_window(10, 10, 100)).runs.empty());
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,160 @@
+// The arms, scenes and hands that come with the program.
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "devices/files/hand_file.h"
+#include "devices/files/scene_file.h"
+#include "devices/files/urdf_file.h"
+#include "test_files.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLength = 0.135;  // of both links [m]
+
+ArmDescription omni() { return read_urdf(test::assets() / "devices/omni.urdf"); }
+
+// Closed form, independent of the file: two links in a vertical plane that turns.
+Vec3 tip_at(const Vec3& q) {
+  const double out = kLength * (std::cos(q[1]) + std::cos(q[1] + q[2]));
+  const double up = -kLength * (std::sin(q[1]) + std::sin(q[1] + q[2]));
+  return {out * std::cos(q[0]), out * std::sin(q[0]), up};
+}
+
+Vec3 angles_at(const Vec3& tip) {
+  const double half = std::acos(tip.norm() / (2 * kLength));
+  const double down = std::atan2(-tip.z(), std::hypot(tip.x(), tip.y()));
+  return {std::atan2(tip.y(), tip.x()), down - half, 2 * half};
+}
+
+Vec3 rest(const ArmDescription& arm) {
+  Vec3 q;
+  for (int i = 0; i < 3; ++i) {
+    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    q[i] = (joint.lower + joint.upper) / 2;
+  }
+  return q;
+}
+
+TEST(Omni, HasTheGeometryOfItsClosedForm) {
+  const ArmDescription arm = omni();
+  ASSERT_EQ(arm.dof(), 3);
+  for (const Vec3& q : {Vec3(0.3, -0.9, 1.2), Vec3(-0.5, 0.1, 2.0)}) {
+    Pose at = Pose::Identity();
+    for (std::size_t i = 0; i < 3; ++i) {
+      at = at * arm.joints[i].origin *
+           Eigen::AngleAxisd(q[static_cast<Eigen::Index>(i)], arm.joints[i].axis);
+    }
+    EXPECT_LT((at * arm.tip.translation() - tip_at(q)).norm(), 1e-15);
+  }
+}
+
+TEST(Omni, RestsWithTheUpperArmUpAndTheForearmDown) {
+  const Vec3 q = rest(omni());
+  EXPECT_NEAR(q[0], 0, 1e-12);
+  EXPECT_NEAR(q[1], -std::numbers::pi / 4, 1e-3);
+  EXPECT_NEAR(q[2], std::numbers::pi / 2, 1e-3);
+}
+
+TEST(Omni, HasLinksThatCanExist) {
+  for (const Link& link : omni().links) {
+    const Vec3 moments =
+        Eigen::SelfAdjointEigenSolver<Mat3>(link.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+    EXPECT_GT(link.mass, 0);
+    EXPECT_GT(moments[0], 0);
+    EXPECT_LE(moments[2], moments[0] + moments[1]) << link.name;
+  }
+}
+
+TEST(Omni, GivesThreePointThreeNewtonAtTheTip) {
+  const ArmDescription arm = omni();
+  const Vec3 tip = tip_at(rest(arm));
+  const double levers[] = {std::hypot(tip.x(), tip.y()), tip.norm(), kLength};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GE(arm.joints[i].effort, 3.3 * levers[i]);
+    EXPECT_LE(arm.joints[i].effort, 3.3 * levers[i] + 0.01) << "rounded up to two digits";
+  }
+}
+
+void expect_within_reach(const ArmDescription& arm, const HandPath& path) {
+  for (const Vec3& p : path.position) {
+    const Vec3 q = angles_at(p);
+    for (int i = 0; i < 3; ++i) {
+      const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+      ASSERT_GT(q[i], joint.lower) << path.source << " " << p.transpose();
+      ASSERT_LT(q[i], joint.upper) << path.source << " " << p.transpose();
+    }
+  }
+}
+
+TEST(Omni, ReachesEveryHand) {
+  const ArmDescription arm = omni();
+  for (const char* name : {"touch.csv", "free.csv", "proximal.csv"}) {
+    expect_within_reach(arm, read_hand(test::assets() / "hands" / name));
+  }
+}
+
+TEST(Omni, ReachesPeoplesHands) {
+  const auto folder = test::shared_hands();
+  if (folder.empty()) GTEST_SKIP() << "no recordings of people on this computer";
+  const ArmDescription arm = omni();
+  for (const char* name : {"handwriting_1.csv", "wiping_1.csv", "wiping_2.csv"}) {
+    expect_within_reach(arm, read_hand(folder / name));
+  }
+}
+
+TEST(Planar2, BendsInThePlane) {
+  const ArmDescription arm = read_urdf(test::assets() / "devices/planar2.urdf");
+  ASSERT_EQ(arm.dof(), 2);
+  for (const Joint& joint : arm.joints) EXPECT_EQ(joint.axis, Vec3::UnitZ());
+}
+
+TEST(Scenes, AllReadWithTheOmni) {
+  const ArmDescription arm = omni();
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets() / "scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_FALSE(read_scene(entry.path(), arm).title.empty()) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 4);
+}
+
+int times_entered(const HandPath& path, const std::function<bool(const Vec3&)>& inside) {
+  int count = 0;
+  for (std::size_t i = 1; i < path.position.size(); ++i) {
+    count += inside(path.position[i]) && !inside(path.position[i - 1]) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Hands, PushTheUpperArmThreeTimesThenTheTableThreeTimes) {
+  const Scene scene = read_scene(test::assets() / "scenes/proximal.toml", omni());
+  const HandPath path = read_hand(test::assets() / "hands/proximal.csv");
+  const JointContact& stop = scene.joint_contacts.at(0);
+  const Plane& table = scene.planes.at(0);
+  const auto pushes = [&](const Vec3& p) {
+    return stop.direction * (angles_at(p)[stop.joint] - stop.angle) > 0;
+  };
+  const auto touches = [&](const Vec3& p) { return table.normal.dot(p - table.point) < 0; };
+  EXPECT_EQ(times_entered(path, pushes), 3);
+  EXPECT_EQ(times_entered(path, touches), 3);
+  for (const Vec3& p : path.position) EXPECT_FALSE(pushes(p) && touches(p));
+  EXPECT_EQ(path.duration(), 12);
+}
+
+TEST(Hands, PressTheTableFiveMillimetresDeepAndLeaveItAgain) {
+  const Scene scene = read_scene(test::assets() / "scenes/table.toml", omni());
+  const HandPath path = read_hand(test::assets() / "hands/touch.csv");
+  const auto touches = [&](const Vec3& p) { return p.z() < scene.planes.at(0).point.z(); };
+  EXPECT_EQ(times_entered(path, touches), 2);
+  double lowest = 0;
+  for (const Vec3& p : path.position) lowest = std::min(lowest, p.z());
+  EXPECT_NEAR(lowest, -0.045, 1e-6);
+  EXPECT_EQ(path.duration(), 10);
+  EXPECT_EQ(read_hand(test::assets() / "hands/free.csv").duration(), 8);
+}
+
+}  // namespace
+}  // namespace limpid

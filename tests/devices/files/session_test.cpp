@@ -1,0 +1,243 @@
+#include "devices/files/session.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "devices/files/hand_file.h"
+#include "sample_session.h"
+#include "test_files.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using test::refusal;
+using test::sample_info;
+using test::sample_rows;
+using testing::AllOf;
+using testing::HasSubstr;
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+class SessionOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, SessionOfJoints, testing::Values(1, 2, 3, 7, 32));
+
+TEST_P(SessionOfJoints, ComesBackBitForBit) {
+  const test::TempDir dir;
+  const int dof = GetParam();
+  const RowLayout layout(dof);
+  auto rows = sample_rows(layout, 0, 1234);
+  for (double& x : layout.in(std::span(rows).first(static_cast<std::size_t>(layout.stride())),
+                             Column::hand_torque)) {
+    x = std::nan("");  // as of a real device
+  }
+  {
+    SessionWriter writer(dir / "a.h5", sample_info(dof), false);
+    const auto stride = static_cast<std::size_t>(layout.stride());
+    std::size_t at = 0;
+    for (const std::size_t piece : {std::size_t{1}, std::size_t{600}, std::size_t{0},
+                                    std::size_t{633}}) {
+      writer.append(std::span(rows).subspan(at * stride, piece * stride));
+      at += piece;
+    }
+    writer.append(SettingChange{0, "coupling.eta = 2.0"});
+    writer.append(SettingChange{1234, std::string(120, 's')});
+    EXPECT_EQ(writer.rows_written(), 1234u);
+    EXPECT_TRUE(fs::exists(dir / "a.h5.part"));
+    EXPECT_FALSE(fs::exists(dir / "a.h5"));
+    writer.close();
+  }
+  EXPECT_FALSE(fs::exists(dir / "a.h5.part"));
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_TRUE(same_bits(session.rows, rows));
+  const SessionInfo info = sample_info(dof);
+  EXPECT_EQ(session.info.tick, info.tick);
+  EXPECT_EQ(session.info.dof, dof);
+  EXPECT_EQ(session.info.created, info.created);
+  EXPECT_EQ(session.info.app_version, info.app_version);
+  EXPECT_EQ(session.info.seed, info.seed);
+  EXPECT_EQ(session.info.source, info.source);
+  EXPECT_EQ(session.info.config, info.config);
+  EXPECT_EQ(session.info.device_urdf, info.device_urdf);
+  EXPECT_EQ(session.info.scene, info.scene);
+  ASSERT_EQ(session.changes.size(), 2u);
+  EXPECT_EQ(session.changes[0].setting, "coupling.eta = 2.0");
+  EXPECT_EQ(session.changes[1].row, 1234u);
+  EXPECT_EQ(session.changes[1].setting, std::string(120, 's'));
+}
+
+TEST(Session, MayBeEmpty) {
+  const test::TempDir dir;
+  SessionWriter(dir / "a.h5", sample_info(), false).close();
+  EXPECT_EQ(read_session(dir / "a.h5").size(), 0u);
+}
+
+TEST(Session, SaysWhenItWasMade) {
+  const test::TempDir dir;
+  SessionInfo info = sample_info();
+  info.created.clear();
+  SessionWriter(dir / "a.h5", info, false).close();
+  EXPECT_THAT(read_session(dir / "a.h5").info.created,
+              testing::MatchesRegex("20..-..-..T..:..:..Z"));
+}
+
+TEST(Session, IsReadableWhileItIsWritten) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(), false);
+  const RowLayout layout(3);
+  writer.append(sample_rows(layout, 0, 1700));
+  const Session session = read_session(writer.part());
+  EXPECT_GE(session.size(), 1200u) << "at most half a second is missing";
+  EXPECT_TRUE(same_bits(session.rows, sample_rows(layout, 0, session.size())));
+}
+
+TEST(Session, IsHdf5AsPythonExpectsItAlsoWhileItIsWritten) {
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "no h5py on this computer";
+  }
+  const test::TempDir dir;
+  test::write_file(dir / "check.py", R"(
+import sys, h5py
+f = h5py.File(sys.argv[1], "r", **({"swmr": True} if sys.argv[1].endswith(".part") else {}))
+a = f.attrs
+assert a["format"] == "limpid-session" and a["version"] == 1 and a["dof"] == 3
+assert a["tick"] == 0.001 and int(a["seed"]) == 2**64 - 1
+assert isinstance(a["device_urdf"], str) and len(a["device_urdf"]) == 200003
+assert a["source"] == "a hand, \u03b7" and a["created"].startswith("2024-02-29")
+n = int(sys.argv[2])
+shapes = {"/time": (n,), "/device/position": (n, 3), "/hand/target": (n, 3), "/coupling/eta": (n,)}
+for path, shape in shapes.items():
+    assert f[path].shape == shape and f[path].dtype == "float64", path
+assert f["/coupling/kind"].dtype == "uint8" and f["/device/position"].attrs["unit"] == "rad"
+assert f["/time"][7] == 0.007 and list(f["/coupling/kind"][:3]) == [0, 1, 0]
+if len(sys.argv) > 3:
+    assert f["/events/row"][0] == 3 and f["/events/setting"][0] == b"coupling.k_vc = 8"
+)");
+  const auto python = [&](const fs::path& file, const std::string& rest) {
+    return std::system(("/usr/bin/python3 " + (dir / "check.py").string() + " " + file.string() +
+                        " " + rest).c_str());
+  };
+  test::write_sample(dir / "a.h5", 1234);
+  EXPECT_EQ(python(dir / "a.h5", "1234 events"), 0);
+  SessionWriter live(dir / "b.h5", sample_info(), false);
+  live.append(sample_rows(RowLayout(3), 0, 1000));
+  EXPECT_EQ(python(live.part(), "1000"), 0);
+}
+
+TEST(Session, RefusesAPlaceThatIsTakenOrMissing) {
+  const test::TempDir dir;
+  const auto open = [&](const char* name) {
+    return refusal([&] { SessionWriter(dir / name, sample_info(), false); });
+  };
+  test::write_file(dir / "there.h5", "precious");
+  EXPECT_THAT(open("there.h5"), AllOf(HasSubstr("there.h5"), HasSubstr("--force")));
+  EXPECT_EQ(test::file_bytes(dir / "there.h5"), "precious");
+  test::write_file(dir / "killed.h5.part", "precious");
+  EXPECT_THAT(open("killed.h5"), AllOf(HasSubstr("killed.h5.part"), HasSubstr("limpid recover")));
+  EXPECT_EQ(test::file_bytes(dir / "killed.h5.part"), "precious");
+  EXPECT_THAT(open("no/where.h5"), HasSubstr("no such directory"));
+  fs::create_directory(dir / "folder");
+  EXPECT_THAT(open("folder"), HasSubstr("directory"));
+  EXPECT_NE(refusal([] { SessionWriter("", sample_info(), false); }), "");
+  EXPECT_THAT(refusal([] { SessionWriter("/proc/self/a.h5", sample_info(), false); }),
+              HasSubstr("/proc/self/a.h5"));
+}
+
+TEST(Session, RefusesAFolderThatIsReadOnly) {
+  if (geteuid() == 0) GTEST_SKIP() << "nothing is read-only for root";
+  const test::TempDir dir;
+  fs::create_directory(dir / "folder");
+  fs::permissions(dir / "folder", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(refusal([&] { SessionWriter(dir / "folder/a.h5", sample_info(), false); }),
+              HasSubstr("Permission denied"));
+}
+
+TEST(Session, OverwritesWhenForced) {
+  const test::TempDir dir;
+  test::write_file(dir / "a.h5", "old");
+  test::write_file(dir / "a.h5.part", "older");
+  SessionWriter writer(dir / "a.h5", sample_info(), true);
+  EXPECT_EQ(test::file_bytes(dir / "a.h5"), "old") << "until the new one is complete";
+  writer.append(sample_rows(RowLayout(3), 0, 10));
+  writer.close();
+  EXPECT_EQ(read_session(dir / "a.h5").size(), 10u);
+}
+
+TEST(Session, IsWrittenByOneAtATime) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(), false);
+  EXPECT_THAT(refusal([&] { SessionWriter(dir / "a.h5", sample_info(), true); }),
+              HasSubstr("still being recorded"));
+  EXPECT_THAT(refusal([&] { recover_session(writer.part(), false); }),
+              HasSubstr("still being recorded"));
+  writer.append(sample_rows(RowLayout(3), 0, 10));
+  writer.close();
+  EXPECT_EQ(read_session(dir / "a.h5").size(), 10u);
+}
+
+TEST(Session, LeavesAloneWhatAppearedWhileRecording) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(), false);
+  test::write_file(dir / "a.h5", "somebody else's");
+  EXPECT_NE(refusal([&] { writer.close(); }), "");
+  EXPECT_EQ(test::file_bytes(dir / "a.h5"), "somebody else's");
+  EXPECT_TRUE(fs::exists(dir / "a.h5.part"));
+}
+
+TEST(Session, RefusesSettingsThatAreTooLongAndPartsOfRows) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(), false);
+  EXPECT_THAT(refusal([&] { writer.append(SettingChange{0, std::string(121, 's')}); }),
+              HasSubstr("120"));
+  const std::vector<double> half(7);
+  EXPECT_THROW(writer.append(half), std::invalid_argument);
+}
+
+TEST(Session, RefusesATickOrANumberOfJointsThatCannotBe) {
+  const test::TempDir dir;
+  for (const double tick : {0.0, -1.0, 0.11, std::nan(""), HUGE_VAL}) {
+    SessionInfo info = sample_info();
+    info.tick = tick;
+    EXPECT_THAT(refusal([&] { SessionWriter(dir / "a.h5", info, false); }), HasSubstr("tick"));
+  }
+  for (const int dof : {0, -1, 33}) {
+    SessionInfo info = sample_info();
+    info.dof = dof;
+    EXPECT_THAT(refusal([&] { SessionWriter(dir / "a.h5", info, false); }), HasSubstr("dof"));
+  }
+  EXPECT_FALSE(fs::exists(dir / "a.h5.part"));
+}
+
+TEST(Session, IsAHandToFollowBitForBit) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 1234);
+  const Session session = read_session(dir / "a.h5");
+  const HandPath path = read_hand(dir / "a.h5");
+  EXPECT_EQ(path.tick, 0.001);
+  EXPECT_EQ(std::lround(path.duration() / 0.001), 1234);
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto target = session.at(k, Column::hand_target);
+    const Vec3 recorded(target[0], target[1], target[2]);
+    ASSERT_EQ(path.sample(k, 0.001), recorded);
+    ASSERT_EQ(path.at(session.at(k, Column::time)[0]), recorded);
+    ASSERT_EQ(path.grip_sample(k, 0.001), session.at(k, Column::hand_grip)[0]);
+  }
+  EXPECT_EQ(path.sample(99999, 0.001), path.position.back());
+  const Vec3 between = path.sample(1, 0.0005);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = path.position[0][axis];
+    const double b = path.position[1][axis];
+    EXPECT_GE(between[axis], std::min(a, b));
+    EXPECT_LE(between[axis], std::max(a, b));
+  }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,64 @@
+// What the tests of files share: a folder of their own, and refusals with their messages.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "devices/files/file_error.h"
+
+namespace limpid::test {
+
+class TempDir {
+ public:
+  TempDir() {
+    std::string name = (std::filesystem::temp_directory_path() / "limpid-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TempDir() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempDir(const TempDir&) = delete;
+  TempDir& operator=(const TempDir&) = delete;
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+inline std::string file_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Runs `work` and returns the message of the Error it throws, "" if it throws none.
+template <class Error = FileError, class Work>
+std::string refusal(Work work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline std::filesystem::path assets() { return LIMPID_ASSETS_DIR; }
+
+// Recordings that do not lie in the repository; empty if they are not on this computer.
+inline std::filesystem::path shared_hands() {
+  const char* named = getenv("LIMPID_SHARED");
+  const std::filesystem::path folder =
+      std::filesystem::path(named ? named : LIMPID_SHARED_DIR) / "data" / "hand";
+  return std::filesystem::is_directory(folder) ? folder : std::filesystem::path{};
+}
+
+}  // namespace limpid::test

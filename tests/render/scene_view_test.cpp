@@ -1,0 +1,177 @@
+// What the picture shows, read back from its pixels. Skipped where EGL gives no context.
+#include "render/scene_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "render/offscreen.h"
+
+namespace limpid {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 200;
+const std::filesystem::path kRoot = LIMPID_SOURCE_DIR;
+
+// Two links of 0.2 m in the xz plane, without visuals: drawn as capsules.
+ArmDescription two_links() {
+  ArmDescription arm;
+  arm.joints.resize(2);
+  arm.links.resize(2);
+  for (Joint& joint : arm.joints) joint.axis = Vec3::UnitY();
+  arm.joints[1].origin.translation() = Vec3(0.2, 0, 0);
+  arm.tip.translation() = Vec3(0.2, 0, 0);
+  return arm;
+}
+
+ArmPose pose_of(const ArmDescription& arm, double first, double second) {
+  Pose a = arm.joints[0].origin;
+  a.rotate(Eigen::AngleAxisd(first, Vec3::UnitY()));
+  Pose b = a * arm.joints[1].origin;
+  b.rotate(Eigen::AngleAxisd(second, Vec3::UnitY()));
+  return {{a, b}, b * Vec3(arm.tip.translation()), {}};
+}
+
+class Picture : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      context_.emplace(kWidth, kHeight);
+    } catch (const std::runtime_error& error) {
+      GTEST_SKIP() << error.what();
+    }
+    view_.emplace(kRoot / "shaders", arm_, Scene{});
+    camera_.resize(kWidth, kHeight);
+    camera_.look(Camera::View::side);
+    camera_.frame(Bounds(Vec3(-0.1, -0.1, -0.3), Vec3(0.4, 0.1, 0.3)));
+    camera_.finish();
+    state_.show_grid = false;
+    state_.show_error = false;
+  }
+
+  // Red, green and blue of the pixel where a point of the world appears.
+  Eigen::Vector3i seen_at(const Vec3& point) {
+    view_->draw(state_, camera_, 0, 0, kWidth, kHeight);
+    const auto rgba = read_rgba(kWidth, kHeight);
+    const Eigen::Vector2i pixel = camera_.project(point).value().cast<int>();
+    const auto at = 4 * static_cast<std::size_t>(pixel.y() * kWidth + pixel.x());
+    return {rgba[at], rgba[at + 1], rgba[at + 2]};
+  }
+
+  ArmDescription arm_ = two_links();
+  std::optional<OffscreenContext> context_;
+  std::optional<SceneView> view_;
+  Camera camera_;
+  ViewState state_;
+};
+
+const Vec3 kMiddleOfSecondLink(0.3, 0, 0);
+
+bool orange(const Eigen::Vector3i& c) { return c[0] > c[1] + 15 && c[1] > c[2] + 15; }
+bool blue(const Eigen::Vector3i& c) { return c[2] > c[1] + 15 && c[1] > c[0] + 5; }
+
+TEST_F(Picture, ShowsTheDeviceInOrange) {
+  state_.device = pose_of(arm_, 0, 0);
+  EXPECT_TRUE(orange(seen_at(kMiddleOfSecondLink)));
+  state_.show_ghost = false;
+  EXPECT_FALSE(orange(seen_at(kMiddleOfSecondLink)));
+}
+
+TEST_F(Picture, ShowsTheProxyInBlueInBothThemes) {
+  state_.proxy = pose_of(arm_, 0, 0);
+  EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+  state_.theme = Theme::light;
+  EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+}
+
+TEST_F(Picture, LetsTheProxyHideAGhostAtTheSamePlace) {
+  state_.device = state_.proxy = pose_of(arm_, 0, 0);
+  EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+}
+
+TEST_F(Picture, ShowsAGhostInsideOfWhatItTouches) {
+  Scene scene;
+  scene.boxes.emplace_back();
+  scene.boxes[0].pose.translation() = kMiddleOfSecondLink;
+  scene.boxes[0].size = Vec3(0.12, 0.15, 0.12);
+  view_.emplace(kRoot / "shaders", arm_, scene);
+  const Eigen::Vector3i without = seen_at(kMiddleOfSecondLink);
+  state_.device = pose_of(arm_, 0, 0);
+  const Eigen::Vector3i with = seen_at(kMiddleOfSecondLink);
+  EXPECT_GT(with[0] - with[2], without[0] - without[2] + 15);
+}
+
+TEST_F(Picture, DrawsAForceTwoCentimetresLongPerNewton) {
+  camera_.frame(Bounds(Vec3(0.22, -0.05, -0.02), Vec3(0.38, 0.05, 0.13)));
+  camera_.finish();
+  state_.contacts.push_back({Vec3(0.3, 0, 0), Vec3(0, 0, 5), 1});
+  const auto red = [&](double z) {
+    const Eigen::Vector3i c = seen_at(Vec3(0.3, 0, z));
+    return c[0] > c[1] + 60;
+  };
+  EXPECT_TRUE(red(0.05));
+  EXPECT_TRUE(red(0.095));
+  EXPECT_FALSE(red(0.103));
+}
+
+TEST_F(Picture, ShowsTheProxyWithEveryQuality) {
+  state_.proxy = pose_of(arm_, 0, 0);
+  for (const Quality& quality : {Quality{4, 2048, true}, Quality{1, 512, false},
+                                 Quality{1, 0, false}, Quality{64, 256, true}}) {
+    view_->set_quality(quality);
+    EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+  }
+}
+
+TEST_F(Picture, StaysInsideOfItsRectangle) {
+  view_->draw(state_, camera_, 0, 0, kWidth, kHeight);
+  const auto before = read_rgba(kWidth, kHeight);
+  state_.theme = Theme::light;
+  view_->draw(state_, camera_, 100, 50, 60, 40);
+  const auto after = read_rgba(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool inside = x >= 100 && x < 160 && y >= kHeight - 90 && y < kHeight - 50;
+      const auto at = 4 * static_cast<std::size_t>(y * kWidth + x);
+      ASSERT_EQ(inside, before[at] != after[at]) << x << ", " << y;
+    }
+}
+
+TEST_F(Picture, LeavesOutAnArmWhosePosesAreNotFinite) {
+  const Eigen::Vector3i empty = seen_at(kMiddleOfSecondLink);
+  state_.proxy = pose_of(arm_, std::nan(""), 0);
+  EXPECT_EQ(seen_at(kMiddleOfSecondLink), empty);
+}
+
+TEST_F(Picture, NamesFileAndLineOfABrokenShader) {
+  const auto copy = std::filesystem::path(testing::TempDir()) / "broken_shaders";
+  std::filesystem::remove_all(copy);
+  std::filesystem::copy(kRoot / "shaders", copy);
+  std::ofstream(copy / "ghost.frag") << "out vec4 color;\nvoid main() { color = nonsense; }\n";
+  try {
+    SceneView broken(copy, arm_, Scene{});
+    FAIL() << "a broken shader was accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("ghost.frag:2"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Picture, NamesTheModelThatIsMissing) {
+  Scene scene;
+  scene.visuals.push_back({"/nowhere/table.glb", Pose::Identity(), 1});
+  EXPECT_THROW(SceneView(kRoot / "shaders", arm_, scene), std::runtime_error);
+}
+
+TEST(Quality, IsLowerWhereAProcessorDraws) {
+  const Quality software = Quality::automatic("llvmpipe (LLVM 15.0.6, 256 bits)");
+  const Quality hardware = Quality::automatic("NVIDIA GeForce RTX 3060/PCIe/SSE2");
+  EXPECT_EQ(software.msaa, 1);
+  EXPECT_EQ(hardware.msaa, 4);
+  EXPECT_LT(software.shadow_size, hardware.shadow_size);
+}
+
+}  // namespace
+}  // namespace limpid

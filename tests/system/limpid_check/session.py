@@ -1,0 +1,191 @@
+"""A session file in memory: the rows, the arm, and the settings in force at each row.
+
+Everything comes from the file alone. SI and radians; N rows, n joints.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from .urdf import Array, Chain, parse_chain
+
+# dataset -> how many columns: 1 for shape N, 3 for N x 3, 0 for N x n
+DATASETS: Mapping[str, int] = {
+    "/time": 1,
+    "/device/position": 0,
+    "/device/velocity": 0,
+    "/device/measured_position": 0,
+    "/device/measured_velocity": 0,
+    "/device/commanded_torque": 0,
+    "/device/motor_torque": 0,
+    "/proxy/position": 0,
+    "/proxy/velocity": 0,
+    "/proxy/torque": 0,
+    "/proxy/contact_torque": 0,
+    "/hand/target": 3,
+    "/hand/torque": 0,
+    "/hand/torque_estimate": 0,
+    "/coupling/kind": 1,
+    "/coupling/eta": 1,
+    "/coupling/alpha": 1,
+    "/energy/controller_total": 1,
+    "/energy/controller_commanded": 1,
+    "/energy/proxy_kinetic": 1,
+    "/timing/wake_latency": 1,
+    "/timing/compute": 1,
+}
+
+ATTRIBUTES = (
+    "format", "version", "tick", "dof", "created", "app_version",
+    "seed", "source", "config", "device_urdf", "scene",
+)  # fmt: skip
+
+# The contract's keys that the recomputations need, with its defaults. None: as the URDF says.
+_DEFAULTS: Mapping[str, Any] = {
+    "coupling.k_vc": 10.0,
+    "coupling.b_vc": 0.001,
+    "coupling.b_v": 0.012,
+    "observer.anti_windup": True,
+    "observer.velocity": "raw",
+    "proxy.inertia_ratio": 1e-4,
+    "model.inertia_error": 1.0,
+    "device.encoder_step": 0.0,
+    "device.friction": None,
+    "device.damping": None,
+    "device.torque_limit": None,
+}
+
+
+class SessionError(ValueError):
+    """A file that breaks the contract's layout; says where."""
+
+
+@dataclass(frozen=True)
+class Session:
+    """Rows of a session. `data` is keyed by dataset path, `settings` by parameter key."""
+
+    data: dict[str, Array]
+    settings: dict[str, list[Any]]  # one value per row
+    attributes: dict[str, Any]
+    chain: Chain
+
+    def __getitem__(self, path: str) -> Array:
+        return self.data[path]
+
+    def __len__(self) -> int:
+        return len(self.data["/time"])
+
+    @property
+    def tick(self) -> float:
+        """T [s]."""
+        return float(self.attributes["tick"])
+
+    @property
+    def dof(self) -> int:
+        return self.chain.dof
+
+    def number(self, key: str) -> Array:
+        """A numeric setting at every row (N, 1)."""
+        return np.array(self.settings[key], dtype=np.float64)[:, None]
+
+    def joint_number(self, key: str, of_arm: list[float]) -> Array:
+        """A setting at every row and joint (N, n), the arm's own value where none is given."""
+        own = np.array(of_arm)
+        given = self.settings[key]
+        return np.array([own if value is None else np.full(self.dof, value) for value in given])
+
+    @property
+    def damping(self) -> Array:
+        """b_d (N, n) [N m s/rad]."""
+        return self.joint_number("device.damping", [j.damping for j in self.chain.joints])
+
+    @property
+    def friction(self) -> Array:
+        """Coulomb friction (N, n) [N m]."""
+        return self.joint_number("device.friction", [j.friction for j in self.chain.joints])
+
+    @property
+    def torque_limit(self) -> Array:
+        """(N, n) [N m]."""
+        return self.joint_number("device.torque_limit", [j.effort for j in self.chain.joints])
+
+
+def flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """TOML tables as dotted keys."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
+def _text(value: Any) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
+    data: dict[str, Array] = {}
+    rows: int | None = None
+    for path, columns in DATASETS.items():
+        if path not in file:
+            raise SessionError(f"{path} is missing")
+        values = file[path][()]
+        rows = len(values) if rows is None else rows
+        expected = (rows,) if columns == 1 else (rows, columns or dof)
+        if values.shape != expected:
+            raise SessionError(f"{path} has shape {values.shape}, expected {expected}")
+        kind = np.uint8 if path == "/coupling/kind" else np.float64
+        if values.dtype != kind:
+            raise SessionError(f"{path} is {values.dtype}, expected {np.dtype(kind)}")
+        data[path] = values
+    if "/device/force_wanted" in file:
+        data["/device/force_wanted"] = file["/device/force_wanted"][()]
+    return data
+
+
+def _setting(text: str) -> dict[str, Any]:
+    """'key = value' as a dotted key and its value; a bare word is a string."""
+    try:
+        return flatten(tomllib.loads(text))
+    except tomllib.TOMLDecodeError:
+        key, _, value = text.partition("=")
+        return {key.strip(): value.strip()}
+
+
+def _read_settings(file: h5py.File, config: str, rows: int) -> dict[str, list[Any]]:
+    """Settings per row: the `config` attribute, then /events from their row on."""
+    start = dict(_DEFAULTS) | flatten(tomllib.loads(config))
+    settings = {key: [start[key]] * rows for key in _DEFAULTS}
+    if "/events/row" in file:
+        for row, raw in zip(file["/events/row"][()], file["/events/setting"][()]):
+            for key, value in _setting(_text(raw)).items():
+                if key in settings and int(row) < rows:
+                    settings[key][int(row) :] = [value] * (rows - int(row))
+    return settings
+
+
+def read_session(path: Path) -> Session:
+    """Reads FILE.h5. Raises SessionError where the layout is not the contract's."""
+    with h5py.File(path, "r") as file:
+        found = {name: file.attrs[name] for name in ATTRIBUTES if name in file.attrs}
+        for name in ATTRIBUTES:
+            if name not in found:
+                raise SessionError(f"attribute {name} is missing")
+        attributes = {k: _text(v) if isinstance(v, (bytes, str)) else v for k, v in found.items()}
+        if attributes["format"] != "limpid-session" or int(attributes["version"]) != 1:
+            raise SessionError("not a limpid-session of version 1")
+        chain = parse_chain(attributes["device_urdf"])
+        if chain.dof != int(attributes["dof"]):
+            raise SessionError(f"dof is {attributes['dof']}, device_urdf has {chain.dof} joints")
+        data = _read_rows(file, chain.dof)
+        settings = _read_settings(file, attributes["config"], len(data["/time"]))
+    return Session(data, settings, attributes, chain)

@@ -1,0 +1,121 @@
+"""The torques of a session, recomputed from its positions: (1), (2), (14), (15), saturation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .decomposition import feedforward
+from .dynamics import coriolis, inertia
+from .report import Check
+from .session import Session
+from .urdf import Array
+
+# A coupling that is switched, or a force that is armed or cut, slews the motors for a while.
+_SWITCHING_SECONDS = 2.0
+
+
+@dataclass(frozen=True)
+class Torques:
+    device: Array  # tau1 without the device's own damping (N, n) [N m]
+    proxy: Array  # tau2 (N - 1, n) [N m]; the last row's needs a proxy state that is not recorded
+
+
+def sampled_velocity(s: Session) -> Array:
+    """(x1_k - x1_{k-1}) / T (N, n) [rad/s], zero at k = 0."""
+    x1 = s["/device/measured_position"]
+    return np.diff(x1, axis=0, prepend=x1[:1]) / s.tick
+
+
+def mean_proxy_velocity(s: Session) -> Array:
+    """vbar2_k = (x2[k+1] - x2[k]) / T (N - 1, n) [rad/s]."""
+    return np.diff(s["/proxy/position"], axis=0) / s.tick
+
+
+def recompute(s: Session) -> Torques:
+    """tau1 and tau2 of every row with the coupling in force at that row."""
+    x1, x2 = s["/device/measured_position"], s["/proxy/position"]
+    k_vc, b_vc, b_v = (s.number(f"coupling.{name}") for name in ("k_vc", "b_vc", "b_v"))
+    v1, vbar2 = sampled_velocity(s), mean_proxy_velocity(s)
+    vbar2_before = np.concatenate([np.zeros((1, s.dof)), vbar2])
+    xbar2 = (x2[1:] + x2[:-1]) / 2
+
+    tau1 = -b_vc * (v1 - vbar2_before) - k_vc * (x1 - x2)
+    tau2 = -b_v[:-1] * vbar2 - b_vc[:-1] * (vbar2 - v1[:-1]) - k_vc[:-1] * (xbar2 - x1[:-1])
+
+    rows = np.flatnonzero(s["/coupling/kind"] == 1)
+    if len(rows):
+        extra1, extra2 = _feedforward(s, rows)
+        tau1[rows] += extra1
+        inside = rows < len(tau2)
+        tau2[rows[inside]] += extra2[inside]
+    return Torques(tau1, tau2)
+
+
+def _feedforward(s: Session, rows: Array) -> tuple[Array, Array]:
+    """What (14) and (15) add at the given rows."""
+    x1, v1 = s["/device/measured_position"][rows], s["/device/measured_velocity"][rows]
+    x2, v2 = s["/proxy/position"][rows], s["/proxy/velocity"][rows]
+    believed = s.number("model.inertia_error")[rows][:, :, None]
+    ratio = s.number("proxy.inertia_ratio")[rows][:, :, None]
+    return feedforward(
+        m1=believed * inertia(s.chain, x1),
+        c1=believed * coriolis(s.chain, x1, v1),
+        m2=ratio * inertia(s.chain, x2),
+        c2=ratio * coriolis(s.chain, x2, v2),
+        v1=v1,
+        v2=v2,
+        f1=s["/hand/torque_estimate"][rows],
+        f2=s["/proxy/contact_torque"][rows],
+        eta=s["/coupling/eta"][rows],
+    )
+
+
+def check_torques(s: Session) -> list[Check]:
+    """tau1 and tau2 at every row, to 1e-6 of the largest torque in the file."""
+    mine = recompute(s)
+    device, proxy = s["/device/commanded_torque"], s["/proxy/torque"][:-1]
+    largest = max(float(np.max(np.abs(device))), float(np.max(np.abs(proxy), initial=0)), 1e-12)
+    unit = f"worst row, of largest torque {largest:.3g} N m"
+    return [
+        Check("tau1 (1)/(14)", float(np.max(np.abs(device - mine.device))) / largest, 1e-6, unit),
+        Check(
+            "tau2 (2)/(15)",
+            float(np.max(np.abs(proxy - mine.proxy), initial=0)) / largest,
+            1e-6,
+            unit,
+        ),
+    ]
+
+
+def switching_rows(s: Session) -> Array:
+    """Rows (N,) at which the motors may slew or fade: force off, or a change not long ago."""
+    kind = s["/coupling/kind"].astype(int)
+    change = np.diff(kind, prepend=kind[:1]) != 0
+    off = np.zeros(len(s), dtype=bool)
+    if "/device/force_wanted" in s.data:
+        wanted = s["/device/force_wanted"] != 0
+        change |= np.diff(wanted.astype(int), prepend=1) != 0
+        off = ~wanted
+    reach = int(np.ceil(_SWITCHING_SECONDS / s.tick))
+    recent = np.convolve(change.astype(float), np.ones(reach))[: len(s)] > 0.5
+    return off | recent
+
+
+def check_motors(s: Session) -> list[Check]:
+    """Motors get the commanded torque clipped at their limit; never more than the limit."""
+    limit = s.torque_limit
+    commanded, motor = s["/device/commanded_torque"], s["/device/motor_torque"]
+    error = np.abs(motor - np.clip(commanded, -limit, limit))
+    steady = ~switching_rows(s)
+    above = float(np.max(np.abs(motor) - limit))
+    return [
+        Check(
+            "motor torque",
+            float(np.max(error[steady], initial=0)),
+            1e-12,
+            f"N m from clipped command, {int(steady.sum())} of {len(s)} rows",
+        ),
+        Check("motor limit", above, 1e-12, "N m above the torque limit"),
+    ]

@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""`limpid analyze` against the closed forms of the paper's section 4.2."""
+
+from __future__ import annotations
+
+import json
+import math
+import unittest
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import arms
+from support import SystemTest, limpid
+
+
+class Analyze(SystemTest):
+    """Closed forms of section 4.2, for a scalar inertia and per mode of an arm."""
+
+    def analyze(self, *options: str | Path) -> dict[str, Any]:
+        result = limpid("analyze", *options, "--json")
+        self.assertEqual(result.status, 0, result.err)
+        return json.loads(result.out)
+
+    def scalar(self, **given: float) -> dict[str, Any]:
+        """`analyze` for one inertia; keys of the command line with '_' for '.' or as options."""
+        keys = {
+            "alpha": "observer.alpha", "b_d": "device.damping", "b_v": "coupling.b_v",
+            "eta": "coupling.eta", "k_h": "hand.stiffness", "b_h": "hand.damping",
+            "k_vc": "coupling.k_vc", "b_vc": "coupling.b_vc", "tick": "loop.tick",
+        }  # fmt: skip
+        words: list[str] = []
+        for name, value in given.items():
+            if name in keys:
+                words += ["--set", f"{keys[name]}={value!r}"]
+            else:
+                words += [f"--{name}", repr(value)]
+        return self.analyze(*words)
+
+    def test_bandwidths_and_eta_min_of_a_scalar_inertia(self) -> None:
+        for mass, alpha, b_d, b_v in ((1.75e-4, 0.035, 0.012, 0.012), (2e-3, 0.02, 0.03, 0.01)):
+            with self.subTest(mass=mass):
+                found = self.scalar(mass=mass, alpha=alpha, b_d=b_d, b_v=b_v)
+                # the locked inertia counts the proxy's 1e-4, so a little more than round-off
+                self.assert_list(found["w_f"], [alpha / mass])
+                self.assert_list(found["w_c"], [(b_d + b_v) / mass])
+                self.assertAlmostEqual(np.atleast_1d(found["b"])[0], b_d + b_v, delta=1e-12)
+                self.assert_close(found["eta_min"], alpha / (alpha + b_d + b_v))
+                self.assertNotIn("eta_min_band", {k for k, v in found.items() if v is not None})
+
+    def assert_close(self, value: float, expected: float) -> None:
+        self.assertAlmostEqual(value, expected, delta=3e-4 * abs(expected) + 1e-12)
+
+    def assert_list(self, values: list[float], expected: list[float]) -> None:
+        self.assertEqual(len(values), len(expected))
+        for value, wanted in zip(sorted(values), sorted(expected)):
+            self.assert_close(value, wanted)
+
+    def test_eta_min_of_a_hand_of_limited_bandwidth(self) -> None:
+        mass, alpha, b = 1.75e-4, 0.035, 0.024
+        w_f, w_c = alpha / mass, b / mass
+        for band in (5.0, 20.0, 30.0, 100.0, 1e4):
+            with self.subTest(band=band):
+                w_b = 2 * math.pi * band
+                wanted = max(0.0, (w_f - w_c * w_f**2 / w_b**2) / (w_c + w_f))
+                found = self.scalar(mass=mass, alpha=alpha, b_d=0.012, b_v=0.012, band=band)
+                self.assertAlmostEqual(found["eta_min_band"], wanted, delta=2e-3)
+
+    def test_eta_min_in_a_grip_is_where_the_cubic_gets_a_root_on_the_axis(self) -> None:
+        """Routh-Hurwitz of (m s^2 + b s)(s + w_f) + (k_h + b_h s)(s + w_f / eta), by its roots."""
+        mass, alpha, b = 1.75e-4, 0.035, 0.024
+        w_f = alpha / mass
+
+        def stable(eta: float, k_h: float, b_h: float) -> bool:
+            cubic = np.polyadd(
+                np.polymul([mass, b, 0], [1, w_f]), np.polymul([b_h, k_h], [1, w_f / eta])
+            )
+            return bool(np.max(np.roots(cubic).real) < 0)
+
+        for k_h, b_h in ((300.0, 0.0), (3000.0, 0.0), (5.0, 0.0), (50.0, 0.001), (500.0, 0.01)):
+            with self.subTest(k_h=k_h, b_h=b_h):
+                found = self.scalar(mass=mass, alpha=alpha, b_d=0.012, b_v=0.012, k_h=k_h, b_h=b_h)
+                limit = found["eta_min_grip"]
+                if b_h == 0:
+                    eta_min = alpha / (alpha + b)
+                    self.assert_close(limit, eta_min * k_h / (k_h + b * w_f))
+                self.assertTrue(stable(limit * 1.002 + 1e-6, k_h, b_h))
+                if limit > 1e-3:
+                    self.assertFalse(stable(limit * 0.998, k_h, b_h))
+
+    def test_condition_three_and_the_verdict(self) -> None:
+        cases = [  # b_d, b_v, k_vc, b_vc, tick
+            (0.012, 0.012, 10.0, 0.001, 0.001),
+            (0.0119, 0.012, 10.0, 0.001, 0.001),
+            (0.02, 0.004, 10.0, 0.002, 0.001),
+            (0.02, 0.012, 12.0, 0.001, 0.002),
+        ]
+        for b_d, b_v, k_vc, b_vc, tick in cases:
+            with self.subTest(b_d=b_d, b_v=b_v, k_vc=k_vc):
+                given = {"b_d": b_d, "b_v": b_v, "k_vc": k_vc, "b_vc": b_vc, "tick": tick}
+                found = self.scalar(mass=1.75e-4, **given)["condition3"]
+                device, proxy = b_d - 2 * b_vc - k_vc * tick, b_v - k_vc * tick / 2
+                self.assertAlmostEqual(found["device_margin"], device, delta=1e-12)
+                self.assertAlmostEqual(found["proxy_margin"], proxy, delta=1e-12)
+                if abs(device) > 1e-12 and abs(proxy) > 1e-12:
+                    self.assertEqual(found["holds"], device >= 0 and proxy >= 0)
+
+    def test_passive_means_at_or_above_eta_min(self) -> None:
+        for eta in (0.5, 0.58, 0.6, 1.0):
+            with self.subTest(eta=eta):
+                found = self.scalar(mass=1.75e-4, alpha=0.035, b_d=0.012, b_v=0.012, eta=eta)
+                self.assertEqual(found["passive"], eta >= 0.035 / 0.059)
+
+    def test_every_mode_of_an_arm_has_the_same_eta_min(self) -> None:
+        files = arms.write_arm(self.directory, 6)
+        found = self.analyze("--device", files.urdf)
+        b = 0.015 + 0.012
+        self.assertEqual((len(found["w_f"]), len(found["w_c"])), (6, 6))
+        for w_f, w_c in zip(sorted(found["w_f"]), sorted(found["w_c"])):
+            self.assert_close(w_f / w_c, 0.035 / b)
+        self.assert_close(found["eta_min"], 0.035 / (0.035 + b))
+
+    def test_without_json_it_speaks_to_people(self) -> None:
+        result = limpid("analyze")
+        self.assertEqual(result.status, 0, result.err)
+        self.assertIn("eta", result.out)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,160 @@
+#!/usr/bin/python3
+"""The commands, as the contract promises them to users and scripts."""
+
+from __future__ import annotations
+
+import csv
+import os
+import pty
+import unittest
+
+import h5py
+import numpy as np
+
+from limpid_check.session import ATTRIBUTES, DATASETS, read_session
+from support import Started, SystemTest, WithAnArm, Words, limpid
+
+COMMANDS = ("play", "run", "experiment", "analyze", "devices", "info", "recover")
+
+
+class Help(SystemTest):
+    def test_help_and_version_are_everywhere(self) -> None:
+        for command in ([], *([c] for c in COMMANDS)):
+            for option in ("--help", "--version"):
+                with self.subTest(command=command, option=option):
+                    result = limpid(*command, option)
+                    self.assertEqual((result.status, result.err), (0, ""))
+                    self.assertRegex(result.out, r"\d+\.\d+" if option == "--version" else "limpid")
+
+    def test_the_help_of_the_program_names_every_command(self) -> None:
+        text = limpid("--help").out
+        for command in COMMANDS:
+            self.assertIn(command, text)
+
+    def test_the_help_of_run_names_every_option(self) -> None:
+        text = limpid("run", "--help").out
+        for option in (
+            "device", "scene", "hand", "config", "set", "coupling", "eta", "alpha",
+            "duration", "realtime", "seed", "record", "force",
+        ):  # fmt: skip
+            self.assertIn(f"--{option}", text)
+
+    def test_devices_says_what_there_is_without_any(self) -> None:
+        result = limpid("devices")
+        self.assertEqual(result.status, 0, result.err)
+        self.assertTrue(result.out.strip())
+
+
+class Run(WithAnArm):
+    def test_without_options_but_a_duration_it_records_the_default_arm(self) -> None:
+        out = self.record("--duration", "0.5")
+        with h5py.File(out, "r") as file:
+            self.assertEqual(int(file.attrs["dof"]), 3)
+            self.assertEqual(len(file["/time"]), 500)
+
+    def test_the_file_holds_all_the_contract_lists_and_stands_alone(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.2", "--seed", "7", "--eta", "0.8")
+        with h5py.File(out, "r") as file:
+            for name in DATASETS:
+                self.assertIn(name, file)
+            for name in ATTRIBUTES:
+                self.assertIn(name, file.attrs)
+            self.assertEqual(file["/coupling/kind"].dtype, np.uint8)
+            self.assertEqual(file["/time"].dtype, np.float64)
+        session = read_session(out)
+        self.assertEqual(int(session.attributes["seed"]), 7)
+        self.assertEqual(session.attributes["device_urdf"], self.files.urdf.read_text())
+        self.assertEqual(session.attributes["scene"], self.files.scene.read_text())
+        iso_8601 = r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d"
+        self.assertRegex(session.attributes["created"], iso_8601)
+        self.assertEqual(set(np.unique(session["/coupling/eta"])), {0.8})
+
+    def test_short_options_config_and_set_mean_the_same(self) -> None:
+        config = self.out(".toml")
+        config.write_text('[coupling]\nkind = "standard"\neta = 0.7\n[observer]\nalpha = 0.02\n')
+        ways: list[Words] = [
+            ["--coupling", "standard", "--eta", "0.7", "--alpha", "0.02"],
+            ["--config", config],
+            ["--set", "coupling.kind=standard", "--set", "coupling.eta=0.7",
+             "--set", "observer.alpha=0.02"],
+        ]  # fmt: skip
+        rows = []
+        for way in ways:
+            with h5py.File(self.record(*self.arm, "--duration", "0.3", *way), "r") as file:
+                rows.append({n: file[n][()].tobytes() for n in DATASETS if "timing" not in n})
+                self.assertEqual(set(file["/coupling/kind"][()]), {0})
+                self.assertEqual(set(file["/coupling/alpha"][()]), {0.02})
+        self.assertEqual(rows[0], rows[1])
+        self.assertEqual(rows[0], rows[2])
+
+    def test_set_overrides_the_config_file(self) -> None:
+        config = self.out(".toml")
+        config.write_text("[coupling]\neta = 0.7\n")
+        out = self.record(
+            *self.arm, "--duration", "0.05", "--config", config, "--set", "coupling.eta=0.9"
+        )
+        self.assertEqual(read_session(out)["/coupling/eta"][0], 0.9)
+
+    def test_the_duration_defaults_to_the_hands_path(self) -> None:
+        self.assertEqual(len(read_session(self.record(*self.arm))), 4000)
+
+    def test_an_existing_file_is_kept_unless_forced(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.05")
+        before = out.read_bytes()
+        result = limpid("run", *self.arm, "--duration", "0.1", "--record", out)
+        self.assertEqual(result.status, 2)
+        self.assertIn(str(out), result.err)
+        self.assertEqual(out.read_bytes(), before)
+        self.record(*self.arm, "--duration", "0.1", "--force", out=out)
+        self.assertEqual(len(read_session(out)), 100)
+
+    def test_progress_is_shown_on_a_terminal_only(self) -> None:
+        words = ["run", *self.arm, "--realtime", "--duration", "2"]
+        quiet = limpid(*words, "--record", self.out())
+        self.assertEqual((quiet.status, quiet.err), (0, ""))
+        master, slave = pty.openpty()
+        with Started(*words, "--record", self.out(), stderr=slave) as started:
+            os.close(slave)
+            shown = b""
+            try:
+                while chunk := os.read(master, 4096):
+                    shown += chunk
+            except OSError:  # the last holder of the other end has gone
+                pass
+            self.assertEqual(started.process.wait(timeout=20), 0)
+        os.close(master)
+        self.assertIn(b"%", shown)
+
+
+class Info(WithAnArm):
+    def test_it_says_what_a_recording_holds(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.25", "--eta", "0.8")
+        result = limpid("info", out)
+        self.assertEqual((result.status, result.err), (0, ""))
+        self.assertIn("250", result.out)
+        self.assertRegex(result.out, r"\b3\b")
+
+    def test_the_table_holds_every_number_of_the_file(self) -> None:
+        out, table = self.record(*self.arm, "--duration", "0.05"), self.out(".csv")
+        result = limpid("info", out, "--csv", table)
+        self.assertEqual(result.status, 0, result.err)
+        with table.open(newline="") as text:
+            header, *lines = list(csv.reader(text))
+        numbers = np.array([[float(word) for word in line] for line in lines])
+        self.assertEqual(len(set(header)), len(header), "two columns of the same name")
+        self.assertEqual(numbers.shape, (50, len(header)))
+        columns = {column.tobytes() for column in numbers.T}
+        with h5py.File(out, "r") as file:
+            for name in DATASETS:
+                for column in file[name][()].reshape(50, -1).T.astype(np.float64):
+                    self.assertIn(column.tobytes(), columns, f"{name} is not in the table")
+
+    def test_an_existing_table_is_not_overwritten(self) -> None:
+        out, table = self.record(*self.arm, "--duration", "0.05"), self.out(".csv")
+        table.write_text("mine")
+        self.assertEqual(limpid("info", out, "--csv", table).status, 2)
+        self.assertEqual(table.read_text(), "mine")
+
+
+if __name__ == "__main__":
+    unittest.main()
