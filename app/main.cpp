@@ -17,6 +17,23 @@ int refuse(const std::exception& e) {
   return 2;
 }
 
+// The window's options before a command would be lost.
+void check_order(const CLI::App& app, const std::string& command) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0) continue;
+    throw UsageError(fmt::format("{0}: stands before the command; write limpid {1} {0} ...",
+                                 option->get_name(), command));
+  }
+}
+
+UsageError unexpected(const CLI::App& app) {
+  const auto words = app.remaining_for_passthrough(true);
+  const auto chosen = app.get_subcommands();
+  const std::string command = chosen.empty() ? "limpid" : "limpid " + chosen.front()->get_name();
+  return UsageError(fmt::format("\"{}\": not expected; `{} --help` lists what is",
+                                fmt::join(words, " "), command));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -24,6 +41,9 @@ int main(int argc, char** argv) {
   app.name("limpid");
   app.set_version_flag("--version", "limpid " LIMPID_VERSION);
   app.require_subcommand(0, 1);
+  app.footer(
+      "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
+      "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
   commands["analyze"] = declare_analyze(app);
@@ -32,15 +52,21 @@ int main(int argc, char** argv) {
   commands["devices"] = declare_devices(app);
   commands["play"] = declare_play(app);
   const Command desktop = declare_desktop(app);
+  refuse_empty_values(app);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", "limpid " LIMPID_VERSION);
+    refuse_empty_values(*command);
   }
   try {
     app.parse(argc, argv);
     const auto chosen = app.get_subcommands();
-    return chosen.empty() ? desktop() : commands.at(chosen.front()->get_name())();
+    if (chosen.empty()) return desktop();
+    check_order(app, chosen.front()->get_name());
+    return commands.at(chosen.front()->get_name())();
   } catch (const CLI::Success& e) {
     return app.exit(e);  // --help, --version
+  } catch (const CLI::ExtrasError&) {
+    return refuse(unexpected(app));
   } catch (const CLI::ParseError& e) {
     return refuse(e);
   } catch (const UsageError& e) {

@@ -9,8 +9,9 @@
 namespace limpid {
 
 // The target follows the mouse as a critically damped second-order system of a hand's bandwidth,
-// stepped exactly; the grip closes and opens within a twentieth of a second. A hand that has let
-// go stays with the tip, so that it takes hold again where it is.
+// stepped exactly; the grip closes and opens within a twentieth of a second. The hand pulls with a
+// few newtons at most: its target stays that near to the tip. One that has let go stays with the
+// tip, so that it takes hold again where it is.
 class MouseHand {
  public:
   void reset(const Vec3& at) {
@@ -19,8 +20,9 @@ class MouseHand {
     grip_ = 0;
   }
 
-  // One tick of length T [s]: `goal` is where the mouse wants the tip, `tip` where it is [m].
-  HandInput step(bool grab, const Vec3& goal, const Vec3& tip, double T) {
+  // One tick of length T [s]: `goal` is where the mouse wants the tip, `tip` where it is [m];
+  // `stiffness` is the grip's [N/m].
+  HandInput step(bool grab, const Vec3& goal, const Vec3& tip, double stiffness, double T) {
     grip_ = std::clamp(grip_ + (grab ? T : -T) / kGripTime, 0.0, 1.0);
     if (grip_ == 0) {
       target_ = tip;
@@ -32,6 +34,9 @@ class MouseHand {
       const double decay = std::exp(-kBandwidth * T);
       target_ = goal + (c0 + c1 * T) * decay;
       rate_ = (c1 - kBandwidth * (c0 + c1 * T)) * decay;
+      const double stretch = (target_ - tip).norm();
+      const double longest = kStrength / stiffness;
+      if (stretch > longest) target_ = tip + (target_ - tip) * (longest / stretch);
     }
     return {target_, grip_};
   }
@@ -39,6 +44,7 @@ class MouseHand {
  private:
   static constexpr double kBandwidth = 2 * 3.14159265358979323846 * 8;  // [rad/s]
   static constexpr double kGripTime = 0.05;                             // [s]
+  static constexpr double kStrength = 3;                                // [N]
 
   Vec3 target_ = Vec3::Zero();
   Vec3 rate_ = Vec3::Zero();

@@ -18,13 +18,6 @@ struct AnalyzeOptions {
   bool json = false;
 };
 
-void check_positive(const char* option, const std::optional<double>& value, const char* unit) {
-  if (value && !(*value > 0 && std::isfinite(*value))) {
-    throw UsageError(fmt::format("{}: {} is not allowed; allowed: a number above 0 {}", option,
-                                 *value, unit));
-  }
-}
-
 void print(const Analysis& a, const Parameters& p) {
   const auto list = [](const std::vector<double>& values) {
     return fmt::format("{:.4g}", fmt::join(values, ", "));
@@ -43,8 +36,6 @@ void print(const Analysis& a, const Parameters& p) {
 }
 
 int analyze_command(const AnalyzeOptions& options) {
-  check_positive("--band", options.band, "Hz");
-  check_positive("--mass", options.mass, "kg m^2");
   const Parameters p = make_parameters(options.input);
   ArmDescription arm;
   Scene scene;
@@ -76,11 +67,15 @@ Command declare_analyze(CLI::App& app) {
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
   options->input.add_parameters(*command);
-  command->add_option("--band", options->band, "the human's bandwidth, for eta_min within it")
-      ->type_name("HZ");
-  command->add_option("--mass", options->mass,
-                      "a scalar inertia in place of the arm's at its rest pose")
-      ->type_name("KG_M2");
+  auto* band =
+      command->add_option("--band", options->band, "the human's bandwidth, for eta_min within it")
+          ->type_name("HZ");
+  auto* mass = command
+                   ->add_option("--mass", options->mass,
+                                "a scalar inertia in place of the arm's at its rest pose")
+                   ->type_name("KG_M2");
+  require_above_zero(band, 1e6, "Hz");
+  require_above_zero(mass, 1e6, "kg m^2");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(parameter_help());
   return [options] { return analyze_command(*options); };

@@ -17,8 +17,11 @@ struct WindowOptions {
 void add(CLI::App& command, WindowOptions& options) {
   options.input.add_world(command);
   options.input.add_parameters(command);
-  command.add_option("--ui-scale", options.desktop.ui_scale, "size of text and panels; default: the screen's")
-      ->check(CLI::Range(0.5, 4.0));
+  command
+      .add_option("--ui-scale", options.desktop.ui_scale,
+                  "size of text and panels; default: the screen's")
+      ->type_name("0.5..4")
+      ->check(CLI::Range(0.5, 4.0).description(""));
   command.add_flag("--print-state", options.desktop.print_state,
                    "print the state as a line of JSON ten times a second");
 }
@@ -32,7 +35,7 @@ int open_window(const WindowOptions& options) {
   read_world(input, arm, scene);
   desktop.device = input.device;
   desktop.scene = input.scene;
-  const bool own = !input.configs.empty() || !input.settings.empty() || !input.coupling.empty() ||
+  const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
                    input.eta || input.alpha;
   if (own) desktop.parameters = make_parameters(input);
   if (!options.session.empty()) {
@@ -50,7 +53,7 @@ int open_window(const WindowOptions& options) {
 Command declare_play(CLI::App& app) {
   auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
   auto options = std::make_shared<WindowOptions>();
-  command->add_option("session", options->session)->type_name("SESSION.h5")->required();
+  command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
   add(*command, *options);
   return [options] { return open_window(*options); };
 }

@@ -56,7 +56,7 @@ int recover(const RecoverOptions& options) {
 Command declare_info(CLI::App& app) {
   auto* command = app.add_subcommand("info", "what a recording holds");
   auto options = std::make_shared<InfoOptions>();
-  command->add_option("session", options->session)->type_name("SESSION.h5")->required();
+  command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
   command->add_option("--csv", options->csv, "write it as a table")->type_name("OUT.csv");
   command->add_flag("--force", options->force, "replace OUT.csv if it exists");
   return [options] { return info(*options); };
@@ -66,7 +66,9 @@ Command declare_recover(CLI::App& app) {
   auto* command =
       app.add_subcommand("recover", "what a killed recording left, as a proper session file");
   auto options = std::make_shared<RecoverOptions>();
-  command->add_option("part", options->part)->type_name("SESSION.h5.part")->required();
+  command->add_option("SESSION.h5.part", options->part, "the leftover, with .part at its end")
+      ->type_name("")
+      ->required();
   command->add_flag("--force", options->force, "replace SESSION.h5 if it exists");
   return [options] { return recover(*options); };
 }

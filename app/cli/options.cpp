@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -23,14 +24,47 @@ bool is_session(const std::string& file) {
   return file.ends_with(".h5") || file.ends_with(".h5.part");
 }
 
+// A number and nothing else.
+std::optional<double> number_in(const std::string& text) {
+  double x = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, x);
+  if (result.ec != std::errc{} || result.ptr != end) return std::nullopt;
+  return x;
+}
+
 std::uint64_t ticks_in(double duration, double tick) {
   return static_cast<std::uint64_t>(std::max(1LL, std::llround(duration / tick)));
+}
+
+CLI::Validator whole_number() {
+  return {[](const std::string& text) -> std::string {
+            constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
+            std::uint64_t n = 0;
+            const char* end = text.data() + text.size();
+            const auto result = std::from_chars(text.data(), end, n);
+            if (result.ec == std::errc{} && result.ptr == end) return {};
+            return fmt::format("\"{}\" is not allowed; allowed: a whole number from 0 to {}", text,
+                               kMost);
+          },
+          ""};
+}
+
+// As the help says it.
+std::string allowed_values(const ParameterInfo& info) {
+  if (std::holds_alternative<CouplingKind Parameters::*>(info.field)) return "standard, proposed";
+  if (std::holds_alternative<VelocitySource Parameters::*>(info.field)) {
+    return "raw, lowpass, adaptive";
+  }
+  if (std::holds_alternative<bool Parameters::*>(info.field)) return "true, false";
+  const std::string unit = std::string(info.unit) == "-" ? "" : std::string(" ") + info.unit;
+  return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
 }
 
 // Refuses a path that leaves the reach of the arm, before anything is written.
 void check_reach(const RunPlan& plan) {
   const Vec3 base = plan.arm.joints.front().origin.translation();
-  const double limit = reach(plan.arm);
+  const double limit = reach(plan.arm) * (1 + 1e-9);  // stretched out is in reach
   for (std::size_t i = 0; i < plan.hand.position.size(); ++i) {
     const double distance = (plan.hand.position[i] - base).norm();
     if (distance <= limit) continue;
@@ -88,8 +122,8 @@ void InputOptions::add_parameters(CLI::App& command) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--coupling", coupling, "standard or proposed (coupling.kind)")
       ->type_name("KIND");
-  command.add_option("--eta", eta, "apparent inertia (coupling.eta)");
-  command.add_option("--alpha", alpha, "observer gain (observer.alpha)");
+  command.add_option("--eta", eta, "apparent inertia (coupling.eta)")->type_name("RATIO");
+  command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");
 }
 
 void InputOptions::add_world(CLI::App& command) {
@@ -101,21 +135,21 @@ void InputOptions::add_world(CLI::App& command) {
 
 void InputOptions::add_hand(CLI::App& command) {
   command.add_option("--hand", hand,
-                     "the hand's path: time_s,x_m,y_m,z_m per row, or a recorded session; default: "
-                     "touching the table")
+                     "the hand's path, or a recorded session; default: touching the table")
       ->type_name("FILE.csv|FILE.h5");
-  command.add_option("--duration", duration, "default: the length of the hand's path")
-      ->type_name("SECONDS");
-  command.add_option("--seed", seed, "for whatever is random")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  auto* length =
+      command.add_option("--duration", duration, "default: the length of the hand's path")
+          ->type_name("SECONDS");
+  require_above_zero(length, kLongestRun, "s");
+  command.add_option("--seed", seed, "for whatever is random")->type_name("N")->check(whole_number());
 }
 
 Parameters make_parameters(const InputOptions& options, Parameters base) {
   for (const std::string& file : options.configs) apply_config(base, file);
   for (const std::string& setting : options.settings) apply_setting(base, setting);
-  if (!options.coupling.empty()) set_parameter(base, "coupling.kind", options.coupling);
-  if (options.eta) set_parameter(base, "coupling.eta", *options.eta);
-  if (options.alpha) set_parameter(base, "observer.alpha", *options.alpha);
+  if (options.coupling) apply_setting(base, "coupling.kind=" + *options.coupling);
+  if (options.eta) apply_setting(base, "coupling.eta=" + *options.eta);
+  if (options.alpha) apply_setting(base, "observer.alpha=" + *options.alpha);
   return base;
 }
 
@@ -134,24 +168,18 @@ RunPlan make_plan(const InputOptions& options) {
     plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
   }
   check_reach(plan);
-  double duration = plan.hand.duration();
-  if (options.duration) {
-    duration = *options.duration;
-    if (!(duration > 0 && duration <= kLongestRun)) {
-      throw UsageError(fmt::format("--duration: {} is not allowed; allowed: more than 0, up to {} s",
-                                   duration, kLongestRun));
-    }
-  }
+  const double duration = options.duration.value_or(plan.hand.duration());
   plan.rows = ticks_in(duration, plan.parameters.tick);
+  if (options.seed) plan.seed = *options.seed;
   return plan;
 }
 
-SessionInfo session_info(const RunPlan& plan, std::int64_t seed) {
+SessionInfo session_info(const RunPlan& plan) {
   SessionInfo info;
   info.tick = plan.parameters.tick;
   info.dof = plan.arm.dof();
   info.app_version = LIMPID_VERSION;
-  info.seed = static_cast<std::uint64_t>(seed);
+  info.seed = plan.seed;
   info.source = plan.hand.source;
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
@@ -163,11 +191,29 @@ std::string parameter_help() {
   std::string text = "Keys for --set and --config:\n";
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(Parameters{}, info);
-    text += fmt::format("  {:<22} default {:<12} {}\n", info.key,
-                        value.empty() ? "the arm's" : value,
-                        std::string(info.unit) == "-" ? "" : info.unit);
+    text += fmt::format("  {:<22} default {:<11} {}\n", info.key,
+                        value.empty() ? "the arm's" : value, allowed_values(info));
   }
   return text;
+}
+
+void require_above_zero(CLI::Option* option, double most, const std::string& unit) {
+  const auto check = [=](const std::string& text) -> std::string {
+    const auto x = number_in(text);
+    if (x && *x > 0 && *x <= most) return {};
+    return fmt::format("\"{}\" is not allowed; allowed: a number above 0, up to {} {}", text, most,
+                       unit);
+  };
+  option->check(check);
+}
+
+void refuse_empty_values(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;
+    option->check([](const std::string& text) {
+      return std::string(text.empty() ? "\"\" is not allowed; allowed: a value" : "");
+    });
+  }
 }
 
 }  // namespace limpid

@@ -10,6 +10,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace limpid {
@@ -23,10 +24,9 @@ struct InputOptions {
   std::string device, scene, hand;  // files; empty: the default
   std::vector<std::string> configs;
   std::vector<std::string> settings;  // key=value
-  std::string coupling;
-  std::optional<double> eta, alpha;
+  std::optional<std::string> coupling, eta, alpha;  // short for three settings
   std::optional<double> duration;
-  std::int64_t seed = 0;
+  std::optional<std::uint64_t> seed;
 
   // Declares --config, --set, --coupling, --eta, --alpha.
   void add_parameters(CLI::App& command);
@@ -45,9 +45,14 @@ Parameters make_parameters(const InputOptions& options, Parameters base = {});
 void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
 
 // What a recording of this plan says about itself.
-SessionInfo session_info(const RunPlan& plan, std::int64_t seed);
+SessionInfo session_info(const RunPlan& plan);
 
-// For the help text: every key with unit, range and meaning.
+// For the help text: every key with its default and what is allowed.
 std::string parameter_help();
+
+// The option takes a number above 0.
+void require_above_zero(CLI::Option* option, double most, const std::string& unit);
+// No option of the command takes an empty word for a value.
+void refuse_empty_values(CLI::App& command);
 
 }  // namespace limpid

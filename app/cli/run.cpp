@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <mutex>
 #include <optional>
 #include <thread>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/picture.h"
 #include "app/run/recorder.h"
 #include "app/run/summary.h"
 
@@ -22,38 +25,47 @@ using Seconds = std::chrono::duration<double>;
 std::atomic<bool> interrupted{false};
 void interrupt(int) { interrupted.store(true); }
 
-// "12.3 / 30.0 s" on a terminal, once a run takes over a second.
+// "12.3 of 30.0 s simulated, 4 s left" on a terminal, once a run takes over a second. Printed by a
+// thread of its own, so that no tick waits for a terminal.
 class Progress {
  public:
-  explicit Progress(double whole) : whole_(whole), shown_(isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
-    if (printed_) fmt::print(stderr, "\r{:60}\r", "");
+  explicit Progress(double whole) : whole_(whole) {
+    if (isatty(STDERR_FILENO) != 0) thread_ = std::jthread([this](auto stop) { show(stop); });
   }
 
-  void at(double time) {
-    if (!shown_ || ++calls_ % 64 != 0) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(printed_ ? 200 : 1000)) return;
-    last_ = now;
-    printed_ = true;
-    const double elapsed = Seconds(now - began_).count();
-    const double left = time > 0 ? elapsed * (whole_ - time) / time : 0;
-    fmt::print(stderr, "\r{:.1f} of {:.1f} s simulated, {:.0f} s left ", time, whole_, left);
-    std::fflush(stderr);
-  }
+  void at(double time) { time_.store(time, std::memory_order_relaxed); }
 
  private:
+  void show(const std::stop_token& stop) const {
+    using namespace std::chrono_literals;
+    const auto began = std::chrono::steady_clock::now();
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any over;
+    const auto over_within = [&](Seconds time) {
+      over.wait_for(lock, stop, time, [] { return false; });
+      return stop.stop_requested();
+    };
+    if (over_within(1s)) return;
+    do {
+      const double time = time_.load(std::memory_order_relaxed);
+      const double elapsed = Seconds(std::chrono::steady_clock::now() - began).count();
+      const double left = time > 0 ? elapsed * (whole_ - time) / time : 0;
+      fmt::print(stderr, "\r{:.1f} of {:.1f} s simulated, {:.0f} s left ", time, whole_, left);
+      std::fflush(stderr);
+    } while (!over_within(200ms));
+    fmt::print(stderr, "\r{:60}\r", "");
+  }
+
   double whole_;
-  bool shown_;
-  bool printed_ = false;
-  unsigned calls_ = 0;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-  std::chrono::steady_clock::time_point last_ = began_;
+  std::atomic<double> time_{0};
+  std::jthread thread_;
 };
 
 struct RunOptions {
   InputOptions input;
   std::string record;
+  std::string picture;
   bool force = false;
   bool realtime = false;
 };
@@ -69,13 +81,12 @@ void finish(Recorder& recorder) {
 
 int run(const RunOptions& options) {
   const RunPlan plan = make_plan(options.input);
-  std::optional<Recorder> recorder;
-  if (!options.record.empty()) {
-    recorder.emplace(options.record, session_info(plan, options.input.seed), plan.parameters,
-                     options.force);
-  }
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) {
+    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force);
+  }
 
   Summary summary(RowLayout(plan.arm.dof()));
   const auto began = std::chrono::steady_clock::now();
@@ -85,7 +96,7 @@ int run(const RunOptions& options) {
     end = simulate(plan, {options.realtime, &interrupted},
                    [&](std::span<const double> row, const Parameters* changed) {
                      summary.add(row);
-                     if (!options.realtime) progress.at(summary.time());
+                     progress.at(summary.time());
                      if (!recorder) return true;
                      if (changed != nullptr) recorder->changed(*changed);
                      // Without a clock to obey the run waits for the disk; nothing is dropped.
@@ -98,6 +109,9 @@ int run(const RunOptions& options) {
   }
   const double took = Seconds(std::chrono::steady_clock::now() - began).count();
   if (recorder) finish(*recorder);
+  if (!options.picture.empty()) {
+    save_picture(options.picture, plan.arm, plan.scene, summary.memorable());
+  }
 
   fmt::print("{}", summary.text());
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
@@ -128,12 +142,18 @@ Command declare_run(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
   command->add_option("--record", options->record, "write every tick to this session file")
       ->type_name("OUT.h5");
+  command->add_option("--picture", options->picture,
+                      "draw the moment of the strongest contact into this file")
+      ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
   options->input.add_world(*command);
   options->input.add_hand(*command);
   options->input.add_parameters(*command);
-  command->footer(parameter_help());
+  command->footer(
+      "FILE.csv holds a header time_s,x_m,y_m,z_m[,...] and a row for each moment. A session brings "
+      "its\nown device, scene and parameters; options override them.\n\n" +
+      parameter_help());
   return [options] { return run(*options); };
 }
 

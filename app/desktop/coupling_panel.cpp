@@ -42,7 +42,7 @@ void slider(Workbench& bench, const char* key, const std::string& broken = {}) {
 void kind_buttons(Workbench& bench) {
   const Palette& colours = palette(current_theme());
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 size((ImGui::GetContentRegionAvail().x - gap) / 2, ImGui::GetFrameHeight() * 1.35f);
+  const ImVec2 size((ImGui::GetContentRegionAvail().x - gap) / 2, ImGui::GetFrameHeight() * 1.2f);
   for (const CouplingKind kind : {CouplingKind::standard, CouplingKind::proposed}) {
     const bool chosen = bench.parameters.kind == kind;
     if (kind == CouplingKind::proposed) ImGui::SameLine();
@@ -68,7 +68,6 @@ void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
   begin_panel("coupling", rect);
   const Analysis& a = bench.analysis;
   const Parameters& p = bench.parameters;
-  heading("Coupling");
   kind_buttons(bench);
   ImGui::Spacing();
   const std::string eta = eta_broken(p, a);
@@ -108,13 +107,11 @@ void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
   const std::span<const double> row = bench.row();
   const RowLayout& layout = bench.shown().channels().layout();
   const double total = layout.in(row, Column::energy_total)[0];
-  const double commanded = layout.in(row, Column::energy_commanded)[0];
   const std::string active =
-      total > 1e-4 ? "The coupling has given more energy than it took: it is not passive." : "";
+      total > 1e-4 ? "The coupling has given more energy than it took. Either it is not passive, or it was "
+                      "switched in contact: that puts energy in, too." : "";
   read_out("E_c total", fmt::format("{:.2f} mJ", 1e3 * total), active,
            "Controller energy with the device's own damping: stays below zero while passive");
-  read_out("E_c commanded", fmt::format("{:.2f} mJ", 1e3 * commanded), {},
-           "Controller energy of motors and proxy alone, as instruments see it");
   ImGui::End();
 }
 

@@ -52,7 +52,9 @@ void draw(Workbench& bench, Window& window, ViewPanel& view_panel) {
   const float top = ImGui::GetFrameHeight();
   const float transport = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
   const float bottom = height - transport;
-  const float middle = s.show_plots ? bottom - scaled(s.plots) : bottom;
+  // On a low window the panels above need the height more than the plots do.
+  const float plots = std::min(scaled(s.plots), 0.27f * height);
+  const float middle = s.show_plots ? bottom - plots : bottom;
   const float left = s.show_left ? scaled(s.left) : 0;
   const float right = s.show_right ? width - scaled(s.right) : width;
 
@@ -123,8 +125,8 @@ void run_desktop(const DesktopOptions& options) {
   if (!bench.live.status().realtime.realtime()) yield_to_haptics();
   Window window({.width = bench.settings.width,
                  .height = bench.settings.height,
-                 .ui_scale = options.ui_scale > 0 ? options.ui_scale : bench.settings.ui_scale});
-  apply_theme(bench.settings.theme, current_scale());
+                 .ui_scale = options.ui_scale > 0 ? options.ui_scale : bench.settings.ui_scale,
+                 .theme = bench.settings.theme});
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   const std::string& device = options.device.empty() ? bench.settings.device : options.device;

@@ -20,7 +20,8 @@ struct Settings {
   bool hint_seen = false;
   double plot_length = 10;      // [s]
   std::string device, scene;    // files; empty: the default
-  Parameters parameters;
+  // A first start shows the standard coupling: its flaw is what C then mends.
+  Parameters parameters{.kind = CouplingKind::standard};
 };
 
 // $XDG_CONFIG_HOME/limpid/settings.toml. What cannot be read is left at its default; `complaint`

@@ -61,7 +61,6 @@ void draw_histogram(const LatencyHistogram& histogram) {
 
 void draw_timing(Workbench& bench, double frame_time) {
   const LoopStatus status = bench.live.status();
-  heading("Timing");
   read_out("haptic rate", fmt::format("{:.1f} Hz", status.rate),
            status.running ? std::string() : "The loop has stopped: " + status.failure);
   const LatencyHistogram& wake = bench.live.thread().wake_latency();
@@ -105,19 +104,29 @@ void draw_timing(Workbench& bench, double frame_time) {
            "Work for one picture; the loop does not wait for it");
 }
 
+bool section(const char* name, bool open) {
+  ImGui::PushFont(font(Face::semibold));
+  const bool shown =
+      ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+  ImGui::PopFont();
+  return shown;
+}
+
 }  // namespace
 
 void draw_side_panel(Workbench& bench, const ScreenRect& rect, double frame_time) {
   begin_panel("side", rect);
-  heading("Hand");
-  sliders(bench, {"hand.stiffness", "hand.damping"});
-  ImGui::Checkbox("hold where released", &bench.settings.hold_on_release);
-  tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
-  heading("Device");
-  sliders(bench, {"device.torque_limit", "observer.anti_windup", "observer.velocity",
-                  "device.encoder_step", "device.friction", "device.damping",
-                  "model.inertia_error", "proxy.inertia_ratio"});
-  draw_timing(bench, frame_time);
+  if (section("Hand", true)) {
+    sliders(bench, {"hand.stiffness", "hand.damping"});
+    ImGui::Checkbox("hold where released", &bench.settings.hold_on_release);
+    tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
+  }
+  if (section("Device", false)) {
+    sliders(bench, {"device.torque_limit", "observer.anti_windup", "device.damping",
+                    "device.friction", "device.encoder_step", "observer.velocity",
+                    "model.inertia_error", "proxy.inertia_ratio"});
+  }
+  if (section("Timing", true)) draw_timing(bench, frame_time);
   ImGui::End();
 }
 

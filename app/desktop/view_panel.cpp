@@ -123,8 +123,10 @@ void ViewPanel::draw_labels(Workbench& bench, const ScreenRect& rect) const {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   if (bench.settings.show_grid) {
-    for (int cm = 0; cm <= 30; cm += 10) {
-      const Vec3 point(cm / 100.0, -0.2, stage.picture.grid().min().z());
+    const Bounds& grid = stage.picture.grid();
+    for (int cm = -30; cm <= 30; cm += 10) {
+      const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
+      if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
       if (const auto pixel = bench.camera.project(point)) {
         draw->AddText(small, em, at(rect, *pixel), colour(colours.muted, 0.9f),
                       fmt::format("{} cm", cm).c_str());

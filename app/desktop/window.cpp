@@ -100,7 +100,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
   const double scale = options.ui_scale > 0 ? options.ui_scale : scale_x;
   load_fonts(static_cast<float>(scale));
-  apply_theme(Theme::dark, static_cast<float>(scale));
+  apply_theme(options.theme, static_cast<float>(scale));
 }
 
 Window::~Window() {

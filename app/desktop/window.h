@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "render/theme.h"
 
 struct GLFWwindow;
 
@@ -22,6 +23,7 @@ class Window {
   struct Options {
     int width = 1440, height = 900;
     double ui_scale = 0;  // 0: the screen's
+    Theme theme = Theme::dark;
   };
 
   // Throws std::runtime_error where there is no display or no OpenGL 3.3.

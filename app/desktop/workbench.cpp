@@ -134,8 +134,9 @@ void Workbench::follow_parameters() {
     if (text == parameter_text(known_, info)) continue;
     const double time = stage->channels().layout().in(row(), Column::time)[0];
     if (!playback) {
-      stage->history.mark(time, fmt::format("{} {}", info.label, text.empty() ? "arm's" : text),
-                          info.key);
+      std::string value = text.empty() ? "the arm's" : text;
+      std::erase(value, '"');
+      stage->history.mark(time, fmt::format("{} {}", info.label, value), info.key);
     }
   }
   known_ = parameters;

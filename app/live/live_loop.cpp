@@ -50,7 +50,8 @@ void LiveLoop::tick(const TickTiming& timing) {
       recorder->changed(parameters_);
     }
   }
-  const HandInput hand = hand_.step(controls.grab, controls.goal, rig_->tip(), parameters_.tick);
+  const HandInput hand = hand_.step(controls.grab, controls.goal, rig_->tip(),
+                                    parameters_.hand_stiffness, parameters_.tick);
   begin_recording(hand.target);
   rig_->step(parameters_, {hand, controls.force}, row_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;

@@ -12,10 +12,10 @@ struct Extent {
 
   bool empty() const { return low > high; }
 
-  // Not a number changes nothing.
+  // Not a number changes nothing: the order of the comparison matters.
   void include(float value) {
-    if (value < low) low = value;
-    if (value > high) high = value;
+    low = value < low ? value : low;
+    high = value > high ? value : high;
   }
   void include(const Extent& other) {
     low = std::min(low, other.low);

@@ -3,7 +3,8 @@
 namespace limpid {
 
 MinMaxRing::MinMaxRing(std::size_t at_least) {
-  const std::size_t blocks = std::max<std::size_t>((at_least + kLargestBlock - 1) / kLargestBlock, 1);
+  const std::size_t blocks =
+      std::max<std::size_t>((at_least + kLargestBlock - 1) / kLargestBlock, 1);
   samples_.resize(blocks * kLargestBlock);
   for (int level = 1; level <= kLevels; ++level) {
     blocks_[static_cast<std::size_t>(level - 1)].resize(capacity() >> (kFanBits * level));

@@ -69,8 +69,9 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
   const float legend = legend_.place_outside(outer, title_end, title_bottom,
                                              kLeastHeight * scale, spec_, scale);
   const ImVec2 label = text_size(Face::small, "\u221200.00");
-  ScreenRect area{{std::round(min.x + label.x + 8 * scale), std::round(title_bottom + legend + 5 * scale)},
-           {std::round(outer.max.x - 6 * scale), std::round(outer.max.y - label.y - 6 * scale)}};
+  ScreenRect area{
+      {std::round(min.x + label.x + 8 * scale), std::round(title_bottom + legend + 5 * scale)},
+      {std::round(outer.max.x - 6 * scale), std::round(outer.max.y - label.y - 6 * scale)}};
   area.max.x = std::max(area.max.x, area.min.x + 8);
   area.max.y = std::max(area.max.y, area.min.y + 8);
   const PixelWindow window =
@@ -151,7 +152,9 @@ void Plot::handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& eve
   }
   if (drag_ == Drag::playback) events.playback = frame.time_at(io.MousePos.x);
   if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2)) return;
-  if (drag_ == Drag::pan && io.MouseDelta.x != 0) group.pan(-io.MouseDelta.x * frame.window.per_pixel);
+  if (drag_ == Drag::pan && io.MouseDelta.x != 0) {
+    group.pan(-io.MouseDelta.x * frame.window.per_pixel);
+  }
   const bool move_values = drag_ == Drag::values || (drag_ == Drag::pan && !values_follow_);
   if (move_values && io.MouseDelta.y != 0) {
     const double by = io.MouseDelta.y / frame.area.height() * y_.span();

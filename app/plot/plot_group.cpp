@@ -26,7 +26,7 @@ void PlotGroup::begin_frame(const History& history, std::optional<double> playba
   } else {
     // Some data stays in view, also when the oldest is being forgotten.
     const double some = 0.1 * length_;
-    stop_ = std::clamp(stop_, data_start_ + some, std::max(data_stop_, data_start_) + length_ - some);
+    stop_ = std::clamp(stop_, data_start_ + some, data_stop_ + length_ - some);
   }
 }
 
@@ -37,7 +37,8 @@ void PlotGroup::pan(double seconds) {
 }
 
 void PlotGroup::zoom(double factor, double around) {
-  const double longest = std::max({2 * fitted_length_, 1.2 * (data_stop_ - data_start_), shortest_});
+  const double longest =
+      std::max({2 * fitted_length_, 1.2 * (data_stop_ - data_start_), shortest_});
   const double length = std::clamp(length_ * factor, shortest_, longest);
   if (!following_) stop_ = around + (stop_ - around) * length / length_;
   length_ = length;

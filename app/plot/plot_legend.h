@@ -12,8 +12,8 @@ class PlotLegend {
   // Beside the title, from `title_end` to the right end of `outer`, where there is room; else on
   // lines of its own under the title's `title_bottom`, as long as `least_height` is left for the
   // curves; else inside. Returns how much height it takes under the title.
-  float place_outside(const ScreenRect& outer, float title_end, float title_bottom, float least_height,
-                      const PlotSpec& spec, float scale);
+  float place_outside(const ScreenRect& outer, float title_end, float title_bottom,
+                      float least_height, const PlotSpec& spec, float scale);
 
   // Where place_outside() found no room: the corner where it hides least of the traces.
   void place_inside(const PlotFrame& frame, const PlotSpec& spec,

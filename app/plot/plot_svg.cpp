@@ -62,8 +62,8 @@ class SvgPlot {
 
   void label(double x, double y, const char* anchor, Rgb rgb, const std::string& what,
              const char* weight = "400") {
-    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-weight=\"{}\">{}</text>\n",
-        x, y, anchor, hex(rgb), weight, escaped(what));
+    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" "
+        "font-weight=\"{}\">{}</text>\n", x, y, anchor, hex(rgb), weight, escaped(what));
   }
 
   void line(double x1, double y1, double x2, double y2, Rgb rgb, const char* dash = "none") {
@@ -103,7 +103,8 @@ class SvgPlot {
     for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
       const double x = x_of(ticks.at(i) + offset);
       line(x, top_, x, bottom_, kLightPalette.grid);
-      label(x, bottom_ + 16, "middle", kLightPalette.muted, time_text(ticks.at(i), ticks.step, clock));
+      label(x, bottom_ + 16, "middle", kLightPalette.muted,
+            time_text(ticks.at(i), ticks.step, clock));
     }
   }
 
@@ -163,16 +164,16 @@ class SvgPlot {
 
   // The outline of the band, filled; its stroke gives thin bands the width of a line.
   void band(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
-    add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" points=\"",
-        hex(rgb), kLine);
+    add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" "
+        "points=\"", hex(rgb), kLine);
     for (const TracePoint& p : points) point(p, window, p.high);
     for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, window, p->low);
     add("\"/>\n");
   }
 
   void polyline(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
-    add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" points=\"",
-        hex(rgb), kLine);
+    add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
+        "points=\"", hex(rgb), kLine);
     for (const TracePoint& p : points) point(p, window, p.low);
     add("\"/>\n");
   }

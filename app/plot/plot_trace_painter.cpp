@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "app/plot/plot_frame.h"
@@ -9,6 +10,8 @@ constexpr float kThickness = 1.6f;  // [px] at scale 1
 constexpr float kFaint = 0.22f;     // of a curve's opacity, between dashes
 constexpr float kDotsFrom = 7;      // samples further apart than this get dots [px]
 constexpr float kTolerance = 0.2f;  // by which points may be left out [px]
+constexpr float kTallFrom = 6;      // height that neighbouring columns share [px]
+constexpr std::size_t kGroup = 12;  // columns looked at together
 constexpr float kSoftUpTo = 2.5f;     // wider bands need no soft rim [px]
 
 // A point on the screen with the upper and lower edge of the curve there.
@@ -60,50 +63,93 @@ void simplify(std::vector<ScreenPoint>& points) {
   points.resize(kept);
 }
 
-// A band is a strip between two edges. Where it is thin it gets a soft rim, like an antialiased
-// line; where it is as wide as the signal's noise it gets none.
-void draw_strip(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
+// Four rows of vertices, one column for each point, and the quads between them.
+class Mesh {
+ public:
+  // `quads`: at most so many will be added.
+  Mesh(ImDrawList& list, int points, int quads)
+      : list_(list), white_(ImGui::GetFontTexUvWhitePixel()), unused_(6 * quads) {
+    list.PrimReserve(unused_, 4 * points);
+    base_ = list._VtxCurrentIdx;
+  }
+  Mesh(const Mesh&) = delete;
+  Mesh& operator=(const Mesh&) = delete;
+  ~Mesh() { list_.PrimUnreserve(unused_, 0); }
+
+  void column(float x, std::array<float, 4> y, ImU32 outer, ImU32 inner) {
+    list_.PrimWriteVtx({x, y[0]}, white_, outer);
+    list_.PrimWriteVtx({x, y[1]}, white_, inner);
+    list_.PrimWriteVtx({x, y[2]}, white_, inner);
+    list_.PrimWriteVtx({x, y[3]}, white_, outer);
+  }
+
+  // Between rows `row` and `row` + 1 from one column to another.
+  void quad(std::size_t from, std::size_t to, unsigned row) {
+    const unsigned a = base_ + 4 * static_cast<unsigned>(from) + row;
+    const unsigned b = base_ + 4 * static_cast<unsigned>(to) + row;
+    for (const unsigned index : {a, a + 1, b + 1, a, b + 1, b}) {
+      list_.PrimWriteIdx(static_cast<ImDrawIdx>(index));
+    }
+    unused_ -= 6;
+  }
+
+ private:
+  ImDrawList& list_;
+  ImVec2 white_;
+  int unused_;
+  unsigned base_ = 0;
+};
+
+// A soft rim where the band is thin, like that of an antialiased line; none where it is as wide as
+// the signal's noise.
+void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
   const ImU32 clear = solid & ~IM_COL32_A_MASK;
-  const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
   const auto count = static_cast<int>(points.size());
-  list.PrimReserve((count - 1) * 18, count * 4);
-  const unsigned base = list._VtxCurrentIdx;
-  int spared = 0;
-  const auto quad = [&](unsigned a) {
-    for (const unsigned index : {a, a + 1, a + 5, a, a + 5, a + 4}) {
-      list.PrimWriteIdx(static_cast<ImDrawIdx>(index));
-    }
-  };
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const unsigned at = base + 4 * static_cast<unsigned>(i);
-    quad(at + 1);
-    const float thinner = std::min(points[i].bottom - points[i].top,
-                                   points[i + 1].bottom - points[i + 1].top);
-    if (thinner > kSoftUpTo) {
-      spared += 12;
-    } else {
-      quad(at);
-      quad(at + 2);
-    }
-  }
+  Mesh mesh(list, count, 3 * (count - 1));
   for (const ScreenPoint& p : points) {
-    list.PrimWriteVtx({p.x, p.top - 1}, white, clear);
-    list.PrimWriteVtx({p.x, p.top}, white, solid);
-    list.PrimWriteVtx({p.x, p.bottom}, white, solid);
-    list.PrimWriteVtx({p.x, p.bottom + 1}, white, clear);
+    mesh.column(p.x, {p.top - 1, p.top, p.bottom, p.bottom + 1}, clear, solid);
   }
-  list.PrimUnreserve(spared, 0);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    mesh.quad(i, i + 1, 1);
+    const ScreenPoint& a = points[i];
+    const ScreenPoint& b = points[i + 1];
+    if (std::min(a.bottom - a.top, b.bottom - b.top) > kSoftUpTo) continue;
+    mesh.quad(i, i + 1, 0);
+    mesh.quad(i, i + 1, 2);
+  }
 }
 
-void draw_band(const PlotFrame& frame, std::span<const ScreenPoint> points, ImU32 solid) {
+// What all columns have in common is one rectangle: filling it in pieces a pixel wide is what
+// takes a software renderer long.
+void draw_tall(ImDrawList& list, std::span<const ScreenPoint> points, float core_top,
+               float core_bottom, ImU32 solid) {
+  const auto count = static_cast<int>(points.size());
+  Mesh mesh(list, count, 2 * (count - 1) + 1);
+  for (const ScreenPoint& p : points) {
+    mesh.column(p.x, {p.top, core_top, core_bottom, p.bottom}, solid, solid);
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    mesh.quad(i, i + 1, 0);
+    mesh.quad(i, i + 1, 2);
+  }
+  mesh.quad(0, points.size() - 1, 1);
+}
+
+void draw_band(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
   if (points.size() == 1) {
     const ScreenPoint& p = points.front();
-    frame.list.AddRectFilled({p.x - 0.5f, p.top - 0.5f}, {p.x + 0.5f, p.bottom + 0.5f}, solid);
+    list.AddRectFilled({p.x - 0.5f, p.top - 0.5f}, {p.x + 0.5f, p.bottom + 0.5f}, solid);
     return;
   }
-  constexpr std::size_t kChunk = 4000;  // keeps the vertices within 16 bit indices
-  for (std::size_t from = 0; from + 1 < points.size(); from += kChunk - 1) {
-    draw_strip(frame.list, points.subspan(from, std::min(kChunk, points.size() - from)), solid);
+  for (std::size_t from = 0; from + 1 < points.size(); from += kGroup) {
+    const auto group = points.subspan(from, std::min(kGroup + 1, points.size() - from));
+    const float top = std::ranges::max(group, {}, &ScreenPoint::top).top;
+    const float bottom = std::ranges::min(group, {}, &ScreenPoint::bottom).bottom;
+    if (bottom - top > kTallFrom) {
+      draw_tall(list, group, top, bottom, solid);
+    } else {
+      draw_thin(list, group, solid);
+    }
   }
 }
 
@@ -145,7 +191,7 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
     simplify(on_screen);
     const ImU32 solid = colour(rgb, run.faint ? kFaint * alpha : alpha);
     if (trace.band) {
-      draw_band(frame, on_screen, solid);
+      draw_band(frame.list, on_screen, solid);
     } else {
       draw_line(frame, on_screen, solid, thickness);
       if (!run.faint && far_apart(frame, points)) draw_dots(frame, points, solid);

@@ -32,7 +32,8 @@ Ticks nice_ticks(double low, double high, int at_most) {
 }
 
 Ticks time_ticks(double low, double high, int at_most) {
-  constexpr std::array kClockSteps{10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0};
+  constexpr std::array kClockSteps{10.0,  20.0,  30.0,   60.0,   120.0,
+                                   300.0, 600.0, 1200.0, 1800.0, 3600.0};
   const double least = (high - low) / std::max(at_most, 1);
   if (least <= 5) return nice_ticks(low, high, at_most);
   const auto step = std::ranges::find_if(kClockSteps, [&](double s) { return s >= least; });

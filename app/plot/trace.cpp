@@ -71,7 +71,7 @@ class Dashes {
   double phase_;
 };
 
-// Extends two neighbouring bands to the middle of the step between them: no holes where it is steep.
+// Extends two neighbouring bands to the middle of the step between them: no holes where steep.
 void close_step(TracePoint& before, TracePoint& after, float from, float to) {
   const float middle = 0.5f * (from + to);
   before.low = std::min(before.low, middle);
@@ -118,7 +118,8 @@ void trace_samples(const History& history, const Curve& curve, const PixelWindow
       const TracePoint before = pen.last();
       const double begin = std::max<double>(before.x, -1);
       const double end = std::min<double>(x, window.pixels + 1);
-      for (double edge = dashes.next_edge(begin); edge < end; edge = dashes.next_edge(edge + 1e-6)) {
+      for (double edge = dashes.next_edge(begin); edge < end;
+           edge = dashes.next_edge(edge + 1e-6)) {
         const auto part = static_cast<float>((edge - before.x) / (x - before.x));
         const float y = before.low + part * (value - before.low);
         pen.put({static_cast<float>(edge), y, y}, dashes.in_space(edge - 1e-3));

@@ -1,4 +1,4 @@
-// What of a curve falls on which pixel: the shape that the window draws and the picture files store.
+// What of a curve falls on which pixel: the shape that the window draws and picture files store.
 #pragma once
 
 #include <cstddef>

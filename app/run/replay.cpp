@@ -1,5 +1,7 @@
 #include "app/run/replay.h"
 
+#include <fmt/format.h>
+
 #include "app/assets.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene_file.h"
@@ -42,12 +44,19 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.parameters.tick = session.info.tick;
   plan.start = start_of(session.layout, session.row(0));
   plan.rows = session.size();
+  plan.seed = session.info.seed;
   for (std::size_t k = 0; k < session.size(); ++k) {
     plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
   }
 
   const Parameters own = session_parameters(session, where);
+  Parameters tried = own;
   for (const SettingChange& change : session.changes) {
+    try {
+      apply_change(tried, change);
+    } catch (const ParameterError& e) {
+      throw FileError(fmt::format("{}: /events/setting: {}", where, e.what()));
+    }
     const ParameterInfo* info = find_parameter(change.key());
     if (info != nullptr && parameter_text(own, *info) == parameter_text(chosen, *info)) {
       plan.changes.push_back(change);

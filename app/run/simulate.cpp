@@ -13,14 +13,6 @@
 namespace limpid {
 namespace {
 
-// A setting without a value goes back to the arm's own.
-void apply_change(Parameters& p, const SettingChange& change) {
-  if (!change.setting.ends_with("= ")) return apply_setting(p, change.setting);
-  const ParameterInfo* info = find_parameter(change.key());
-  if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");
-  if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.**field = kFromArm;
-}
-
 // The run as a sequence of ticks, whoever paces them.
 class Run {
  public:
@@ -106,6 +98,14 @@ void run_paced(Run& run, double tick) {
 }
 
 }  // namespace
+
+// A setting without a value goes back to the arm's own.
+void apply_change(Parameters& p, const SettingChange& change) {
+  if (!change.setting.ends_with("= ")) return apply_setting(p, change.setting);
+  const ParameterInfo* info = find_parameter(change.key());
+  if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");
+  if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.**field = kFromArm;
+}
 
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
   Run run(plan, pace, sink);

@@ -24,6 +24,7 @@ struct RunPlan {
   std::vector<bool> force;             // armed at each row of a recording; empty: always
   std::optional<RigStart> start;       // default: at rest, the tip on the hand's first point
   std::uint64_t rows = 0;              // how many ticks
+  std::uint64_t seed = 0;              // for whatever is random
 };
 
 // Called with each row in turn, and with the parameters if they have just changed. False ends the
@@ -40,6 +41,9 @@ struct RunPace {
   bool realtime = false;                     // paced at the tick rate by the haptic thread
   const std::atomic<bool>* stop = nullptr;   // set it to end early
 };
+
+// Makes a recorded change. Errors: ParameterError.
+void apply_change(Parameters& p, const SettingChange& change);
 
 // Errors: std::invalid_argument if the hand's first point cannot be reached; ParameterError in a
 // recorded change.

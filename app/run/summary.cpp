@@ -22,6 +22,7 @@ void Summary::add(std::span<const double> row) {
   const double error = (vector(at(Column::device_position)) - vector(at(Column::proxy_position))).norm();
   const double contact = vector(at(Column::contact_torque)).norm();
   largest_error_ = std::max(largest_error_, error);
+  if (contact >= largest_contact_) memorable_.assign(row.begin(), row.end());
   largest_contact_ = std::max(largest_contact_, contact);
   in_contact_ += contact > 0 ? 1 : 0;
   human_square_sum_ += vector(at(Column::hand_torque)).squaredNorm();

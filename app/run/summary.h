@@ -15,6 +15,8 @@ class Summary {
 
   void add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
+  // The row of the strongest contact; the last one of a run without any.
+  std::span<const double> memorable() const { return memorable_; }
   std::string text() const;
 
  private:
@@ -26,6 +28,7 @@ class Summary {
   double human_square_sum_ = 0;      // of |f1| [N^2 m^2]
   double energy_total_ = 0, energy_commanded_ = 0, highest_total_ = 0;  // [J]
   std::uint64_t in_contact_ = 0;
+  std::vector<double> memorable_;
 };
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -32,12 +33,20 @@ std::string_view take_field(std::string_view& line) {
   return field;
 }
 
+// With bytes that are no text for a terminal as '?'.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)); },
+      '?');
+  return text;
+}
+
 struct Csv {
   const std::string& where;
   int line = 0;
 
   [[noreturn]] void refuse(const std::string& why) const {
-    throw FileError(fmt::format("{}:{}: {}", where, line, why));
+    throw FileError(fmt::format("{}:{}: {}", where, line, printable(why)));
   }
 
   void check_header(std::string_view text) const {
@@ -192,7 +201,8 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
     }
   }
   if (path.time.size() < 2) {
-    csv.refuse(fmt::format("{} samples; needed: a header and at least 2", path.time.size()));
+    throw FileError(fmt::format("{}: {} samples; needed: a header and at least 2", where,
+                                path.time.size()));
   }
   start_at_zero(path);
   find_velocities(path);

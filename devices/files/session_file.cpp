@@ -59,9 +59,9 @@ hdf5::Datatype setting_type() {
   return type;
 }
 
-hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, hsize_t width,
+// A list of rank 1, or a table of rank 2 with rows of `width`.
+hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
                              hid_t creation, hsize_t chunk) {
-  const int rank = width == 1 ? 1 : 2;
   const std::array<hsize_t, 2> none{0, width};
   const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
   const std::array<hsize_t, 2> chunks{chunk, width};
@@ -76,12 +76,12 @@ hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, hsize_t w
 // Appends `count` rows behind the first `from`.
 bool append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width,
                hid_t type, const void* data) {
-  const int rank = width == 1 ? 1 : 2;
   const std::array<hsize_t, 2> extent{from + count, width};
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, width};
   if (H5Dset_extent(dataset.get(), extent.data()) < 0) return false;
   const hdf5::Dataspace in_file(H5Dget_space(dataset.get()));
+  const int rank = H5Sget_simple_extent_ndims(in_file.get());
   const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
   return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                              nullptr) >= 0 &&
@@ -150,6 +150,7 @@ void SessionFile::create_column(const ColumnInfo& column) {
   if (!column.byte) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &never);
   hdf5::Dataset& dataset = columns_[column_index(column.column)];
   dataset = create_growing(file_.get(), column.path, column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE,
+                           column.width == ColumnWidth::one ? 1 : 2,  // N x 1 for a single joint
                            static_cast<hsize_t>(layout_.width(column.column)), creation.get(),
                            chunk_rows_);
   check(static_cast<bool>(dataset), path_, "cannot write");
@@ -160,10 +161,10 @@ void SessionFile::create_column(const ColumnInfo& column) {
 void SessionFile::create_events() {
   const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE));
   const hdf5::Datatype text = setting_type();
-  event_row_ = create_growing(file_.get(), kEventRowPath, H5T_STD_U64LE, 1, creation.get(),
-                              kEventChunk);
-  event_setting_ = create_growing(file_.get(), kEventSettingPath, text.get(), 1, creation.get(),
-                                  kEventChunk);
+  event_row_ = create_growing(file_.get(), kEventRowPath, H5T_STD_U64LE, 1, 1,
+                              creation.get(), kEventChunk);
+  event_setting_ = create_growing(file_.get(), kEventSettingPath, text.get(), 1, 1,
+                                  creation.get(), kEventChunk);
   check(event_row_ && event_setting_, path_, "cannot write");
   hdf5::write_text(event_row_.get(), "unit", "-", path_);
   hdf5::write_text(event_row_.get(), "what", "row from which the setting holds", path_);

@@ -23,7 +23,7 @@ Source open_source(hid_t root, const char* path, hsize_t width, const std::files
   if (!source.dataset) refuse(file, fmt::format("{}: not a dataset that can be read", path));
   const hdf5::Dataspace space(H5Dget_space(source.dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  const bool table = rank == 2;  // of a one-wide column too, as some programs write them
+  const bool table = rank == 2;
   std::array<hsize_t, 2> extent{0, 1};
   if (rank >= 1 && rank <= 2) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
   if (!(table || (rank == 1 && width == 1)) || extent[1] != width) {

@@ -14,8 +14,9 @@ std::string read_text(const std::filesystem::path& file, std::size_t limit) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) {
+    const bool absent = status.type() == std::filesystem::file_type::not_found;
     throw FileError(fmt::format("{}: {}", file.string(),
-                                error ? error.message() : "no such file"));
+                                absent ? "no such file" : error.message()));
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw FileError(fmt::format("{}: not a file that can be read", file.string()));

@@ -51,6 +51,15 @@ void merge(Link& link, const urdf::Inertial& body, const Pose& at) {
   link.com = com;
 }
 
+const char* kind_of(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::PRISMATIC: return "prismatic";
+    case urdf::Joint::FLOATING: return "floating";
+    case urdf::Joint::PLANAR: return "planar";
+    default: return "of unknown kind";
+  }
+}
+
 double limit_of(const urdf::Joint& joint, double urdf::JointLimits::*field, double otherwise) {
   return joint.limits ? (*joint.limits).*field : otherwise;
 }
@@ -115,8 +124,8 @@ class Chain {
       return;
     }
     if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS) {
-      places_.refuse_joint(joint.name,
-                           "of another kind; allowed: revolute, continuous, fixed");
+      places_.refuse_joint(joint.name, fmt::format("{}; allowed: revolute, continuous, fixed",
+                                                   kind_of(joint)));
     }
     if (joint.mimic) places_.refuse_joint(joint.name, "mimics another joint; not supported");
     if (arm_.dof() == kMaxDof) {

@@ -33,8 +33,10 @@ class Complaints : public console_bridge::OutputHandler {
     }
   }
 
+  bool none() const { return all_.empty(); }
+
   std::string one_line() const {
-    std::string line = all_.empty() ? "not a robot description" : all_;
+    std::string line = none() ? "not a robot description" : all_;
     std::replace(line.begin(), line.end(), '\n', ' ');
     return line;
   }
@@ -86,6 +88,20 @@ UrdfPlaces places_of(const std::string& text, const std::string& where) {
   return places;
 }
 
+// "FILE:LINE" of the element that a complaint names, "FILE" if it names none.
+std::string place_named_in(const std::string& complaint, const UrdfPlaces& places) {
+  for (const auto* lines : {&places.link_lines, &places.joint_lines}) {
+    for (const auto& [name, line] : *lines) {
+      if (complaint.find('[' + name + ']') == std::string::npos &&
+          complaint.find('\'' + name + '\'') == std::string::npos) {
+        continue;
+      }
+      return fmt::format("{}:{}", places.where, line);
+    }
+  }
+  return places.where;
+}
+
 }  // namespace
 
 ArmDescription read_urdf(const std::filesystem::path& file) {
@@ -99,8 +115,10 @@ ArmDescription parse_urdf(const std::string& text, const std::string& where,
   const UrdfPlaces places = places_of(text, where);
   const Complaints complaints;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!model || !model->getRoot()) {
-    throw FileError(fmt::format("{}: {}", where, complaints.one_line()));
+  // It drops an inertia that it cannot read and goes on; so whatever it complains of is refused.
+  if (!model || !model->getRoot() || !complaints.none()) {
+    const std::string what = complaints.one_line();
+    throw FileError(fmt::format("{}: {}", place_named_in(what, places), what));
   }
   ArmDescription arm = chain_of(*model, places, base_dir);
   arm.urdf = text;

@@ -169,7 +169,8 @@ class AnyArm(SystemTest):
 class Replay(SystemTest):
     """A session fed back in with its own settings gives the same rows, bit for bit."""
 
-    def replay(self, recorded: Path) -> Path:
+    def replay_of_its_parts(self, recorded: Path) -> Path:
+        """With every part of the input taken out of the session and given as a file."""
         options: list[str | Path] = ["--hand", recorded]
         attributes = read_session(recorded).attributes
         for option, attribute, end in (
@@ -202,12 +203,17 @@ class Replay(SystemTest):
                 recorded = self.record(
                     "--device", files.urdf, "--scene", files.scene, "--hand", files.hand, *options
                 )
-                self.assert_same_rows(recorded, self.replay(recorded))
+                self.assert_same_rows(recorded, self.replay_of_its_parts(recorded))
+                alone = self.record("--hand", recorded)
+                self.assert_same_rows(recorded, alone)
+                for name in ("seed", "config", "device_urdf", "scene"):
+                    values = (read_session(f).attributes[name] for f in (recorded, alone))
+                    self.assertEqual(*values, name)
 
     def test_a_run_in_real_time_with_the_default_arm(self) -> None:
         hand = free_motion(self.out(".csv"))
         recorded = self.record("--hand", hand, "--realtime", "--duration", "1.5")
-        self.assert_same_rows(recorded, self.replay(recorded))
+        self.assert_same_rows(recorded, self.record("--hand", recorded))
 
 
 if __name__ == "__main__":

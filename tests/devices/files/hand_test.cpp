@@ -37,7 +37,7 @@ TEST(Hand, RefusesWithFileAndLine) {
     const char* said;
   };
   const Case cases[] = {
-      {"", "x.csv:0: 0 samples"},
+      {"", "x.csv: 0 samples"},
       {"0,0,0,0\n1,0,0,0\n", "x.csv:1: header"},
       {"t,x,y,z\n0,0,0,0\n", "x.csv:1: header"},
       {"time_s,x_m,z_m,y_m\n0,0,0,0\n", "x.csv:1: header"},

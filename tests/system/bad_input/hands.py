@@ -78,6 +78,13 @@ def _bad_time(file: h5py.File) -> None:
     file["/time"][5] = np.nan
 
 
+def _bad_change(file: h5py.File) -> None:
+    """A setting that was never allowed, as changed on the way."""
+    for name, value in (("row", 3), ("setting", b"coupling.eta = -5")):
+        file[f"/events/{name}"].resize((1,))
+        file[f"/events/{name}"][0] = value
+
+
 def _other_hdf5(good: Good) -> Path:
     path = good.directory / "bad.h5"
     with h5py.File(path, "w") as file:
@@ -110,4 +117,10 @@ SESSIONS: list[Case] = [
         ("times not finite", _copied(_bad_time), "/time"),
     )
     for case in _session_cases(name, make, *names)
+] + [
+    Case(
+        "hand of a session: a change that is not allowed",
+        lambda good: good.run("--hand", _copied(_bad_change)(good)),
+        ["bad.h5", "coupling.eta"],
+    )
 ]

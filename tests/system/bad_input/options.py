@@ -47,17 +47,15 @@ OPTIONS: list[Case] = [
     Case("an unknown option", lambda good: [*good.run(), "--colour", "red"], ["--colour"]),
     Case("a word too many", lambda good: [*good.run(), "more"], ["more"]),
     Case("an option without its value", lambda good: [*good.run(), "--set"], ["--set"]),
-    Case("run without --record", lambda good: good.run()[:-2], ["--record"]),
+    Case(
+        "an option before its command",
+        lambda good: ["--eta", "0.6", *good.run()],
+        ["--eta"],
+    ),
     Case("info without a file", lambda good: ["info"]),
     Case("recover without a file", lambda good: ["recover"]),
     Case("play without a file", lambda good: ["play"]),
     Case("devices with a word", lambda good: ["devices", "all"], ["all"]),
-    Case("experiment without a folder", lambda good: ["experiment", "all"], ["--out"]),
-    Case(
-        "an unknown experiment",
-        lambda good: ["experiment", "nosuch", "--out", good.directory / "refused"],
-        ["nosuch"],
-    ),
     *(
         Case(
             f"analyze {option} {value}",

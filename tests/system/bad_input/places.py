@@ -30,8 +30,8 @@ FILES: list[Case] = [
     Case("recover of nothing", lambda good: ["recover", good.directory / "no.h5.part"], ["no.h5"]),
     Case(
         "recover of something else",
-        lambda good: ["recover", good.file("bad.h5.part", "not a session")],
-        ["bad.h5.part"],
+        lambda good: ["recover", good.file("other.h5.part", "not a session")],
+        ["other.h5.part"],
     ),
     Case("play of nothing", lambda good: ["play", good.directory / "no.h5"], ["no.h5"]),
     Case("a hand of another kind", lambda good: good.run("--hand", good.arm.urdf), ["arm3.urdf"]),

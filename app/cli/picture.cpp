@@ -1,0 +1,30 @@
+#include "app/cli/picture.h"
+
+#include "app/assets.h"
+#include "app/view/row_view.h"
+#include "render/offscreen.h"
+#include "render/scene_view.h"
+
+namespace limpid {
+
+void save_picture(const std::filesystem::path& png, const ArmDescription& arm, const Scene& scene,
+                  std::span<const double> row) {
+  constexpr int kWidth = 1280, kHeight = 800;
+  const OffscreenContext context(kWidth, kHeight);
+  SceneView picture(data_dir() / "shaders", arm, scene);
+  const RowLayout layout(arm.dof());
+  const RowView rows(arm);
+  ViewState view = rows.view(layout, row);
+  const ContactForce contact{view.proxy.tip,
+                             rows.tip_force(layout.in(row, Column::proxy_position),
+                                            layout.in(row, Column::contact_torque))};
+  ViewMemory().update(view, {&contact, 1}, 0);
+  Camera camera;
+  camera.resize(kWidth, kHeight);
+  camera.reset(picture.bounds());
+  camera.finish();
+  picture.draw(view, camera, 0, 0, kWidth, kHeight);
+  write_png(png, kWidth, kHeight, read_rgba(kWidth, kHeight));
+}
+
+}  // namespace limpid

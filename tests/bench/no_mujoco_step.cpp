@@ -1,0 +1,10 @@
+#include "tests/bench/mujoco_step.h"
+
+namespace limpid::bench {
+
+std::optional<SampleTimes> mujoco_steps(const ArmDescription&, const Scene&,
+                                        const Eigen::VectorXd&, int) {
+  return std::nullopt;
+}
+
+}  // namespace limpid::bench

@@ -1,0 +1,161 @@
+#include "core/coupling/coupling.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr std::array kPaperDamping{0.012, 0.012, 0.012};
+
+TEST(Condition3, HoldsWithThePapersGainsWhichStandOnItsEdge) {
+  // b_d = 0.012 = 2 * 0.001 + 10 * 0.001, to round-off; b_v = 0.012 > 0.005.
+  const Condition3 c = condition3(Parameters{}, kPaperDamping);
+  EXPECT_TRUE(c.holds);
+  EXPECT_NEAR(c.device_margin, 0, 1e-17);
+  EXPECT_NEAR(c.proxy_margin, 0.007, 1e-17);
+}
+
+TEST(Condition3, BreaksJustBeyondTheEdge) {
+  Parameters p;
+  p.k_vc = 10 * (1 + 1e-9);
+  EXPECT_FALSE(condition3(p, kPaperDamping).holds);
+  p = {};
+  p.tick = 0.00100001;
+  EXPECT_FALSE(condition3(p, kPaperDamping).holds);
+  p = {};
+  p.b_v = 0.00499;
+  const Condition3 c = condition3(p, kPaperDamping);
+  EXPECT_FALSE(c.holds);
+  EXPECT_NEAR(c.proxy_margin, -1e-5, 1e-15);
+}
+
+TEST(Condition3, CountsTheLeastDampedJoint) {
+  const Condition3 c = condition3(Parameters{}, std::array{0.5, 0.011, 0.02});
+  EXPECT_FALSE(c.holds);
+  EXPECT_NEAR(c.device_margin, -0.001, 1e-15);
+}
+
+struct Random2 {
+  explicit Random2(int n, unsigned seed) : random(seed) {
+    one.M = random.positive_definite(n, 1e-4, 1e-3);
+    two.M = random.positive_definite(n, 1e-5, 1e-4);
+    one.C = random.matrix(n, 1e-3);
+    two.C = random.matrix(n, 1e-4);
+    one.v = random.vector(n, 3);
+    two.v = random.vector(n, 3);
+    f1 = random.vector(n, 0.5);
+    f2 = random.vector(n, 0.5);
+  }
+  Random random;
+  Dynamics<kAnyDof> one, two;
+  Vector f1, f2;
+};
+
+class CouplingOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, CouplingOfJoints, testing::Values(1, 2, 3, 7, 32));
+
+TEST_P(CouplingOfJoints, StandardAddsNothingToSpringAndDamper) {
+  const Random2 r(GetParam(), 70);
+  Parameters p;
+  p.kind = CouplingKind::standard;
+  p.eta = 0.3;
+  const auto ff = feedforward<kAnyDof>(p, {r.one, r.two}, r.f1);
+  EXPECT_EQ(ff.tau1.norm() + ff.tau2.norm() + ff.from_f2_1.norm() + ff.from_f2_2.norm(), 0);
+}
+
+TEST_P(CouplingOfJoints, ProposedAddsFourteenAndFifteen) {
+  const int n = GetParam();
+  const Random2 r(n, 71);
+  for (const double eta : {0.3, 0.6, 1.0, 5.0}) {
+    Parameters p;
+    p.eta = eta;
+    const Decomposition<kAnyDof> d(r.one, r.two);
+    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const Matrix I = Matrix::Identity(n, n);
+    const Matrix phi_T = (r.two.M * (r.one.M + r.two.M).inverse()).eval();  // M symmetric
+    const Vector sum = r.f1 + r.f2;
+    const Vector tau1 = d.C_EL * d.v_L + (I - phi_T) * d.C_LE * d.v_E +
+                        ((1 - eta) / eta * I - phi_T / eta) * sum + r.f2;
+    const Vector tau2 = -d.C_EL * d.v_L + phi_T * d.C_LE * d.v_E + phi_T / eta * sum - r.f2;
+    EXPECT_LT((ff.tau1 + ff.from_f2_1 * r.f2 - tau1).norm(), 1e-12 * (1 + tau1.norm()));
+    EXPECT_LT((ff.tau2 + ff.from_f2_2 * r.f2 - tau2).norm(), 1e-12 * (1 + tau2.norm()));
+  }
+}
+
+TEST_P(CouplingOfJoints, ProposedScalesWhatReachesTheLockedSystem) {
+  // (12): all outer torque on the locked system is (f1 + f2) / eta, and nothing else pushes it:
+  // tau1 + tau2 + f1 + f2 = (f1 + f2)/eta + C_LE v_E.
+  const int n = GetParam();
+  const Random2 r(n, 72);
+  for (const double eta : {0.5, 1.0, 3.0}) {
+    Parameters p;
+    p.eta = eta;
+    const Decomposition<kAnyDof> d(r.one, r.two);
+    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const Vector both = ff.tau1 + ff.from_f2_1 * r.f2 + ff.tau2 + ff.from_f2_2 * r.f2;
+    const Vector wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + d.C_LE * d.v_E;
+    EXPECT_LT((both - wanted).norm(), 1e-12 * (1 + wanted.norm()));
+  }
+}
+
+TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
+  // phi^T (tau1 + tau2) - tau2 is the control torque on the shape system (10). With the outer
+  // f_E = phi^T (f1 + f2) - f2 it comes to C_EL v_L: f1 and f2 are gone.
+  const int n = GetParam();
+  const Random2 r(n, 73);
+  for (const double eta : {0.5, 1.0, 3.0}) {
+    Parameters p;
+    p.eta = eta;
+    const Decomposition<kAnyDof> d(r.one, r.two);
+    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const Vector tau1 = ff.tau1 + ff.from_f2_1 * r.f2;
+    const Vector tau2 = ff.tau2 + ff.from_f2_2 * r.f2;
+    const Vector f_E = d.phi.transpose() * (r.f1 + r.f2) - r.f2;
+    const Vector shape = d.phi.transpose() * (tau1 + tau2) - tau2 + f_E;
+    EXPECT_LT((shape - d.C_EL * d.v_L).norm(), 1e-12 * (1 + f_E.norm()));
+  }
+}
+
+TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
+  // Equal poses, f1 = 0: the device gets f2 less what moves the locked inertia's share.
+  const int n = GetParam();
+  Random2 r(n, 74);
+  r.one.v.setZero();
+  r.two.v.setZero();
+  Parameters p;
+  p.eta = 1;
+  const Decomposition<kAnyDof> d(r.one, r.two);
+  const auto ff = feedforward<kAnyDof>(p, d, Vec<kAnyDof>::Zero(n));
+  EXPECT_LT(ff.tau1.norm() + ff.tau2.norm(), 1e-15);
+  const Vector device = ff.from_f2_1 * r.f2;
+  const Vector proxy = r.f2 + ff.from_f2_2 * r.f2;
+  EXPECT_LT((device + proxy - r.f2).norm(), 1e-13);
+  // Both then accelerate alike.
+  const Vector a1 = r.one.M.inverse() * device, a2 = r.two.M.inverse() * proxy;
+  EXPECT_LT((a1 - a2).norm(), 1e-10 * a1.norm());
+}
+
+TEST(DeviceTorque, IsSpringAndDamperToTheProxy) {
+  Random random(75);
+  const Vec<kAnyDof> x1 = random.vector(3, 1), x2 = random.vector(3, 1);
+  const Vec<kAnyDof> v1 = random.vector(3, 1), vbar2 = random.vector(3, 1);
+  Parameters p;
+  p.k_vc = 7;
+  p.b_vc = 0.3;
+  const Vector tau = device_torque<kAnyDof>(p, x1, v1, x2, vbar2);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(tau[i], -0.3 * (v1[i] - vbar2[i]) - 7 * (x1[i] - x2[i]), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,164 @@
+#include "core/coupling/force_observer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Observer = ForceObserver<kAnyDof>;
+using Vector = Vec<kAnyDof>;
+using Matrix = Mat<kAnyDof>;
+
+// A device of constant inertia without Coriolis torque, moved exactly by constant torques.
+struct Body {
+  Matrix M;
+  Vector v;
+  Vector b_d;
+
+  explicit Body(const Matrix& inertia)
+      : M(inertia), v(Vector::Zero(inertia.rows())), b_d(Vector::Zero(inertia.rows())) {}
+  void live(double T, const Vector& torque) {
+    v += T * Vector(Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(torque)));
+  }
+  const Vector& estimate(Observer& observer, double alpha, double T) const {
+    return observer.estimate(alpha, T, M, Matrix::Zero(M.rows(), M.rows()), v, b_d);
+  }
+};
+
+TEST(ForceObserver, FindsAConstantForceWithEveryGainAndTick) {
+  for (const int n : {1, 3, 7}) {
+    Random random(80);
+    const Matrix M = random.positive_definite(n, 1e-4, 1e-3);
+    const Vector f1 = random.vector(n, 1);
+    for (double alpha = 1e-4; alpha <= 1e3; alpha *= 10) {
+      for (const double T : {1e-4, 1e-3, 1e-2}) {
+        Observer observer(n);
+        Body body(M);
+        // Fifty time constants of the slowest mode.
+        const int ticks = 100 + static_cast<int>(50 * 1e-3 / (alpha * T));
+        for (int k = 0; k < ticks; ++k) {
+          const Vector tau = random.vector(n, 0.5);  // what the motors do must not matter
+          observer.applied(tau);
+          body.live(T, tau + f1);
+          body.estimate(observer, alpha, T);
+        }
+        // Two different torques, averaged over two ticks, are seen at half their difference until
+        // the motors hold still.
+        for (int k = 0; k < ticks; ++k) {
+          observer.applied(Vector::Constant(n, 0.1));
+          body.live(T, Vector::Constant(n, 0.1) + f1);
+          body.estimate(observer, alpha, T);
+        }
+        EXPECT_LT((observer.present() - f1).norm(), 1e-7 * f1.norm())
+            << n << " joints, alpha " << alpha << ", T " << T;
+      }
+    }
+  }
+}
+
+TEST(ForceObserver, StaysWithinTheForceItSeesAtAThousandTimesTheExplicitLimit) {
+  // alpha T / m = 1000: explicit Euler multiplies its error by 999 a tick.
+  constexpr double T = 1e-3, m = 1e-4, alpha = 1000 * m / T;
+  Observer observer(1);
+  Body body(Matrix::Constant(1, 1, m));
+  for (int k = 0; k < 2000; ++k) {
+    const Vector f1 = Vector::Constant(1, std::sin(0.03 * k));
+    observer.applied(Vector::Zero(1));
+    body.live(T, f1);
+    ASSERT_LE(std::abs(body.estimate(observer, alpha, T)[0]), 1 + 1e-9);
+    ASSERT_NEAR(observer.present()[0], f1[0], 2e-3 + 1e-9) << k;
+  }
+}
+
+TEST(ForceObserver, AnswersAStepAsAFirstOrderFilter) {
+  constexpr double m = 2e-4, alpha = 0.035, w_f = alpha / m;
+  const auto worst = [&](double T) {
+    Observer observer(1);
+    Body body(Matrix::Constant(1, 1, m));
+    double error = 0;
+    for (int k = 1; k * T < 6 / w_f; ++k) {
+      observer.applied(Vector::Zero(1));
+      body.live(T, Vector::Constant(1, 0.7));
+      const double f1_hat = body.estimate(observer, alpha, T)[0];
+      error = std::max(error, std::abs(f1_hat - 0.7 * (1 - std::exp(-w_f * T * k))));
+    }
+    return error / 0.7;
+  };
+  const double coarse = worst(1e-3), fine = worst(2.5e-4);
+  EXPECT_LT(coarse, std::pow(w_f * 1e-3, 2));  // of second order
+  EXPECT_LT(fine, coarse / 12);                // nearly a sixteenth
+}
+
+TEST(ForceObserver, FollowsTheFilterOfEveryModeOfAMatrix) {
+  // In the modes of M the filters are scalar: exp(-alpha/m_i t).
+  Random random(81);
+  const Eigen::MatrixXd M = random.positive_definite(3, 2e-4, 8e-4);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(M);
+  constexpr double alpha = 0.035, T = 1e-5;
+  const Eigen::VectorXd f1 = random.vector(3, 1);
+  Observer observer(3);
+  Body body(M);
+  for (int k = 1; k <= 600; ++k) {
+    observer.applied(Vector::Zero(3));
+    body.live(T, f1);
+    body.estimate(observer, alpha, T);
+  }
+  Eigen::VectorXd share = modes.eigenvectors().transpose() * f1;
+  for (int i = 0; i < 3; ++i) share[i] *= 1 - std::exp(-alpha / modes.eigenvalues()[i] * 600 * T);
+  EXPECT_LT((observer.present() - modes.eigenvectors() * share).norm(), 1e-5);
+}
+
+TEST(ForceObserver, TakesTheDevicesOwnDampingForNoHumanForce) {
+  // Coasting under its own damping, stepped by the trapezoidal rule.
+  constexpr double m = 3e-4, b_d = 0.012, T = 1e-3;
+  Observer observer(1);
+  Body body(Matrix::Constant(1, 1, m));
+  body.b_d = Vector::Constant(1, b_d);
+  body.v = Vector::Constant(1, 2);
+  observer.reset(Vector::Zero(1), body.v);
+  for (int k = 0; k < 300; ++k) {
+    observer.applied(Vector::Zero(1));
+    body.v *= (m - b_d * T / 2) / (m + b_d * T / 2);
+    ASSERT_NEAR(body.estimate(observer, 0.035, T)[0], 0, 1e-12);
+  }
+}
+
+TEST(ForceObserver, CountsTheCoriolisTorque) {
+  // Constant velocity needs C v: with just that from the motors nobody else pushes.
+  Random random(82);
+  const Matrix M = random.positive_definite(3, 1e-4, 1e-3), C = random.matrix(3, 1e-3);
+  const Vector v = random.vector(3, 2);
+  Observer observer(3);
+  observer.reset(Vector::Zero(3), v);
+  const Vector Cv = C * v;
+  observer.applied(Cv);
+  for (int k = 0; k < 1000; ++k) {
+    observer.applied(Cv);
+    observer.estimate(0.035, 1e-3, M, C, v, Vector::Zero(3));
+  }
+  EXPECT_LT(observer.present().norm(), 1e-12);
+}
+
+TEST(ForceObserver, GoesOnFromTheEstimateItIsGiven) {
+  Random random(83);
+  const Vector f1 = random.vector(3, 1);
+  Observer observer(3);
+  observer.reset(f1, Vector::Zero(3));
+  EXPECT_EQ(observer.present(), f1);
+  // Balanced by the motors, nothing moves and nothing changes.
+  observer.applied(-f1);
+  observer.applied(-f1);
+  for (int k = 0; k < 100; ++k) {
+    observer.estimate(0.035, 1e-3, random.positive_definite(3, 1e-4, 1e-3), Matrix::Zero(3, 3),
+                      Vector::Zero(3), Vector::Zero(3));
+  }
+  EXPECT_LT((observer.present() - f1).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace limpid
