@@ -27,7 +27,7 @@ void check_order(const CLI::App& app, const std::string& command) {
 }
 
 UsageError unexpected(const CLI::App& app) {
-  const auto words = app.remaining_for_passthrough(true);
+  const auto words = app.remaining(true);
   const auto chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "limpid" : "limpid " + chosen.front()->get_name();
   return UsageError(fmt::format("\"{}\": not expected; `{} --help` lists what is",
@@ -41,9 +41,6 @@ int main(int argc, char** argv) {
   app.name("limpid");
   app.set_version_flag("--version", "limpid " LIMPID_VERSION);
   app.require_subcommand(0, 1);
-  app.footer(
-      "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
-      "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
   commands["analyze"] = declare_analyze(app);
@@ -52,6 +49,9 @@ int main(int argc, char** argv) {
   commands["devices"] = declare_devices(app);
   commands["play"] = declare_play(app);
   const Command desktop = declare_desktop(app);
+  app.footer(
+      "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
+      "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
   refuse_empty_values(app);
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", "limpid " LIMPID_VERSION);

@@ -174,19 +174,6 @@ RunPlan make_plan(const InputOptions& options) {
   return plan;
 }
 
-SessionInfo session_info(const RunPlan& plan) {
-  SessionInfo info;
-  info.tick = plan.parameters.tick;
-  info.dof = plan.arm.dof();
-  info.app_version = LIMPID_VERSION;
-  info.seed = plan.seed;
-  info.source = plan.hand.source;
-  info.config = config_text(plan.parameters);
-  info.device_urdf = plan.arm.urdf;
-  info.scene = plan.scene.toml;
-  return info;
-}
-
 std::string parameter_help() {
   std::string text = "Keys for --set and --config:\n";
   for (const ParameterInfo& info : parameter_table()) {

@@ -44,9 +44,6 @@ Parameters make_parameters(const InputOptions& options, Parameters base = {});
 // Device and scene alone.
 void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
 
-// What a recording of this plan says about itself.
-SessionInfo session_info(const RunPlan& plan);
-
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
 

@@ -14,6 +14,7 @@
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/run/recorder.h"
+#include "app/run/replay.h"
 #include "app/run/summary.h"
 
 namespace limpid {
@@ -99,10 +100,7 @@ int run(const RunOptions& options) {
                      progress.at(summary.time());
                      if (!recorder) return true;
                      if (changed != nullptr) recorder->changed(*changed);
-                     // Without a clock to obey the run waits for the disk; nothing is dropped.
-                     while (!options.realtime && recorder->nearly_full() && !recorder->failed()) {
-                       std::this_thread::sleep_for(std::chrono::microseconds(200));
-                     }
+                     if (!options.realtime) return recorder->push_waiting(row);
                      recorder->push(row);
                      return !recorder->failed();
                    });

@@ -40,7 +40,7 @@ void splitter(const char* name, const ScreenRect& rect, bool vertical, double di
   ImGui::PopStyleVar(2);
 }
 
-void draw(Workbench& bench, Window& window, ViewPanel& view_panel) {
+void draw(Workbench& bench, Window& window, ViewPanel& view_panel, SidePanel& side_panel) {
   draw_menu_bar(bench, window);
   int points_x = 0, points_y = 0;
   window.size(points_x, points_y);
@@ -61,7 +61,7 @@ void draw(Workbench& bench, Window& window, ViewPanel& view_panel) {
   const ScreenRect view{{left, top}, {right, middle}};
   view_panel.draw(bench, window, view);
   if (s.show_left) draw_coupling_panel(bench, {{0, top}, {left, middle}});
-  if (s.show_right) draw_side_panel(bench, {{right, top}, {width, middle}}, window.frame_time());
+  if (s.show_right) side_panel.draw(bench, {{right, top}, {width, middle}}, window.frame_time());
   if (s.show_plots) draw_plots(bench, window, {{0, middle}, {width, bottom}});
   draw_transport(bench, {{0, bottom}, {width, height}});
 
@@ -137,6 +137,7 @@ void run_desktop(const DesktopOptions& options) {
   if (!options.session.empty()) bench.open_session(options.session);
 
   ViewPanel view;
+  SidePanel side;
   double last = glfwGetTime();
   int frame = 0;
   while (window.begin_frame()) {
@@ -146,7 +147,7 @@ void run_desktop(const DesktopOptions& options) {
     open_dropped(bench, window.dropped());
     bench.update(now - last);
     last = now;
-    draw(bench, window, view);
+    draw(bench, window, view, side);
     window.end_frame();
     if (options.print_state && ++frame % 6 == 0) print_state(bench);
   }

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "app/desktop/analysis_panel.h"
 #include "app/desktop/window.h"
 #include "app/desktop/workbench.h"
 #include "app/plot/plot_frame.h"
@@ -20,11 +21,19 @@ void tooltip(const char* text);
 
 void draw_menu_bar(Workbench& bench, Window& window);
 void draw_coupling_panel(Workbench& bench, const ScreenRect& rect);
-void draw_side_panel(Workbench& bench, const ScreenRect& rect, double frame_time);
 void draw_plots(Workbench& bench, Window& window, const ScreenRect& rect);
 void draw_transport(Workbench& bench, const ScreenRect& rect);
 void draw_dialogs(Workbench& bench);
 void draw_notices(Workbench& bench, const ScreenRect& view);
+
+// Hand, device, analysis and timing.
+class SidePanel {
+ public:
+  void draw(Workbench& bench, const ScreenRect& rect, double frame_time);
+
+ private:
+  AnalysisPanel analysis_;
+};
 
 // The 3D view: the picture under ImGui, and what the mouse does in it.
 class ViewPanel {

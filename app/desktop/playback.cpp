@@ -133,8 +133,9 @@ void Workbench::rebuild_playback_stage() {
                                 : std::span<const double>(playback->rerun).subspan(k * stride, stride));
   }
   for (const SettingChange& change : session.changes) {
-    playback->stage->history.mark(static_cast<double>(change.row) * session.info.tick,
-                                  change.setting);
+    std::string label = change.setting;
+    std::erase(label, '"');
+    playback->stage->history.mark(static_cast<double>(change.row) * session.info.tick, label);
   }
 }
 

@@ -40,6 +40,7 @@ void each(S& s, Visit&& visit) {
   visit("hold_on_release", s.hold_on_release);
   visit("hint_seen", s.hint_seen);
   visit("plot_length", s.plot_length);
+  visit("band", s.band);
   visit("device", s.device);
   visit("scene", s.scene);
 }

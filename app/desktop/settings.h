@@ -19,6 +19,7 @@ struct Settings {
   bool hold_on_release = false;
   bool hint_seen = false;
   double plot_length = 10;      // [s]
+  double band = 5;              // of the human, for the analysis [Hz]
   std::string device, scene;    // files; empty: the default
   // A first start shows the standard coupling: its flaw is what C then mends.
   Parameters parameters{.kind = CouplingKind::standard};

@@ -114,7 +114,7 @@ bool section(const char* name, bool open) {
 
 }  // namespace
 
-void draw_side_panel(Workbench& bench, const ScreenRect& rect, double frame_time) {
+void SidePanel::draw(Workbench& bench, const ScreenRect& rect, double frame_time) {
   begin_panel("side", rect);
   if (section("Hand", true)) {
     sliders(bench, {"hand.stiffness", "hand.damping"});
@@ -126,6 +126,7 @@ void draw_side_panel(Workbench& bench, const ScreenRect& rect, double frame_time
                     "device.friction", "device.encoder_step", "observer.velocity",
                     "model.inertia_error", "proxy.inertia_ratio"});
   }
+  if (section("Analysis", false)) analysis_.draw(bench);
   if (section("Timing", true)) draw_timing(bench, frame_time);
   ImGui::End();
 }

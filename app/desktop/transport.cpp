@@ -27,6 +27,20 @@ bool button(const char* label, const char* help, bool on = false, bool bad = fal
   return pressed;
 }
 
+// A drop-down list of numbers; returns the one chosen.
+double choose(const char* name, double value, std::initializer_list<double> choices,
+              const char* unit) {
+  ImGui::SetNextItemWidth(74 * current_scale());
+  const auto text = [&](double x) { return fmt::format("{:g}{}", x, unit); };
+  if (ImGui::BeginCombo(name, text(value).c_str())) {
+    for (const double choice : choices) {
+      if (ImGui::Selectable(text(choice).c_str(), choice == value)) value = choice;
+    }
+    ImGui::EndCombo();
+  }
+  return value;
+}
+
 void timeline(Workbench& bench, float right) {
   Player& player = bench.playback->player;
   auto time = static_cast<float>(player.time());
@@ -47,11 +61,7 @@ void playback_controls(Workbench& bench) {
   if (button(">", "One tick on (right arrow)")) player.step(1);
   if (button("Loop", "Begin again at the end (L)", player.loop)) player.loop = !player.loop;
   const float scale = current_scale();
-  ImGui::SetNextItemWidth(86 * scale);
-  auto speed = static_cast<float>(player.speed);
-  if (ImGui::SliderFloat("##speed", &speed, 0.1f, 10, "%.2gx", ImGuiSliderFlags_Logarithmic)) {
-    player.speed = speed;
-  }
+  player.speed = choose("##speed", player.speed, {0.1, 0.2, 0.5, 1, 2, 5, 10}, "x");
   tooltip("Speed of playback, 0.1 to 10");
   ImGui::SameLine();
   if (bench.rerunning.busy()) {
@@ -100,10 +110,9 @@ void live_controls(Workbench& bench) {
              !group.following())) {
     group.set_following(!group.following());
   }
-  const float scale = current_scale();
-  ImGui::SetNextItemWidth(110 * scale);
-  auto length = static_cast<float>(bench.settings.plot_length);
-  if (ImGui::SliderFloat("##length", &length, 1, 60, "last %.0f s", ImGuiSliderFlags_Logarithmic)) {
+  const double length =
+      choose("##length", bench.settings.plot_length, {1, 2, 5, 10, 20, 30, 60}, " s");
+  if (length != bench.settings.plot_length) {
     bench.settings.plot_length = length;
     group.set_fitted_length(length);
     group.fit();

@@ -33,26 +33,42 @@ Analysis of_modes(std::vector<LockedMode> modes, const std::vector<double>& b_d,
   return a;
 }
 
-}  // namespace
+// The locked system at a configuration, in the hand.
+struct Held {
+  Eigen::MatrixXd M_L;       // [kg m^2]
+  Eigen::VectorXd b;         // b_d + b_v of each joint [N m s/rad]
+  Eigen::MatrixXd K_h, B_h;  // of the grip, at the joints [N m/rad, N m s/rad]
+};
 
-Analysis analyze(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p,
-                 std::optional<double> w_b) {
+Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames frames;
   arm.frames(x, frames);
   Mat<kAnyDof> M;
   arm.inertia(frames, M);
-  const Eigen::MatrixXd M_L = (1 + p.inertia_ratio) * M;
   Jacobian<kAnyDof> J;
   arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
   const Eigen::MatrixXd JJ = J.transpose() * J;
-
   const std::vector<double> b_d = device_damping(description, p);
-  Eigen::VectorXd b(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) b[i] = b_d[static_cast<std::size_t>(i)] + p.b_v;
-  Analysis a = of_modes(locked_modes(M_L, b, p.alpha), b_d, p, w_b);
-  a.eta_min_grip = eta_min_grip(M_L, b, p.alpha, p.hand_stiffness * JJ, p.hand_damping * JJ);
+  const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(b_d.data(), arm.dof()).array() + p.b_v;
+  return {(1 + p.inertia_ratio) * M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
+}
+
+}  // namespace
+
+Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                 std::optional<double> w_b) {
+  const Held held = held_at(arm, x, p);
+  Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), device_damping(arm, p), p, w_b);
+  a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
   return a;
+}
+
+std::vector<std::complex<double>> handle_poles(const ArmDescription& arm, const Eigen::VectorXd& x,
+                                               const Parameters& p) {
+  const Held held = held_at(arm, x, p);
+  const Eigen::VectorXcd poles = grip_poles(held.M_L, held.b, p.alpha, p.eta, held.K_h, held.B_h);
+  return {poles.begin(), poles.end()};
 }
 
 Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,

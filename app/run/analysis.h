@@ -1,6 +1,7 @@
 // Passivity and stability of a setting, without simulating, (3) and (22)-(25).
 #pragma once
 
+#include <complex>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Analysis {
 // At configuration x, the hand's spring and damper at the tip. w_b [rad/s].
 Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  std::optional<double> w_b);
+// Poles of the locked system in the hand at configuration x [rad/s].
+std::vector<std::complex<double>> handle_poles(const ArmDescription& arm, const Eigen::VectorXd& x,
+                                               const Parameters& p);
 // For a scalar inertia [kg m^2]; the hand's stiffness and damping count in joint space.
 Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
                  std::optional<double> w_b);

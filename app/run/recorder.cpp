@@ -39,6 +39,13 @@ bool Recorder::push(std::span<const double> row) noexcept {
   return true;
 }
 
+bool Recorder::push_waiting(std::span<const double> row) {
+  while (ring_.size() == ring_.capacity() && !failed()) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return !failed() && push(row);
+}
+
 bool Recorder::changed(const Parameters& now) noexcept {
   const bool kept = changes_.push({pushed_.load(std::memory_order_relaxed), now});
   if (!kept) lost_changes_.fetch_add(1);

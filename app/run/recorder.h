@@ -24,8 +24,10 @@ class Recorder {
 
   // The loop's side: allocates and waits for nothing. False if there was no room.
   bool push(std::span<const double> row) noexcept;
+  // For loops without a clock to obey: waits for room instead of losing the row. False once the
+  // recording has failed.
+  bool push_waiting(std::span<const double> row);
   bool changed(const Parameters& now) noexcept;  // holds from the next row pushed on
-  bool nearly_full() const noexcept { return ring_.size() > ring_.capacity() * 3 / 4; }
 
   // The owner's side.
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }

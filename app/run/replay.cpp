@@ -9,6 +9,19 @@
 
 namespace limpid {
 
+SessionInfo session_info(const RunPlan& plan) {
+  SessionInfo info;
+  info.tick = plan.parameters.tick;
+  info.dof = plan.arm.dof();
+  info.app_version = LIMPID_VERSION;
+  info.seed = plan.seed;
+  info.source = plan.hand.source;
+  info.config = config_text(plan.parameters);
+  info.device_urdf = plan.arm.urdf;
+  info.scene = plan.scene.toml;
+  return info;
+}
+
 Parameters session_parameters(const Session& session, const std::string& where) {
   Parameters own;
   apply_config_text(own, session.info.config, where + " (config)");

@@ -1,9 +1,12 @@
-// A recorded session as the plan of a run.
+// Between plans and recordings: what a recording says of its plan, and the plan it stands for.
 #pragma once
 
 #include "app/run/simulate.h"
 
 namespace limpid {
+
+// What a recording of this plan says about itself.
+SessionInfo session_info(const RunPlan& plan);
 
 // The parameters a session began with. Errors: FileError.
 Parameters session_parameters(const Session& session, const std::string& where);

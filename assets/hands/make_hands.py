@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the hand paths beside it: touch.csv, free.csv, proximal.csv (100 Hz, metres, seconds).
+"""Writes the hand paths beside it: touch.csv, free.csv, proximal.csv, circle.csv (100 Hz, metres,
+seconds).
 
 Each path goes through way points. Between two of them, a and b, it follows the minimum-jerk curve
 that people's reaching movements are known for (Flash and Hogan 1985), at rest at both ends:
@@ -21,7 +22,7 @@ PRESS = 0.005  # how far below it the hand wants to be
 
 
 def minimum_jerk(way_points):
-    """Times (N,) and positions (N, 3) through rows of (time, x, y, z)."""
+    """Times (N,) and coordinates (N, C) through rows of (time, C coordinates)."""
     times = np.array([w[0] for w in way_points])
     points = np.array([w[1:] for w in way_points])
     t = np.arange(round(times[-1] * RATE) + 1) / RATE
@@ -34,23 +35,23 @@ def minimum_jerk(way_points):
 def touch():
     """Down to the table, press, slide, lift; twice, the second slide across the first."""
     low = TABLE - PRESS
-    return [
+    return minimum_jerk([
         (0.0, *REST), (0.5, *REST),
         (1.5, 0.20, -0.04, low), (2.0, 0.20, -0.04, low), (4.0, 0.20, 0.04, low),
         (5.0, 0.19, 0.0, 0.01), (5.5, 0.19, 0.0, 0.01),
         (6.5, 0.17, 0.0, low), (7.0, 0.17, 0.0, low), (8.5, 0.22, 0.0, low),
         (9.5, *REST), (10.0, *REST),
-    ]
+    ])
 
 
 def free():
     """Through the whole workspace, slow and fast, touching nothing."""
-    return [
+    return minimum_jerk([
         (0.0, *REST), (0.5, *REST), (1.5, 0.22, 0.05, 0.03), (2.5, 0.17, -0.05, 0.02),
         (3.2, 0.21, 0.04, -0.01), (3.9, 0.15, 0.0, 0.05), (4.6, 0.22, -0.05, 0.0),
         (5.1, 0.19, 0.0, 0.04), (5.6, 0.19, 0.0, -0.01), (6.1, 0.19, 0.06, 0.02),
         (6.6, 0.19, -0.06, 0.02), (7.5, *REST), (8.0, *REST),
-    ]
+    ])
 
 
 def proximal():
@@ -64,16 +65,29 @@ def proximal():
     for start, x in ((6.3, 0.18), (8.2, 0.20), (10.1, 0.22)):
         path += [(start, *REST), (start + 0.7, x, 0.0, TABLE - PRESS),
                  (start + 1.1, x, 0.0, TABLE - PRESS), (start + 1.8, *REST)]
-    return path + [(12.0, *REST)]
+    return minimum_jerk(path + [(12.0, *REST)])
 
 
-def write(path, way_points):
-    t, p = minimum_jerk(way_points)
+def circle():
+    """In the air for a while, down to the table, twice around on it, back."""
+    low, turn = TABLE - PRESS, 2 * np.pi
+    t, way = minimum_jerk([
+        # height, radius and angle about the vertical through the rest position
+        (0.0, 0.0, 0.0, 0.0), (0.3, 0.0, 0.0, 0.0), (1.0, 0.03, 0.03, 0.5), (1.7, 0.0, 0.03, 3.0),
+        (2.3, 0.01, 0.0, 3.0), (3.0, low, 0.0, 3.0), (3.4, low, 0.0, 3.0), (3.9, low, 0.025, 3.0),
+        (7.1, low, 0.025, 3.0 + 2 * turn), (7.7, 0.0, 0.0, 3.0 + 2 * turn),
+        (8.0, 0.0, 0.0, 3.0 + 2 * turn),
+    ])
+    z, radius, angle = way.T
+    return t, np.array(REST) + np.column_stack((radius * np.cos(angle), radius * np.sin(angle), z))
+
+
+def write(path, t, p):
     rows = [f"{ti:.2f},{x:.6f},{y:.6f},{z:.6f}\n" for ti, (x, y, z) in zip(t, p)]
     path.write_text("time_s,x_m,y_m,z_m\n" + "".join(rows))
 
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
-    for make in (touch, free, proximal):
-        write(folder / f"{make.__name__}.csv", make())
+    for make in (touch, free, proximal, circle):
+        write(folder / f"{make.__name__}.csv", *make())

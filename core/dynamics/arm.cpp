@@ -1,5 +1,6 @@
 #include "core/dynamics/arm.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace limpid {
@@ -11,11 +12,26 @@ Mat3 cross_matrix(const Vec3& w) {
   return K;
 }
 
+// Half the rate of a body's inertia about O, moving with (w, u):
+//     Idot / 2 = 1/2 ([w]x I - I [w]x) + (u.mc) 1 - 1/2 (mc u^T + u mc^T).
+Symmetric3 half_rate(const Symmetric3& I, const Vec3& mc, const Vec3& w, const Vec3& u) {
+  const double x = u.x() * mc.x(), y = u.y() * mc.y(), z = u.z() * mc.z();
+  return {w.y() * I.xz - w.z() * I.xy + y + z,
+          w.z() * I.xy - w.x() * I.yz + x + z,
+          w.x() * I.yz - w.y() * I.xz + x + y,
+          0.5 * (w.y() * I.yz - w.x() * I.xz + w.z() * (I.xx - I.yy) - mc.x() * u.y() -
+                 mc.y() * u.x()),
+          0.5 * (w.x() * I.xy - w.z() * I.yz + w.y() * (I.zz - I.xx) - mc.x() * u.z() -
+                 mc.z() * u.x()),
+          0.5 * (w.z() * I.xz - w.y() * I.xy + w.x() * (I.yy - I.zz) - mc.y() * u.z() -
+                 mc.z() * u.y())};
+}
+
 }  // namespace
 
 template <int N>
 Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(dof_); ++i) {
+  for (std::size_t i = 0; i < size(); ++i) {
     const Joint& joint = description.joints[i];
     const Mat3 K = cross_matrix(joint.axis);
     JointModel& model = joints_[i];
@@ -24,16 +40,21 @@ Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
     model.Rc = model.Rs * K;
     model.offset = joint.origin.translation();
     model.axis = joint.axis;
-    mass_[i] = description.links[i].mass;
-    com_[i] = description.links[i].com;
-    inertia_[i] = description.links[i].inertia;
+
+    const Link& link = description.links[i];
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(link.inertia);
+    const Vec3& moments = principal.eigenvalues();  // smallest first
+    const Mat3& axes = principal.eigenvectors();
+    links_[i] = {link.mass, link.com, moments[0],
+                 std::sqrt(moments[1] - moments[0]) * axes.col(1),
+                 std::sqrt(moments[2] - moments[0]) * axes.col(2)};
   }
   tip_ = description.tip.translation();
 }
 
 template <int N>
 void Arm<N>::frames(const Vec<N>& x, Frames& f) const {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(dof_); ++i) {
+  for (std::size_t i = 0; i < size(); ++i) {
     const JointModel& joint = joints_[i];
     const double q = x[static_cast<Eigen::Index>(i)];
     const Mat3 local = joint.R0 + std::sin(q) * joint.Rs + (1 - std::cos(q)) * joint.Rc;
@@ -51,84 +72,78 @@ void Arm<N>::frames(const Vec<N>& x, Frames& f) const {
 
 template <int N>
 typename Arm<N>::Body Arm<N>::body(const Frames& f, std::size_t i) const {
+  const LinkModel& link = links_[i];
+  const Vec3 c = f.p[i] + f.R[i] * link.com;
   Body b;
-  const Vec3 c = f.p[i] + f.R[i] * com_[i];
-  b.m = mass_[i];
+  b.m = link.mass;
   b.mc = b.m * c;
-  // Parallel axes: I_O = R I_c R^T + m (c.c 1 - c c^T).
-  const Mat3 RI = f.R[i] * inertia_[i];
-  b.I.noalias() = RI * f.R[i].transpose();
-  b.I.noalias() -= b.mc * c.transpose();
-  b.I.diagonal().array() += b.mc.dot(c);
+  // Parallel axes: m (c.c 1 - c c^T) more than about the centre of mass.
+  b.I = Symmetric3::dyad(1, f.R[i] * link.g);
+  b.I += Symmetric3::dyad(1, f.R[i] * link.e);
+  b.I += Symmetric3::dyad(-b.m, c);
+  b.I.add_to_diagonal(link.d + b.mc.dot(c));
   return b;
 }
 
 template <int N>
-void Arm<N>::inertia(const Frames& f, Mat<N>& M) const {
-  M.resize(dof_, dof_);
-  Body sum{0, Vec3::Zero(), Mat3::Zero(), Mat3::Zero(), Vec3::Zero()};
-  for (int j = dof_ - 1; j >= 0; --j) {
-    const auto J = static_cast<std::size_t>(j);
-    const Body b = body(f, J);
-    sum.m += b.m;
-    sum.mc += b.mc;
-    sum.I += b.I;
-    const Vec3 moment = sum.I * f.a[J] + sum.mc.cross(f.o[J]);
-    const Vec3 force = sum.m * f.o[J] - sum.mc.cross(f.a[J]);
-    for (int i = 0; i <= j; ++i) {
-      const auto I = static_cast<std::size_t>(i);
-      M(i, j) = M(j, i) = f.a[I].dot(moment) + f.o[I].dot(force);
+void Arm<N>::inertia(const Frames& f, Bodies& bodies, Mat<N>& M) const {
+  M.resize(dof(), dof());
+  Body outer;
+  for (std::size_t j = size(); j-- > 0;) {
+    const Body b = body(f, j);
+    outer.m += b.m;
+    outer.mc += b.mc;
+    outer.I += b.I;
+    const Vec3 moment = outer.I * f.a[j] + outer.mc.cross(f.o[j]);
+    const Vec3 force = outer.m * f.o[j] - outer.mc.cross(f.a[j]);
+    bodies.link[j] = b;
+    bodies.outer[j] = outer;
+    bodies.moment[j] = moment;
+    bodies.force[j] = force;
+    const auto col = static_cast<Eigen::Index>(j);
+    for (std::size_t i = 0; i <= j; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      M(row, col) = M(col, row) = f.a[i].dot(moment) + f.o[i].dot(force);
     }
   }
 }
 
 template <int N>
-void Arm<N>::inertia_coriolis(const Frames& f, const Vec<N>& v, Mat<N>& M, Mat<N>& C) const {
-  M.resize(dof_, dof_);
-  C.resize(dof_, dof_);
-  const auto n = static_cast<std::size_t>(dof_);
-  // Outward: the axes' rates Sdot_j = V_j x S_j, V_j the velocity of link j.
+void Arm<N>::coriolis(const Frames& f, const Bodies& bodies, const Vec<N>& v, Mat<N>& C) const {
+  C.resize(dof(), dof());
+  // Outward: the axes' rates Sdot_j = V_j x S_j, V_j = (w, u) the velocity of link j.
   std::array<Vec3, kCapacity<N>> w, u, adot, odot;
-  for (std::size_t j = 0; j < n; ++j) {
+  Vec3 w_sum = Vec3::Zero(), u_sum = Vec3::Zero();
+  for (std::size_t j = 0; j < size(); ++j) {
     const double rate = v[static_cast<Eigen::Index>(j)];
-    w[j] = rate * f.a[j];
-    u[j] = rate * f.o[j];
-    if (j > 0) {
-      w[j] += w[j - 1];
-      u[j] += u[j - 1];
-    }
-    adot[j] = w[j].cross(f.a[j]);
-    odot[j] = u[j].cross(f.a[j]) + w[j].cross(f.o[j]);
+    w_sum += rate * f.a[j];
+    u_sum += rate * f.o[j];
+    w[j] = w_sum;
+    u[j] = u_sum;
+    adot[j] = w_sum.cross(f.a[j]);
+    odot[j] = u_sum.cross(f.a[j]) + w_sum.cross(f.o[j]);
   }
-  // Inward: composite bodies, one column and one row of M and C each.
-  Body sum{0, Vec3::Zero(), Mat3::Zero(), Mat3::Zero(), Vec3::Zero()};
-  for (std::size_t j = n; j-- > 0;) {
-    const Body b = body(f, j);
-    const Vec3 h = b.m * u[j] - b.mc.cross(w[j]);
-    const Vec3 L = b.I * w[j] + b.mc.cross(u[j]);  // angular momentum about O
-    // B11 = 1/2 ( [w] I - I [w] - [L] + m c-terms ); with U = [u]: -( U [mc] + [mc] U ) / 2.
-    const Mat3 W = cross_matrix(w[j]);
-    const Mat3 U = cross_matrix(u[j]);
-    const Mat3 K = cross_matrix(b.mc);
-    const Mat3 WI = W * b.I;
-    const Mat3 UK = U * K;
-    sum.B11 += 0.5 * (WI + WI.transpose() - cross_matrix(L) - UK - UK.transpose());
-    sum.m += b.m;
-    sum.mc += b.mc;
-    sum.I += b.I;
-    sum.h += h;
+  // Inward: one column and one row of C each.
+  Symmetric3 half_Idot;
+  Vec3 half_L = Vec3::Zero(), h = Vec3::Zero();
+  for (std::size_t j = size(); j-- > 0;) {
+    const Body& b = bodies.link[j];
+    half_Idot += half_rate(b.I, b.mc, w[j], u[j]);
+    half_L += 0.5 * (b.I * w[j] + b.mc.cross(u[j]));
+    h += b.m * u[j] - b.mc.cross(w[j]);
 
+    const Body& outer = bodies.outer[j];
     const Vec3& a = f.a[j];
-    const Vec3& o = f.o[j];
-    const Vec3 moment = sum.I * a + sum.mc.cross(o);
-    const Vec3 force = sum.m * o - sum.mc.cross(a);
-    const Vec3 moment_dot = sum.I * adot[j] + sum.mc.cross(odot[j]) + sum.B11 * a;
-    const Vec3 force_dot = sum.m * odot[j] - sum.mc.cross(adot[j]) - sum.h.cross(a);
-    const Vec3 transposed = sum.B11.transpose() * a + sum.h.cross(o);
+    const Vec3& moment = bodies.moment[j];
+    const Vec3& force = bodies.force[j];
+    const Vec3 symmetric = half_Idot * a;
+    const Vec3 skew = half_L.cross(a);
+    const Vec3 moment_dot = outer.I * adot[j] + outer.mc.cross(odot[j]) + symmetric - skew;
+    const Vec3 force_dot = outer.m * odot[j] - outer.mc.cross(adot[j]) - h.cross(a);
+    const Vec3 transposed = symmetric + skew + h.cross(f.o[j]);
     const auto col = static_cast<Eigen::Index>(j);
     for (std::size_t i = 0; i <= j; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      M(row, col) = M(col, row) = f.a[i].dot(moment) + f.o[i].dot(force);
       C(row, col) = f.a[i].dot(moment_dot) + f.o[i].dot(force_dot);
       if (i != j) {
         C(col, row) = adot[i].dot(moment) + odot[i].dot(force) + f.a[i].dot(transposed);
@@ -138,14 +153,12 @@ void Arm<N>::inertia_coriolis(const Frames& f, const Vec<N>& v, Mat<N>& M, Mat<N
 }
 
 template <int N>
-void Arm<N>::inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const {
-  M.resize(dof_, dof_);
-  Cv.resize(dof_);
-  const auto n = static_cast<std::size_t>(dof_);
+void Arm<N>::bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const {
+  Cv.resize(dof());
   // Velocity (w, u) and velocity-product acceleration (wdot, udot) of each link.
   std::array<Vec3, kCapacity<N>> w, u, wdot, udot;
   Vec3 w_sum = Vec3::Zero(), u_sum = Vec3::Zero(), wdot_sum = w_sum, udot_sum = w_sum;
-  for (std::size_t j = 0; j < n; ++j) {
+  for (std::size_t j = 0; j < size(); ++j) {
     const double rate = v[static_cast<Eigen::Index>(j)];
     w_sum += rate * f.a[j];
     u_sum += rate * f.o[j];
@@ -156,32 +169,41 @@ void Arm<N>::inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& C
     wdot[j] = wdot_sum;
     udot[j] = udot_sum;
   }
-  Body sum{0, Vec3::Zero(), Mat3::Zero(), Mat3::Zero(), Vec3::Zero()};
-  Vec3 moment_bias = Vec3::Zero(), force_bias = Vec3::Zero();
-  for (std::size_t j = n; j-- > 0;) {
-    const Body b = body(f, j);
+  Vec3 moment = Vec3::Zero(), force = Vec3::Zero();
+  for (std::size_t j = size(); j-- > 0;) {
+    const Body& b = bodies.link[j];
     const Vec3 h = b.m * u[j] - b.mc.cross(w[j]);
     const Vec3 L = b.I * w[j] + b.mc.cross(u[j]);
-    moment_bias += b.I * wdot[j] + b.mc.cross(udot[j]) + w[j].cross(L) + u[j].cross(h);
-    force_bias += b.m * udot[j] - b.mc.cross(wdot[j]) + w[j].cross(h);
-    sum.m += b.m;
-    sum.mc += b.mc;
-    sum.I += b.I;
-    const Vec3 moment = sum.I * f.a[j] + sum.mc.cross(f.o[j]);
-    const Vec3 force = sum.m * f.o[j] - sum.mc.cross(f.a[j]);
-    const auto col = static_cast<Eigen::Index>(j);
-    Cv[col] = f.a[j].dot(moment_bias) + f.o[j].dot(force_bias);
-    for (std::size_t i = 0; i <= j; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      M(row, col) = M(col, row) = f.a[i].dot(moment) + f.o[i].dot(force);
-    }
+    moment += b.I * wdot[j] + b.mc.cross(udot[j]) + w[j].cross(L) + u[j].cross(h);
+    force += b.m * udot[j] - b.mc.cross(wdot[j]) + w[j].cross(h);
+    Cv[static_cast<Eigen::Index>(j)] = f.a[j].dot(moment) + f.o[j].dot(force);
   }
 }
 
 template <int N>
+void Arm<N>::inertia(const Frames& f, Mat<N>& M) const {
+  Bodies bodies;
+  inertia(f, bodies, M);
+}
+
+template <int N>
+void Arm<N>::inertia_coriolis(const Frames& f, const Vec<N>& v, Mat<N>& M, Mat<N>& C) const {
+  Bodies bodies;
+  inertia(f, bodies, M);
+  coriolis(f, bodies, v, C);
+}
+
+template <int N>
+void Arm<N>::inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const {
+  Bodies bodies;
+  inertia(f, bodies, M);
+  bias(f, bodies, v, Cv);
+}
+
+template <int N>
 void Arm<N>::point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const {
-  J.resize(3, dof_);
-  for (int j = 0; j < dof_; ++j) {
+  J.resize(3, dof());
+  for (int j = 0; j < dof(); ++j) {
     const auto i = static_cast<std::size_t>(j);
     if (j <= link) {
       J.col(j) = f.a[i].cross(world) + f.o[i];

@@ -8,14 +8,19 @@
 //     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],
 // the factorisation for which C equals the Christoffel one (Echeandia & Wensing, 2021), hence
 // Mdot = C + C^T and Mdot - 2C skew. About O its blocks collapse: B acts on the angular part only,
-// B (a, o) = (B11 a, -h x a), h the link's momentum. Adding the links up from the tip (composite
+//     B (a, o) = (1/2 Idot a - 1/2 L x a, -h x a),
+// h and L the link's momentum and angular momentum. Adding the links up from the tip (composite
 // bodies) makes each entry one dot product.
+//
+// About its centre of mass a link has the inertia d 1 + g g^T + e e^T, d the smallest principal
+// moment: turning it takes two matrix-vector products.
 #pragma once
 
 #include <array>
 
 #include "core/dynamics/arm_description.h"
 #include "core/math/sizes.h"
+#include "core/math/symmetric.h"
 
 namespace limpid {
 
@@ -30,10 +35,26 @@ class Arm {
     std::array<Vec3, kCapacity<N>> o;  // velocity of O for unit rate, p x a [m]
   };
 
+  // A rigid body about O: mass, first moment, inertia.
+  struct Body {
+    double m = 0;
+    Vec3 mc = Vec3::Zero();
+    Symmetric3 I;
+  };
+  // What is moved there.
+  struct Bodies {
+    std::array<Body, kCapacity<N>> link;
+    std::array<Body, kCapacity<N>> outer;  // link j and all beyond it as one
+    std::array<Vec3, kCapacity<N>> moment, force;  // momentum of outer[j] while joint j turns at 1
+  };
+
   // Precondition: 1 to 32 joints, and exactly N unless N is kAnyDof.
   explicit Arm(const ArmDescription& description);
 
-  int dof() const { return dof_; }
+  int dof() const {
+    if constexpr (N != kAnyDof) return N;
+    return dof_;
+  }
 
   void frames(const Vec<N>& x, Frames& f) const;
 
@@ -44,7 +65,12 @@ class Arm {
   // M(x), and the torque C(x, v) v alone: cheaper where the matrix is not needed [N m].
   void inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const;
 
-  Vec3 tip(const Frames& f) const { return point(f, dof_ - 1, tip_); }
+  // The same in two steps, for who learns v only from M.
+  void inertia(const Frames& f, Bodies& bodies, Mat<N>& M) const;
+  void coriolis(const Frames& f, const Bodies& bodies, const Vec<N>& v, Mat<N>& C) const;
+  void bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const;
+
+  Vec3 tip(const Frames& f) const { return point(f, dof() - 1, tip_); }
   static Vec3 point(const Frames& f, int link, const Vec3& in_link) {
     const auto i = static_cast<std::size_t>(link);
     return f.p[i] + f.R[i] * in_link;
@@ -53,28 +79,25 @@ class Arm {
   void point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const;
 
  private:
-  // A joint's rotation is Rf (I + sin q K + (1 - cos q) K^2), K = [axis]x.
+  // A joint's rotation is R0 (I + sin q K + (1 - cos q) K^2), K = [axis]x.
   struct JointModel {
-    Mat3 R0, Rs, Rc;  // Rf, Rf K, Rf K^2
+    Mat3 R0, Rs, Rc;  // R0, R0 K, R0 K^2
     Vec3 offset;      // origin in the previous link's frame [m]
     Vec3 axis;        // in the joint's frame
   };
-  // A body about O: mass, first moment, inertia; B11 and momentum while it moves.
-  struct Body {
-    double m;
-    Vec3 mc;
-    Mat3 I;
-    Mat3 B11;
-    Vec3 h;
+  struct LinkModel {
+    double mass;  // [kg]
+    Vec3 com;     // in the link's frame [m]
+    double d;     // inertia about com: d 1 + g g^T + e e^T [kg m^2]
+    Vec3 g, e;    // in the link's axes
   };
 
+  std::size_t size() const { return static_cast<std::size_t>(dof()); }
   Body body(const Frames& f, std::size_t i) const;
 
   int dof_;
   std::array<JointModel, kCapacity<N>> joints_;
-  std::array<double, kCapacity<N>> mass_;
-  std::array<Vec3, kCapacity<N>> com_;
-  std::array<Mat3, kCapacity<N>> inertia_;
+  std::array<LinkModel, kCapacity<N>> links_;
   Vec3 tip_;
 };
 

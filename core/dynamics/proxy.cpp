@@ -19,10 +19,7 @@ void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
   ratio_ = ratio;
   x_ = x;
   tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
-  arm_.frames(x_, frames_);
-  arm_.inertia(frames_, M_);
-  M_ *= ratio_;
-  L_ = cholesky<N>(M_);
+  update_inertia();
   nu_ = L_.transpose() * v;
   v_ = v;  // to the last bit: a recording's first row is a starting point
   update_skew();
@@ -35,35 +32,42 @@ void Proxy<N>::set_ratio(double ratio) {
   if (ratio == ratio_) return;
   nu_ *= std::sqrt(ratio / ratio_);
   ratio_ = ratio;
-  update_model();
+  update_inertia();
+  update_velocity();
 }
 
-// M, L, v, C and S where it now is.
+// M and L where it now is.
 template <int N>
-void Proxy<N>::update_model() {
+void Proxy<N>::update_inertia() {
   arm_.frames(x_, frames_);
-  arm_.inertia(frames_, M_);
+  arm_.inertia(frames_, bodies_, M_);
   M_ *= ratio_;
   L_ = cholesky<N>(M_);
-  v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
-  update_skew();
 }
 
-// C, and S = C - L Ldot^T with Ldot = L Phi(L^-1 Mdot L^-T), Phi the lower triangle with half the
-// diagonal.
+// C, and S = C - L Ldot^T, where Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew: half of it says
+// all.
 template <int N>
 void Proxy<N>::update_skew() {
-  arm_.inertia_coriolis(frames_, v_, M_, C_);
-  M_ *= ratio_;
+  arm_.coriolis(frames_, bodies_, v_, C_);
   C_ *= ratio_;
-  const auto lower = L_.template triangularView<Eigen::Lower>();
-  Mat<N> A = C_ + C_.transpose();  // Mdot
-  A = lower.solve(A).eval();
-  A = lower.solve(A.transpose()).eval();
-  A.template triangularView<Eigen::StrictlyUpper>().setZero();
-  A.diagonal() *= 0.5;
-  const Mat<N> LA = L_ * A;  // Ldot
-  S_.noalias() = C_ - L_ * LA.transpose();
+  const Mat<N> Ldot = cholesky_rate<N>(L_, C_ + C_.transpose());
+  const Eigen::Index n = C_.rows();
+  S_ = C_;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k <= j; ++k) {
+      for (Eigen::Index i = j + 1; i < n; ++i) S_(i, j) -= L_(i, k) * Ldot(j, k);
+    }
+    S_(j, j) = 0;
+    for (Eigen::Index i = j + 1; i < n; ++i) S_(j, i) = -S_(i, j);
+  }
+}
+
+// The velocity of nu where it now is.
+template <int N>
+void Proxy<N>::update_velocity() {
+  v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  update_skew();
 }
 
 template <int N>
@@ -96,7 +100,8 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   const Vec<N> impulse = L_ * (nu_ - nu_before) / T;
   tau_ = impulse + S_ * vbar_ - f_;
   x_ += T * vbar_;
-  update_model();
+  update_inertia();
+  update_velocity();
 }
 
 // Solves for vbar with the contacts now thought to touch. True if they are the ones that are deep

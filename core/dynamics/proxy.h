@@ -62,7 +62,8 @@ class Proxy {
   void find_contacts() { contacts_.find(arm_, frames_, x_); }
 
  private:
-  void update_model();
+  void update_inertia();
+  void update_velocity();
   void update_skew();
   bool solve_step(double T, const ProxyDrive<N>& drive);
 
@@ -72,6 +73,7 @@ class Proxy {
   std::unique_ptr<bool[]> touching_;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
+  typename Arm<N>::Bodies bodies_;
   Vec<N> x_, v_, nu_;
   Mat<N> M_, C_, L_, S_;
   Vec<N> tau_, f_, vbar_;

@@ -31,7 +31,7 @@ class Setup:
     k_vc: float = 10.0
     b_vc: float = 0.001
     b_v: float = 0.012
-    inertia_ratio: float = 1e-4
+    inertia_ratio: float = 5e-4  # heavy enough for its energy to show above round-off
     torque_limit: float = 20.0
     tick: float = 1e-3
     rows: int = 500

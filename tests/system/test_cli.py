@@ -108,6 +108,14 @@ class Run(WithAnArm):
         self.record(*self.arm, "--duration", "0.1", "--force", out=out)
         self.assertEqual(len(read_session(out)), 100)
 
+    def test_without_record_it_sums_up_and_writes_nothing(self) -> None:
+        folder = self.out("")
+        folder.mkdir()
+        result = limpid("run", *self.arm, "--duration", "0.1", cwd=folder)
+        self.assertEqual((result.status, result.err), (0, ""))
+        self.assertRegex(result.out, r"ticks +100\b")
+        self.assertEqual(list(folder.iterdir()), [])
+
     def test_progress_is_shown_on_a_terminal_only(self) -> None:
         words = ["run", *self.arm, "--realtime", "--duration", "2"]
         quiet = limpid(*words, "--record", self.out())

@@ -93,7 +93,7 @@ class InertiaScaling(SystemTest):
         for eta in (0.6, 1.0, 5.0):
             s = self.run_and_read(
                 "--hand", hand, "--scene", scene, "--eta", str(eta),
-                "--set", "hand.stiffness=3000", "--set", "hand.damping=10",
+                "--set", "hand.stiffness=6000", "--set", "hand.damping=20",
             )  # fmt: skip
             self.assert_verified(s)
             rms[eta] = float(np.sqrt(np.mean(s["/hand/torque"] ** 2)))

@@ -66,6 +66,30 @@ class Recording(WithAnArm):
                 self.assertGreaterEqual(len(session), seen)
                 self.assert_verified(session)
 
+    def test_ctrl_c_ends_a_run_that_no_clock_paces(self) -> None:
+        out = self.out()
+        words = ["run", *self.arm, "--duration", "80000", "--record", out]
+        with Started(*words) as started:
+            seen = wait_for_rows(started, self.part(out), 300)
+            self.assertEqual(started.stop(signal.SIGINT), 0)
+        self.assertFalse(self.part(out).exists())
+        with h5py.File(out, "r") as file:
+            self.assertGreaterEqual(min(len(file[name]) for name in DATASETS), seen)
+
+    def test_a_loop_that_flies_apart_fails_and_keeps_its_rows(self) -> None:
+        out = self.out()
+        absurd = [
+            "coupling.k_vc=10000", "coupling.b_vc=1", "coupling.eta=0.01", "observer.alpha=100",
+            "device.torque_limit=10000",
+        ]  # fmt: skip
+        options = [word for setting in absurd for word in ("--set", setting)]
+        result = limpid("run", *self.arm, *options, "--record", out)
+        self.assertEqual(result.status, 1)
+        self.assertEqual(len(result.error_lines), 1, result.err)
+        self.assertIn("unstable", result.err)
+        self.assertFalse(self.part(out).exists())
+        self.assertGreater(len(read_session(out)), 10)
+
     def test_a_killed_run_loses_at_most_its_last_second(self) -> None:
         out = self.out()
         words = ["run", *self.arm, "--realtime", "--duration", "60", "--record", out]

@@ -62,7 +62,7 @@ TEST(VelocityEstimator, AdaptiveWithoutQuantisationIsTheRawDifference) {
 TEST(VelocityEstimator, AdaptiveOfASlowRampIsWithinAStepOverItsWindow) {
   // A chord over 16 ticks between two quantised ends misses the slope by a step over 16 T at most.
   constexpr double step = 4e-4;
-  for (const double slope : {0.02, 0.05, 0.13, 0.4, 1.7, 5.0}) {
+  for (const double slope : {0.0213, 0.0517, 0.1319, 0.4231, 1.737, 5.119}) {
     VelocityEstimator<kAnyDof> v(1);
     v.reset(one(0));
     double worst_raw = 0, worst = 0;

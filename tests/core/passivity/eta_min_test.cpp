@@ -193,7 +193,7 @@ TEST(LockedModes, AreTheEigenvaluesOfTheInertiaLightestFirst) {
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_NEAR(modes[i].b, 0.02, 1e-15);
     EXPECT_EQ(modes[i].alpha, 0.035);
-    if (i > 0) EXPECT_GE(modes[i].m, modes[i - 1].m);
+    EXPECT_GE(modes[i].m, modes[i > 0 ? i - 1 : 0].m);
     product *= modes[i].m;
     EXPECT_NEAR((M - modes[i].m * Eigen::MatrixXd::Identity(5, 5)).determinant() /
                     M.determinant(), 0, 1e-9);

@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/experiments/experiment.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::array kExperiments{
+    Experiment{"coordination", "device-proxy coordination in contact (Figs. 3 and 4)", coordination},
+    Experiment{"inertia", "human torque for the same free motion at three etas (Fig. 5)", inertia},
+    Experiment{"passivity", "controller energy over many trials (Fig. 6)", passivity},
+    Experiment{"spectrum", "frequency content of the hand's motion (Fig. 7)", spectrum},
+    Experiment{"saturation", "contact beyond the torque limit, with and without anti-windup "
+                             "(section 3.1)", saturation},
+    Experiment{"observer", "bandwidth of the human force estimate (section 3.1)", observer},
+    Experiment{"transparency", "impedance felt at the handle", transparency},
+    Experiment{"eta_min", "stability over eta and grip against theory (section 4.2)", eta_min_map},
+};
+
+void write_verdict(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& file) {
+  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+  for (const Check& c : outcome.checks) {
+    checks.push_back(
+        {{"what", c.what}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}});
+  }
+  const nlohmann::ordered_json verdict{{"name", name},
+                                       {"passed", outcome.passed()},
+                                       {"title", outcome.figure.title},
+                                       {"caption", outcome.figure.caption},
+                                       {"checks", checks}};
+  std::ofstream out(file);
+  out << verdict.dump(2) << '\n';
+  if (!out.flush()) throw FileError(file.string() + ": could not be written");
+}
+
+}  // namespace
+
+std::span<const Experiment> experiments() { return kExperiments; }
+
+const Experiment* find_experiment(const std::string& name) {
+  for (const Experiment& e : kExperiments) {
+    if (name == e.name) return &e;
+  }
+  return nullptr;
+}
+
+Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options) {
+  std::filesystem::create_directories(options.dir);
+  Laboratory lab(experiment.name, options);
+  Outcome outcome = experiment.run(lab);
+  write_figure_data(outcome.figure, options.dir / (std::string(experiment.name) + ".csv"));
+  draw_figure(outcome.figure, options.dir, experiment.name);
+  // Last, so that a verdict says that everything else is there.
+  write_verdict(experiment.name, outcome,
+                options.dir / (std::string(experiment.name) + ".json"));
+  return outcome;
+}
+
+}  // namespace limpid

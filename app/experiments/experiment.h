@@ -1,0 +1,117 @@
+// The paper's experiments: what each needs, finds and promises.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/experiments/figure.h"
+#include "app/run/simulate.h"
+
+namespace limpid {
+
+// One promise: `value` stands in a relation to `bound` that `what` says in words.
+struct Check {
+  std::string what;
+  double value = 0;
+  double bound = 0;
+  bool passed = false;
+};
+
+inline Check at_most(std::string what, double value, double bound) {
+  return {std::move(what), value, bound, value <= bound};
+}
+inline Check at_least(std::string what, double value, double bound) {
+  return {std::move(what), value, bound, value >= bound};
+}
+
+struct Outcome {
+  Figure figure;
+  std::vector<Check> checks;
+  bool passed() const {
+    for (const Check& c : checks) {
+      if (!c.passed) return false;
+    }
+    return !checks.empty();
+  }
+};
+
+// One run of the ordinary loop within an experiment.
+struct Trial {
+  std::string name;   // of its session file: DIR/NAME/name.h5
+  RunPlan plan;
+  bool keep = true;   // record it; maps of hundreds of short runs need not
+  std::string folder = {};  // in place of NAME, for trials that experiments share
+};
+
+struct TrialResult {
+  Session session;    // its rows, also those of trials that were not kept
+  RunEnd end;
+};
+
+// Thrown where the user ended the work; what was finished stays.
+struct Cancelled : std::runtime_error {
+  Cancelled() : std::runtime_error("stopped") {}
+};
+
+// What an experiment runs in. Results do not depend on the number of threads.
+class Laboratory {
+ public:
+  struct Options {
+    std::filesystem::path dir;
+    std::uint64_t seed = 0;
+    unsigned threads = 0;  // 0: one a core
+    const std::atomic<bool>* stop = nullptr;
+    // Part done of the experiment, 0 to 1; called from any thread, one at a time.
+    std::function<void(double part)> progress;
+  };
+  Laboratory(std::string experiment, Options options);
+
+  std::uint64_t seed() const { return options_.seed; }
+
+  // Runs all trials on all cores, in any order; results in the order given. A kept trial whose
+  // session file is there already, from the same plan, is read instead of run. Throws Cancelled;
+  // FileError.
+  std::vector<TrialResult> run(const std::vector<Trial>& trials);
+  // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
+  void run(const std::vector<Trial>& trials,
+           const std::function<void(std::size_t, const TrialResult&)>& take);
+
+ private:
+  TrialResult run_one(const Trial& trial) const;
+
+  std::string experiment_;
+  Options options_;
+};
+
+struct Experiment {
+  const char* name;
+  const char* about;  // one line
+  Outcome (*run)(Laboratory&);
+};
+
+// In the order of the paper.
+std::span<const Experiment> experiments();
+const Experiment* find_experiment(const std::string& name);
+
+// Runs one and writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError, Cancelled,
+// std::runtime_error.
+Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options);
+
+// Writes DIR/report.html over every verdict found in DIR.
+void write_report(const std::filesystem::path& dir);
+
+Outcome coordination(Laboratory& lab);
+Outcome inertia(Laboratory& lab);
+Outcome passivity(Laboratory& lab);
+Outcome spectrum(Laboratory& lab);
+Outcome saturation(Laboratory& lab);
+Outcome observer(Laboratory& lab);
+Outcome transparency(Laboratory& lab);
+Outcome eta_min_map(Laboratory& lab);
+
+}  // namespace limpid

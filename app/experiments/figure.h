@@ -1,0 +1,58 @@
+// A figure as data: what an experiment found, for the table, the picture and the report alike.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limpid {
+
+struct FigurePoint {
+  double x = 0, y = 0;
+  double low = 0, high = 0;  // of a band
+};
+
+struct Series {
+  enum class Style { line, dashed, points, band };
+
+  std::string label;  // empty: not in the legend
+  std::string color;  // "#rrggbb"
+  Style style = Style::line;
+  std::vector<FigurePoint> points;
+};
+
+// One pair of axes.
+struct FigurePanel {
+  std::string title;
+  std::string x_label, y_label;  // with unit
+  bool log_x = false, log_y = false;
+  std::optional<std::pair<double, double>> x_range, y_range;
+  std::vector<Series> series;
+};
+
+struct Figure {
+  std::string title;
+  std::string caption;  // the settings used
+  int columns = 1;
+  std::vector<FigurePanel> panels;
+};
+
+// Okabe and Ito's colours for the things of the paper, as everywhere in the program.
+inline constexpr const char* kDeviceInk = "#E69F00";
+inline constexpr const char* kProxyInk = "#0072B2";
+inline constexpr const char* kHandInk = "#009E73";
+inline constexpr const char* kContactInk = "#D55E00";
+inline constexpr const char* kEnergyInk = "#CC79A7";
+inline constexpr const char* kNeutralInk = "#555555";
+// For a family of curves, such as values of eta.
+inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
+                                             "#D55E00", "#CC79A7", "#56B4E9"};
+
+// Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
+void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
+// Draws DIR/NAME.png and DIR/NAME.svg with gnuplot. Errors: std::runtime_error when gnuplot is
+// missing or fails.
+void draw_figure(const Figure& figure, const std::filesystem::path& dir, const std::string& name);
+
+}  // namespace limpid

@@ -1,0 +1,25 @@
+// Power over frequency by Welch's method.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace limpid {
+
+// One-sided: density[i] is the power per hertz at i * step, so that the sum over all i of
+// density[i] * step is the mean square of the signal.
+struct Spectrum {
+  double step = 0;              // [Hz]
+  std::vector<double> density;  // [unit^2 / Hz]
+
+  double power(double up_to) const;  // from 0 to a frequency [Hz], in [unit^2]
+  double power() const;
+};
+
+// Mean over the half-overlapping stretches of `segment` samples (an even number) that fit, each
+// under a Hann window; nothing is detrended. `rate` [Hz]. Errors: std::invalid_argument if the
+// signal is shorter than a segment. Only from one thread at a time (FFTW's planner).
+Spectrum welch(std::span<const double> signal, double rate, std::size_t segment);
+
+}  // namespace limpid

@@ -1,0 +1,13 @@
+// Pictures from files as OpenGL textures.
+#pragma once
+
+#include <filesystem>
+
+namespace limpid {
+
+// The name of a new texture with the picture, first row on top. Needs a current OpenGL context.
+// Errors: std::runtime_error naming a file that is missing or no picture.
+unsigned load_texture(const std::filesystem::path& file, int& width, int& height);
+void delete_texture(unsigned texture);  // 0 is nothing
+
+}  // namespace limpid
