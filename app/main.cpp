@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
+  commands["experiment"] = declare_experiment(app);
   commands["analyze"] = declare_analyze(app);
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);

@@ -1,7 +1,7 @@
 #include "render/image_texture.h"
 
 #include <epoxy/gl.h>
-#include <stb_image.h>
+#include <stb/stb_image.h>
 
 #include <memory>
 #include <stdexcept>

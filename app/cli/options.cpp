@@ -92,7 +92,8 @@ RunPlan plan_from_session(const InputOptions& options) {
   if (chosen.tick != session.info.tick) {
     const double ratio = session.info.tick / chosen.tick;
     for (SettingChange& change : plan.changes) {
-      change.row = static_cast<std::uint64_t>(std::llround(static_cast<double>(change.row) * ratio));
+      const double row = static_cast<double>(change.row) * ratio;
+      change.row = static_cast<std::uint64_t>(std::llround(row));
     }
     plan.force.clear();
     plan.parameters.tick = chosen.tick;
@@ -141,7 +142,9 @@ void InputOptions::add_hand(CLI::App& command) {
       command.add_option("--duration", duration, "default: the length of the hand's path")
           ->type_name("SECONDS");
   require_above_zero(length, kLongestRun, "s");
-  command.add_option("--seed", seed, "for whatever is random")->type_name("N")->check(whole_number());
+  command.add_option("--seed", seed, "for whatever is random")
+      ->type_name("N")
+      ->check(whole_number());
 }
 
 Parameters make_parameters(const InputOptions& options, Parameters base) {

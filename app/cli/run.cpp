@@ -149,8 +149,8 @@ Command declare_run(CLI::App& app) {
   options->input.add_hand(*command);
   options->input.add_parameters(*command);
   command->footer(
-      "FILE.csv holds a header time_s,x_m,y_m,z_m[,...] and a row for each moment. A session brings "
-      "its\nown device, scene and parameters; options override them.\n\n" +
+      "FILE.csv holds a header time_s,x_m,y_m,z_m[,...] and a row for each moment. A session "
+      "brings\nits own device, scene and parameters; options override them.\n\n" +
       parameter_help());
   return [options] { return run(*options); };
 }

@@ -127,6 +127,9 @@ void run_desktop(const DesktopOptions& options) {
                  .height = bench.settings.height,
                  .ui_scale = options.ui_scale > 0 ? options.ui_scale : bench.settings.ui_scale,
                  .theme = bench.settings.theme});
+  // Pictures go before the window they are drawn in.
+  const std::unique_ptr<Workbench, void (*)(Workbench*)> pictures(
+      &bench, [](Workbench* b) { b->drop_pictures(); });
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   const std::string& device = options.device.empty() ? bench.settings.device : options.device;

@@ -82,6 +82,12 @@ void Workbench::open(ArmDescription arm, Scene scene) {
   analysis = analyze(stage->arm(), rest_pose(stage->arm()), parameters, std::nullopt);
 }
 
+void Workbench::drop_pictures() {
+  live.close();
+  playback.reset();
+  stage.reset();
+}
+
 void Workbench::update(double dt) {
   follow_parameters();
   controls.parameters = parameters;

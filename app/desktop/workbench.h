@@ -50,6 +50,8 @@ class Workbench {
   // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
   void open_world(const std::string& device, const std::string& scene);
   void open_scene(const std::filesystem::path& file);
+  // Before the OpenGL context goes.
+  void drop_pictures();
   // Once a frame, before anything is drawn.
   void update(double dt);
 

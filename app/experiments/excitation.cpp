@@ -75,4 +75,11 @@ Eigen::MatrixXd inertia_at(const ArmDescription& description, const Eigen::Vecto
   return M;
 }
 
+Vec3 tip_at(const ArmDescription& description, const Eigen::VectorXd& x) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames frames;
+  arm.frames(x, frames);
+  return arm.tip(frames);
+}
+
 }  // namespace limpid

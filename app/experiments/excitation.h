@@ -41,7 +41,8 @@ HandPath hand_path(const std::string& source, double tick, double seconds,
 // The built-in arm in a world given as scene text, for as long as the hand lasts.
 RunPlan plan_in(const std::string& scene_toml, HandPath hand, const Parameters& parameters);
 
-// The inertia matrix at configuration x [kg m^2].
+// The inertia matrix [kg m^2] and the tip [m] at configuration x.
 Eigen::MatrixXd inertia_at(const ArmDescription& arm, const Eigen::VectorXd& x);
+Vec3 tip_at(const ArmDescription& arm, const Eigen::VectorXd& x);
 
 }  // namespace limpid

@@ -35,6 +35,7 @@ struct Figure {
   std::string title;
   std::string caption;  // the settings used
   int columns = 1;
+  int panel_height = 420;  // [px], of 640 px width
   std::vector<FigurePanel> panels;
 };
 
@@ -51,6 +52,10 @@ inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
 
 // Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
 void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
+// What gnuplot is told to draw. `terminal` is its picture format, `scale` the pixels of the picture
+// per pixel of the layout.
+std::string gnuplot_script(const Figure& figure, const std::string& terminal, double scale,
+                           const std::filesystem::path& out);
 // Draws DIR/NAME.png and DIR/NAME.svg with gnuplot. Errors: std::runtime_error when gnuplot is
 // missing or fails.
 void draw_figure(const Figure& figure, const std::filesystem::path& dir, const std::string& name);

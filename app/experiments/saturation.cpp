@@ -1,38 +1,175 @@
+// Section 3.1: a contact pressed beyond the torque limit and pulled out of, with and without the
+// remedy against wind-up.
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "app/experiments/excitation.h"
 #include "app/experiments/series.h"
+
 namespace limpid {
 namespace {
-constexpr const char* kTable = "title='t'\nabout='a'\n[[plane]]\nname='table top'\npoint=[0.2,0.0,-0.04]\nnormal=[0.0,0.0,1.0]\nstiffness=600.0\n";
+
+constexpr double kLimit = 0.2;    // of every motor [N m]
+constexpr double kEta = 0.6;
+constexpr double kSurface = -0.04, kDeepest = -0.055, kAhead = 0.19;  // [m]
+constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kEnd = 1.7;  // [s]
+constexpr double kHeldFrom = 0.8;  // everything at rest [s]
+constexpr int kShoulder = 1;       // the joint that bears most of it
+
+constexpr const char* kScene = R"(title = "Table"
+about = "A table top four centimetres below the middle of the workspace."
+
+[[plane]]
+name = "table top"
+point = [0.2, 0.0, -0.04]
+normal = [0.0, 0.0, 1.0]
+stiffness = 600.0
+)";
+
+Trial press(const std::string& name, bool anti_windup) {
+  Parameters p;
+  p.eta = kEta;
+  p.anti_windup = anti_windup;
+  p.torque_limit = kLimit;
+  const auto at = [](double t) {
+    const double part =
+        minimum_jerk(t / kReached) - minimum_jerk((t - kPullOut) / (kOut - kPullOut));
+    return Vec3(kAhead, 0, kDeepest * part);
+  };
+  const std::string source =
+      fmt::format("down to {} m in {} s, from {} s back within {} s", kDeepest, kReached, kPullOut,
+                  kOut - kPullOut);
+  return {name, plan_in(kScene, hand_path(source, p.tick, kEnd, at), p)};
 }
-Outcome saturation(Laboratory& lab) {
-  std::vector<Trial> ts;
-  struct C { double eta, alpha, pull, ratio; };
-  std::vector<C> cs;
-  for (double eta : {0.6, 1.0, 3.0}) for (double al : {0.035, 0.0035}) for (double pull : {0.15, 0.4}) for (double r : {1e-4,1e-1}) cs.push_back({eta, al, pull, r});
-  for (auto& c : cs) for (bool aw : {false, true}) {
-    Parameters p; p.eta = c.eta; p.alpha = c.alpha; p.anti_windup = aw; p.torque_limit = 0.2; p.inertia_ratio = c.ratio;
-    auto at = [&, pull=c.pull](double t) { double z = 0 + (-0.055) * (minimum_jerk(t / 0.5) - minimum_jerk((t - 1.2) / pull)); return Vec3(0.19, 0, z); };
-    ts.push_back({fmt::format("x{}", ts.size()), plan_in(kTable, hand_path("x", 0.001, 2.2, at), p), false});
+
+// One run and what is asked of it.
+class Run {
+ public:
+  Run(const Trial& trial, const TrialResult& result)
+      : arm_(trial.plan.arm), session_(result.session) {}
+
+  const Session& session() const { return session_; }
+  double shoulder(std::size_t k, Column column) const { return session_.at(k, column)[kShoulder]; }
+  // Of the tip below the surface [mm].
+  double depth(std::size_t k, Column column) const {
+    return 1e3 * (kSurface - tip_at(arm_, vector_at(session_, k, column)).z());
   }
-  auto rs = lab.run(ts);
-  for (std::size_t i = 0; i < cs.size(); ++i) {
-    fmt::print("eta {} alpha {} pull {} ratio {}\n", cs[i].eta, cs[i].alpha, cs[i].pull, cs[i].ratio);
-    for (int w = 0; w < 2; ++w) {
-      auto& s = rs[2 * i + static_cast<std::size_t>(w)].session;
-      double emax=0, late=0, fpk=0, hold_t=0, hold_e=0, pe=0; 
-      for (std::size_t k = 0; k < s.size(); ++k) {
-        auto f = vector_at(s,k,Column::hand_torque), e = vector_at(s,k,Column::hand_torque_estimate);
-        emax = std::max(emax, e.norm());
-        if (k == 1100) { hold_t = f.norm(); hold_e = e.norm(); }
-        if (k > 1200) { fpk = std::max(fpk, f.norm()); late=std::max(late,(f-e).norm()); }
-        if (k > 100) pe = std::max(pe, coordination_error(s,k).norm());
-      }
-      auto m = vector_at(s, 1100, Column::motor_torque), c = vector_at(s,1100,Column::commanded_torque), f=vector_at(s,1100,Column::hand_torque), e=vector_at(s,1100,Column::hand_torque_estimate);
-      if(!w||1)fmt::print("  aw {} div {} hold true {:.3f} est {:.3f} | rms est hold {:.3f} | pull: peak true {:.3f} err {:.3f} | coord {:.5f}\n", w, rs[2*i+static_cast<std::size_t>(w)].end.diverged, hold_t, hold_e, rms_norm(s, Column::hand_torque_estimate, 700, 1200), fpk, late, pe);
-      fmt::print("     mot {:.3f} {:.3f} {:.3f} cmd {:.3f} {:.3f} {:.3f} f {:.3f} {:.3f} {:.3f} e {:.3f} {:.3f} {:.3f}\n", m[0],m[1],m[2],c[0],c[1],c[2],f[0],f[1],f[2],e[0],e[1],e[2]);
+  double estimate_error(std::size_t k) const {
+    return (vector_at(session_, k, Column::hand_torque_estimate) -
+            vector_at(session_, k, Column::hand_torque)).norm();
+  }
+  std::size_t row(double t) const {
+    return std::min(session_.size(), static_cast<std::size_t>(t / session_.info.tick));
+  }
+  // rms over [from, to) [s].
+  template <class Value>
+  double rms(double from, double to, const Value& value) const {
+    double sum = 0;
+    for (std::size_t k = row(from); k < row(to); ++k) sum += value(k) * value(k);
+    return std::sqrt(sum / static_cast<double>(row(to) - row(from)));
+  }
+  // |f1_hat - (f1 - (tau_c - tau_m))| over |f1_hat| while held, signs as in (16).
+  double off_the_law() const {
+    const std::size_t k = row(kPullOut) - 1;
+    const auto of = [&](Column column) { return vector_at(session_, k, column); };
+    const Eigen::VectorXd excess = of(Column::commanded_torque) - of(Column::motor_torque);
+    const Eigen::VectorXd estimate = of(Column::hand_torque_estimate);
+    return (estimate - (of(Column::hand_torque) - excess)).norm() / estimate.norm();
+  }
+  // How hard the hand has to pull the shoulder up to get out [N m].
+  double largest_pull() const {
+    double pull = 0;
+    for (std::size_t k = row(kPullOut); k < session_.size(); ++k) {
+      pull = std::max(pull, -shoulder(k, Column::hand_torque));
     }
+    return pull;
   }
-  return {};
+
+ private:
+  const ArmDescription& arm_;
+  const Session& session_;
+};
+
+std::vector<FigurePanel> panels(const Run& with, const Run& without) {
+  using enum Series::Style;
+  const auto curve = [](const Run& run, const std::string& label, const char* ink,
+                        Series::Style style, Column column) {
+    return over_time(run.session(), label, ink, style,
+                     [&](std::size_t k) { return run.shoulder(k, column); });
+  };
+  const auto depth = [](const Run& run, const std::string& label, const char* ink,
+                        Series::Style style, Column column) {
+    return over_time(run.session(), label, ink, style,
+                     [&](std::size_t k) { return run.depth(k, column); });
+  };
+  FigurePanel human{.title = "Human torque at the shoulder",
+                    .x_label = "time [s]", .y_label = "f1 [N m]"};
+  human.series = {
+      curve(without, "estimate, wound up", kContactInk, dashed, Column::hand_torque_estimate),
+      curve(without, "true, wound up", kContactInk, line, Column::hand_torque),
+      curve(with, "estimate, anti-windup", kProxyInk, dashed, Column::hand_torque_estimate),
+      curve(with, "true, anti-windup", kProxyInk, line, Column::hand_torque)};
+  FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
+                     .x_label = "time [s]", .y_label = "tau1 [N m]"};
+  motors.series = {
+      curve(without, "asked, wound up", kContactInk, dashed, Column::commanded_torque),
+      curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
+      curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
+      curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque)};
+  FigurePanel lurking{.title = "The proxy is drawn into the table with the device",
+                      .x_label = "time [s]", .y_label = "tip below the surface [mm]"};
+  lurking.series = {
+      depth(with, "device, anti-windup", kDeviceInk, line, Column::device_position),
+      depth(with, "proxy, anti-windup", kProxyInk, dashed, Column::proxy_position),
+      depth(without, "device, wound up", kContactInk, line, Column::device_position),
+      depth(without, "proxy, wound up", kNeutralInk, dashed, Column::proxy_position)};
+  lurking.y_range = {-10, 15};
+  FigurePanel out = human;
+  out.title = "Human torque at the shoulder while pulling out";
+  out.x_range = {kPullOut, 1.45};
+  return {human, motors, lurking, out};
 }
+
+}  // namespace
+
+Outcome saturation(Laboratory& lab) {
+  const std::vector<Trial> trials{press("anti-windup", true), press("wound-up", false)};
+  const std::vector<TrialResult> results = lab.run(trials);
+  const Run with(trials[0], results[0]), without(trials[1], results[1]);
+
+  Outcome outcome;
+  outcome.figure.title = "A contact pressed beyond the torque limit, held and pulled out of";
+  outcome.figure.caption = fmt::format(
+      "Proposed coupling at the paper's gains, eta = {}, motors limited to {} N m, table 600 N/m. "
+      "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
+      "them.", kEta, kLimit);
+  outcome.figure.columns = 2;
+  outcome.figure.panels = panels(with, without);
+
+  const auto estimated = [](const Run& run) {
+    return rms_norm(run.session(), Column::hand_torque_estimate, run.row(kHeldFrom),
+                    run.row(kPullOut));
+  };
+  const auto human = [](const Run& run) {
+    return rms_norm(run.session(), Column::hand_torque, run.row(kHeldFrom), run.row(kPullOut));
+  };
+  const auto error = [](const Run& run, double from, double to) {
+    return run.rms(from, to, [&](std::size_t k) { return run.estimate_error(k); });
+  };
+  outcome.checks = {
+      at_most("anti-windup: rms error of the estimate while held, over the rms true torque",
+              error(with, kHeldFrom, kPullOut) / human(with), 0.02),
+      at_least("wound up: rms estimate while held over rms true torque, at least",
+               estimated(without) / human(without), 2),
+      at_most("wound up: estimate off the paper's d - (tau_c - tau_m), of the estimate",
+              without.off_the_law(), 0.02),
+      at_least("pull-out: rms error of the estimate wound up over that with anti-windup, at least",
+               error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 1),
+      at_least("pull-out: largest pull at the shoulder wound up over that with anti-windup",
+               without.largest_pull() / with.largest_pull(), 1)};
+  return outcome;
 }
+
+}  // namespace limpid

@@ -19,7 +19,8 @@ void Summary::add(std::span<const double> row) {
   const auto at = [&](Column c) { return layout_.in(row, c); };
   ++rows_;
   time_ = at(Column::time)[0];
-  const double error = (vector(at(Column::device_position)) - vector(at(Column::proxy_position))).norm();
+  const double error =
+      (vector(at(Column::device_position)) - vector(at(Column::proxy_position))).norm();
   const double contact = vector(at(Column::contact_torque)).norm();
   largest_error_ = std::max(largest_error_, error);
   if (contact >= largest_contact_) memorable_.assign(row.begin(), row.end());

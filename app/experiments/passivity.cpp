@@ -1,0 +1,207 @@
+// Fig. 6: controller energy over many trials of free motion, contact and circles on the surface.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/experiments/passivity_trials.h"
+#include "app/experiments/series.h"
+#include "app/run/analysis.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kGrid = 201;       // points of normalised time
+constexpr double kNoise = 1e-4;          // energy that does not count [J]
+constexpr double kStiffGrip = 3000;      // [N/m]
+constexpr double kMargin = 0.1;          // how far off Routh's limit the two runs are
+
+// A trial's energy over normalised time, and its highest.
+struct Books {
+  std::vector<double> total, commanded;  // kGrid [J]
+  double highest_total = 0, highest_commanded = 0;
+};
+
+Books books_of(const Session& s) {
+  Books books;
+  for (std::size_t i = 0; i < kGrid; ++i) {
+    const std::size_t k = i * (s.size() - 1) / (kGrid - 1);
+    books.total.push_back(s.at(k, Column::energy_total)[0]);
+    books.commanded.push_back(s.at(k, Column::energy_commanded)[0]);
+  }
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    books.highest_total = std::max(books.highest_total, s.at(k, Column::energy_total)[0]);
+    books.highest_commanded =
+        std::max(books.highest_commanded, s.at(k, Column::energy_commanded)[0]);
+  }
+  return books;
+}
+
+using Curve = std::vector<double> Books::*;
+
+// Mean, lowest and highest of the trials of a case.
+std::vector<FigurePoint> spread(std::span<const Books> trials, Curve curve) {
+  std::vector<FigurePoint> points(kGrid);
+  for (std::size_t i = 0; i < kGrid; ++i) {
+    FigurePoint& p = points[i];
+    p = {static_cast<double>(i) / (kGrid - 1), 0, std::numeric_limits<double>::infinity(),
+         -std::numeric_limits<double>::infinity()};
+    for (const Books& trial : trials) {
+      const double energy = (trial.*curve)[i];
+      p.y += energy / static_cast<double>(trials.size());
+      p.low = std::min(p.low, energy);
+      p.high = std::max(p.high, energy);
+    }
+  }
+  return points;
+}
+
+void add_case(FigurePanel& panel, const PassivityCase& one, const char* color,
+              std::span<const Books> trials, Curve curve) {
+  const std::vector<FigurePoint> points = spread(trials, curve);
+  panel.series.push_back({"", color, Series::Style::band, points});
+  const auto style = one.kind == CouplingKind::standard ? Series::Style::dashed
+                                                        : Series::Style::line;
+  panel.series.push_back({one.name, color, style, points});
+}
+
+double final_mean(std::span<const Books> trials) { return spread(trials, &Books::total).back().y; }
+
+double highest(std::span<const Books> trials, double Books::*energy) {
+  double most = 0;
+  for (const Books& trial : trials) most = std::max(most, trial.*energy);
+  return most;
+}
+
+// The hand holds still in a stiff grip after a nudge of a tenth of a millimetre: whether the loop
+// calms down tells on which side of Routh's limit it is.
+Trial held_still(double eta, const std::string& name) {
+  Parameters p;
+  p.eta = eta;
+  p.hand_stiffness = kStiffGrip;
+  p.hand_damping = 0;
+  Trial trial{name, plan_of("free", "free", p)};
+  const Vec3 start = trial.plan.hand.position.front();
+  trial.plan.hand = parse_hand_csv(
+      fmt::format("time_s,x_m,y_m,z_m\n0,{0},{1},{2}\n0.1,{0},{1},{2}\n0.12,{3},{4},{5}\n"
+                  "1.6,{3},{4},{5}\n",
+                  start.x(), start.y(), start.z(), start.x() + 1e-4, start.y() + 1e-4,
+                  start.z() + 1e-4),
+      "held still after a nudge");
+  trial.plan.rows = rows_of(trial.plan);
+  return trial;
+}
+
+double grip_limit() {
+  const Trial trial = held_still(1, "");
+  return analyze(trial.plan.arm, rest_pose(trial.plan.arm), trial.plan.parameters, std::nullopt)
+      .eta_min_grip;
+}
+
+// Motion at the end over motion soon after the nudge.
+double growth(const TrialResult& result) {
+  if (result.end.diverged) return std::numeric_limits<double>::infinity();
+  const Session& s = result.session;
+  const std::size_t length = s.size() / 8;
+  return rms_norm(s, Column::device_velocity, s.size() - length, s.size()) /
+         rms_norm(s, Column::device_velocity, length, 2 * length);
+}
+
+}  // namespace
+
+Outcome passivity(Laboratory& lab) {
+  std::vector<PassivityCase> cases(passivity_cases().begin(), passivity_cases().end());
+  const std::size_t compared = cases.size();
+  cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
+  std::vector<Trial> trials;
+  for (const PassivityCase& one : cases) {
+    const std::vector<Trial> own = passivity_trials(one, lab.seed());
+    trials.insert(trials.end(), own.begin(), own.end());
+  }
+  const double limit = grip_limit();
+  trials.push_back(held_still(limit * (1 + kMargin), "grip-above"));
+  trials.push_back(held_still(limit * (1 - kMargin), "grip-below"));
+
+  const std::size_t many = cases.size() * kTrialsOfACase;
+  std::vector<Books> all(many);
+  std::vector<TrialResult> held(2);
+  lab.run(trials, [&](std::size_t i, const TrialResult& result) {
+    if (i < many) {
+      all[i] = books_of(result.session);
+    } else {
+      held[i - many] = result;
+    }
+  });
+  const auto of = [&](std::size_t i) {
+    return std::span<const Books>(all).subspan(i * kTrialsOfACase, kTrialsOfACase);
+  };
+
+  Outcome outcome;
+  Figure& figure = outcome.figure;
+  figure.title = "Controller energy E_c";
+  figure.caption = fmt::format(
+      "Free motion, contact and circles on the table; mean of {} trials with their lowest and "
+      "highest, paper's gains. Total counts the device's own damping, commanded the motors and the "
+      "proxy alone. Last panel: held still in an undamped grip of {} N/m, whose smallest stable "
+      "eta is {:.3f} by Routh and Hurwitz.",
+      kTrialsOfACase, kStiffGrip, limit);
+  figure.columns = 2;
+  const FigurePanel axes{.x_label = "time over the trial's length [-]",
+                         .y_label = "energy [J]"};
+  FigurePanel total = axes, commanded = axes, zero = axes;
+  total.title = "Total";
+  commanded.title = "Commanded";
+  zero.title = "Commanded, where it changes sign";
+  for (std::size_t i = 0; i < compared; ++i) {
+    add_case(total, cases[i], kFamilyInk[i], of(i), &Books::total);
+    add_case(commanded, cases[i], kFamilyInk[i], of(i), &Books::commanded);
+  }
+  add_case(zero, cases[compared], kNeutralInk, of(compared), &Books::commanded);
+  add_case(zero, cases[0], kFamilyInk[0], of(0), &Books::commanded);
+  FigurePanel grip{.title = "Held in a stiff grip", .x_label = "time [s]",
+                   .y_label = "device speed |v1| [rad/s]", .log_y = true};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Session& s = held[i].session;
+    const std::string label = fmt::format("eta {:.3f}, {} the limit", s.at(0, Column::eta)[0],
+                                          i == 0 ? "above" : "below");
+    Series speed = over_time(s, label, i == 0 ? kHandInk : kContactInk, Series::Style::line,
+                             [&](auto k) { return vector_at(s, k, Column::device_velocity).norm(); });
+    std::erase_if(speed.points, [](const FigurePoint& p) { return p.y < 1e-8; });
+    grip.series.push_back(std::move(speed));
+  }
+  figure.panels = {total, commanded, zero, grip};
+
+  for (std::size_t i = 0; i < compared; ++i) {
+    outcome.checks.push_back(at_most(
+        fmt::format("highest E_c, total, of all trials, {} [J]", cases[i].name),
+        highest(of(i), &Books::highest_total), kNoise));
+  }
+  for (std::size_t i = 0; i < compared; ++i) {
+    outcome.checks.push_back(at_most(
+        fmt::format("highest E_c, commanded, of all trials, {} [J]", cases[i].name),
+        highest(of(i), &Books::highest_commanded), kNoise));
+  }
+  // 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
+  for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
+    const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
+    outcome.checks.push_back(at_most(
+        fmt::format("mean final E_c, total, {} less {} [J]", cases[l].name, cases[h].name),
+        final_mean(of(l)) - final_mean(of(h)), 0));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Books& trial : of(compared)) least = std::min(least, trial.highest_commanded);
+  outcome.checks.push_back(at_least(
+      "highest E_c, commanded, in each trial at eta = 0.4, which is not passive, at least [J]",
+      least, kNoise));
+  outcome.checks.push_back(at_most(
+      fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
+                  limit * (1 + kMargin)), growth(held[0]), 0.5));
+  outcome.checks.push_back(at_least(
+      fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
+                  limit * (1 - kMargin)), growth(held[1]), 2));
+  return outcome;
+}
+
+}  // namespace limpid

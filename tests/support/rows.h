@@ -1,0 +1,63 @@
+// Rows of the trace as vectors, and many of them.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "core/loop/row.h"
+#include "core/math/sizes.h"
+
+namespace limpid::test {
+
+class Rows {
+ public:
+  explicit Rows(const RowLayout& layout) : layout_(layout) {}
+
+  // A new row at the end, to be filled.
+  std::span<double> add() {
+    all_.resize(all_.size() + stride());
+    return std::span(all_).last(stride());
+  }
+  void add(std::span<const double> row) { all_.insert(all_.end(), row.begin(), row.end()); }
+
+  std::size_t size() const { return all_.size() / stride(); }
+  std::span<const double> row(std::size_t k) const {
+    return std::span(all_).subspan(k * stride(), stride());
+  }
+  double at(std::size_t k, Column c) const { return layout_.in(row(k), c)[0]; }
+  Eigen::VectorXd vec(std::size_t k, Column c) const {
+    return Eigen::Map<const Eigen::VectorXd>(layout_.in(row(k), c).data(), layout_.width(c));
+  }
+  const RowLayout& layout() const { return layout_; }
+
+ private:
+  std::size_t stride() const { return static_cast<std::size_t>(layout_.stride()); }
+
+  RowLayout layout_;
+  std::vector<double> all_;
+};
+
+// How many doubles of the two rows differ in their bits, timing aside: what the clock says of a
+// tick is no part of the motion.
+inline int differences(const RowLayout& layout, std::span<const double> a,
+                       std::span<const double> b) {
+  int count = 0;
+  const auto end = static_cast<std::size_t>(layout.offset(Column::wake_latency));
+  for (std::size_t i = 0; i < end; ++i) {
+    count += std::memcmp(&a[i], &b[i], sizeof(double)) == 0 ? 0 : 1;
+  }
+  return count;
+}
+
+// The first row in which the two differ, or -1.
+inline long first_difference(const Rows& a, const Rows& b) {
+  if (a.size() != b.size()) return static_cast<long>(std::min(a.size(), b.size()));
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (differences(a.layout(), a.row(k), b.row(k)) > 0) return static_cast<long>(k);
+  }
+  return -1;
+}
+
+}  // namespace limpid::test
