@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 
 #include "app/desktop/keys.h"
@@ -48,12 +49,14 @@ void draw(Workbench& bench, Window& window, ViewPanel& view_panel, SidePanel& si
   const auto height = static_cast<float>(points_y);
   Settings& s = bench.settings;
   const float scale = current_scale();
-  const auto scaled = [&](double size) { return static_cast<float>(size) * scale; };
-  const float top = ImGui::GetFrameHeight();
-  const float transport = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
+  // Whole pixels: no seams between the panels.
+  const auto scaled = [&](double size) { return std::round(static_cast<float>(size) * scale); };
+  const float top = std::round(ImGui::GetFrameHeight());
+  const float transport =
+      std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y);
   const float bottom = height - transport;
   // On a low window the panels above need the height more than the plots do.
-  const float plots = std::min(scaled(s.plots), 0.27f * height);
+  const float plots = std::min(scaled(s.plots), std::round(0.27f * height));
   const float middle = s.show_plots ? bottom - plots : bottom;
   const float left = s.show_left ? scaled(s.left) : 0;
   const float right = s.show_right ? width - scaled(s.right) : width;

@@ -57,7 +57,7 @@ void draw_open(Workbench& bench) {
 }
 
 void draw_help(Workbench& bench) {
-  if (begin_dialog("Keys and mouse", bench.show_help, 38)) {
+  if (begin_dialog("Keys and mouse", bench.show_help, 46)) {
     if (ImGui::BeginTable("keys", 2)) {
       ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
       for (const Shortcut& shortcut : shortcuts()) {

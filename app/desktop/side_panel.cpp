@@ -30,7 +30,7 @@ void sliders(Workbench& bench, std::initializer_list<const char*> keys) {
 // Shares of ticks over wake-up latency, on a logarithmic axis from 1 us to 100 ms.
 void draw_histogram(const LatencyHistogram& histogram) {
   const Palette& colours = palette(current_theme());
-  const float height = 44 * current_scale();
+  const float height = 32 * current_scale();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
   ImDrawList* draw = ImGui::GetWindowDrawList();
