@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/math/solve.h"
+#include "core/math/subnormals.h"
 
 namespace limpid {
 namespace {
@@ -71,12 +72,14 @@ typename VirtualArm<N>::Resistance VirtualArm<N>::resistance(const Vec<N>& b_d,
 
 template <int N>
 void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
+  const NoSubnormals fast_at_rest;
   const double h = p.tick / p.substeps;
   const double k_h = hand.grip * p.hand_stiffness;
   const double b_h = hand.grip * p.hand_damping;
   const Vec<N> b_d = resolve<N>(p.damping, damping_);
   const Vec<N> friction = resolve<N>(p.friction, friction_);
   const Vec3 target_rate = (hand.target - target_) / p.tick;
+  const double grip_damping = h / 2 * b_h + h * h / 4 * k_h;  // of the substep's midpoint
   hand_torque_.setZero();
   for (int s = 0; s < p.substeps; ++s) {
     // Everything at the middle of the substep as v would have it; dv then corrects:
@@ -90,19 +93,24 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_);
     const Resistance r = resistance(b_d, friction, x_mid);
 
+    // A is symmetric: its lower triangle is enough.
     Mat<N> A = M_;
-    A.noalias() += (h / 2 * b_h + h * h / 4 * k_h) * J_.transpose() * J_;
-    A.diagonal() += h / 2 * r.damping + h * h / 4 * r.stiffness;
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      const Vec3 pulled = grip_damping * J_.col(j);
+      for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += J_.col(i).dot(pulled);
+      A(j, j) += h / 2 * r.damping[j] + h * h / 4 * r.stiffness[j];
+    }
     Vec<N> b = torque - Cv_ + r.torque - r.damping.cwiseProduct(v_);
     b.noalias() += J_.transpose() * pull;
     b *= h;
-    const Vec<N> dv = solve<N>(A, b);
+    const Vec<N> dv = solve_symmetric<N>(A, b);
 
     const Vec3 force = pull - (b_h / 2 + h / 4 * k_h) * (J_ * dv);
-    hand_torque_.noalias() += J_.transpose() * force / p.substeps;
-    x_ += h * (v_ + dv / 2);
+    hand_torque_.noalias() += J_.transpose() * force;
+    x_ += h * (v_ + 0.5 * dv);
     v_ += dv;
   }
+  hand_torque_ /= p.substeps;
   target_ = hand.target;
 }
 

@@ -142,7 +142,8 @@ Command declare_experiment(CLI::App& app) {
   command->add_option("--out", options->out, "the folder for what it finds")
       ->required()
       ->type_name("DIR");
-  command->add_option("--seed", options->seed, "for whatever is random")->type_name("N");
+  require_whole_number(
+      command->add_option("--seed", options->seed, "for whatever is random")->type_name("N"));
   command->add_option("--threads", options->threads, "default: one a core")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));

@@ -187,6 +187,8 @@ std::string parameter_help() {
   return text;
 }
 
+void require_whole_number(CLI::Option* option) { option->check(whole_number()); }
+
 void require_above_zero(CLI::Option* option, double most, const std::string& unit) {
   const auto check = [=](const std::string& text) -> std::string {
     const auto x = number_in(text);

@@ -47,6 +47,8 @@ void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
 
+// The option takes a whole number from 0 on.
+void require_whole_number(CLI::Option* option);
 // The option takes a number above 0.
 void require_above_zero(CLI::Option* option, double most, const std::string& unit);
 // No option of the command takes an empty word for a value.

@@ -73,6 +73,13 @@ Series error_over_time(const Session& s, const std::string& label, const char* c
                    [&](auto k) { return 1e3 * coordination_error(s, k).norm(); });
 }
 
+Series added_error(const Session& s, const Session& right, const std::string& label,
+                   const char* color) {
+  return over_time(s, label, color, Series::Style::line, [&](auto k) {
+    return 1e6 * (coordination_error(s, k).norm() - coordination_error(right, k).norm());
+  });
+}
+
 void add_scatter(FigurePanel& panel, const Session& s, const std::string& label,
                  const char* color) {
   Series dots{"", color, Series::Style::points, in_contact(s, kScatterStep)};
@@ -132,11 +139,10 @@ Outcome coordination(Laboratory& lab) {
                       .y_label = "error |x1 - x2| [mrad]"};
   add_scatter(scatter, a, "standard", kContactInk);
   add_scatter(scatter, b, "proposed", kHandInk);
-  FigurePanel wrong{.title = "Proposed, the model's inertia wrong by a factor",
-                    .x_label = "time [s]", .y_label = "error [mrad]"};
-  wrong.series.push_back(error_over_time(b, "1", kHandInk));
-  wrong.series.push_back(error_over_time(results[2].session, "0.5", kProxyInk));
-  wrong.series.push_back(error_over_time(results[3].session, "2", kEnergyInk));
+  FigurePanel wrong{.title = "Proposed: what a wrong inertia in the model adds to the error",
+                    .x_label = "time [s]", .y_label = "change of the error [μrad]"};
+  wrong.series.push_back(added_error(results[2].session, b, "half the inertia", kProxyInk));
+  wrong.series.push_back(added_error(results[3].session, b, "twice the inertia", kEnergyInk));
   figure.panels.insert(figure.panels.end(), {force, error, scatter, wrong});
 
   const double ideal = 1 / standard.k_vc;

@@ -83,6 +83,7 @@ class Laboratory {
 
  private:
   TrialResult run_one(const Trial& trial) const;
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   std::string experiment_;
   Options options_;

@@ -34,10 +34,15 @@ int gnuplot(const fs::path& file) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  // In a process group of its own: Ctrl-C in the terminal is for Limpid, which ends cleanly.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   std::string program = "gnuplot", argument = file.string();
   char* const words[] = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
-  const int failure = posix_spawnp(&child, "gnuplot", &actions, nullptr, words, environ);
+  const int failure = posix_spawnp(&child, "gnuplot", &actions, &attributes, words, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) {
     throw std::runtime_error("gnuplot, which draws the figures, is not installed; on Debian: "

@@ -24,11 +24,11 @@ struct Series {
 
 // One pair of axes.
 struct FigurePanel {
-  std::string title;
-  std::string x_label, y_label;  // with unit
+  std::string title = {};
+  std::string x_label = {}, y_label = {};  // with unit
   bool log_x = false, log_y = false;
-  std::optional<std::pair<double, double>> x_range, y_range;
-  std::vector<Series> series;
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};
+  std::vector<Series> series = {};
 };
 
 struct Figure {

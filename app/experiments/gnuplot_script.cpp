@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "app/experiments/figure.h"
 
@@ -12,9 +15,37 @@ namespace {
 // legend and the axes.
 constexpr int kPanelWidth = 640;
 constexpr int kTitleHeight = 52;
-constexpr int kLeft = 84, kRight = 26, kBottom = 58;  // from the axes to the cell's edges
-constexpr int kPanelTitle = 34, kLegendLine = 19;
-constexpr double kLetter = 6.6, kSample = 52;         // widths in a legend
+constexpr int kLeft = 92, kRight = 26, kBottom = 58;  // from the axes to the cell's edges
+constexpr int kPanelTitle = 38, kLegendLine = 20;
+constexpr double kLetter = 6.8, kSample = 26, kGap = 20;  // widths in a legend
+constexpr double kYLabel = 20;                            // from the cell's left edge
+
+// What the text of data, readable anywhere, looks like in print.
+constexpr std::pair<const char*, const char*> kSymbols[] = {
+    {"eta", "η"}, {"x1", "x₁"}, {"x2", "x₂"}, {"v1", "v₁"}, {"f1", "f₁"}, {"f2", "f₂"}, {"-", "−"}};
+
+std::string symbol_of(const std::string& word) {
+  for (const auto& [plain, symbol] : kSymbols) {
+    if (word == plain) return symbol;
+  }
+  return word;
+}
+
+// Whole words, lone minus signs and apostrophes alone are replaced. (gnuplot misreads texts that
+// begin with a quoted apostrophe.)
+std::string typeset(const std::string& text) {
+  std::string out, word;
+  for (const char c : text + ' ') {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-') {
+      word += c;
+      continue;
+    }
+    out += symbol_of(word) + (c == '\'' ? std::string("’") : std::string(1, c));
+    word.clear();
+  }
+  out.pop_back();
+  return out;
+}
 
 // Nothing in single quotes means anything to gnuplot but the quote itself.
 std::string quoted(const std::string& text) {
@@ -26,6 +57,8 @@ std::string quoted(const std::string& text) {
   return safe + '\'';
 }
 
+std::string printed(const std::string& text) { return quoted(typeset(text)); }
+
 // Letters, not bytes of UTF-8.
 double letters(const std::string& text) {
   return static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
@@ -33,33 +66,61 @@ double letters(const std::string& text) {
   }));
 }
 
-// How many legend entries fit side by side, and how many lines they take then.
-struct Legend {
-  int columns = 1, lines = 0;
+// gnuplot's own legend knows neither its width nor its height beforehand; here entries flow in
+// lines from left to right above the axes, where no curve can lie under them.
+struct LegendEntry {
+  const Series* series;
+  double x;  // from the axes' left edge
+  int line;
 };
 
-Legend legend_of(const FigurePanel& panel) {
-  double widest = 0;
-  int entries = 0;
+std::vector<LegendEntry> legend_of(const FigurePanel& panel) {
+  std::vector<LegendEntry> entries;
+  double x = 0;
+  int line = 0;
   for (const Series& series : panel.series) {
     if (series.label.empty() || series.points.empty()) continue;
-    widest = std::max(widest, letters(series.label) * kLetter + kSample);
-    ++entries;
+    const double width = kSample + 6 + letters(series.label) * kLetter;
+    if (x > 0 && x + width > kPanelWidth - kLeft - kRight) {
+      x = 0;
+      ++line;
+    }
+    entries.push_back({&series, x, line});
+    x += width + kGap;
   }
-  if (entries == 0) return {};
-  const int fit = std::max(1, static_cast<int>((kPanelWidth - kLeft - kRight) / widest));
-  const int columns = std::min(fit, entries);
-  return {columns, (entries + columns - 1) / columns};
+  return entries;
+}
+
+int lines_of(const std::vector<LegendEntry>& legend) {
+  return legend.empty() ? 0 : legend.back().line + 1;
 }
 
 std::string range_text(const std::optional<std::pair<double, double>>& range) {
   return range ? fmt::format("[{}:{}]", range->first, range->second) : "[*:*]";
 }
 
+// gnuplot's own choice leaves out the edges of bands.
+std::optional<std::pair<double, double>> y_range(const FigurePanel& panel) {
+  if (panel.y_range) return panel.y_range;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Series& series : panel.series) {
+    const bool band = series.style == Series::Style::band;
+    for (const FigurePoint& p : series.points) {
+      for (const double y : {band ? p.low : p.y, band ? p.high : p.y}) {
+        if (!std::isfinite(y) || (panel.log_y && y <= 0)) continue;
+        low = std::min(low, y);
+        high = std::max(high, y);
+      }
+    }
+  }
+  if (!(low <= high)) return std::nullopt;
+  if (panel.log_y) return std::pair(low / 1.5, high * 1.5);
+  const double room = high > low ? 0.05 * (high - low) : std::max(0.05 * std::abs(high), 1e-9);
+  return std::pair(low >= 0 && low < room ? 0 : low - room, high + room);
+}
+
 std::string plot_words(const Series& series, const std::string& data) {
-  const std::string end = fmt::format(
-      "lc rgb '{}' {}", series.color,
-      series.label.empty() ? "notitle" : "title " + quoted(series.label));
+  const std::string end = fmt::format("lc rgb '{}' notitle", series.color);
   switch (series.style) {
     case Series::Style::line: return data + " using 1:2 with lines lw 1.8 " + end;
     case Series::Style::dashed: return data + " using 1:2 with lines lw 1.8 dt (7,4) " + end;
@@ -85,18 +146,45 @@ std::string data_blocks(const Figure& figure) {
   return text;
 }
 
-// Title and legend stand above the axes, where no curve can lie under them.
-std::string heading(const FigurePanel& panel, const Legend& legend, double x, double top,
-                    double width, double height) {
-  const double key = top + 6 / height;
-  const double title = key + (legend.lines * kLegendLine + 10) / height;
+// From pixels, counted from the bottom left, to gnuplot's coordinates.
+struct Screen {
+  double width, height;
+  std::string at(double x, double y) const {
+    return fmt::format("screen {:.6f},{:.6f}", x / width, y / height);
+  }
+};
+
+std::string sample_of(const Series& series, const Screen& screen, double x, double y) {
+  const std::string left = screen.at(x, y), right = screen.at(x + kSample, y);
+  switch (series.style) {
+    case Series::Style::line:
+    case Series::Style::dashed:
+      return fmt::format("set arrow from {} to {} nohead lw 1.8 {} lc rgb '{}'\n", left, right,
+                         series.style == Series::Style::line ? "dt 1" : "dt (7,4)", series.color);
+    case Series::Style::points:
+      return fmt::format("set label '' at {} point pt 7 ps 0.6 lc rgb '{}'\n",
+                         screen.at(x + kSample / 2, y), series.color);
+    case Series::Style::band:
+      return fmt::format("set object rectangle from {} to {} fc rgb '{}' "
+                         "fs transparent solid 0.2 noborder\n",
+                         screen.at(x, y - 5), screen.at(x + kSample, y + 5), series.color);
+  }
+  return {};
+}
+
+std::string heading(const FigurePanel& panel, const std::vector<LegendEntry>& legend,
+                    const Screen& screen, double left, double top) {
+  const int lines = lines_of(legend);
   std::string text = fmt::format(
-      "unset label\nset label 1 {} at screen {},{} left noenhanced font ',13'\n",
-      quoted(panel.title), x, title);
-  if (legend.lines == 0) return text + "unset key\n";
-  return text + fmt::format("set key at screen {},{} left bottom Left reverse horizontal "
-                            "noenhanced samplen 2.2 width 1.5 maxcols {} font ',11'\n",
-                            x - 6 / width, key, legend.columns);
+      "unset label\nunset arrow\nunset object\nset label {} at {} left noenhanced font ',13'\n",
+      printed(panel.title), screen.at(left, top + 20 + lines * kLegendLine));
+  for (const LegendEntry& entry : legend) {
+    const double x = left + entry.x, y = top + 14 + (lines - 1 - entry.line) * kLegendLine;
+    text += sample_of(*entry.series, screen, x, y);
+    text += fmt::format("set label {} at {} left noenhanced font ',11'\n",
+                        printed(entry.series->label), screen.at(x + kSample + 6, y));
+  }
+  return text;
 }
 
 std::string plot_command(const FigurePanel& panel, int first_block) {
@@ -109,6 +197,30 @@ std::string plot_command(const FigurePanel& panel, int first_block) {
   return "plot " + (plots.empty() ? "NaN notitle" : plots) + '\n';
 }
 
+// All of a panel but its curves, in the cell whose upper left corner is given.
+std::string panel_commands(const FigurePanel& panel, const Screen& screen, double cell_left,
+                           double cell_top, double cell_height) {
+  const std::vector<LegendEntry> legend = legend_of(panel);
+  const double left = cell_left + kLeft, right = cell_left + kPanelWidth - kRight;
+  const double top = cell_top - kPanelTitle - lines_of(legend) * kLegendLine;
+  const double bottom = cell_top - cell_height + kBottom;
+  std::string text = fmt::format(
+      "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n"
+      "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
+      left / screen.width, right / screen.width, bottom / screen.height, top / screen.height);
+  text += heading(panel, legend, screen, left, top);
+  text += fmt::format("set label {} at {} center rotate by 90 noenhanced\n",
+                      printed(panel.y_label),
+                      screen.at(cell_left + kYLabel, (top + bottom) / 2));
+  text += fmt::format("set xlabel {} noenhanced offset 0,0.3\n", printed(panel.x_label));
+  text += panel.log_x ? "set logscale x\nset format x '10^{%L}'\n"
+                      : "unset logscale x\nset format x '%g'\n";
+  text += panel.log_y ? "set logscale y\nset format y '10^{%L}'\n"
+                      : "unset logscale y\nset format y '%g'\n";
+  return text + fmt::format("set xrange {}\nset yrange {}\n", range_text(panel.x_range),
+                            range_text(y_range(panel)));
+}
+
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, const std::string& terminal, double scale,
@@ -116,39 +228,25 @@ std::string gnuplot_script(const Figure& figure, const std::string& terminal, do
   const int columns = std::max(1, figure.columns);
   const int count = static_cast<int>(figure.panels.size());
   const int rows = (count + columns - 1) / columns;
-  const double width = columns * kPanelWidth;
-  const double height = rows * figure.panel_height + kTitleHeight;
+  const Screen screen{static_cast<double>(columns * kPanelWidth),
+                      static_cast<double>(rows * figure.panel_height + kTitleHeight)};
   std::string text = fmt::format(
-      "set encoding utf8\nset terminal {} size {},{} font 'Inter,{}'{} background rgb 'white'\n"
+      "set encoding utf8\nset terminal {} size {},{} font 'Inter,12'{} background rgb 'white'\n"
       "set output {}\n",
-      terminal, width * scale, height * scale, 12,
+      terminal, screen.width * scale, screen.height * scale,
       scale == 1 ? "" : fmt::format(" fontscale {0} linewidth {0} pointscale {0}", scale),
-      quoted(out.string()));
+      quoted(std::filesystem::absolute(out).string()));
   text += data_blocks(figure);
-  text += fmt::format("set multiplot title {} noenhanced font ',16'\n", quoted(figure.title));
-  text += "set border 3 lc rgb '#444444' lw 0.8\nset tics nomirror scale 0.6 font ',11'\n"
-          "set grid lc rgb '#e2e2e2' lw 0.6 dt 1 back\nset tics textcolor rgb '#222222'\n";
+  text += fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
+  text += "unset key\nset border 3 lc rgb '#444444' lw 0.8\n"
+          "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
+          "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
   int block = 0;
   for (int i = 0; i < count; ++i) {
     const FigurePanel& panel = figure.panels[static_cast<std::size_t>(i)];
-    const Legend legend = legend_of(panel);
-    const double left = (i % columns) * kPanelWidth + kLeft;
-    const double right = (i % columns + 1) * kPanelWidth - kRight;
-    const int row = i / columns;
-    const double top = height - kTitleHeight - row * figure.panel_height - kPanelTitle -
-                       legend.lines * kLegendLine;
-    const double bottom = height - kTitleHeight - (row + 1) * figure.panel_height + kBottom;
-    text += fmt::format("set margins screen {},{},{},{}\n", left / width, right / width,
-                        bottom / height, top / height);
-    text += heading(panel, legend, left / width, top / height, width, height);
-    text += fmt::format(
-        "set xlabel {} noenhanced offset 0,0.3\nset ylabel {} noenhanced offset 0.5,0\n",
-        quoted(panel.x_label), quoted(panel.y_label));
-    text += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
-    text += panel.log_y ? "set logscale y\nset format y '10^{%L}'\n"
-                        : "unset logscale y\nset format y '%g'\n";
-    text += fmt::format("set xrange {}\nset yrange {}\n", range_text(panel.x_range),
-                        range_text(panel.y_range));
+    text += panel_commands(panel, screen, (i % columns) * kPanelWidth,
+                           screen.height - kTitleHeight - (i / columns) * figure.panel_height,
+                           figure.panel_height);
     text += plot_command(panel, block);
     block += static_cast<int>(panel.series.size());
   }

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kEtas[] = {0.6, 1, 5};
 // Stiff enough that the three motions are the same.
-constexpr double kGripStiffness = 3000;  // [N/m]
-constexpr double kGripDamping = 10;      // [N s/m]
+constexpr double kGripStiffness = 6000;  // [N/m]
+constexpr double kGripDamping = 20;      // [N s/m]
 
 double largest_difference(const Session& a, const Session& b) {
   double difference = 0, range = 0;
@@ -44,10 +44,12 @@ Outcome inertia(Laboratory& lab) {
   outcome.figure.caption = fmt::format(
       "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact.",
       kGripStiffness, kGripDamping);
-  FigurePanel torque{.title = "Human torque |f1|, true (solid) and estimated (dashed)",
+  outcome.figure.columns = 2;
+  FigurePanel torque{.title = "Human torque |f1| and its estimate",
                      .x_label = "time [s]", .y_label = "torque [N m]"};
   FigurePanel motion{.title = "Shoulder angle: the motion is the same",
                      .x_label = "time [s]", .y_label = "x1 [rad]"};
+  std::vector<Series> estimates;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Session& s = results[i].session;
     const double eta = kEtas[i];
@@ -55,10 +57,12 @@ Outcome inertia(Laboratory& lab) {
     torque.series.push_back(over_time(s, label, kFamilyInk[i], Series::Style::line, [&](auto k) {
       return vector_at(s, k, Column::hand_torque).norm();
     }));
-    torque.series.push_back(over_time(s, "", kFamilyInk[i], Series::Style::dashed, [&](auto k) {
+    estimates.push_back(over_time(s, i == 0 ? "estimates" : "", kNeutralInk,
+                                  Series::Style::dashed, [&](auto k) {
       return vector_at(s, k, Column::hand_torque_estimate).norm();
     }));
-    motion.series.push_back(over_time(s, label, kFamilyInk[i], Series::Style::line, [&](auto k) {
+    const auto style = i == 0 ? Series::Style::line : Series::Style::dashed;
+    motion.series.push_back(over_time(s, label, kFamilyInk[i], style, [&](auto k) {
       return s.at(k, Column::device_position)[1];
     }));
     if (eta == 1) continue;
@@ -71,6 +75,7 @@ Outcome inertia(Laboratory& lab) {
         at_most(fmt::format("motion at eta = {} differs from that at eta = 1, of its range", eta),
                 largest_difference(reference, s), 0.02));
   }
+  torque.series.insert(torque.series.end(), estimates.begin(), estimates.end());
   outcome.figure.panels = {torque, motion};
   return outcome;
 }

@@ -67,6 +67,7 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
       return {std::move(*found), {.rows = rows, .diverged = rows < trial.plan.rows}};
     }
   }
+  if (stopped()) throw Cancelled();
   std::optional<Recorder> recorder;
   if (trial.keep) {
     fs::create_directories(file.parent_path());
@@ -80,7 +81,7 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
                           return !recorder || recorder->push_waiting(row);
                         });
   // What was cut short stays a .part and is run again another time.
-  if (options_.stop != nullptr && options_.stop->load()) throw Cancelled();
+  if (stopped()) throw Cancelled();
   if (recorder) recorder->finish();
   return result;
 }

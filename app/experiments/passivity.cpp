@@ -60,7 +60,8 @@ std::vector<FigurePoint> spread(std::span<const Books> trials, Curve curve) {
 
 void add_case(FigurePanel& panel, const PassivityCase& one, const char* color,
               std::span<const Books> trials, Curve curve) {
-  const std::vector<FigurePoint> points = spread(trials, curve);
+  std::vector<FigurePoint> points = spread(trials, curve);
+  for (FigurePoint& p : points) p = {p.x, 1e3 * p.y, 1e3 * p.low, 1e3 * p.high};
   panel.series.push_back({"", color, Series::Style::band, points});
   const auto style = one.kind == CouplingKind::standard ? Series::Style::dashed
                                                         : Series::Style::line;
@@ -100,6 +101,20 @@ double grip_limit() {
       .eta_min_grip;
 }
 
+// Highest speed of each stretch, once something moves.
+std::vector<FigurePoint> envelope(const Session& s) {
+  constexpr std::size_t kStretch = 20;  // rows, some periods of the oscillation
+  std::vector<FigurePoint> points;
+  for (std::size_t from = 0; from + kStretch <= s.size(); from += kStretch) {
+    double most = 0;
+    for (std::size_t k = from; k < from + kStretch; ++k) {
+      most = std::max(most, vector_at(s, k, Column::device_velocity).norm());
+    }
+    if (most > 1e-8) points.push_back({s.at(from, Column::time)[0], most});
+  }
+  return points;
+}
+
 // Motion at the end over motion soon after the nudge.
 double growth(const TrialResult& result) {
   if (result.end.diverged) return std::numeric_limits<double>::infinity();
@@ -117,9 +132,10 @@ Outcome passivity(Laboratory& lab) {
   cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
   std::vector<Trial> trials;
   for (const PassivityCase& one : cases) {
-    const std::vector<Trial> own = passivity_trials(one, lab.seed());
-    trials.insert(trials.end(), own.begin(), own.end());
+    for (Trial& trial : passivity_trials(one, lab.seed())) trials.push_back(std::move(trial));
   }
+  // The last case is this experiment's own; the others' sessions are for the spectrum, too.
+  for (std::size_t i = compared * kTrialsOfACase; i < trials.size(); ++i) trials[i].keep = false;
   const double limit = grip_limit();
   trials.push_back(held_still(limit * (1 + kMargin), "grip-above"));
   trials.push_back(held_still(limit * (1 - kMargin), "grip-below"));
@@ -140,36 +156,36 @@ Outcome passivity(Laboratory& lab) {
 
   Outcome outcome;
   Figure& figure = outcome.figure;
-  figure.title = "Controller energy E_c";
+  figure.title = "Energy that the coupling adds, over time";
   figure.caption = fmt::format(
-      "Free motion, contact and circles on the table; mean of {} trials with their lowest and "
+      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials with their lowest and "
       "highest, paper's gains. Total counts the device's own damping, commanded the motors and the "
       "proxy alone. Last panel: held still in an undamped grip of {} N/m, whose smallest stable "
       "eta is {:.3f} by Routh and Hurwitz.",
       kTrialsOfACase, kStiffGrip, limit);
   figure.columns = 2;
   const FigurePanel axes{.x_label = "time over the trial's length [-]",
-                         .y_label = "energy [J]"};
+                         .y_label = "energy [mJ]"};
   FigurePanel total = axes, commanded = axes, zero = axes;
   total.title = "Total";
   commanded.title = "Commanded";
   zero.title = "Commanded, where it changes sign";
   for (std::size_t i = 0; i < compared; ++i) {
-    add_case(total, cases[i], kFamilyInk[i], of(i), &Books::total);
-    add_case(commanded, cases[i], kFamilyInk[i], of(i), &Books::commanded);
+    const bool standard = cases[i].kind == CouplingKind::standard;
+    const char* color = standard ? kNeutralInk : kFamilyInk[i];
+    add_case(total, cases[i], color, of(i), &Books::total);
+    add_case(commanded, cases[i], color, of(i), &Books::commanded);
   }
-  add_case(zero, cases[compared], kNeutralInk, of(compared), &Books::commanded);
+  add_case(zero, cases[compared], kFamilyInk[4], of(compared), &Books::commanded);
   add_case(zero, cases[0], kFamilyInk[0], of(0), &Books::commanded);
   FigurePanel grip{.title = "Held in a stiff grip", .x_label = "time [s]",
-                   .y_label = "device speed |v1| [rad/s]", .log_y = true};
+                   .y_label = "peak of the speed |v1| [rad/s]", .log_y = true};
   for (std::size_t i = 0; i < 2; ++i) {
     const Session& s = held[i].session;
     const std::string label = fmt::format("eta {:.3f}, {} the limit", s.at(0, Column::eta)[0],
                                           i == 0 ? "above" : "below");
-    Series speed = over_time(s, label, i == 0 ? kHandInk : kContactInk, Series::Style::line,
-                             [&](auto k) { return vector_at(s, k, Column::device_velocity).norm(); });
-    std::erase_if(speed.points, [](const FigurePoint& p) { return p.y < 1e-8; });
-    grip.series.push_back(std::move(speed));
+    grip.series.push_back({label, i == 0 ? kHandInk : kContactInk, Series::Style::line,
+                           envelope(s)});
   }
   figure.panels = {total, commanded, zero, grip};
 

@@ -27,7 +27,7 @@ section { background: #fff; border: 1px solid var(--line); border-radius: 10px;
           padding: 24px 28px; margin-top: 28px; }
 header { display: flex; justify-content: space-between; align-items: baseline; gap: 16px; }
 figure { margin: 18px 0; }
-img { display: block; width: 100%; height: auto; }
+img { display: block; max-width: 100%; height: auto; margin: 0 auto; }
 figcaption { color: var(--soft); font-size: 13.5px; margin-top: 8px; }
 table { width: 100%; border-collapse: collapse; font-size: 13.5px; }
 th { text-align: left; font-weight: 600; color: var(--soft); }

@@ -41,7 +41,7 @@ Trial press(const std::string& name, bool anti_windup) {
   const std::string source =
       fmt::format("down to {} m in {} s, from {} s back within {} s", kDeepest, kReached, kPullOut,
                   kOut - kPullOut);
-  return {name, plan_in(kScene, hand_path(source, p.tick, kEnd, at), p)};
+  return {name, plan_in(kScene, hand_path(source, p.tick, kEnd, at), p), false};
 }
 
 // One run and what is asked of it.
@@ -118,7 +118,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without) {
       curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
       curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
       curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque)};
-  FigurePanel lurking{.title = "The proxy is drawn into the table with the device",
+  FigurePanel lurking{.title = "The proxy lurks: it goes on into the table with the device",
                       .x_label = "time [s]", .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, anti-windup", kDeviceInk, line, Column::device_position),
@@ -166,9 +166,9 @@ Outcome saturation(Laboratory& lab) {
       at_most("wound up: estimate off the paper's d - (tau_c - tau_m), of the estimate",
               without.off_the_law(), 0.02),
       at_least("pull-out: rms error of the estimate wound up over that with anti-windup, at least",
-               error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 1),
-      at_least("pull-out: largest pull at the shoulder wound up over that with anti-windup",
-               without.largest_pull() / with.largest_pull(), 1)};
+               error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 3),
+      at_least("pull-out: largest pull at the shoulder wound up over that with anti-windup, at least",
+               without.largest_pull() / with.largest_pull(), 1.2)};
   return outcome;
 }
 

@@ -71,8 +71,7 @@ void add_spread(FigurePanel& panel, const std::vector<FigurePoint>& points, cons
 Outcome spectrum(Laboratory& lab) {
   std::vector<Trial> trials;
   for (const PassivityCase& one : passivity_cases()) {
-    const std::vector<Trial> own = passivity_trials(one, lab.seed());
-    trials.insert(trials.end(), own.begin(), own.end());
+    for (Trial& trial : passivity_trials(one, lab.seed())) trials.push_back(std::move(trial));
   }
   std::vector<std::vector<std::vector<double>>> signals(trials.size());
   lab.run(trials, [&](std::size_t i, const TrialResult& result) {

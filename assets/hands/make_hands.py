@@ -62,9 +62,9 @@ def proximal():
     for start, depth in ((0.5, 0.030), (2.4, 0.034), (4.3, 0.038)):
         pushed = np.array(REST) + depth * up
         path += [(start + 0.7, *pushed), (start + 1.1, *pushed), (start + 1.8, *REST)]
-    for start, x in ((6.3, 0.18), (8.2, 0.20), (10.1, 0.22)):
-        path += [(start, *REST), (start + 0.7, x, 0.0, TABLE - PRESS),
-                 (start + 1.1, x, 0.0, TABLE - PRESS), (start + 1.8, *REST)]
+    for start, x, y in ((6.3, 0.18, 0.03), (8.2, 0.20, -0.03), (10.1, 0.21, 0.05)):
+        path += [(start, *REST), (start + 0.7, x, y, TABLE - PRESS),
+                 (start + 1.1, x, y, TABLE - PRESS), (start + 1.8, *REST)]
     return minimum_jerk(path + [(12.0, *REST)])
 
 

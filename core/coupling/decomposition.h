@@ -17,7 +17,7 @@ struct Dynamics {
 // In closed form, with Mdot = C + C^T:
 //     phi    = M_L^-1 M2,  M_L = M1 + M2
 //     phidot = M_L^-1 (M2dot - M_Ldot phi)
-//     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = -C_EL^T
+//     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = C2^T - (C1 + C2)^T phi = -C_EL^T
 template <int N>
 struct Decomposition {
   Mat<N> M_L;       // locked inertia [kg m^2]
@@ -26,20 +26,13 @@ struct Decomposition {
   Mat<N> C_LE, C_EL;  // (11) [kg m^2/s]
 
   Decomposition(const Dynamics<N>& device, const Dynamics<N>& proxy) {
-    const Eigen::Index n = device.v.size();
-    const Mat<N> I = Mat<N>::Identity(n, n);
-    const Mat<N>& C1 = device.C;
-    const Mat<N>& C2 = proxy.C;
     M_L = device.M + proxy.M;
-    phi = solve<N>(M_L, proxy.M);
+    phi = solve_symmetric<N>(M_L, proxy.M);
     v_E = device.v - proxy.v;
     v_L = device.v - phi * v_E;
-    const Mat<N> M2dot = C2 + C2.transpose();
-    const Mat<N> M_Ldot = C1 + C1.transpose() + M2dot;
-    const Mat<N> phi_I = phi - I;
-    C_LE = M2dot;
-    C_LE.noalias() += (C1 - M_Ldot) * phi;
-    C_LE.noalias() += C2 * phi_I;
+    const Mat<N> C_L = device.C + proxy.C;
+    C_LE = proxy.C.transpose();
+    C_LE.noalias() -= C_L.transpose() * phi;
     C_EL = -C_LE.transpose();
   }
 };

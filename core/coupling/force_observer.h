@@ -37,10 +37,10 @@ class ForceObserver {
     const double a = T * alpha;
     const Eigen::Index n = v.size();
     const Mat<N> a_identity = a * Mat<N>::Identity(n, n);
-    const Mat<N> gain = a_identity + 0.5 * a * solve<N>(M, a_identity);
+    const Mat<N> gain = a_identity + 0.5 * a * solve_symmetric<N>(M, a_identity);
     const Mat<N> whole = M + gain;
     const Vec<N> drive = gain * error;
-    f1_hat_ += solve<N>(whole, drive);
+    f1_hat_ += solve_symmetric<N>(whole, drive);
     v_ = v;
     return f1_hat_;
   }

@@ -6,12 +6,6 @@
 namespace limpid {
 namespace {
 
-Mat3 cross_matrix(const Vec3& w) {
-  Mat3 K;
-  K << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
-  return K;
-}
-
 // Half the rate of a body's inertia about O, moving with (w, u):
 //     Idot / 2 = 1/2 ([w]x I - I [w]x) + (u.mc) 1 - 1/2 (mc u^T + u mc^T).
 Symmetric3 half_rate(const Symmetric3& I, const Vec3& mc, const Vec3& w, const Vec3& u) {
@@ -32,15 +26,7 @@ Symmetric3 half_rate(const Symmetric3& I, const Vec3& mc, const Vec3& w, const V
 template <int N>
 Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
   for (std::size_t i = 0; i < size(); ++i) {
-    const Joint& joint = description.joints[i];
-    const Mat3 K = cross_matrix(joint.axis);
-    JointModel& model = joints_[i];
-    model.R0 = joint.origin.linear();
-    model.Rs = model.R0 * K;
-    model.Rc = model.Rs * K;
-    model.offset = joint.origin.translation();
-    model.axis = joint.axis;
-
+    joints_[i] = model(description.joints[i]);
     const Link& link = description.links[i];
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(link.inertia);
     const Vec3& moments = principal.eigenvalues();  // smallest first
@@ -53,36 +39,78 @@ Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
 }
 
 template <int N>
+typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
+  JointModel m{};
+  m.R0 = joint.origin.linear();
+  m.offset = joint.origin.translation();
+  joint.axis.cwiseAbs().maxCoeff(&m.third);
+  m.first = (m.third + 1) % 3;
+  m.second = (m.third + 2) % 3;
+  m.sign = joint.axis[m.third] < 0 ? -1 : 1;
+  m.oblique = joint.axis != m.sign * Vec3::Unit(m.third);
+  if (m.oblique) {
+    Mat3 Q;
+    Q.col(m.third) = m.sign * joint.axis;
+    Q.col(m.first) = Q.col(m.third).unitOrthogonal();
+    Q.col(m.second) = Q.col(m.third).cross(Q.col(m.first));
+    m.R0 = m.R0 * Q;
+    m.back = Q.transpose();
+  }
+  m.shifted = !m.R0.isIdentity(0);
+  return m;
+}
+
+template <int N>
+void Arm<N>::turn(const JointModel& joint, double q, const Mat3& before, Mat3& R, Vec3& axis) {
+  const double s = joint.sign * std::sin(q), c = std::cos(q);
+  Mat3 product;
+  if (joint.shifted) product.noalias() = before * joint.R0;
+  const Mat3& from = joint.shifted ? product : before;
+  axis = joint.sign * from.col(joint.third);
+  Mat3 turned;
+  Mat3& to = joint.oblique ? turned : R;
+  to.col(joint.third) = from.col(joint.third);
+  to.col(joint.first) = c * from.col(joint.first) + s * from.col(joint.second);
+  to.col(joint.second) = c * from.col(joint.second) - s * from.col(joint.first);
+  if (joint.oblique) R.noalias() = turned * joint.back;
+}
+
+template <int N>
 void Arm<N>::frames(const Vec<N>& x, Frames& f) const {
+  const Mat3 base = Mat3::Identity();
   for (std::size_t i = 0; i < size(); ++i) {
     const JointModel& joint = joints_[i];
-    const double q = x[static_cast<Eigen::Index>(i)];
-    const Mat3 local = joint.R0 + std::sin(q) * joint.Rs + (1 - std::cos(q)) * joint.Rc;
+    const Mat3& before = i == 0 ? base : f.R[i - 1];
+    turn(joint, x[static_cast<Eigen::Index>(i)], before, f.R[i], f.a[i]);
     if (i == 0) {
-      f.R[0] = local;
       f.p[0] = joint.offset;
     } else {
-      f.R[i].noalias() = f.R[i - 1] * local;
-      f.p[i] = f.p[i - 1] + f.R[i - 1] * joint.offset;
+      f.p[i] = f.p[i - 1] + before * joint.offset;
     }
-    f.a[i].noalias() = f.R[i] * joint.axis;
     f.o[i] = f.p[i].cross(f.a[i]);
   }
 }
 
 template <int N>
-typename Arm<N>::Body Arm<N>::body(const Frames& f, std::size_t i) const {
+void Arm<N>::place_link(const Frames& f, std::size_t i, Bodies& bodies) const {
   const LinkModel& link = links_[i];
   const Vec3 c = f.p[i] + f.R[i] * link.com;
-  Body b;
+  const Vec3 g = f.R[i] * link.g;
+  const Vec3 e = f.R[i] * link.e;
+  bodies.c[i] = c;
+  bodies.g[i] = g;
+  bodies.e[i] = e;
+  Body& b = bodies.link[i];
   b.m = link.mass;
   b.mc = b.m * c;
   // Parallel axes: m (c.c 1 - c c^T) more than about the centre of mass.
-  b.I = Symmetric3::dyad(1, f.R[i] * link.g);
-  b.I += Symmetric3::dyad(1, f.R[i] * link.e);
-  b.I += Symmetric3::dyad(-b.m, c);
-  b.I.add_to_diagonal(link.d + b.mc.dot(c));
-  return b;
+  const double d = link.d + b.mc.dot(c);
+  b.I = {d + g.x() * g.x() + e.x() * e.x() - b.mc.x() * c.x(),
+         d + g.y() * g.y() + e.y() * e.y() - b.mc.y() * c.y(),
+         d + g.z() * g.z() + e.z() * e.z() - b.mc.z() * c.z(),
+         g.x() * g.y() + e.x() * e.y() - b.mc.x() * c.y(),
+         g.x() * g.z() + e.x() * e.z() - b.mc.x() * c.z(),
+         g.y() * g.z() + e.y() * e.z() - b.mc.y() * c.z()};
 }
 
 template <int N>
@@ -90,13 +118,13 @@ void Arm<N>::inertia(const Frames& f, Bodies& bodies, Mat<N>& M) const {
   M.resize(dof(), dof());
   Body outer;
   for (std::size_t j = size(); j-- > 0;) {
-    const Body b = body(f, j);
+    place_link(f, j, bodies);
+    const Body& b = bodies.link[j];
     outer.m += b.m;
     outer.mc += b.mc;
     outer.I += b.I;
     const Vec3 moment = outer.I * f.a[j] + outer.mc.cross(f.o[j]);
     const Vec3 force = outer.m * f.o[j] - outer.mc.cross(f.a[j]);
-    bodies.link[j] = b;
     bodies.outer[j] = outer;
     bodies.moment[j] = moment;
     bodies.force[j] = force;
@@ -155,7 +183,8 @@ void Arm<N>::coriolis(const Frames& f, const Bodies& bodies, const Vec<N>& v, Ma
 template <int N>
 void Arm<N>::bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const {
   Cv.resize(dof());
-  // Velocity (w, u) and velocity-product acceleration (wdot, udot) of each link.
+  // Outward: velocity (w, u) and velocity-product acceleration (wdot, udot) of each link, that of
+  // its point at O.
   std::array<Vec3, kCapacity<N>> w, u, wdot, udot;
   Vec3 w_sum = Vec3::Zero(), u_sum = Vec3::Zero(), wdot_sum = w_sum, udot_sum = w_sum;
   for (std::size_t j = 0; j < size(); ++j) {
@@ -169,13 +198,19 @@ void Arm<N>::bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>
     wdot[j] = wdot_sum;
     udot[j] = udot_sum;
   }
+  // Inward, Newton and Euler: forces m cddot and their moments, and about the centre of mass
+  // I wdot + w x (I w), whose round part d 1 turns nothing.
   Vec3 moment = Vec3::Zero(), force = Vec3::Zero();
   for (std::size_t j = size(); j-- > 0;) {
-    const Body& b = bodies.link[j];
-    const Vec3 h = b.m * u[j] - b.mc.cross(w[j]);
-    const Vec3 L = b.I * w[j] + b.mc.cross(u[j]);
-    moment += b.I * wdot[j] + b.mc.cross(udot[j]) + w[j].cross(L) + u[j].cross(h);
-    force += b.m * udot[j] - b.mc.cross(wdot[j]) + w[j].cross(h);
+    const Vec3& c = bodies.c[j];
+    const Vec3& g = bodies.g[j];
+    const Vec3& e = bodies.e[j];
+    const Vec3 cdot = u[j] + w[j].cross(c);
+    const Vec3 cddot = udot[j] + wdot[j].cross(c) + w[j].cross(cdot);
+    const Vec3 push = links_[j].mass * cddot;
+    force += push;
+    moment += c.cross(push) + links_[j].d * wdot[j] + g.dot(wdot[j]) * g + e.dot(wdot[j]) * e +
+              w[j].cross(g.dot(w[j]) * g + e.dot(w[j]) * e);
     Cv[static_cast<Eigen::Index>(j)] = f.a[j].dot(moment) + f.o[j].dot(force);
   }
 }

@@ -44,6 +44,8 @@ class Arm {
   // What is moved there.
   struct Bodies {
     std::array<Body, kCapacity<N>> link;
+    std::array<Vec3, kCapacity<N>> c;     // centres of mass of the links [m]
+    std::array<Vec3, kCapacity<N>> g, e;  // their inertia about it is d 1 + g g^T + e e^T
     std::array<Body, kCapacity<N>> outer;  // link j and all beyond it as one
     std::array<Vec3, kCapacity<N>> moment, force;  // momentum of outer[j] while joint j turns at 1
   };
@@ -79,11 +81,16 @@ class Arm {
   void point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const;
 
  private:
-  // A joint's rotation is R0 (I + sin q K + (1 - cos q) K^2), K = [axis]x.
+  // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
+  // own axes. Where the axis is one of those, Q only reorders: Q and Q^T are left out.
   struct JointModel {
-    Mat3 R0, Rs, Rc;  // R0, R0 K, R0 K^2
-    Vec3 offset;      // origin in the previous link's frame [m]
-    Vec3 axis;        // in the joint's frame
+    Mat3 R0;        // or R0 Q
+    bool shifted;   // R0 is not the identity
+    bool oblique;   // the axis is none of x, y, z
+    Mat3 back;      // Q^T where oblique
+    int first, second, third;  // columns: first turns towards second, third is the axis
+    double sign;    // -1 where the axis points against the third column
+    Vec3 offset;    // origin in the previous link's frame [m]
   };
   struct LinkModel {
     double mass;  // [kg]
@@ -93,7 +100,9 @@ class Arm {
   };
 
   std::size_t size() const { return static_cast<std::size_t>(dof()); }
-  Body body(const Frames& f, std::size_t i) const;
+  static JointModel model(const Joint& joint);
+  static void turn(const JointModel& joint, double q, const Mat3& before, Mat3& R, Vec3& axis);
+  void place_link(const Frames& f, std::size_t i, Bodies& bodies) const;
 
   int dof_;
   std::array<JointModel, kCapacity<N>> joints_;

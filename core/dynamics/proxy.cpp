@@ -110,20 +110,19 @@ template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
   const std::span<const Contact<N>> near = contacts_.list();
   const Eigen::Index n = x_.size();
-  Mat<N> stiffness = Mat<N>::Zero(n, n);  // d f2 / d vbar, negative
-  Vec<N> f2 = Vec<N>::Zero(n);            // where vbar is zero
+  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
+  // f2 - K T/2 vbar the contacts' force.
+  Mat<N> A = 2 / T * M_ + S_;
+  A.diagonal().array() += drive.damping;
+  Vec<N> b = 2 / T * (L_ * nu_) + drive.constant;
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (!touching_[i]) continue;
     const Contact<N>& c = near[i];
-    f2 -= c.stiffness * c.depth * c.gradient;
-    stiffness.noalias() += (0.5 * T * c.stiffness) * c.gradient * c.gradient.transpose();
+    Vec<N> answer = c.stiffness * c.gradient;  // of tau2 + f2 to a deeper contact, negative
+    answer += drive.from_f2 * answer.eval();
+    A.noalias() += (0.5 * T) * answer * c.gradient.transpose();
+    b -= c.depth * answer;
   }
-  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2
-  Mat<N> A = 2 / T * M_ + S_ + stiffness;
-  A.noalias() += drive.from_f2 * stiffness;
-  A.diagonal().array() += drive.damping;
-  Vec<N> b = 2 / T * (L_ * nu_) + drive.constant + f2;
-  b.noalias() += drive.from_f2 * f2;
   vbar_ = solve<N>(A, b);
 
   f_ = Vec<N>::Zero(n);

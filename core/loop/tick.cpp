@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/subnormals.h"
+
 namespace limpid {
 namespace {
 
@@ -48,6 +50,7 @@ void Tick<N>::start(const Parameters& p, const Start<N>& start) {
 template <int N>
 const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force_wanted,
                            std::span<double> row) {
+  const NoSubnormals fast_at_rest;
   const double T = p.tick;
   if (k_ > 0) close_books(in, T);
   proxy_.set_ratio(p.inertia_ratio);
@@ -57,7 +60,11 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
 
   // The device, (5), as the controller believes it to be.
-  if (k_ > 0) velocity_.update(in.measured, T, p.velocity, p.encoder_step);
+  if (k_ > 0) {
+    velocity_.update(in.measured, T, p.velocity, p.encoder_step);
+  } else {
+    velocity_.reset(in.measured);
+  }
   device_.v = velocity_.estimate();
   arm_.frames(in.measured, frames_);
   arm_.inertia_coriolis(frames_, device_.v, device_.M, device_.C);

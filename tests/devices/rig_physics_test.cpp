@@ -94,7 +94,7 @@ TEST(CoordinationError, StaysSmallInMotionWithTheProposedCoupling) {
   const HandPath hand = test::hand("touch.csv");
   const double proposed = largest(follow(p, scene, hand));
   p.kind = CouplingKind::standard;
-  EXPECT_LT(proposed, 0.1 * largest(follow(p, scene, hand)));
+  EXPECT_LT(proposed, 0.25 * largest(follow(p, scene, hand)));
   for (const double error : {0.5, 2.0}) {  // with the model's inertia wrong
     Parameters wrong;
     wrong.inertia_error = error;
@@ -167,12 +167,15 @@ TEST(ForceEstimate, OfAStaticPressIsTheHandsTorque) {
   EXPECT_LT((f1 + rows.vec(last, Column::contact_torque)).norm(), 1e-3 * f1.norm());
 }
 
-// A hand of pure stiffness on the tip, nudged: do swings die out?
-bool is_stable(double eta, double grip) {
+constexpr double kStiffGrip = 3000;  // [N/m]
+
+// A hand of pure stiffness holds the tip and is nudged: how much faster than at first does it swing
+// after three seconds?
+double growth(double eta) {
   const ArmDescription arm = test::omni();
   Parameters p;
   p.eta = eta;
-  p.hand_stiffness = grip;
+  p.hand_stiffness = kStiffGrip;
   p.hand_damping = 0;
   p.torque_limit = 100;
   Rig rig(arm, Scene{});
@@ -183,16 +186,29 @@ bool is_stable(double eta, double grip) {
     const double nudge = k < 20 ? 1e-4 : 0;
     rig.step(p, {{kHome + Vec3(nudge, nudge, nudge), 1}, true}, rows.add());
     const double speed = rows.vec(k, Column::device_velocity).norm();
-    if (k >= 100 && k < 600) early = std::max(early, speed);
+    if (k < 500) early = std::max(early, speed);
     if (k >= 2500) late = std::max(late, speed);
   }
-  return late < early;
+  return late / early;
 }
 
 TEST(EtaMin, OfAStiffUndampedGripIsWhereTheLoopTurnsUnstable) {
-  // The theory without sampling says 0.56 or so; the whole loop, 0.60 stable and 0.55 not.
-  EXPECT_TRUE(is_stable(0.62, 3000));
-  EXPECT_FALSE(is_stable(0.50, 3000));
+  const ArmDescription description = test::omni();
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames f;
+  Mat<kAnyDof> M;
+  Jacobian<kAnyDof> J;
+  arm.frames(rest_at(description, kHome).x1, f);
+  arm.inertia(f, M);
+  arm.point_jacobian(f, 2, kHome, J);
+  const Parameters p;
+  const Eigen::MatrixXd K = kStiffGrip * J.transpose() * J;
+  const double limit = eta_min_grip((1 + p.inertia_ratio) * M, Vector::Constant(3, 0.024), p.alpha,
+                                    K, Eigen::MatrixXd::Zero(3, 3));
+  EXPECT_NEAR(limit, 0.56, 0.03);
+  // The theory knows nothing of sampling, which costs a little.
+  EXPECT_LT(growth(1.1 * limit), 0.1);
+  EXPECT_GT(growth(0.97 * limit), 10);
 }
 
 TEST(Loop, ThatIsUnstableSaysSoAndGivesNoMoreTorque) {

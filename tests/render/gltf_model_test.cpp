@@ -12,8 +12,9 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 void append(Bytes& bytes, const void* data, std::size_t size) {
-  const auto* p = static_cast<const unsigned char*>(data);
-  bytes.insert(bytes.end(), p, p + size);
+  if (size == 0) return;
+  bytes.resize(bytes.size() + size);
+  std::memcpy(bytes.data() + bytes.size() - size, data, size);
 }
 
 void append_word(Bytes& bytes, std::uint32_t word) { append(bytes, &word, 4); }

@@ -1,0 +1,181 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include "app/experiments/passivity_trials.h"
+#include "app/experiments/series.h"
+
+namespace limpid {
+namespace {
+
+using testing::ElementsAre;
+
+namespace fs = std::filesystem;
+
+// All that a trial decides; how long ticks took is the machine's.
+std::vector<double> physics(const Session& session) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto row = session.row(k);
+    values.insert(values.end(), row.begin(),
+                  row.begin() + session.layout.offset(Column::wake_latency));
+  }
+  return values;
+}
+
+class Laboratories : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "limpid-laboratory-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    options_.dir = pattern;
+  }
+  void TearDown() override { fs::remove_all(options_.dir); }
+
+  static Trial trial(const std::string& name, double eta) {
+    Parameters p;
+    p.eta = eta;
+    Trial t{name, plan_of("table", "touch", p)};
+    t.plan.rows = 300;
+    return t;
+  }
+  static std::vector<Trial> three() { return {trial("a", 0.6), trial("b", 1), trial("c", 5)}; }
+
+  fs::path file(const std::string& name) const { return options_.dir / "test" / (name + ".h5"); }
+
+  Laboratory::Options options_;
+};
+
+TEST_F(Laboratories, GiveResultsInTheOrderOfTheTrialsWhateverTheThreads) {
+  std::vector<std::vector<double>> first;
+  for (const unsigned threads : {1u, 2u, 5u}) {
+    options_.threads = threads;
+    fs::remove_all(options_.dir / "test");
+    const std::vector<TrialResult> results = Laboratory("test", options_).run(three());
+    ASSERT_EQ(results.size(), 3u);
+    std::vector<std::vector<double>> rows;
+    for (const TrialResult& result : results) rows.push_back(physics(result.session));
+    EXPECT_EQ(results[2].session.at(0, Column::eta)[0], 5);
+    if (first.empty()) first = rows;
+    EXPECT_EQ(rows, first) << threads << " threads";
+  }
+}
+
+TEST_F(Laboratories, ReadWhatIsThereInsteadOfRunningIt) {
+  const std::vector<TrialResult> ran = Laboratory("test", options_).run(three());
+  std::map<std::string, fs::file_time_type> written;
+  for (const char* name : {"a", "b", "c"}) written[name] = fs::last_write_time(file(name));
+  const std::vector<TrialResult> read = Laboratory("test", options_).run(three());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read[i].session.rows, ran[i].session.rows);  // timing, too: it is the same run
+    EXPECT_EQ(read[i].end.rows, 300u);
+    EXPECT_FALSE(read[i].end.diverged);
+  }
+  for (const auto& [name, time] : written) EXPECT_EQ(fs::last_write_time(file(name)), time);
+}
+
+TEST_F(Laboratories, RunAgainWhatAnotherPlanLeft) {
+  Laboratory("test", options_).run({trial("a", 1)});
+  const auto result = Laboratory("test", options_).run({trial("a", 2)});
+  EXPECT_EQ(result[0].session.at(0, Column::eta)[0], 2);
+  EXPECT_EQ(read_session(file("a")).at(0, Column::eta)[0], 2);
+}
+
+TEST_F(Laboratories, RunAgainWhereTheHandGoesElsewhereUnderTheSameName) {
+  Laboratory("test", options_).run({trial("a", 1)});
+  Trial moved = trial("a", 1);
+  for (Vec3& p : moved.plan.hand.position) p.z() += 0.001;
+  const auto result = Laboratory("test", options_).run({moved});
+  EXPECT_EQ(result[0].session.at(0, Column::hand_target)[2], moved.plan.hand.sample(0, 0.001).z());
+}
+
+TEST_F(Laboratories, ReplaceAFileThatIsNoSession) {
+  fs::create_directories(file("a").parent_path());
+  std::ofstream(file("a")) << "not a session";
+  EXPECT_EQ(Laboratory("test", options_).run({trial("a", 1)})[0].session.size(), 300u);
+  EXPECT_EQ(read_session(file("a")).size(), 300u);
+}
+
+TEST_F(Laboratories, LeaveNoFileOfATrialThatIsNotKept) {
+  Trial t = trial("a", 1);
+  t.keep = false;
+  EXPECT_EQ(Laboratory("test", options_).run({t})[0].session.size(), 300u);
+  EXPECT_FALSE(fs::exists(file("a")));
+}
+
+TEST_F(Laboratories, ShareTrialsThroughAFolder) {
+  Trial t = trial("a", 1);
+  t.folder = "common";
+  Laboratory("test", options_).run({t});
+  EXPECT_TRUE(fs::exists(options_.dir / "common" / "a.h5"));
+}
+
+TEST_F(Laboratories, StopWhenToldAndGoOnLater) {
+  std::atomic<bool> stop{false};
+  options_.stop = &stop;
+  options_.threads = 1;
+  options_.progress = [&](double) { stop = true; };  // after the first trial
+  EXPECT_THROW(Laboratory("test", options_).run(three()), Cancelled);
+  EXPECT_TRUE(fs::exists(file("a")));
+  EXPECT_FALSE(fs::exists(file("b")));
+
+  stop = false;
+  std::vector<double> parts;
+  options_.progress = [&](double part) { parts.push_back(part); };
+  const auto written = fs::last_write_time(file("a"));
+  EXPECT_EQ(Laboratory("test", options_).run(three()).size(), 3u);
+  EXPECT_EQ(fs::last_write_time(file("a")), written);
+  EXPECT_THAT(parts, ElementsAre(1.0 / 3, 2.0 / 3, 1.0));
+}
+
+TEST_F(Laboratories, PassOnWhatWentWrong) {
+  Trial unreachable = trial("a", 1);
+  for (Vec3& p : unreachable.plan.hand.position) p = Vec3(5, 0, 0);
+  EXPECT_THROW(Laboratory("test", options_).run({unreachable}), std::invalid_argument);
+}
+
+HandPath circle() { return plan_of("table", "circle", {}).hand; }
+
+TEST(HandVariation, IsTheSameForTheSameSeedsAndAnotherForOthers) {
+  const HandPath path = circle(), one = varied(path, 3, 1);
+  EXPECT_EQ(one.position, varied(path, 3, 1).position);
+  EXPECT_NE(one.position, varied(path, 3, 2).position);
+  EXPECT_NE(one.position, varied(path, 4, 1).position);
+  EXPECT_NE(one.source, varied(path, 3, 2).source);
+}
+
+TEST(HandVariation, StartsAndEndsWhereThePathDoesAndStaysNearIt) {
+  const HandPath path = circle();
+  Vec3 low = path.position[0], high = low;
+  for (const Vec3& p : path.position) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 margin = 0.15 * (high - low) + Vec3::Constant(2e-4);
+  for (std::uint64_t i = 1; i < 30; ++i) {
+    const HandPath one = varied(path, 0, i);
+    EXPECT_LT((one.position.front() - path.position.front()).norm(), 1e-12);
+    EXPECT_LT((one.position.back() - path.position.back()).norm(), 1e-4);
+    EXPECT_NEAR(one.duration() / path.duration(), 1, 0.16);
+    for (const Vec3& p : one.position) {
+      EXPECT_TRUE((p.array() >= (low - margin).array()).all());
+      EXPECT_TRUE((p.array() <= (high + margin).array()).all());
+    }
+  }
+}
+
+TEST(PassivityTrials, FollowTheSameHandsWithEveryCoupling) {
+  const auto some = passivity_trials(passivity_cases()[0], 7);
+  const auto others = passivity_trials(passivity_cases()[4], 7);
+  ASSERT_EQ(some.size(), kTrialsOfACase);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    EXPECT_EQ(some[i].plan.hand.position, others[i].plan.hand.position);
+    EXPECT_NE(some[i].name, others[i].name);
+  }
+  EXPECT_EQ(some[0].plan.hand.position, circle().position);
+}
+
+}  // namespace
+}  // namespace limpid

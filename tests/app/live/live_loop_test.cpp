@@ -1,0 +1,135 @@
+// The loop behind the window: what it records while controls change comes again bit for bit.
+#include "app/live/live_loop.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "app/run/replay.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+using namespace std::chrono_literals;
+const Vec3 kHome(0.19, 0, 0);
+
+SessionInfo info_of(const ArmDescription& arm, const Scene& scene, const Parameters& p) {
+  RunPlan plan;
+  plan.arm = arm;
+  plan.scene = scene;
+  plan.hand.source = "mouse";
+  plan.parameters = p;
+  return session_info(plan);
+}
+
+// Waits until the loop has lived through some more ticks.
+void let_live(LiveLoop& loop, std::int64_t ticks) {
+  const auto until = loop.status().ticks + ticks;
+  while (loop.status().ticks < until && loop.status().running) std::this_thread::sleep_for(1ms);
+}
+
+TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
+  const test::TempDir dir;
+  const ArmDescription arm = test::omni();
+  const Scene scene = test::omni_scene("table.toml");
+  LiveLoop loop({});
+  Controls controls;
+  loop.open(arm, scene, controls.parameters, kHome);
+  // It is in motion when the recording begins.
+  controls.grab = true;
+  controls.goal = kHome + Vec3(0.02, 0.03, 0.01);
+  loop.set(controls);
+  let_live(loop, 100);
+  loop.record(dir / "a.h5", info_of(arm, scene, controls.parameters), controls.parameters, false);
+  for (int i = 0; i < 25; ++i) {
+    controls.goal = kHome + Vec3(0.001 * i, -0.002 * i, -0.0025 * i);
+    controls.grab = i % 8 != 7;
+    controls.force = i % 11 < 9;
+    controls.parameters.kind = i % 5 == 4 ? CouplingKind::standard : CouplingKind::proposed;
+    controls.parameters.eta = 0.7 + 0.1 * i;
+    if (i == 10) controls.parameters.velocity = VelocitySource::lowpass;
+    if (i == 12) controls.parameters.damping = 0.02;
+    if (i == 16) controls.parameters.damping = kFromArm;
+    loop.set(controls);
+    let_live(loop, 40);
+  }
+  EXPECT_EQ(loop.recorder()->dropped(), 0u);
+  loop.stop_recording();
+  EXPECT_FALSE(loop.recording());
+  loop.close();
+
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_GT(session.size(), 500u);
+  EXPECT_GT(session.changes.size(), 20u);
+  const RunPlan plan = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(plan)), -1);
+}
+
+TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
+  LiveLoop loop({});
+  Controls controls;
+  loop.open(test::omni(), test::omni_scene("table.toml"), controls.parameters, kHome);
+  loop.set(controls);
+  let_live(loop, 200);
+  loop.close();
+  const RowLayout layout(3);
+  std::vector<double> rows(10000 * static_cast<std::size_t>(layout.stride()));
+  const std::size_t count = loop.drain(rows);
+  ASSERT_GE(count, 200u);
+  EXPECT_EQ(loop.trace_dropped(), 0u);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto row = std::span<const double>(rows).subspan(
+        k * static_cast<std::size_t>(layout.stride()), static_cast<std::size_t>(layout.stride()));
+    ASSERT_NEAR(layout.in(row, Column::time)[0], static_cast<double>(k) * 1e-3, 1e-9);
+  }
+  EXPECT_TRUE(loop.update());
+  EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().row), Column::time)[0],
+              static_cast<double>(count - 1) * 1e-3, 1e-9);
+  EXPECT_FALSE(loop.update());
+}
+
+TEST(LiveLoop, StartsOverWhenAsked) {
+  LiveLoop loop({});
+  Controls controls;
+  loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+  controls.grab = true;
+  controls.goal = kHome + Vec3(0, 0.05, 0);
+  loop.set(controls);
+  let_live(loop, 300);
+  controls.grab = false;
+  controls.resets = 1;
+  loop.set(controls);
+  let_live(loop, 5);
+  loop.close();
+  ASSERT_TRUE(loop.update());
+  const RowLayout layout(3);
+  const auto row = std::span<const double>(loop.snapshot().row);
+  const auto start = rest_at(test::omni(), kHome).x1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(layout.in(row, Column::device_position)[i], start[static_cast<int>(i)], 1e-4);
+  }
+}
+
+TEST(LiveLoop, RefusesAHomeOutOfReachAndGoesOnAsBefore) {
+  LiveLoop loop({});
+  loop.open(test::omni(), Scene{}, Parameters{}, kHome);
+  EXPECT_THROW(loop.open(test::omni(), Scene{}, Parameters{}, Vec3(3, 0, 0)),
+               std::invalid_argument);
+  EXPECT_TRUE(loop.status().running);
+  let_live(loop, 10);
+}
+
+TEST(LiveLoop, RefusesARecordingThatCannotBeWritten) {
+  const test::TempDir dir;
+  LiveLoop loop({});
+  const ArmDescription arm = test::omni();
+  loop.open(arm, Scene{}, Parameters{}, kHome);
+  EXPECT_THROW(loop.record(dir / "no/a.h5", info_of(arm, Scene{}, {}), {}, false), FileError);
+  EXPECT_FALSE(loop.recording());
+  let_live(loop, 10);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,106 @@
+#include "app/run/recorder.h"
+
+#include <cstring>
+#include <vector>
+
+#include "tests/devices/files/sample_session.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/rows.h"
+
+namespace limpid {
+namespace {
+
+using test::sample_info;
+using test::sample_rows;
+using testing::HasSubstr;
+
+class RecorderOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, RecorderOfJoints, testing::Values(1, 3, 32));
+
+TEST_P(RecorderOfJoints, WritesEveryRowInOrder) {
+  const test::TempDir dir;
+  const SessionInfo info = sample_info(GetParam());
+  const RowLayout layout(info.dof);
+  constexpr std::size_t kRows = 5000;
+  const std::vector<double> rows = sample_rows(layout, 0, kRows);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  Recorder recorder(dir / "a.h5", info, Parameters{}, false);
+  for (std::size_t k = 0; k < kRows; ++k) {
+    ASSERT_TRUE(recorder.push_waiting(std::span(rows).subspan(k * stride, stride)));
+  }
+  EXPECT_EQ(recorder.rows(), kRows);
+  recorder.finish();
+  EXPECT_EQ(recorder.dropped(), 0u);
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_EQ(session.size(), kRows);
+  EXPECT_EQ(std::memcmp(session.rows.data(), rows.data(), rows.size() * sizeof(double)), 0);
+}
+
+TEST(Recorder, WritesChangesBesideTheRowTheyHoldFrom) {
+  const test::TempDir dir;
+  const RowLayout layout(3);
+  Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+  Parameters p;
+  for (std::size_t k = 0; k < 100; ++k) {
+    if (k == 40) {
+      p.k_vc = 8;
+      p.kind = CouplingKind::standard;
+      recorder.changed(p);
+    }
+    if (k == 70) {
+      p.damping = 0.1;
+      recorder.changed(p);
+    }
+    if (k == 90) {
+      p.damping = kFromArm;
+      recorder.changed(p);
+    }
+    ASSERT_TRUE(recorder.push(sample_rows(layout, k, 1)));
+  }
+  recorder.changed(p);  // nothing new
+  recorder.finish();
+  const auto changes = read_session(dir / "a.h5").changes;
+  ASSERT_EQ(changes.size(), 4u);
+  EXPECT_EQ(changes[0].row, 40u);
+  EXPECT_EQ(changes[0].setting, "coupling.kind = \"standard\"");
+  EXPECT_EQ(changes[1].row, 40u);
+  EXPECT_EQ(changes[1].setting, "coupling.k_vc = 8.0");
+  EXPECT_EQ(changes[2].row, 70u);
+  EXPECT_EQ(changes[2].key(), "device.damping");
+  EXPECT_EQ(changes[3].row, 90u);
+  EXPECT_EQ(changes[3].key(), "device.damping");
+}
+
+TEST(Recorder, LeavesAPartThatCanBeRecoveredIfItIsNotFinished) {
+  const test::TempDir dir;
+  const RowLayout layout(3);
+  {
+    Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+    for (std::size_t k = 0; k < 2000; ++k) {
+      ASSERT_TRUE(recorder.push_waiting(sample_rows(layout, k, 1)));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(dir / "a.h5"));
+  EXPECT_EQ(recover_session(dir / "a.h5.part", false).file, dir / "a.h5");
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_GE(session.size(), 1000u);  // at most a second is lost
+  const auto wanted = sample_rows(layout, 0, session.size());
+  EXPECT_EQ(std::memcmp(session.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
+}
+
+TEST(Recorder, RefusesAtOnceWhatItCannotWrite) {
+  const test::TempDir dir;
+  EXPECT_THAT(test::refusal([&] {
+                Recorder(dir / "no/such/folder/a.h5", sample_info(3), Parameters{}, false);
+              }),
+              HasSubstr("no/such/folder"));
+  test::write_file(dir / "a.h5", "mine");
+  EXPECT_THAT(test::refusal([&] {
+                Recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+              }),
+              HasSubstr("a.h5"));
+  EXPECT_EQ(test::file_bytes(dir / "a.h5"), "mine");
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,94 @@
+// What was recorded comes again, bit for bit.
+#include "app/run/replay.h"
+
+#include "app/run/recorder.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+using test::first_difference;
+using test::rows_of;
+
+// Runs a plan and records it, as `limpid run --record` does.
+Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
+  Recorder recorder(out, session_info(plan), plan.parameters, false);
+  simulate(plan, {}, [&](std::span<const double> row, const Parameters* changed) {
+    if (changed != nullptr) recorder.changed(*changed);
+    return recorder.push_waiting(row);
+  });
+  recorder.finish();
+  return read_session(out);
+}
+
+RunPlan eventful() {
+  RunPlan plan = test::plan("obstacles.toml", "touch.csv", 3);
+  plan.parameters.eta = 0.8;
+  plan.parameters.hand_stiffness = 417.3;
+  plan.changes = {{500, "coupling.kind = \"standard\""},
+                  {900, "coupling.eta = 2.123456789012345"},
+                  {901, "coupling.kind = \"proposed\""},
+                  {1200, "observer.velocity = \"adaptive\""},
+                  {1200, "device.encoder_step = 4e-4"},
+                  {1500, "device.damping = 0.02"},
+                  {1800, "proxy.inertia_ratio = 0.01"},
+                  {2100, "device.damping = "},
+                  {2200, "device.torque_limit = 0.1"}};
+  for (std::size_t k = 0; k < plan.rows; ++k) plan.force.push_back(k % 1000 < 800);
+  return plan;
+}
+
+TEST(Replay, GivesEveryRowOfARunAgainWithItsChangesInTheMiddle) {
+  const test::TempDir dir;
+  const RunPlan plan = eventful();
+  const Session session = recorded(plan, dir / "a.h5");
+  ASSERT_EQ(session.size(), plan.rows);
+  EXPECT_EQ(first_difference(rows_of(plan), rows_of(session)), -1);  // the file lost nothing
+  const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  EXPECT_EQ(again.rows, plan.rows);
+  EXPECT_EQ(again.changes.size(), plan.changes.size());
+  EXPECT_EQ(first_difference(rows_of(session), rows_of(again)), -1);
+}
+
+TEST(Replay, OfAReplayIsTheSameStill) {
+  const test::TempDir dir;
+  const Session first = recorded(eventful(), dir / "a.h5");
+  const RunPlan plan = replay(first, "a.h5", session_parameters(first, "a.h5"));
+  const Session second = recorded(plan, dir / "b.h5");
+  EXPECT_EQ(first_difference(rows_of(first), rows_of(second)), -1);
+  EXPECT_EQ(second.changes.size(), first.changes.size());
+}
+
+TEST(Replay, KeepsWhatIsChosenOtherwiseAgainstTheRecordedChanges) {
+  const test::TempDir dir;
+  const Session session = recorded(eventful(), dir / "a.h5");
+  Parameters chosen = session_parameters(session, "a.h5");
+  EXPECT_EQ(chosen.eta, 0.8);
+  chosen.eta = 3;
+  const auto rows = rows_of(replay(session, "a.h5", chosen));
+  for (std::size_t k = 0; k < rows.size(); ++k) ASSERT_EQ(rows.at(k, Column::eta), 3);
+  // All else goes as it went.
+  EXPECT_EQ(rows.at(700, Column::kind), 0);
+  EXPECT_EQ(rows.at(1000, Column::kind), 1);
+}
+
+TEST(Replay, RefusesASessionWhoseTextsAreBroken) {
+  const test::TempDir dir;
+  const Session whole = recorded(test::plan("table.toml", "touch.csv", 0.1), dir / "a.h5");
+  Session broken = whole;
+  broken.info.device_urdf = "<robot";
+  EXPECT_THAT(test::refusal([&] { replay(broken, "a.h5", Parameters{}); }),
+              testing::HasSubstr("a.h5"));
+  broken = whole;
+  broken.info.scene = "[[plane]\n";
+  EXPECT_THAT(test::refusal([&] { replay(broken, "a.h5", Parameters{}); }),
+              testing::HasSubstr("a.h5"));
+  broken = whole;
+  broken.info.config = "coupling.eta = true\n";
+  EXPECT_THAT(test::refusal([&] { session_parameters(broken, "a.h5"); }),
+              testing::HasSubstr("coupling.eta"));
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,100 @@
+#include "app/session/player.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/devices/files/sample_session.h"
+
+namespace limpid {
+namespace {
+
+Player player(std::size_t rows) {
+  Session session;
+  session.info = test::sample_info(3);
+  session.rows = test::sample_rows(session.layout, 0, rows);
+  return Player(std::move(session));
+}
+
+TEST(Player, ShowsTheRowOfItsTime) {
+  Player p = player(1000);
+  EXPECT_NEAR(p.duration(), 1, 1e-12);
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{537}, std::size_t{999}}) {
+    p.seek(static_cast<double>(k) * 1e-3);
+    EXPECT_EQ(p.index(), k);
+    EXPECT_EQ(p.session().layout.in(p.row(), Column::time)[0],
+              p.session().at(k, Column::time)[0]);
+  }
+}
+
+TEST(Player, StaysInsideTheSessionWhereverItIsSent) {
+  Player p = player(100);
+  p.seek(-5);
+  EXPECT_EQ(p.index(), 0u);
+  p.seek(1e9);
+  EXPECT_EQ(p.index(), 99u);
+  p.step(1);
+  EXPECT_EQ(p.index(), 99u);
+  p.step(-1);
+  EXPECT_EQ(p.index(), 98u);
+}
+
+TEST(Player, StepsThroughEveryRow) {
+  Player p = player(500);
+  p.play();
+  for (std::size_t k = 1; k < 500; ++k) {
+    p.step(1);
+    ASSERT_EQ(p.index(), k);
+  }
+  EXPECT_FALSE(p.playing());
+  for (std::size_t k = 499; k-- > 0;) {
+    p.step(-1);
+    ASSERT_EQ(p.index(), k);
+  }
+}
+
+TEST(Player, AdvancesAtItsSpeedOnlyWhilePlaying) {
+  Player p = player(10000);
+  p.advance(1);
+  EXPECT_EQ(p.time(), 0);
+  p.play();
+  p.speed = 2.5;
+  for (int frame = 0; frame < 60; ++frame) p.advance(1.0 / 60);
+  EXPECT_NEAR(p.time(), 2.5, 1e-9);
+  p.pause();
+  p.advance(1);
+  EXPECT_NEAR(p.time(), 2.5, 1e-9);
+}
+
+TEST(Player, StopsAtTheEndAndBeginsAnewWhenPlayedAgain) {
+  Player p = player(100);
+  p.play();
+  p.advance(0.35);
+  EXPECT_FALSE(p.playing());
+  EXPECT_EQ(p.index(), 99u);
+  p.play();
+  EXPECT_EQ(p.index(), 0u);
+  EXPECT_TRUE(p.playing());
+}
+
+TEST(Player, GoesRoundWhenLooped) {
+  Player p = player(100);
+  p.loop = true;
+  p.play();
+  p.advance(0.0975);
+  p.advance(0.01);
+  EXPECT_TRUE(p.playing());
+  EXPECT_NEAR(p.time(), 0.0075, 1e-12);
+  p.advance(10.05);  // many times round
+  EXPECT_LT(p.time(), p.duration());
+}
+
+TEST(Player, OfASingleRowShowsIt) {
+  Player p = player(1);
+  p.play();
+  p.advance(3);
+  p.step(5);
+  p.seek(2);
+  EXPECT_EQ(p.index(), 0u);
+}
+
+}  // namespace
+}  // namespace limpid
