@@ -127,8 +127,8 @@ std::string experiment_help() {
   std::string text = "Experiments:\n";
   for (const Experiment& e : experiments()) text += fmt::format("  {:<14} {}\n", e.name, e.about);
   return text + "  all            one after the other\n\n"
-                "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of the\n"
-                "trials. Called again with the same DIR it goes on where it was stopped.\n"
+                "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
+                "the trials. Called again with the same DIR it goes on where it was stopped.\n"
                 "Exit status 1: a check failed, or it was stopped.";
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 
+#include "app/desktop/experiments_panel.h"
 #include "app/desktop/keys.h"
 #include "app/desktop/panels.h"
 #include "app/rtkit.h"
@@ -41,7 +42,14 @@ void splitter(const char* name, const ScreenRect& rect, bool vertical, double di
   ImGui::PopStyleVar(2);
 }
 
-void draw(Workbench& bench, Window& window, ViewPanel& view_panel, SidePanel& side_panel) {
+// The parts of the window that remember something themselves.
+struct Panels {
+  ViewPanel view;
+  SidePanel side;
+  ExperimentsPanel experiments;
+};
+
+void draw(Workbench& bench, Window& window, Panels& panels) {
   draw_menu_bar(bench, window);
   int points_x = 0, points_y = 0;
   window.size(points_x, points_y);
@@ -62,9 +70,9 @@ void draw(Workbench& bench, Window& window, ViewPanel& view_panel, SidePanel& si
   const float right = s.show_right ? width - scaled(s.right) : width;
 
   const ScreenRect view{{left, top}, {right, middle}};
-  view_panel.draw(bench, window, view);
+  panels.view.draw(bench, window, view);
   if (s.show_left) draw_coupling_panel(bench, {{0, top}, {left, middle}});
-  if (s.show_right) side_panel.draw(bench, {{right, top}, {width, middle}}, window.frame_time());
+  if (s.show_right) panels.side.draw(bench, {{right, top}, {width, middle}}, window.frame_time());
   if (s.show_plots) draw_plots(bench, window, {{0, middle}, {width, bottom}});
   draw_transport(bench, {{0, bottom}, {width, height}});
 
@@ -79,6 +87,7 @@ void draw(Workbench& bench, Window& window, ViewPanel& view_panel, SidePanel& si
     splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120, 520);
   }
   draw_dialogs(bench);
+  panels.experiments.draw(bench);
   draw_notices(bench, view);
 }
 
@@ -142,8 +151,7 @@ void run_desktop(const DesktopOptions& options) {
   bench.recover_leftovers();
   if (!options.session.empty()) bench.open_session(options.session);
 
-  ViewPanel view;
-  SidePanel side;
+  Panels panels;
   double last = glfwGetTime();
   int frame = 0;
   while (window.begin_frame()) {
@@ -153,7 +161,7 @@ void run_desktop(const DesktopOptions& options) {
     open_dropped(bench, window.dropped());
     bench.update(now - last);
     last = now;
-    draw(bench, window, view, side);
+    draw(bench, window, panels);
     window.end_frame();
     if (options.print_state && ++frame % 6 == 0) print_state(bench);
   }

@@ -27,6 +27,7 @@ constexpr std::array kShortcuts{
     Shortcut{"X", "freeze or follow the plots"},
     Shortcut{"G", "ghost of the device"},
     Shortcut{"F2  F3  F4", "coupling panel, device panel, plots"},
+    Shortcut{"F5", "the paper's experiments"},
     Shortcut{"F11, F12", "full screen, save a picture"},
     Shortcut{"Ctrl+O  Ctrl+Z  Ctrl+Y  Ctrl+Q", "open, undo, redo, quit"},
     Shortcut{"plots", "drag pans, wheel zooms, double click fits, right click saves"},
@@ -86,6 +87,7 @@ void handle_key(Workbench& bench, Window& window, const KeyPress& press) {
     case GLFW_KEY_F2: s.show_left = !s.show_left; break;
     case GLFW_KEY_F3: s.show_right = !s.show_right; break;
     case GLFW_KEY_F4: s.show_plots = !s.show_plots; break;
+    case GLFW_KEY_F5: bench.show_experiments = !bench.show_experiments; break;
     case GLFW_KEY_F11: window.toggle_full_screen(); break;
     case GLFW_KEY_F12: bench.save_picture(window); break;
     case GLFW_KEY_BACKSPACE: bench.start_over(); break;
@@ -102,7 +104,7 @@ void handle_keys(Workbench& bench, Window& window) {
     // Force goes off whatever else the key may do.
     if (press.key == GLFW_KEY_ESCAPE || press.key == GLFW_KEY_SPACE) {
       bench.cut_force();
-      bench.show_help = bench.show_about = bench.show_open = false;
+      bench.show_help = bench.show_about = bench.show_open = bench.show_experiments = false;
     } else if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
       handle_control_key(bench, window, press.key);
     } else if (bench.playback && press.key == GLFW_KEY_BACKSPACE) {

@@ -79,6 +79,8 @@ void session_menu(Workbench& bench) {
   if (ImGui::MenuItem("Back to live", "Backspace", false, bench.playing_back())) {
     bench.close_playback();
   }
+  ImGui::Separator();
+  if (ImGui::MenuItem("Experiments of the paper...", "F5")) bench.show_experiments = true;
   ImGui::EndMenu();
 }
 

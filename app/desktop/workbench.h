@@ -94,7 +94,7 @@ class Workbench {
   Background<std::vector<double>> rerunning;
   Background<std::string> exporting;
   std::string scene_file, device_file;
-  bool show_help = false, show_about = false, show_open = false;
+  bool show_help = false, show_about = false, show_open = false, show_experiments = false;
   std::string typed_path;
 
  private:

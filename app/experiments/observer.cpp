@@ -62,7 +62,8 @@ class Shaking {
   const Multisine& lines() const { return axes_.front(); }
   Trial trial(double alpha, double seconds, bool keep) const {
     const std::string source =
-        fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest, kHighest, kSpeed, seed_);
+        fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest, kHighest, kSpeed,
+                    seed_);
     const auto at = [&](double t) {
       return Vec3(start() + Vec3(axes_[0].at(t), axes_[1].at(t), axes_[2].at(t)));
     };
@@ -138,7 +139,7 @@ void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
 // f1_hat over f1 along the heaviest mode for three gains.
 void response(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<Trial> trials;
-  for (const double alpha : kShown) trials.push_back(shaking.trial(alpha, 2 * kPeriod, false));
+  for (const double alpha : kShown) trials.push_back(shaking.trial(alpha, 2 * kPeriod, true));
   const Modes modes = modes_of(trials.front().plan.arm);
   const std::vector<TrialResult> results = lab.run(trials);
   FigurePanel panel;
@@ -168,7 +169,8 @@ void error_decay(Laboratory& lab, Outcome& outcome) {
   constexpr double kWrong = 1e-3;  // [N m]
   std::vector<Trial> trials;
   for (const double alpha : kShown) {
-    RunPlan plan = free_plan(alpha, hand_path("at rest", kTick, 0.2, [](double) { return start(); }));
+    const auto still = [](double) { return start(); };
+    RunPlan plan = free_plan(alpha, hand_path("at rest", kTick, 0.2, still));
     plan.start = rest_at(plan.arm, start());
     plan.start->f1_hat = kWrong * modes_of(plan.arm).u.rowwise().sum();
     trials.push_back({fmt::format("wrong-{:.3g}", alpha), std::move(plan), false});
@@ -245,8 +247,8 @@ Outcome observer(Laboratory& lab) {
   Outcome outcome;
   outcome.figure.title = "The human force observer: bandwidth, error and stability over its gain";
   outcome.figure.caption = fmt::format(
-      "Built-in arm with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of {} ms. The "
-      "hand shakes from {} to {} Hz at once; modes of M at that pose.",
+      "Built-in arm with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of "
+      "{} ms. The hand shakes from {} to {} Hz at once; modes of M at that pose.",
       start().x(), 1e3 * kTick, kLowest, kHighest);
   outcome.figure.columns = 2;
   bandwidth(lab, shaking, outcome);

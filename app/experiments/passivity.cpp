@@ -158,10 +158,10 @@ Outcome passivity(Laboratory& lab) {
   Figure& figure = outcome.figure;
   figure.title = "Energy that the coupling adds, over time";
   figure.caption = fmt::format(
-      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials with their lowest and "
-      "highest, paper's gains. Total counts the device's own damping, commanded the motors and the "
-      "proxy alone. Last panel: held still in an undamped grip of {} N/m, whose smallest stable "
-      "eta is {:.3f} by Routh and Hurwitz.",
+      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
+      "with their lowest and highest, paper's gains. Total counts the device's own damping, "
+      "commanded the motors and the proxy alone. Last panel: held still in an undamped grip of {} "
+      "N/m, whose smallest stable eta is {:.3f} by Routh and Hurwitz.",
       kTrialsOfACase, kStiffGrip, limit);
   figure.columns = 2;
   const FigurePanel axes{.x_label = "time over the trial's length [-]",

@@ -97,7 +97,8 @@ Outcome spectrum(Laboratory& lab) {
   figure.columns = 2;
   FigurePanel density{.title = "Power density of the velocity", .x_label = "frequency [Hz]",
                       .y_label = "density [(rad/s)²/Hz]", .log_y = true};
-  const auto points = spread(spectra, [](const Spectrum& s, std::size_t i) { return s.density[i]; });
+  const std::vector<FigurePoint> points =
+      spread(spectra, [](const Spectrum& s, std::size_t i) { return s.density[i]; });
   double lowest = points[0].low, highest = points[0].high;
   for (const FigurePoint& p : points) {
     lowest = std::min(lowest, p.low);

@@ -61,8 +61,30 @@ typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
 }
 
 template <int N>
-void Arm<N>::turn(const JointModel& joint, double q, const Mat3& before, Mat3& R, Vec3& axis) {
-  const double s = joint.sign * std::sin(q), c = std::cos(q);
+typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) {
+  return {x.array().sin(), x.array().cos()};
+}
+
+template <int N>
+typename Arm<N>::Angles Arm<N>::turned(const Angles& a, const Vec<N>& dx) {
+  constexpr double kSmall = 0.03;  // [rad]; the series below are exact to round-off there
+  Angles b = a;
+  for (Eigen::Index i = 0; i < dx.size(); ++i) {
+    const double d = dx[i], d2 = d * d;
+    const bool small = std::abs(d) < kSmall;
+    const double s = small ? d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42))) : std::sin(d);
+    const double c =
+        small ? 1 - d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30 * (1 - d2 / 56))) : std::cos(d);
+    b.sin[i] = a.sin[i] * c + a.cos[i] * s;
+    b.cos[i] = a.cos[i] * c - a.sin[i] * s;
+  }
+  return b;
+}
+
+template <int N>
+void Arm<N>::turn(const JointModel& joint, double sin, double cos, const Mat3& before, Mat3& R,
+                  Vec3& axis) {
+  const double s = joint.sign * sin, c = cos;
   Mat3 product;
   if (joint.shifted) product.noalias() = before * joint.R0;
   const Mat3& from = joint.shifted ? product : before;
@@ -76,12 +98,13 @@ void Arm<N>::turn(const JointModel& joint, double q, const Mat3& before, Mat3& R
 }
 
 template <int N>
-void Arm<N>::frames(const Vec<N>& x, Frames& f) const {
+void Arm<N>::frames(const Angles& angles, Frames& f) const {
   const Mat3 base = Mat3::Identity();
   for (std::size_t i = 0; i < size(); ++i) {
     const JointModel& joint = joints_[i];
     const Mat3& before = i == 0 ? base : f.R[i - 1];
-    turn(joint, x[static_cast<Eigen::Index>(i)], before, f.R[i], f.a[i]);
+    const auto k = static_cast<Eigen::Index>(i);
+    turn(joint, angles.sin[k], angles.cos[k], before, f.R[i], f.a[i]);
     if (i == 0) {
       f.p[0] = joint.offset;
     } else {

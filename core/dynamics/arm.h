@@ -58,7 +58,16 @@ class Arm {
     return dof_;
   }
 
-  void frames(const Vec<N>& x, Frames& f) const;
+  // Sines and cosines of a configuration, and of one further on by dx: to round-off, and for small
+  // steps without asking for sines again.
+  struct Angles {
+    Vec<N> sin, cos;
+  };
+  static Angles angles(const Vec<N>& x);
+  static Angles turned(const Angles& angles, const Vec<N>& dx);
+
+  void frames(const Angles& angles, Frames& f) const;
+  void frames(const Vec<N>& x, Frames& f) const { frames(angles(x), f); }
 
   // M(x) [kg m^2].
   void inertia(const Frames& f, Mat<N>& M) const;
@@ -101,7 +110,8 @@ class Arm {
 
   std::size_t size() const { return static_cast<std::size_t>(dof()); }
   static JointModel model(const Joint& joint);
-  static void turn(const JointModel& joint, double q, const Mat3& before, Mat3& R, Vec3& axis);
+  static void turn(const JointModel& joint, double sin, double cos, const Mat3& before, Mat3& R,
+                   Vec3& axis);
   void place_link(const Frames& f, std::size_t i, Bodies& bodies) const;
 
   int dof_;

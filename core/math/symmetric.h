@@ -8,19 +8,11 @@ namespace limpid {
 struct Symmetric3 {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
-  // scale v v^T
-  static Symmetric3 dyad(double scale, const Vec3& v) {
-    const Vec3 s = scale * v;
-    return {s.x() * v.x(), s.y() * v.y(), s.z() * v.z(),
-            s.x() * v.y(), s.x() * v.z(), s.y() * v.z()};
-  }
-
   Symmetric3& operator+=(const Symmetric3& b) {
     xx += b.xx, yy += b.yy, zz += b.zz;
     xy += b.xy, xz += b.xz, yz += b.yz;
     return *this;
   }
-  void add_to_diagonal(double d) { xx += d, yy += d, zz += d; }
 
   Vec3 operator*(const Vec3& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),

@@ -29,7 +29,8 @@ std::string mjcf(const ArmDescription& arm, const Plane& plane) {
   std::string xml = fmt::format(
       "<mujoco><compiler angle=\"radian\" boundmass=\"1e-9\"/>"
       "<option timestep=\"0.001\" gravity=\"0 0 0\"/><worldbody>"
-      "<geom type=\"plane\" size=\"1 1 1\" pos=\"{}\" condim=\"1\" contype=\"1\" conaffinity=\"2\"/>",
+      "<geom type=\"plane\" size=\"1 1 1\" pos=\"{}\" condim=\"1\" contype=\"1\" "
+      "conaffinity=\"2\"/>",
       text(plane.point));
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const Joint& joint = arm.joints[i];

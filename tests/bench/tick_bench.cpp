@@ -28,8 +28,8 @@ constexpr int kTicks = 20000;
 constexpr const char* kHelp =
     "usage: tick_bench [--callgrind [TICKS]]\n"
     "\n"
-    "Prints a table of times. With --callgrind it only runs TICKS (1000) ticks of the controller and\n"
-    "the virtual arm, n = 3, in contact, for counting instructions:\n"
+    "Prints a table of times. With --callgrind it only runs TICKS (1000) ticks of the controller\n"
+    "and the virtual arm, n = 3, in contact, for counting instructions:\n"
     "\n"
     "  valgrind --tool=callgrind --toggle-collect='limpid::Tick<3>::run(*' tick_bench --callgrind\n"
     "  valgrind --tool=callgrind --toggle-collect='limpid::VirtualArm<3>::live(*' \\\n"
@@ -98,9 +98,10 @@ void print_chain(int joints) {
   const auto mujoco = mujoco_steps(arm, plane_over(tip_of(arm, x)), x, kTicks);
   const SampleTimes* yardstick = mujoco ? &*mujoco : nullptr;
   const TickTimes ours = joints == 3 ? time_ticks<3>(arm, x) : time_ticks<kAnyDof>(arm, x);
-  if (mujoco) fmt::print("{}", table_line(fmt::format("n = {}: mj_step", joints), *mujoco, nullptr));
-  fmt::print("{}", table_line("       controller", ours.control, yardstick));
-  fmt::print("{}", table_line("       virtual arm, 20 substeps", ours.live, yardstick));
+  const std::string n = fmt::format("n = {}: ", joints);
+  if (mujoco) fmt::print("{}", table_line(n + "mj_step", *mujoco, nullptr));
+  fmt::print("{}", table_line(n + "controller", ours.control, yardstick));
+  fmt::print("{}", table_line(n + "virtual arm, 20 substeps", ours.live, yardstick));
 }
 
 RunPlan touching_the_table() {

@@ -60,7 +60,7 @@ int posix_memalign(void** result, size_t alignment, size_t size) {
   return *result != nullptr ? 0 : ENOMEM;
 }
 void free(void* memory) {
-  count_allocation();
+  if (memory != nullptr) count_allocation();
   __libc_free(memory);
 }
 
