@@ -85,6 +85,10 @@ void ExperimentsPanel::draw(Workbench& bench) {
           "The paper's experiments, each run by the ordinary loop with recorded and seeded hands. "
           "Figures, tables, verdicts and every trial are kept in %s.",
           experiments_dir().c_str());
+      ImGui::Spacing();
+      for (const Experiment& experiment : experiments()) {
+        ImGui::BulletText("%s: %s", experiment.name, experiment.about);
+      }
     }
     ImGui::EndChild();
   }
