@@ -38,15 +38,15 @@ Connection connect(Error& error) {
 }
 
 Message request(pid_t tid, int priority) {
-  Message message(dbus_message_new_method_call(
-      "org.freedesktop.RealtimeKit1", "/org/freedesktop/RealtimeKit1",
-      "org.freedesktop.RealtimeKit1", "MakeThreadRealtimeWithPID"));
+  Message message(
+      dbus_message_new_method_call("org.freedesktop.RealtimeKit1", "/org/freedesktop/RealtimeKit1",
+                                   "org.freedesktop.RealtimeKit1", "MakeThreadRealtimeWithPID"));
   const auto process = static_cast<std::uint64_t>(getpid());
   const auto thread = static_cast<std::uint64_t>(tid);
   const auto wanted = static_cast<std::uint32_t>(priority);
-  if (message && !dbus_message_append_args(message.get(), DBUS_TYPE_UINT64, &process,
-                                           DBUS_TYPE_UINT64, &thread, DBUS_TYPE_UINT32, &wanted,
-                                           DBUS_TYPE_INVALID))
+  if (message &&
+      !dbus_message_append_args(message.get(), DBUS_TYPE_UINT64, &process, DBUS_TYPE_UINT64,
+                                &thread, DBUS_TYPE_UINT32, &wanted, DBUS_TYPE_INVALID))
     message.reset();
   return message;
 }

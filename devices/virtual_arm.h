@@ -34,8 +34,8 @@ class VirtualArm {
 
  private:
   struct Resistance {
-    Vec<N> torque;   // at v = 0 [N m]
-    Vec<N> damping;  // [N m s/rad]
+    Vec<N> torque;     // at v = 0 [N m]
+    Vec<N> damping;    // [N m s/rad]
     Vec<N> stiffness;  // [N m/rad]
   };
   Resistance resistance(const Vec<N>& b_d, const Vec<N>& friction, const Vec<N>& x_mid) const;

@@ -10,7 +10,7 @@ namespace {
 constexpr double kFieldOfView = 32 * std::numbers::pi / 180;  // vertical; calm perspective
 constexpr double kNearest = 0.05, kFarthest = 20;             // eye to target [m]
 constexpr double kTransition = 0.35;                          // [s]
-constexpr double kRoom = 1.0;                                // around what is framed
+constexpr double kRoom = 1.0;                                 // around what is framed
 // Straight down is allowed to the last thousandth: there "up" would have no direction.
 constexpr double kSteepest = std::numbers::pi / 2 - 1e-3;
 
@@ -156,8 +156,7 @@ Vec3 Camera::plane_drag(const Eigen::Vector2d& pixel, const Vec3& through) const
   const Ray r = ray(pixel);
   // A point behind the eye has no such plane in sight: drag in the plane of the target instead.
   const double depth = (through - r.origin).dot(forward());
-  return r.origin +
-         (depth > 0 ? depth : now_.distance) / r.direction.dot(forward()) * r.direction;
+  return r.origin + (depth > 0 ? depth : now_.distance) / r.direction.dot(forward()) * r.direction;
 }
 
 double Camera::meters_per_pixel(const Vec3& point) const {

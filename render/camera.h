@@ -58,9 +58,9 @@ class Camera {
  private:
   struct Placement {
     Vec3 target = Vec3::Zero();
-    double azimuth = -1.05;    // of the eye about z, from x [rad]
-    double elevation = 0.42;   // of the eye above the horizon [rad]
-    double distance = 0.9;     // [m]
+    double azimuth = -1.05;   // of the eye about z, from x [rad]
+    double elevation = 0.42;  // of the eye above the horizon [rad]
+    double distance = 0.9;    // [m]
   };
   void move_now(const Placement& placement);
   void go_to(const Placement& placement);

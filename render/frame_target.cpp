@@ -36,8 +36,8 @@ void FrameTarget::allocate() {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, b.depth);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw std::runtime_error("OpenGL gives no picture of " + std::to_string(width_) + " x " +
-                             std::to_string(height_) + " pixels with " +
-                             std::to_string(samples_) + " samples");
+                             std::to_string(height_) + " pixels with " + std::to_string(samples_) +
+                             " samples");
 }
 
 void FrameTarget::begin(int width, int height, int samples) {

@@ -21,11 +21,11 @@ Elements GltfAccessor::elements(int accessor_index) const {
   const std::size_t stride = view.byteStride == 0 ? packed : view.byteStride;
   const std::size_t total = buffer.data.size();
   // Every number below comes from the file, so each sum is bounded before the next is formed.
-  const bool inside = view.byteOffset <= total && view.byteLength <= total - view.byteOffset &&
-                      accessor.byteOffset <= view.byteLength && stride >= packed &&
-                      stride <= 252 && accessor.count > 0 && accessor.count <= kMostElements &&
-                      accessor.byteOffset + (accessor.count - 1) * stride + packed <=
-                          view.byteLength;
+  const bool inside =
+      view.byteOffset <= total && view.byteLength <= total - view.byteOffset &&
+      accessor.byteOffset <= view.byteLength && stride >= packed && stride <= 252 &&
+      accessor.count > 0 && accessor.count <= kMostElements &&
+      accessor.byteOffset + (accessor.count - 1) * stride + packed <= view.byteLength;
   if (!inside)
     refuse("accessor " + std::to_string(accessor_index) + " reaches outside of its buffer");
   return {buffer.data.data() + view.byteOffset + accessor.byteOffset,
@@ -47,17 +47,14 @@ Eigen::Vector4f GltfAccessor::element(const Elements& e, std::size_t i) const {
         out[c] = f;
         break;
       }
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        out[c] = static_cast<float>(p[c]) / 255.0f;
-        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: out[c] = static_cast<float>(p[c]) / 255.0f; break;
       case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
         std::uint16_t u;
         std::memcpy(&u, p + 2 * c, 2);
         out[c] = static_cast<float>(u) / 65535.0f;
         break;
       }
-      default:
-        refuse("vertex data must be float, unsigned byte or unsigned short");
+      default: refuse("vertex data must be float, unsigned byte or unsigned short");
     }
   }
   if (!out.allFinite()) refuse("vertex data contains a number that is not finite");

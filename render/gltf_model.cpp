@@ -104,15 +104,15 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Af
     return true;
   };
   const Eigen::Matrix3f turn = move.linear().inverse().transpose();
-  const bool has_normals = turn.allFinite() && stream("NORMAL", 3, [&](Vertex& v, const auto& n) {
-    const Eigen::Vector3f turned = turn * n.template head<3>();
-    v.normal = turned.norm() > 1e-12f ? Eigen::Vector3f(turned.normalized()) : v.normal;
-  });
+  const bool has_normals =
+      turn.allFinite() && stream("NORMAL", 3, [&](Vertex& v, const auto& n) {
+        const Eigen::Vector3f turned = turn * n.template head<3>();
+        v.normal = turned.norm() > 1e-12f ? Eigen::Vector3f(turned.normalized()) : v.normal;
+      });
   if (!has_normals) smooth_normals(first, first_index);
   stream("TEXCOORD_0", 2, [](Vertex& v, const auto& uv) { v.uv = uv.template head<2>(); });
-  stream("COLOR_0", 3, [](Vertex& v, const auto& c) {
-    v.color = v.color.cwiseProduct(c.template head<3>());
-  });
+  stream("COLOR_0", 3,
+         [](Vertex& v, const auto& c) { v.color = v.color.cwiseProduct(c.template head<3>()); });
 }
 
 void Reader::add_indices(const tinygltf::Primitive& primitive, std::uint32_t first,
@@ -128,7 +128,7 @@ void Reader::add_indices(const tinygltf::Primitive& primitive, std::uint32_t fir
       const std::uint32_t k = file_.index(e, i);
       if (k >= count)
         file_.refuse("index " + std::to_string(k) + " is outside of the mesh's " +
-               std::to_string(count) + " vertices");
+                     std::to_string(count) + " vertices");
       model_.indices.push_back(first + k);
     }
   }
@@ -155,13 +155,11 @@ void Reader::add_material(const tinygltf::Primitive& primitive, std::uint32_t fi
 }
 
 void Reader::smooth_normals(std::uint32_t first_vertex, std::size_t first_index) {
-  std::vector<Eigen::Vector3f> sum(model_.vertices.size() - first_vertex,
-                                   Eigen::Vector3f::Zero());
+  std::vector<Eigen::Vector3f> sum(model_.vertices.size() - first_vertex, Eigen::Vector3f::Zero());
   for (std::size_t i = first_index; i < model_.indices.size(); i += 3) {
     const auto corner = [&](std::size_t k) { return model_.indices[i + k]; };
     const auto at_corner = [&](std::size_t k) { return model_.vertices[corner(k)].position; };
-    const Eigen::Vector3f n =
-        (at_corner(1) - at_corner(0)).cross(at_corner(2) - at_corner(0));
+    const Eigen::Vector3f n = (at_corner(1) - at_corner(0)).cross(at_corner(2) - at_corner(0));
     for (std::size_t k = 0; k < 3; ++k) sum[corner(k) - first_vertex] += n;
   }
   for (std::size_t i = 0; i < sum.size(); ++i)

@@ -9,9 +9,9 @@ namespace limpid {
 namespace {
 
 constexpr double kMetersPerNewton = 0.02;
-constexpr double kLeastForce = 0.02;     // [N], below it there is nothing to point at
-constexpr double kLeastError = 0.0004;   // [m]
-constexpr double kFlashTime = 0.25;      // [s]
+constexpr double kLeastForce = 0.02;    // [N], below it there is nothing to point at
+constexpr double kLeastError = 0.0004;  // [m]
+constexpr double kFlashTime = 0.25;     // [s]
 
 glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
 
@@ -22,9 +22,9 @@ palette::Rgb lighter(const palette::Rgb& c, float by) {
 // A unit shape along z, scaled across and along, with its z turned to `direction`.
 glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double along) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.block<3, 3>(0, 0) = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), direction)
-                            .toRotationMatrix() *
-                        Vec3(across, across, along).asDiagonal();
+  m.block<3, 3>(0, 0) =
+      Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), direction).toRotationMatrix() *
+      Vec3(across, across, along).asDiagonal();
   m.block<3, 1>(0, 3) = at;
   return to_glm(m);
 }
@@ -35,11 +35,10 @@ void add_arrow(const Vec3& from, const Vec3& force, const palette::Rgb& color, d
   const double length = kMetersPerNewton * force.norm();
   const double head = std::min(0.019 * size, 0.6 * length), radius = 0.36 * head;
   const Vec3 direction = force.normalized();
-  out.push_back({SolidMark::Shape::tube, place(from, direction, 0.36 * radius, length - head),
-                 color});
-  out.push_back({SolidMark::Shape::cone, place(from + (length - head) * direction, direction,
-                                               radius, head),
-                 color});
+  out.push_back(
+      {SolidMark::Shape::tube, place(from, direction, 0.36 * radius, length - head), color});
+  out.push_back({SolidMark::Shape::cone,
+                 place(from + (length - head) * direction, direction, radius, head), color});
 }
 
 void add_trail(const std::vector<Vec3>& trail, const palette::Rgb& color, LineBatch& lines) {

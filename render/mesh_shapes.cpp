@@ -51,8 +51,8 @@ void add_arc(std::vector<Ring>& rings, double radius, double middle, double from
   constexpr int kSteps = 7;
   for (int i = 0; i <= kSteps; ++i) {
     const double a = from + (to - from) * i / kSteps;
-    rings.push_back({radius * std::cos(a), middle + radius * std::sin(a), std::cos(a),
-                     std::sin(a)});
+    rings.push_back(
+        {radius * std::cos(a), middle + radius * std::sin(a), std::cos(a), std::sin(a)});
   }
 }
 
@@ -103,8 +103,12 @@ Model make_sphere(double radius, const Paint& paint) {
 
 Model make_cylinder(double radius, double length, const Paint& paint) {
   const double h = length / 2;
-  return turned({{0, -h, 0, -1}, {radius, -h, 0, -1}, {radius, -h, 1, 0}, {radius, h, 1, 0},
-                 {radius, h, 0, 1}, {0, h, 0, 1}},
+  return turned({{0, -h, 0, -1},
+                 {radius, -h, 0, -1},
+                 {radius, -h, 1, 0},
+                 {radius, h, 1, 0},
+                 {radius, h, 0, 1},
+                 {0, h, 0, 1}},
                 paint);
 }
 
@@ -126,9 +130,9 @@ Model make_cone(const Paint& paint) {
 }
 
 Model make_tube(const Paint& paint) {
-  return turned({{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 1, 0}, {1, 1, 1, 0}, {1, 1, 0, 1},
-                 {0, 1, 0, 1}},
-                paint);
+  return turned(
+      {{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 1, 0}, {1, 1, 1, 0}, {1, 1, 0, 1}, {0, 1, 0, 1}},
+      paint);
 }
 
 Model make_sector(double inner, double outer, double angle, double thickness, const Paint& paint) {
@@ -152,10 +156,10 @@ Model make_sector(double inner, double outer, double angle, double thickness, co
   }
   for (const double end : {std::min(0.0, angle), std::max(0.0, angle)}) {
     const double s = end == std::min(0.0, angle) ? -1 : 1;
-    add_quad(m,
-             {point(inner, end, s), point(inner, end, -s), point(outer, end, -s),
-              point(outer, end, s)},
-             s * Vec3(-std::sin(end), std::cos(end), 0), paint);
+    add_quad(
+        m,
+        {point(inner, end, s), point(inner, end, -s), point(outer, end, -s), point(outer, end, s)},
+        s * Vec3(-std::sin(end), std::cos(end), 0), paint);
   }
   return finished(std::move(m));
 }

@@ -10,10 +10,10 @@ namespace limpid {
 
 struct Vertex {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;   // unit
+  Eigen::Vector3f normal;  // unit
   Eigen::Vector2f uv = Eigen::Vector2f::Zero();
-  Eigen::Vector3f color = Eigen::Vector3f::Constant(0.8f);       // linear, times the texture
-  Eigen::Vector2f surface = Eigen::Vector2f(0.0f, 0.5f);         // metallic, roughness
+  Eigen::Vector3f color = Eigen::Vector3f::Constant(0.8f);  // linear, times the texture
+  Eigen::Vector2f surface = Eigen::Vector2f(0.0f, 0.5f);    // metallic, roughness
 };
 
 struct Image {

@@ -52,9 +52,13 @@ OffscreenContext::OffscreenContext(int width, int height) : impl_(std::make_uniq
   const EGLint any[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  const EGLint core33[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
+  const EGLint core33[] = {EGL_CONTEXT_MAJOR_VERSION,
+                           3,
+                           EGL_CONTEXT_MINOR_VERSION,
+                           3,
                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_NONE};
   if (eglBindAPI(EGL_OPENGL_API) && eglChooseConfig(impl_->display, any, &config, 1, &count) &&
       count > 0)
     impl_->context = eglCreateContext(impl_->display, config, EGL_NO_CONTEXT, core33);

@@ -69,8 +69,8 @@ void add_arm(const ArmDescription& arm, SceneItems& items) {
   items.base.push_back({make_sphere(1.5 * radius, kPlainArm), Pose::Identity(), -1});
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const bool last = i + 1 == arm.joints.size();
-    Model link = make_capsule(Vec3::Zero(), end_of(arm, i), last ? 0.7 * radius : radius,
-                              kPlainArm);
+    Model link =
+        make_capsule(Vec3::Zero(), end_of(arm, i), last ? 0.7 * radius : radius, kPlainArm);
     if (last) {
       Model tip = make_sphere(radius, kPlainArm);
       transform(tip, Eigen::Affine3d(Eigen::Translation3d(end_of(arm, i))));
@@ -85,8 +85,8 @@ bool shown_by_visual(const Plane& plane, const std::vector<Bounds>& visuals) {
   return std::any_of(visuals.begin(), visuals.end(), [&](const Bounds& box) {
     double highest = -1e9;
     for (int i = 0; i < 8; ++i)
-      highest = std::max(highest, plane.normal.dot(box.corner(
-                                      static_cast<Bounds::CornerType>(i)) - plane.point));
+      highest = std::max(
+          highest, plane.normal.dot(box.corner(static_cast<Bounds::CornerType>(i)) - plane.point));
     return std::abs(highest) < 0.002;
   });
 }
@@ -104,8 +104,7 @@ Item slab(const Plane& plane, double reach) {
   const Vec3 normal = plane.normal.normalized();
   const Vec3 ahead = 0.45 * reach * Vec3::UnitX();
   Pose pose = Pose::Identity();
-  pose.translation() =
-      ahead - normal.dot(ahead - plane.point) * normal - 0.5 * thickness * normal;
+  pose.translation() = ahead - normal.dot(ahead - plane.point) * normal - 0.5 * thickness * normal;
   pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
   return {make_box({edge, edge, thickness}, 0.25 * thickness, kObject), pose, -1};
 }

@@ -70,9 +70,8 @@ ScenePainter::ScenePainter(const std::filesystem::path& shaders, const SceneItem
       probes_(upload_all(items.probes)),
       bounds_(items.bounds),
       ground_height_(static_cast<float>(items.ground)),
-      textured_world_(std::any_of(items.world.begin(), items.world.end(), [](const Item& item) {
-        return !item.model.images.empty();
-      })) {
+      textured_world_(std::any_of(items.world.begin(), items.world.end(),
+                                  [](const Item& item) { return !item.model.images.empty(); })) {
   glBindBuffer(GL_UNIFORM_BUFFER, frame_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof(FrameBlock), nullptr, GL_STREAM_DRAW);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
@@ -176,9 +175,9 @@ void ScenePainter::draw_solid(const Mood& mood, const Links& proxy) {
   glDisable(GL_STENCIL_TEST);
 }
 
-void ScenePainter::draw_translucent(const ShaderProgram& program,
-                                    const std::vector<Drawable>& list, const Links& links,
-                                    const palette::Rgb& color, glm::vec2 alpha) const {
+void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
+                                    const Links& links, const palette::Rgb& color,
+                                    glm::vec2 alpha) const {
   program.use();
   program.set("tint", srgb(color));
   program.set("alpha", alpha);

@@ -58,8 +58,8 @@ class ScenePainter {
   };
   template <class Draw>
   void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one) const;
-  void draw_lit(const ShaderProgram& program, const std::vector<Drawable>& list,
-                const Links& links, const glm::vec4& tint) const;
+  void draw_lit(const ShaderProgram& program, const std::vector<Drawable>& list, const Links& links,
+                const glm::vec4& tint) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
   void draw_ground() const;

@@ -34,8 +34,7 @@ ShadowMap::ShadowMap(int size) : size_(std::max(0, size)) {
 void ShadowMap::aim(const Bounds& box, const glm::vec3& to_light) {
   const glm::vec3 center = to_glm(Vec3(box.center()));
   const float radius = 0.5f * static_cast<float>(box.diagonal().norm());
-  const glm::mat4 view =
-      glm::lookAt(center + 2.0f * radius * to_light, center, glm::vec3(0, 1, 0));
+  const glm::mat4 view = glm::lookAt(center + 2.0f * radius * to_light, center, glm::vec3(0, 1, 0));
   clip_ = glm::ortho(-radius, radius, -radius, radius, 0.5f * radius, 3.5f * radius) * view;
   texel_ = 2 * radius / static_cast<float>(std::max(1, size_));
 }
@@ -53,8 +52,8 @@ void ShadowMap::bind(GLuint unit) const {
 }
 
 glm::mat4 ShadowMap::lookup() const {
-  return glm::translate(glm::mat4(1), glm::vec3(0.5f)) *
-         glm::scale(glm::mat4(1), glm::vec3(0.5f)) * clip_;
+  return glm::translate(glm::mat4(1), glm::vec3(0.5f)) * glm::scale(glm::mat4(1), glm::vec3(0.5f)) *
+         clip_;
 }
 
 }  // namespace limpid

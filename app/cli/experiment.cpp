@@ -126,17 +126,18 @@ int run(const ExperimentOptions& options) {
 std::string experiment_help() {
   std::string text = "Experiments:\n";
   for (const Experiment& e : experiments()) text += fmt::format("  {:<14} {}\n", e.name, e.about);
-  return text + "  all            one after the other\n\n"
-                "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
-                "the trials. Called again with the same DIR it goes on where it was stopped.\n"
-                "Exit status 1: a check failed, or it was stopped.";
+  return text +
+         "  all            one after the other\n\n"
+         "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
+         "the trials. Called again with the same DIR it goes on where it was stopped.\n"
+         "Exit status 1: a check failed, or it was stopped.";
 }
 
 }  // namespace
 
 Command declare_experiment(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "experiment", "one of the paper's experiments: data, figure, verdict");
+  auto* command =
+      app.add_subcommand("experiment", "one of the paper's experiments: data, figure, verdict");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("NAME", options->name, "an experiment, or all")->required();
   command->add_option("--out", options->out, "the folder for what it finds")

@@ -76,8 +76,9 @@ Command declare_recover(CLI::App& app) {
 Command declare_devices(CLI::App& app) {
   app.add_subcommand("devices", "what is connected, what can drive it");
   return [] {
-    fmt::print("virtual arm   built in; any URDF chain of 1 to 32 revolute joints (--device), "
-               "driven by the mouse or a recorded hand\n");
+    fmt::print(
+        "virtual arm   built in; any URDF chain of 1 to 32 revolute joints (--device), "
+        "driven by the mouse or a recorded hand\n");
     return 0;
   };
 }

@@ -86,8 +86,7 @@ void check_reach(const RunPlan& plan) {
 RunPlan plan_from_session(const InputOptions& options) {
   const Session session = read_session(options.hand);
   if (session.size() == 0) throw FileError(options.hand + ": holds no rows");
-  const Parameters chosen =
-      make_parameters(options, session_parameters(session, options.hand));
+  const Parameters chosen = make_parameters(options, session_parameters(session, options.hand));
   RunPlan plan = replay(session, options.hand, chosen);
   if (chosen.tick != session.info.tick) {
     const double ratio = session.info.tick / chosen.tick;
@@ -135,8 +134,9 @@ void InputOptions::add_world(CLI::App& command) {
 }
 
 void InputOptions::add_hand(CLI::App& command) {
-  command.add_option("--hand", hand,
-                     "the hand's path, or a recorded session; default: touching the table")
+  command
+      .add_option("--hand", hand,
+                  "the hand's path, or a recorded session; default: touching the table")
       ->type_name("FILE.csv|FILE.h5");
   auto* length =
       command.add_option("--duration", duration, "default: the length of the hand's path")

@@ -11,7 +11,7 @@
 namespace CLI {
 class App;
 class Option;
-}
+}  // namespace CLI
 
 namespace limpid {
 
@@ -23,7 +23,7 @@ struct UsageError : std::runtime_error {
 struct InputOptions {
   std::string device, scene, hand;  // files; empty: the default
   std::vector<std::string> configs;
-  std::vector<std::string> settings;  // key=value
+  std::vector<std::string> settings;                // key=value
   std::optional<std::string> coupling, eta, alpha;  // short for three settings
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;

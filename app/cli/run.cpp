@@ -140,8 +140,9 @@ Command declare_run(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
   command->add_option("--record", options->record, "write every tick to this session file")
       ->type_name("OUT.h5");
-  command->add_option("--picture", options->picture,
-                      "draw the moment of the strongest contact into this file")
+  command
+      ->add_option("--picture", options->picture,
+                   "draw the moment of the strongest contact into this file")
       ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");

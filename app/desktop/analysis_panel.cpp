@@ -102,7 +102,8 @@ void AnalysisPanel::draw_nyquist(const Parameters& p) const {
   draw->PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
   const ImVec2 origin = place(0, 0);
   const bool passive = eta >= analysis_.eta_min;
-  draw->AddRectFilled(at, {origin.x, at.y + size.y}, colour(passive ? colours.muted : colours.broken, 0.14f));
+  draw->AddRectFilled(at, {origin.x, at.y + size.y},
+                      colour(passive ? colours.muted : colours.broken, 0.14f));
   draw->AddLine({origin.x, at.y}, {origin.x, at.y + size.y}, colour(colours.axis));
   draw->AddLine({at.x, origin.y}, {at.x + size.x, origin.y}, colour(colours.axis));
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -116,11 +117,13 @@ void AnalysisPanel::draw_nyquist(const Parameters& p) const {
   draw->AddText(small, small->FontSize, {at.x + 6, at.y + size.y - 1.4f * small->FontSize},
                 colour(colours.muted),
                 fmt::format("b H_L(j\xCF\x89) at \xCE\xB7 {:.2f}: {}", eta,
-                            passive ? "passive" : "not passive").c_str());
+                            passive ? "passive" : "not passive")
+                    .c_str());
   draw->PopClipRect();
   ImGui::Dummy(size);
-  tooltip("H_L(jw) of (24), one curve a mode of the inertia at the present pose. Positive real, and "
-          "so passive, while it stays right of the vertical line.");
+  tooltip(
+      "H_L(jw) of (24), one curve a mode of the inertia at the present pose. Positive real, and "
+      "so passive, while it stays right of the vertical line.");
 }
 
 }  // namespace limpid

@@ -85,13 +85,17 @@ void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
            "alpha / m over the modes of the inertia at the rest pose, (18)");
   const bool standard = p.kind == CouplingKind::standard;
   read_out("\xCE\xB7_min, all frequencies",
-           fmt::format("{:.3f}{}", a.eta_min, standard ? "" : a.passive ? "  ok" : "  broken"), eta,
-           "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
+           fmt::format("{:.3f}{}", a.eta_min,
+                       standard    ? ""
+                       : a.passive ? "  ok"
+                                   : "  broken"),
+           eta, "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
   const std::string unstable =
       !standard && p.eta < a.eta_min_grip
-          ? fmt::format("eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
-                        "unstable while the hand holds. Raise eta or soften the grip.",
-                        p.eta, a.eta_min_grip)
+          ? fmt::format(
+                "eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
+                "unstable while the hand holds. Raise eta or soften the grip.",
+                p.eta, a.eta_min_grip)
           : std::string();
   read_out("\xCE\xB7_min in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
            "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
@@ -108,8 +112,10 @@ void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
   const RowLayout& layout = bench.shown().channels().layout();
   const double total = layout.in(row, Column::energy_total)[0];
   const std::string active =
-      total > 1e-4 ? "The coupling has given more energy than it took. Either it is not passive, or it was "
-                      "switched in contact: that puts energy in, too." : "";
+      total > 1e-4
+          ? "The coupling has given more energy than it took. Either it is not passive, or it was "
+            "switched in contact: that puts energy in, too."
+          : "";
   read_out("E_c total", fmt::format("{:.2f} mJ", 1e3 * total), active,
            "Controller energy with the device's own damping: stays below zero while passive");
   ImGui::End();

@@ -20,8 +20,8 @@ volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
 
 // A border between panels that can be dragged: changes `size` by the mouse's motion along one axis.
-void splitter(const char* name, const ScreenRect& rect, bool vertical, double direction, double& size,
-              double least, double most) {
+void splitter(const char* name, const ScreenRect& rect, bool vertical, double direction,
+              double& size, double least, double most) {
   ImGui::SetNextWindowPos(rect.min);
   ImGui::SetNextWindowSize(rect.size());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
@@ -81,10 +81,12 @@ void draw(Workbench& bench, Window& window, Panels& panels) {
     splitter("left grip", {{left - grip, top}, {left + grip, middle}}, true, 1, s.left, 220, 480);
   }
   if (s.show_right) {
-    splitter("right grip", {{right - grip, top}, {right + grip, middle}}, true, -1, s.right, 220, 480);
+    splitter("right grip", {{right - grip, top}, {right + grip, middle}}, true, -1, s.right, 220,
+             480);
   }
   if (s.show_plots) {
-    splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120, 520);
+    splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120,
+             520);
   }
   draw_dialogs(bench);
   panels.experiments.draw(bench);
@@ -102,7 +104,8 @@ void print_state(Workbench& bench) {
   fmt::print(
       "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
       "\"energy_total\": {:.6g}, \"grip\": {:.2f}, \"force\": {}, \"recording\": {}, "
-      "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": {}, "
+      "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
+      "{}, "
       "\"slipped\": {}, \"dropped\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
@@ -131,9 +134,8 @@ void run_desktop(const DesktopOptions& options) {
   // The haptic thread comes first: what its scheduling allows decides how the window behaves, and
   // OpenGL's own threads inherit that.
   std::string why;
-  Workbench bench(std::move(settings), [&why](pid_t thread, int priority) {
-    return ask_rtkit(thread, priority, &why);
-  });
+  Workbench bench(std::move(settings),
+                  [&why](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why); });
   if (!bench.live.status().realtime.realtime()) yield_to_haptics();
   Window window({.width = bench.settings.width,
                  .height = bench.settings.height,

@@ -10,11 +10,11 @@
 namespace limpid {
 
 struct DesktopOptions {
-  std::string device, scene;                // files; empty: as last time
-  std::optional<Parameters> parameters;     // default: as last time
-  std::filesystem::path session;            // to play at once
-  bool print_state = false;                 // one line of JSON ten times a second
-  double ui_scale = 0;                      // 0: the screen's
+  std::string device, scene;             // files; empty: as last time
+  std::optional<Parameters> parameters;  // default: as last time
+  std::filesystem::path session;         // to play at once
+  bool print_state = false;              // one line of JSON ten times a second
+  double ui_scale = 0;                   // 0: the screen's
 };
 
 // Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the

@@ -37,7 +37,8 @@ void draw_open(Workbench& bench) {
       if (files.empty()) ImGui::TextDisabled("none yet");
       for (const fs::path& file : files) {
         const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
-        if (ImGui::Selectable(fmt::format("{}   {:.1f} MiB", file.filename().string(), mib).c_str())) {
+        if (ImGui::Selectable(
+                fmt::format("{}   {:.1f} MiB", file.filename().string(), mib).c_str())) {
           bench.open_session(file);
           bench.show_open = false;
         }
@@ -47,7 +48,8 @@ void draw_open(Workbench& bench) {
     list("Shipped with Limpid", data_dir() / "assets/sessions");
     ImGui::Spacing();
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputTextWithHint("##path", "or type a path and press Enter; dropping a file works too",
+    if (ImGui::InputTextWithHint("##path",
+                                 "or type a path and press Enter; dropping a file works too",
                                  &bench.typed_path, ImGuiInputTextFlags_EnterReturnsTrue)) {
       bench.open_session(bench.typed_path);
       bench.show_open = false;
@@ -87,8 +89,9 @@ void draw_about(Workbench& bench) {
         "interaction with human force observer\"; numbers in parentheses are its equations. Please "
         "cite the paper when you publish what you measured here.");
     ImGui::Spacing();
-    ImGui::TextWrapped("Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, HDF5, urdfdom and fmt. Text "
-                       "is set in Inter (SIL Open Font License).");
+    ImGui::TextWrapped(
+        "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, HDF5, urdfdom and fmt. Text "
+        "is set in Inter (SIL Open Font License).");
   }
   ImGui::End();
 }

@@ -73,9 +73,7 @@ void handle_key(Workbench& bench, Window& window, const KeyPress& press) {
     case GLFW_KEY_R: bench.toggle_recording(); break;
     case GLFW_KEY_P: bench.toggle_playing(); break;
     case GLFW_KEY_G: s.show_ghost = !s.show_ghost; break;
-    case GLFW_KEY_X:
-      bench.shown().group.set_following(!bench.shown().group.following());
-      break;
+    case GLFW_KEY_X: bench.shown().group.set_following(!bench.shown().group.following()); break;
     case GLFW_KEY_1: bench.camera.look(Camera::View::front); break;
     case GLFW_KEY_2: bench.camera.look(Camera::View::side); break;
     case GLFW_KEY_3: bench.camera.look(Camera::View::top); break;

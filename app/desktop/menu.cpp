@@ -126,7 +126,8 @@ void status(Workbench& bench) {
   };
   const bool rate_bad = !loop.running;
   std::vector<Part> parts;
-  if (recorded) parts.push_back({"playing " + bench.playback->file.filename().string(), colours.text, ""});
+  if (recorded)
+    parts.push_back({"playing " + bench.playback->file.filename().string(), colours.text, ""});
   parts.push_back({rate_bad ? "loop stopped" : fmt::format("{:.0f} Hz", loop.rate),
                    rate_bad ? colours.broken : colours.muted, loop.failure});
   parts.push_back({fmt::format("{} late", loop.missed),

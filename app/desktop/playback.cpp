@@ -62,11 +62,11 @@ void Workbench::export_csv() {
   fs::path out = playback->file;
   out.replace_extension(".csv");
   // The session stays where it is while the table is written: playback cannot be closed meanwhile.
-  exporting.start("writing the table", [&session = playback->player.session(),
-                                        out](BackgroundProgress&) {
-    write_csv(session, out, false);
-    return fmt::format("Wrote {}", out.string());
-  });
+  exporting.start("writing the table",
+                  [&session = playback->player.session(), out](BackgroundProgress&) {
+                    write_csv(session, out, false);
+                    return fmt::format("Wrote {}", out.string());
+                  });
 }
 
 void Workbench::recover_leftovers() {
@@ -119,18 +119,17 @@ void Workbench::rebuild_playback_stage() {
   const Session& session = playback->player.session();
   const RunPlan world = replay(session, playback->file.string(), parameters);
   const double length = playback->player.duration();
-  playback->stage = std::make_unique<Stage>(
-      world.arm, world.scene,
-      StageOptions{.seconds = length + 1,
-                   .tick = session.info.tick,
-                   .shown = length,
-                   .rerun = !playback->rerun.empty()});
+  playback->stage = std::make_unique<Stage>(world.arm, world.scene,
+                                            StageOptions{.seconds = length + 1,
+                                                         .tick = session.info.tick,
+                                                         .shown = length,
+                                                         .rerun = !playback->rerun.empty()});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
   for (std::size_t k = 0; k < session.size(); ++k) {
-    playback->stage->append(session.row(k),
-                            playback->rerun.empty()
-                                ? std::span<const double>()
-                                : std::span<const double>(playback->rerun).subspan(k * stride, stride));
+    playback->stage->append(
+        session.row(k), playback->rerun.empty()
+                            ? std::span<const double>()
+                            : std::span<const double>(playback->rerun).subspan(k * stride, stride));
   }
   for (const SettingChange& change : session.changes) {
     std::string label = change.setting;

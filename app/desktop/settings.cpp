@@ -1,10 +1,10 @@
 #include "app/desktop/settings.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <cstdlib>
 #include <fstream>
-#include <toml++/toml.h>
 
 #include "devices/files/config_file.h"
 

@@ -11,16 +11,16 @@ namespace limpid {
 
 struct Settings {
   Theme theme = Theme::dark;
-  double ui_scale = 0;          // 0: the screen's
+  double ui_scale = 0;  // 0: the screen's
   int width = 1440, height = 900;
   double left = 300, right = 290, plots = 250;  // sizes of the panels at scale 1 [px]
   bool show_left = true, show_right = true, show_plots = true;
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool hold_on_release = false;
   bool hint_seen = false;
-  double plot_length = 10;      // [s]
-  double band = 5;              // of the human, for the analysis [Hz]
-  std::string device, scene;    // files; empty: the default
+  double plot_length = 10;    // [s]
+  double band = 5;            // of the human, for the analysis [Hz]
+  std::string device, scene;  // files; empty: the default
   // A first start shows the standard coupling: its flaw is what C then mends.
   Parameters parameters{.kind = CouplingKind::standard};
 };

@@ -55,8 +55,9 @@ void draw_histogram(const LatencyHistogram& histogram) {
                         colour(late ? colours.broken : colours.muted));
   }
   ImGui::Dummy({width, height});
-  tooltip("Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; red: over "
-          "one tick.");
+  tooltip(
+      "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; red: over "
+      "one tick.");
 }
 
 void draw_timing(Workbench& bench, double frame_time) {
@@ -65,17 +66,18 @@ void draw_timing(Workbench& bench, double frame_time) {
            status.running ? std::string() : "The loop has stopped: " + status.failure);
   const LatencyHistogram& wake = bench.live.thread().wake_latency();
   read_out("wake-up p50 / p99",
-           fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)), {},
-           "How long after its deadline a tick begins");
+           fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)),
+           {}, "How long after its deadline a tick begins");
   draw_histogram(wake);
   const LatencyHistogram& compute = bench.live.thread().compute_time();
   read_out("tick takes p50 / p99", fmt::format("{:.0f} / {:.0f} us", 1e6 * compute.quantile(0.5),
                                                1e6 * compute.quantile(0.99)));
   const auto of_ticks = [&](std::int64_t count) {
-    return count == 0 ? std::string("0")
-                      : fmt::format("{} ({:.2g} %)", count,
-                                    100.0 * static_cast<double>(count) /
-                                        static_cast<double>(std::max<std::int64_t>(status.ticks, 1)));
+    return count == 0
+               ? std::string("0")
+               : fmt::format("{} ({:.2g} %)", count,
+                             100.0 * static_cast<double>(count) /
+                                 static_cast<double>(std::max<std::int64_t>(status.ticks, 1)));
   };
   read_out("late over 0.2 ms", of_ticks(status.late), {},
            "Ticks that began more than 0.2 ms after their deadline");
@@ -90,12 +92,12 @@ void draw_timing(Workbench& bench, double frame_time) {
                                 "catching up; simulated time lost that much against the clock."
                               : "",
            "Ticks given up after long stalls");
-  read_out("scheduling", status.realtime.realtime()
-                             ? fmt::format("real-time {}", status.realtime.priority)
-                             : "ordinary", {}, status.realtime.explanation.c_str());
+  read_out("scheduling",
+           status.realtime.realtime() ? fmt::format("real-time {}", status.realtime.priority)
+                                      : "ordinary",
+           {}, status.realtime.explanation.c_str());
   const std::uint64_t dropped =
-      bench.live.trace_dropped() +
-      (bench.live.recording() ? bench.live.recorder()->dropped() : 0);
+      bench.live.trace_dropped() + (bench.live.recording() ? bench.live.recorder()->dropped() : 0);
   if (dropped > 0) {
     read_out("ticks dropped", std::to_string(dropped),
              "Ticks that found no room on their way to the plots or the recording.");
@@ -106,8 +108,8 @@ void draw_timing(Workbench& bench, double frame_time) {
 
 bool section(const char* name, bool open) {
   ImGui::PushFont(font(Face::semibold));
-  const bool shown =
-      ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+  const bool shown = ImGui::CollapsingHeader(
+      name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
   ImGui::PopFont();
   return shown;
 }

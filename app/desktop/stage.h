@@ -17,8 +17,8 @@ namespace limpid {
 struct StageOptions {
   double seconds = 60;  // of history to keep
   double tick = 0.001;
-  double shown = 10;    // of it at first
-  bool rerun = false;   // room for a second run beside the first
+  double shown = 10;   // of it at first
+  bool rerun = false;  // room for a second run beside the first
 };
 
 class Stage {

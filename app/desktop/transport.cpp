@@ -68,12 +68,12 @@ void playback_controls(Workbench& bench) {
     ImGui::ProgressBar(static_cast<float>(bench.rerunning.part()), {110 * scale, 0}, "re-running");
     ImGui::SameLine();
     if (button("Cancel", "Stop the re-run")) bench.rerunning.cancel();
-  } else if (button("Re-run", "Let the recorded hand drive a new simulation under the present "
-                              "settings and show it beside the recording (E).")) {
+  } else if (button("Re-run",
+                    "Let the recorded hand drive a new simulation under the present "
+                    "settings and show it beside the recording (E).")) {
     bench.start_rerun();
   }
-  const std::string clock =
-      clock_text(player.time()) + " / " + clock_text(player.duration());
+  const std::string clock = clock_text(player.time()) + " / " + clock_text(player.duration());
   const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize("Back to live").x -
                       ImGui::CalcTextSize(clock.c_str()).x - 4 * ImGui::GetStyle().ItemSpacing.x;
   timeline(bench, right);

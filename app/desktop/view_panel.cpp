@@ -43,9 +43,8 @@ void ViewPanel::draw(Workbench& bench, const Window& window, const ScreenRect& r
   ContactForce recorded;
   if (bench.playing_back()) {
     // A recording keeps the torque of the contacts: shown as one force at the tip.
-    recorded = {view.proxy.tip,
-                stage.rows().tip_force(layout.in(row, Column::proxy_position),
-                                       layout.in(row, Column::contact_torque))};
+    recorded = {view.proxy.tip, stage.rows().tip_force(layout.in(row, Column::proxy_position),
+                                                       layout.in(row, Column::contact_torque))};
     contacts = {&recorded, 1};
     if (const auto again = bench.playback->rerun_row(); !again.empty()) {
       view.rerun = stage.rows().pose(layout.in(again, Column::proxy_position));
@@ -140,10 +139,12 @@ void ViewPanel::draw_labels(Workbench& bench, const ScreenRect& rect) const {
     Ink ink;
   };
   float y = rect.min.y + 0.8f * em;
-  for (const Entry& entry : {Entry{"device (ghost)", Ink::device}, Entry{"proxy", Ink::proxy},
-                             Entry{"hand", Ink::hand}, Entry{"contact force, 1 N = 2 cm", Ink::contact}}) {
+  for (const Entry& entry :
+       {Entry{"device (ghost)", Ink::device}, Entry{"proxy", Ink::proxy}, Entry{"hand", Ink::hand},
+        Entry{"contact force, 1 N = 2 cm", Ink::contact}}) {
     const float x = rect.min.x + 0.9f * em;
-    draw->AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f, colour(ink(colours, entry.ink)));
+    draw->AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f,
+                          colour(ink(colours, entry.ink)));
     draw->AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), entry.text);
     y += 1.35f * em;
   }
@@ -158,7 +159,8 @@ void ViewPanel::draw_labels(Workbench& bench, const ScreenRect& rect) const {
     for (const char* line : lines) {
       const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
       const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, line_y);
-      draw->AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
+      draw->AddRectFilled({place.x - 8, place.y - 2},
+                          {place.x + extent.x + 8, place.y + extent.y + 2},
                           colour(colours.backdrop, 0.72f), 4);
       draw->AddText(face, size, place, colour(colours.text), line);
       line_y += 1.5f * size;

@@ -34,7 +34,7 @@ struct Window::Impl {
   double frame_time = 0;
   std::filesystem::path picture;
   double left = 0, top = 0, right = 0, bottom = 0;  // of the picture; nothing: all
-  int x = 0, y = 0, width = 0, height = 0;  // before full screen
+  int x = 0, y = 0, width = 0, height = 0;          // before full screen
 
   static Impl& of(GLFWwindow* window) {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
@@ -158,7 +158,9 @@ void Window::toggle_full_screen() {
 
 const std::vector<KeyPress>& Window::keys() const { return impl_->keys; }
 const std::vector<std::filesystem::path>& Window::dropped() const { return impl_->dropped; }
-void Window::size(int& width, int& height) const { glfwGetWindowSize(impl_->glfw, &width, &height); }
+void Window::size(int& width, int& height) const {
+  glfwGetWindowSize(impl_->glfw, &width, &height);
+}
 void Window::framebuffer_size(int& width, int& height) const {
   glfwGetFramebufferSize(impl_->glfw, &width, &height);
 }

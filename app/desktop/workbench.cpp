@@ -69,9 +69,9 @@ void Workbench::open_scene(const std::filesystem::path& file) {
 }
 
 void Workbench::open(ArmDescription arm, Scene scene) {
-  auto fresh = std::make_unique<Stage>(std::move(arm), std::move(scene),
-                                       StageOptions{.tick = parameters.tick,
-                                                    .shown = settings.plot_length});
+  auto fresh =
+      std::make_unique<Stage>(std::move(arm), std::move(scene),
+                              StageOptions{.tick = parameters.tick, .shown = settings.plot_length});
   controls.grab = false;
   controls.goal = home(fresh->arm());
   live.open(fresh->arm(), fresh->scene(), parameters, controls.goal);
@@ -99,7 +99,8 @@ void Workbench::update(double dt) {
   camera.advance(dt);
   if (live.snapshot().diverged && !was_diverged_) {
     cut_force();
-    say("The loop became unstable; force is off. Choose a larger eta or a smaller alpha, then start "
+    say("The loop became unstable; force is off. Choose a larger eta or a smaller alpha, then "
+        "start "
         "over (Backspace).",
         true);
   }
@@ -151,8 +152,8 @@ void Workbench::follow_parameters() {
 }
 
 void Workbench::toggle_coupling() {
-  parameters.kind = parameters.kind == CouplingKind::standard ? CouplingKind::proposed
-                                                              : CouplingKind::standard;
+  parameters.kind =
+      parameters.kind == CouplingKind::standard ? CouplingKind::proposed : CouplingKind::standard;
 }
 
 void Workbench::start_over() {

@@ -11,12 +11,15 @@ namespace limpid {
 namespace {
 
 constexpr std::array kExperiments{
-    Experiment{"coordination", "device-proxy coordination in contact (Figs. 3 and 4)", coordination},
+    Experiment{"coordination", "device-proxy coordination in contact (Figs. 3 and 4)",
+               coordination},
     Experiment{"inertia", "human torque for the same free motion at three etas (Fig. 5)", inertia},
     Experiment{"passivity", "controller energy over many trials (Fig. 6)", passivity},
     Experiment{"spectrum", "frequency content of the hand's motion (Fig. 7)", spectrum},
-    Experiment{"saturation", "contact beyond the torque limit, with and without anti-windup "
-                             "(section 3.1)", saturation},
+    Experiment{"saturation",
+               "contact beyond the torque limit, with and without anti-windup "
+               "(section 3.1)",
+               saturation},
     Experiment{"observer", "bandwidth of the human force estimate (section 3.1)", observer},
     Experiment{"transparency", "impedance felt at the handle", transparency},
     Experiment{"eta_min", "stability over eta and grip against theory (section 4.2)", eta_min_map},
@@ -57,8 +60,7 @@ Outcome carry_out(const Experiment& experiment, const Laboratory::Options& optio
   write_figure_data(outcome.figure, options.dir / (std::string(experiment.name) + ".csv"));
   draw_figure(outcome.figure, options.dir, experiment.name);
   // Last, so that a verdict says that everything else is there.
-  write_verdict(experiment.name, outcome,
-                options.dir / (std::string(experiment.name) + ".json"));
+  write_verdict(experiment.name, outcome, options.dir / (std::string(experiment.name) + ".json"));
   return outcome;
 }
 

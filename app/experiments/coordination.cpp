@@ -11,8 +11,8 @@ namespace limpid {
 namespace {
 
 constexpr const char* kJointNames[] = {"Turret", "Shoulder", "Elbow"};
-constexpr double kTouching = 1e-6;         // |f2| above this is contact [N m]
-constexpr std::size_t kScatterStep = 12;   // rows a dot
+constexpr double kTouching = 1e-6;        // |f2| above this is contact [N m]
+constexpr std::size_t kScatterStep = 12;  // rows a dot
 constexpr double kInertiaErrors[] = {0.5, 2};
 
 double contact_torque(const Session& s, std::size_t k) {
@@ -58,13 +58,13 @@ int lasting_contacts(const Session& s) {
 
 FigurePanel joint_panel(const Session& s, std::size_t joint, const std::string& coupling) {
   FigurePanel panel{.title = fmt::format("{}, {} coupling", kJointNames[joint], coupling),
-                    .x_label = "time [s]", .y_label = "angle [rad]"};
+                    .x_label = "time [s]",
+                    .y_label = "angle [rad]"};
   panel.series.push_back(over_time(s, "device x1", kDeviceInk, Series::Style::line, [&](auto k) {
     return s.at(k, Column::device_position)[joint];
   }));
-  panel.series.push_back(over_time(s, "proxy x2", kProxyInk, Series::Style::dashed, [&](auto k) {
-    return s.at(k, Column::proxy_position)[joint];
-  }));
+  panel.series.push_back(over_time(s, "proxy x2", kProxyInk, Series::Style::dashed,
+                                   [&](auto k) { return s.at(k, Column::proxy_position)[joint]; }));
   return panel;
 }
 
@@ -90,8 +90,10 @@ void add_scatter(FigurePanel& panel, const Session& s, const std::string& label,
   }
   const double rise = slope(s);
   panel.series.push_back(std::move(dots));
-  panel.series.push_back({fmt::format("{}: {:.3g} mrad/(N m)", label, 1e3 * rise), color,
-                          Series::Style::line, {{0, 0}, {reach, 1e3 * rise * reach}}});
+  panel.series.push_back({fmt::format("{}: {:.3g} mrad/(N m)", label, 1e3 * rise),
+                          color,
+                          Series::Style::line,
+                          {{0, 0}, {reach, 1e3 * rise * reach}}});
 }
 
 }  // namespace
@@ -104,8 +106,8 @@ Outcome coordination(Laboratory& lab) {
   for (const double error : kInertiaErrors) {
     Parameters wrong = proposed;
     wrong.inertia_error = error;
-    trials.push_back({fmt::format("inertia-error-{}", error),
-                      plan_of("proximal", "proximal", wrong)});
+    trials.push_back(
+        {fmt::format("inertia-error-{}", error), plan_of("proximal", "proximal", wrong)});
   }
   const std::vector<TrialResult> results = lab.run(trials);
   const Session& a = results[0].session;
@@ -124,10 +126,10 @@ Outcome coordination(Laboratory& lab) {
     figure.panels.push_back(joint_panel(a, joint, "standard"));
     figure.panels.push_back(joint_panel(b, joint, "proposed"));
   }
-  FigurePanel force{.title = "Contact torque |f2|", .x_label = "time [s]",
-                    .y_label = "torque [N m]"};
-  FigurePanel error{.title = "Coordination error |x1 - x2|", .x_label = "time [s]",
-                    .y_label = "error [mrad]"};
+  FigurePanel force{
+      .title = "Contact torque |f2|", .x_label = "time [s]", .y_label = "torque [N m]"};
+  FigurePanel error{
+      .title = "Coordination error |x1 - x2|", .x_label = "time [s]", .y_label = "error [mrad]"};
   for (const auto& [s, label, color] :
        {std::tuple(&a, "standard", kContactInk), std::tuple(&b, "proposed", kHandInk)}) {
     force.series.push_back(over_time(*s, label, color, Series::Style::line,
@@ -140,7 +142,8 @@ Outcome coordination(Laboratory& lab) {
   add_scatter(scatter, a, "standard", kContactInk);
   add_scatter(scatter, b, "proposed", kHandInk);
   FigurePanel wrong{.title = "Proposed: what a wrong inertia in the model adds to the error",
-                    .x_label = "time [s]", .y_label = "change of the error [μrad]"};
+                    .x_label = "time [s]",
+                    .y_label = "change of the error [μrad]"};
   wrong.series.push_back(added_error(results[2].session, b, "half the inertia", kProxyInk));
   wrong.series.push_back(added_error(results[3].session, b, "twice the inertia", kEnergyInk));
   figure.panels.insert(figure.panels.end(), {force, error, scatter, wrong});
@@ -159,11 +162,13 @@ Outcome coordination(Laboratory& lab) {
     const Session& s = results[2 + i].session;
     outcome.checks.push_back(
         at_most(fmt::format("largest error with the model's inertia times {}, over that with the "
-                            "right one", kInertiaErrors[i]),
+                            "right one",
+                            kInertiaErrors[i]),
                 largest_error(s) / largest_error(b), 1.25));
     outcome.checks.push_back(at_most(
         fmt::format("slope of the error with the model's inertia times {}, over that of the "
-                    "standard coupling", kInertiaErrors[i]),
+                    "standard coupling",
+                    kInertiaErrors[i]),
         slope(s) / slope(a), 0.01));
   }
   return outcome;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kEtaStep = 0.05;
 constexpr double kPaperTick = 1e-3, kFineTick = 1e-4;  // [s]
-constexpr double kUsualGrip = 3000;  // no hand is stiffer [N/m]
-constexpr double kKick = 2e-5;     // how far the hand jumps at first, in each direction [m]
+constexpr double kUsualGrip = 3000;                    // no hand is stiffer [N/m]
+constexpr double kKick = 2e-5;  // how far the hand jumps at first, in each direction [m]
 constexpr double kSeconds = 1.5;
 constexpr double kPhysicsStep = 5e-5;  // of the device's integration [s]
 

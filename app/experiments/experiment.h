@@ -42,14 +42,14 @@ struct Outcome {
 
 // One run of the ordinary loop within an experiment.
 struct Trial {
-  std::string name;   // of its session file: DIR/NAME/name.h5
+  std::string name;  // of its session file: DIR/NAME/name.h5
   RunPlan plan;
-  bool keep = true;   // record it; maps of hundreds of short runs need not
+  bool keep = true;         // record it; maps of hundreds of short runs need not
   std::string folder = {};  // in place of NAME, for trials that experiments share
 };
 
 struct TrialResult {
-  Session session;    // its rows, also those of trials that were not kept
+  Session session;  // its rows, also those of trials that were not kept
   RunEnd end;
 };
 

@@ -20,7 +20,8 @@ Impedance measured_impedance(const Session& session, std::size_t from, int joint
   for (std::size_t k = from; k + 1 < session.size(); ++k) {
     torque.push_back(session.at(k, Column::hand_torque)[j]);
     velocity.push_back((session.at(k + 1, Column::device_position)[j] -
-                        session.at(k, Column::device_position)[j]) / T);
+                        session.at(k, Column::device_position)[j]) /
+                       T);
   }
   Impedance felt;
   for (const Multisine::Line& line : shaking.lines) {

@@ -27,11 +27,11 @@ Impedance measured_impedance(const Session& session, std::size_t from, int joint
 // device by b_v / k_vc, so that the contact is felt late. And the estimate looks back a tick, and
 // every torque is held for one: half a tick on average.
 struct FeltJoint {
-  double m = 0;              // M1 + M2 [kg m^2]
-  double b_d = 0, b_v = 0;   // [N m s/rad]
-  double k_vc = 0, b_vc = 0; // [N m/rad, N m s/rad]
-  double T = 0;              // [s]
-  double K = 0;              // of the contact, 0 in free space [N m/rad]
+  double m = 0;               // M1 + M2 [kg m^2]
+  double b_d = 0, b_v = 0;    // [N m s/rad]
+  double k_vc = 0, b_vc = 0;  // [N m/rad, N m s/rad]
+  double T = 0;               // [s]
+  double K = 0;               // of the contact, 0 in free space [N m/rad]
 
   // Proposed coupling, (24) with f2 = -K x: the human torque observed with bandwidth w_f, the
   // contact torque known.

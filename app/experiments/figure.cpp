@@ -45,8 +45,9 @@ int gnuplot(const fs::path& file) {
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) {
-    throw std::runtime_error("gnuplot, which draws the figures, is not installed; on Debian: "
-                             "apt-get install gnuplot-nox");
+    throw std::runtime_error(
+        "gnuplot, which draws the figures, is not installed; on Debian: "
+        "apt-get install gnuplot-nox");
   }
   if (failure != 0) {
     throw std::runtime_error("gnuplot could not be started: " +
@@ -91,8 +92,8 @@ void draw_figure(const Figure& figure, const fs::path& dir, const std::string& n
     std::error_code none;
     fs::remove(script, none);
     if (status != 0) {
-      throw std::runtime_error(fmt::format("{}: gnuplot could not draw it; is the disk full?",
-                                           out.string()));
+      throw std::runtime_error(
+          fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
     }
   }
 }

@@ -165,9 +165,10 @@ std::string sample_of(const Series& series, const Screen& screen, double x, doub
       return fmt::format("set label '' at {} point pt 7 ps 0.6 lc rgb '{}'\n",
                          screen.at(x + kSample / 2, y), series.color);
     case Series::Style::band:
-      return fmt::format("set object rectangle from {} to {} fc rgb '{}' "
-                         "fs transparent solid 0.2 noborder\n",
-                         screen.at(x, y - 5), screen.at(x + kSample, y + 5), series.color);
+      return fmt::format(
+          "set object rectangle from {} to {} fc rgb '{}' "
+          "fs transparent solid 0.2 noborder\n",
+          screen.at(x, y - 5), screen.at(x + kSample, y + 5), series.color);
   }
   return {};
 }
@@ -209,8 +210,7 @@ std::string panel_commands(const FigurePanel& panel, const Screen& screen, doubl
       "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
       left / screen.width, right / screen.width, bottom / screen.height, top / screen.height);
   text += heading(panel, legend, screen, left, top);
-  text += fmt::format("set label {} at {} center rotate by 90 noenhanced\n",
-                      printed(panel.y_label),
+  text += fmt::format("set label {} at {} center rotate by 90 noenhanced\n", printed(panel.y_label),
                       screen.at(cell_left + kYLabel, (top + bottom) / 2));
   text += fmt::format("set xlabel {} noenhanced offset 0,0.3\n", printed(panel.x_label));
   text += panel.log_x ? "set logscale x\nset format x '10^{%L}'\n"
@@ -238,9 +238,10 @@ std::string gnuplot_script(const Figure& figure, const std::string& terminal, do
       quoted(std::filesystem::absolute(out).string()));
   text += data_blocks(figure);
   text += fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
-  text += "unset key\nset border 3 lc rgb '#444444' lw 0.8\n"
-          "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
-          "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
+  text +=
+      "unset key\nset border 3 lc rgb '#444444' lw 0.8\n"
+      "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
+      "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
   int block = 0;
   for (int i = 0; i < count; ++i) {
     const FigurePanel& panel = figure.panels[static_cast<std::size_t>(i)];

@@ -14,8 +14,7 @@ std::complex<double> amplitude_at(const std::vector<double>& samples, double T, 
   return 2.0 * sum / static_cast<double>(samples.size());
 }
 
-double falls_through(const std::vector<double>& f, const std::vector<double>& value,
-                     double level) {
+double falls_through(const std::vector<double>& f, const std::vector<double>& value, double level) {
   for (std::size_t i = 1; i < f.size(); ++i) {
     if (value[i - 1] < level || value[i] >= level) continue;
     const double part = (value[i - 1] - level) / (value[i - 1] - value[i]);

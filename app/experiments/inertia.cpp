@@ -41,14 +41,16 @@ Outcome inertia(Laboratory& lab) {
 
   Outcome outcome;
   outcome.figure.title = "The same free motion at three apparent inertias";
-  outcome.figure.caption = fmt::format(
-      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact.",
-      kGripStiffness, kGripDamping);
+  outcome.figure.caption =
+      fmt::format("Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact.",
+                  kGripStiffness, kGripDamping);
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Human torque |f1| and its estimate",
-                     .x_label = "time [s]", .y_label = "torque [N m]"};
+                     .x_label = "time [s]",
+                     .y_label = "torque [N m]"};
   FigurePanel motion{.title = "Shoulder angle: the motion is the same",
-                     .x_label = "time [s]", .y_label = "x1 [rad]"};
+                     .x_label = "time [s]",
+                     .y_label = "x1 [rad]"};
   std::vector<Series> estimates;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Session& s = results[i].session;
@@ -57,14 +59,12 @@ Outcome inertia(Laboratory& lab) {
     torque.series.push_back(over_time(s, label, kFamilyInk[i], Series::Style::line, [&](auto k) {
       return vector_at(s, k, Column::hand_torque).norm();
     }));
-    estimates.push_back(over_time(s, i == 0 ? "estimates" : "", kNeutralInk,
-                                  Series::Style::dashed, [&](auto k) {
-      return vector_at(s, k, Column::hand_torque_estimate).norm();
-    }));
+    estimates.push_back(
+        over_time(s, i == 0 ? "estimates" : "", kNeutralInk, Series::Style::dashed,
+                  [&](auto k) { return vector_at(s, k, Column::hand_torque_estimate).norm(); }));
     const auto style = i == 0 ? Series::Style::line : Series::Style::dashed;
-    motion.series.push_back(over_time(s, label, kFamilyInk[i], style, [&](auto k) {
-      return s.at(k, Column::device_position)[1];
-    }));
+    motion.series.push_back(over_time(s, label, kFamilyInk[i], style,
+                                      [&](auto k) { return s.at(k, Column::device_position)[1]; }));
     if (eta == 1) continue;
     const double rms = rms_norm(s, Column::hand_torque, 0, s.size());
     outcome.checks.push_back(at_most(

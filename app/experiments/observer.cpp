@@ -61,9 +61,8 @@ class Shaking {
   }
   const Multisine& lines() const { return axes_.front(); }
   Trial trial(double alpha, double seconds, bool keep) const {
-    const std::string source =
-        fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest, kHighest, kSpeed,
-                    seed_);
+    const std::string source = fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest,
+                                           kHighest, kSpeed, seed_);
     const auto at = [&](double t) {
       return Vec3(start() + Vec3(axes_[0].at(t), axes_[1].at(t), axes_[2].at(t)));
     };
@@ -94,8 +93,8 @@ void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<Response> seen(trials.size() * 3);
   lab.run(trials, [&](std::size_t i, const TrialResult& result) {
     for (int mode = 0; mode < 3; ++mode) {
-      seen[3 * i + static_cast<std::size_t>(mode)] = measured_response(
-          result.session, ticks(kPeriod), modes.u.col(mode), shaking.lines());
+      seen[3 * i + static_cast<std::size_t>(mode)] =
+          measured_response(result.session, ticks(kPeriod), modes.u.col(mode), shaking.lines());
     }
   });
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -131,9 +130,9 @@ void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   outcome.figure.panels.push_back(panel);
   outcome.checks.push_back(at_most(
       fmt::format("-3 dB bandwidth off alpha / m where w_f T <= {}", kFast), off_fast, 0.02));
-  outcome.checks.push_back(at_most(
-      "-3 dB and -45 degree bandwidths off those of (17) in ticks, all gains and modes",
-      off_sampled, 0.03));
+  outcome.checks.push_back(
+      at_most("-3 dB and -45 degree bandwidths off those of (17) in ticks, all gains and modes",
+              off_sampled, 0.03));
 }
 
 // f1_hat over f1 along the heaviest mode for three gains.
@@ -149,8 +148,8 @@ void response(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   panel.log_x = panel.log_y = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const double w_f = kShown[i] / modes.m[2];
-    const Response seen = measured_response(results[i].session, ticks(kPeriod), modes.u.col(2),
-                                            shaking.lines());
+    const Response seen =
+        measured_response(results[i].session, ticks(kPeriod), modes.u.col(2), shaking.lines());
     const Response sampled = sampled_response(seen.f, w_f, kTick);
     Series points{fmt::format("alpha = {}", kShown[i]), kFamilyInk[i], Series::Style::points, {}};
     Series theory{"", kFamilyInk[i], Series::Style::line, {}};
@@ -207,8 +206,8 @@ void error_decay(Laboratory& lab, Outcome& outcome) {
     }
   }
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(at_most(
-      "decay rate of a wrong estimate off that of (18) in ticks, all modes", worst, 0.02));
+  outcome.checks.push_back(
+      at_most("decay rate of a wrong estimate off that of (18) in ticks, all modes", worst, 0.02));
 }
 
 // Estimates stay bounded for every gain there is.

@@ -13,10 +13,10 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kGrid = 201;       // points of normalised time
-constexpr double kNoise = 1e-4;          // energy that does not count [J]
-constexpr double kStiffGrip = 3000;      // [N/m]
-constexpr double kMargin = 0.1;          // how far off Routh's limit the two runs are
+constexpr std::size_t kGrid = 201;   // points of normalised time
+constexpr double kNoise = 1e-4;      // energy that does not count [J]
+constexpr double kStiffGrip = 3000;  // [N/m]
+constexpr double kMargin = 0.1;      // how far off Routh's limit the two runs are
 
 // A trial's energy over normalised time, and its highest.
 struct Books {
@@ -63,8 +63,8 @@ void add_case(FigurePanel& panel, const PassivityCase& one, const char* color,
   std::vector<FigurePoint> points = spread(trials, curve);
   for (FigurePoint& p : points) p = {p.x, 1e3 * p.y, 1e3 * p.low, 1e3 * p.high};
   panel.series.push_back({"", color, Series::Style::band, points});
-  const auto style = one.kind == CouplingKind::standard ? Series::Style::dashed
-                                                        : Series::Style::line;
+  const auto style =
+      one.kind == CouplingKind::standard ? Series::Style::dashed : Series::Style::line;
   panel.series.push_back({one.name, color, style, points});
 }
 
@@ -164,8 +164,7 @@ Outcome passivity(Laboratory& lab) {
       "N/m, whose smallest stable eta is {:.3f} by Routh and Hurwitz.",
       kTrialsOfACase, kStiffGrip, limit);
   figure.columns = 2;
-  const FigurePanel axes{.x_label = "time over the trial's length [-]",
-                         .y_label = "energy [mJ]"};
+  const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
   FigurePanel total = axes, commanded = axes, zero = axes;
   total.title = "Total";
   commanded.title = "Commanded";
@@ -178,45 +177,49 @@ Outcome passivity(Laboratory& lab) {
   }
   add_case(zero, cases[compared], kFamilyInk[4], of(compared), &Books::commanded);
   add_case(zero, cases[0], kFamilyInk[0], of(0), &Books::commanded);
-  FigurePanel grip{.title = "Held in a stiff grip", .x_label = "time [s]",
-                   .y_label = "peak of the speed |v1| [rad/s]", .log_y = true};
+  FigurePanel grip{.title = "Held in a stiff grip",
+                   .x_label = "time [s]",
+                   .y_label = "peak of the speed |v1| [rad/s]",
+                   .log_y = true};
   for (std::size_t i = 0; i < 2; ++i) {
     const Session& s = held[i].session;
     const std::string label = fmt::format("eta {:.3f}, {} the limit", s.at(0, Column::eta)[0],
                                           i == 0 ? "above" : "below");
-    grip.series.push_back({label, i == 0 ? kHandInk : kContactInk, Series::Style::line,
-                           envelope(s)});
+    grip.series.push_back(
+        {label, i == 0 ? kHandInk : kContactInk, Series::Style::line, envelope(s)});
   }
   figure.panels = {total, commanded, zero, grip};
 
   for (std::size_t i = 0; i < compared; ++i) {
-    outcome.checks.push_back(at_most(
-        fmt::format("highest E_c, total, of all trials, {} [J]", cases[i].name),
-        highest(of(i), &Books::highest_total), kNoise));
+    outcome.checks.push_back(
+        at_most(fmt::format("highest E_c, total, of all trials, {} [J]", cases[i].name),
+                highest(of(i), &Books::highest_total), kNoise));
   }
   for (std::size_t i = 0; i < compared; ++i) {
-    outcome.checks.push_back(at_most(
-        fmt::format("highest E_c, commanded, of all trials, {} [J]", cases[i].name),
-        highest(of(i), &Books::highest_commanded), kNoise));
+    outcome.checks.push_back(
+        at_most(fmt::format("highest E_c, commanded, of all trials, {} [J]", cases[i].name),
+                highest(of(i), &Books::highest_commanded), kNoise));
   }
   // 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
   for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
     const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
-    outcome.checks.push_back(at_most(
-        fmt::format("mean final E_c, total, {} less {} [J]", cases[l].name, cases[h].name),
-        final_mean(of(l)) - final_mean(of(h)), 0));
+    outcome.checks.push_back(
+        at_most(fmt::format("mean final E_c, total, {} less {} [J]", cases[l].name, cases[h].name),
+                final_mean(of(l)) - final_mean(of(h)), 0));
   }
   double least = std::numeric_limits<double>::infinity();
   for (const Books& trial : of(compared)) least = std::min(least, trial.highest_commanded);
   outcome.checks.push_back(at_least(
       "highest E_c, commanded, in each trial at eta = 0.4, which is not passive, at least [J]",
       least, kNoise));
-  outcome.checks.push_back(at_most(
-      fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                  limit * (1 + kMargin)), growth(held[0]), 0.5));
-  outcome.checks.push_back(at_least(
-      fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                  limit * (1 - kMargin)), growth(held[1]), 2));
+  outcome.checks.push_back(
+      at_most(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
+                          limit * (1 + kMargin)),
+              growth(held[0]), 0.5));
+  outcome.checks.push_back(
+      at_least(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
+                           limit * (1 - kMargin)),
+               growth(held[1]), 2));
   return outcome;
 }
 

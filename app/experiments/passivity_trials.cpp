@@ -12,9 +12,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kRate = 100;             // of a path's samples [Hz]
-constexpr double kTremor = 5e-5;          // amplitude of one sine of it [m]
-constexpr std::size_t kTremorSines = 3;   // an axis
+constexpr double kRate = 100;            // of a path's samples [Hz]
+constexpr double kTremor = 5e-5;         // amplitude of one sine of it [m]
+constexpr std::size_t kTremorSines = 3;  // an axis
 
 struct Sine {
   double frequency, phase;  // [Hz], [rad]
@@ -81,8 +81,8 @@ HandPath varied(const HandPath& path, std::uint64_t seed, std::uint64_t variatio
                    std::sin(std::numbers::pi * u) * tremor_at(m, t);
     csv += fmt::format("{},{},{},{}\n", t, p.x(), p.y(), p.z());
   }
-  return parse_hand_csv(csv, fmt::format("{}, variation {} of seed {}", path.source, variation,
-                                         seed));
+  return parse_hand_csv(csv,
+                        fmt::format("{}, variation {} of seed {}", path.source, variation, seed));
 }
 
 std::span<const PassivityCase> passivity_cases() { return kCases; }

@@ -11,12 +11,12 @@
 namespace limpid {
 namespace {
 
-constexpr double kLimit = 0.2;    // of every motor [N m]
+constexpr double kLimit = 0.2;  // of every motor [N m]
 constexpr double kEta = 0.6;
-constexpr double kSurface = -0.04, kDeepest = -0.055, kAhead = 0.19;  // [m]
+constexpr double kSurface = -0.04, kDeepest = -0.055, kAhead = 0.19;       // [m]
 constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kEnd = 1.7;  // [s]
-constexpr double kHeldFrom = 0.8;  // everything at rest [s]
-constexpr int kShoulder = 1;       // the joint that bears most of it
+constexpr double kHeldFrom = 0.8;                                          // everything at rest [s]
+constexpr int kShoulder = 1;  // the joint that bears most of it
 
 constexpr const char* kScene = R"(title = "Table"
 about = "A table top four centimetres below the middle of the workspace."
@@ -39,9 +39,8 @@ Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
         minimum_jerk(t / kReached) - minimum_jerk((t - kPullOut) / (kOut - kPullOut));
     return Vec3(kAhead, 0, kDeepest * part);
   };
-  const std::string source =
-      fmt::format("down to {} m in {} s, from {} s back within {} s", kDeepest, kReached, kPullOut,
-                  kOut - kPullOut);
+  const std::string source = fmt::format("down to {} m in {} s, from {} s back within {} s",
+                                         kDeepest, kReached, kPullOut, kOut - kPullOut);
   return {name, plan_in(kScene, hand_path(source, p.tick, kEnd, at), p)};
 }
 
@@ -59,7 +58,8 @@ class Run {
   }
   double estimate_error(std::size_t k) const {
     return (vector_at(session_, k, Column::hand_torque_estimate) -
-            vector_at(session_, k, Column::hand_torque)).norm();
+            vector_at(session_, k, Column::hand_torque))
+        .norm();
   }
   std::size_t row(double t) const {
     return std::min(session_.size(), static_cast<std::size_t>(t / session_.info.tick));
@@ -105,22 +105,23 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
     return over_time(run.session(), label, ink, style,
                      [&](std::size_t k) { return run.depth(k, column); });
   };
-  FigurePanel human{.title = "Human torque at the shoulder",
-                    .x_label = "time [s]", .y_label = "f1 [N m]"};
+  FigurePanel human{
+      .title = "Human torque at the shoulder", .x_label = "time [s]", .y_label = "f1 [N m]"};
   human.series = {
       curve(without, "estimate, wound up", kContactInk, dashed, Column::hand_torque_estimate),
       curve(without, "true, wound up", kContactInk, line, Column::hand_torque),
       curve(with, "estimate, anti-windup", kProxyInk, dashed, Column::hand_torque_estimate),
       curve(with, "true, anti-windup", kProxyInk, line, Column::hand_torque)};
   FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
-                     .x_label = "time [s]", .y_label = "tau1 [N m]"};
-  motors.series = {
-      curve(without, "asked, wound up", kContactInk, dashed, Column::commanded_torque),
-      curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
-      curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
-      curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque)};
+                     .x_label = "time [s]",
+                     .y_label = "tau1 [N m]"};
+  motors.series = {curve(without, "asked, wound up", kContactInk, dashed, Column::commanded_torque),
+                   curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
+                   curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
+                   curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque)};
   FigurePanel lurking{.title = "The proxy lurks: it goes on into the table with the device",
-                      .x_label = "time [s]", .y_label = "tip below the surface [mm]"};
+                      .x_label = "time [s]",
+                      .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, proposed", kDeviceInk, line, Column::device_position),
       depth(with, "proxy, proposed", kProxyInk, dashed, Column::proxy_position),
@@ -149,7 +150,8 @@ Outcome saturation(Laboratory& lab) {
   outcome.figure.caption = fmt::format(
       "Proposed coupling at the paper's gains, eta = {}, motors limited to {} N m, table 600 N/m. "
       "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
-      "them.", kEta, kLimit);
+      "them.",
+      kEta, kLimit);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(with, without, spring);
 

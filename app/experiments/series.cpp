@@ -26,8 +26,7 @@ std::uint64_t rows_of(const RunPlan& plan) {
 
 Eigen::VectorXd vector_at(const Session& session, std::size_t k, Column column) {
   const auto values = session.at(k, column);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(),
-                                           static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 Eigen::VectorXd coordination_error(const Session& session, std::size_t k) {

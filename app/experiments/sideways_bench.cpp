@@ -19,7 +19,8 @@ name = "wall"
 point = [0.0, 0.0, 0.0]
 normal = [0.0, 1.0, 0.0]
 stiffness = {:.1f}
-)", wall);
+)",
+                     wall);
 }
 
 // How far beyond the wall the hand aims [m].

@@ -62,8 +62,8 @@ void add_spread(FigurePanel& panel, const std::vector<FigurePoint>& points, cons
   panel.y_range = {{lowest, highest}};
   panel.series.push_back({"lowest to highest trial", color, Series::Style::band, points});
   panel.series.push_back({"mean of all trials", color, Series::Style::line, points});
-  panel.series.push_back({"5 Hz", kNeutralInk, Series::Style::dashed,
-                          {{kBand, lowest}, {kBand, highest}}});
+  panel.series.push_back(
+      {"5 Hz", kNeutralInk, Series::Style::dashed, {{kBand, lowest}, {kBand, highest}}});
 }
 
 }  // namespace
@@ -95,8 +95,10 @@ Outcome spectrum(Laboratory& lab) {
       "method: half-overlapping Hann windows of {:.3f} s, {:.2f} Hz apart.",
       trials.size(), kSegment / rate, rate / kSegment);
   figure.columns = 2;
-  FigurePanel density{.title = "Power density of the velocity", .x_label = "frequency [Hz]",
-                      .y_label = "density [(rad/s)²/Hz]", .log_y = true};
+  FigurePanel density{.title = "Power density of the velocity",
+                      .x_label = "frequency [Hz]",
+                      .y_label = "density [(rad/s)²/Hz]",
+                      .log_y = true};
   const std::vector<FigurePoint> points =
       spread(spectra, [](const Spectrum& s, std::size_t i) { return s.density[i]; });
   double lowest = points[0].low, highest = points[0].high;
@@ -105,11 +107,14 @@ Outcome spectrum(Laboratory& lab) {
     highest = std::max(highest, p.high);
   }
   add_spread(density, points, kProxyInk, lowest / 2, highest * 2);
-  FigurePanel part{.title = "Share of the power up to a frequency", .x_label = "frequency [Hz]",
+  FigurePanel part{.title = "Share of the power up to a frequency",
+                   .x_label = "frequency [Hz]",
                    .y_label = "share [-]"};
-  add_spread(part, spread(spectra, [](const Spectrum& s, std::size_t i) {
-               return share(s, static_cast<double>(i) * s.step);
-             }), kHandInk, 0, 1.02);
+  add_spread(
+      part,
+      spread(spectra, [](const Spectrum& s,
+                         std::size_t i) { return share(s, static_cast<double>(i) * s.step); }),
+      kHandInk, 0, 1.02);
   figure.panels = {density, part};
   outcome.checks = {
       at_least("share of the power of all trials below 5 Hz", below / total, 0.95),

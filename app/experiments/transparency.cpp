@@ -29,8 +29,13 @@ FeltJoint free_joint(const RunPlan& plan) {
   const Eigen::VectorXd x = rest_at(plan.arm, plan.hand.position.front()).x1;
   const double m = inertia_at(plan.arm, x)(Bench::kJoint, Bench::kJoint);
   const Parameters& p = plan.parameters;
-  return {(1 + p.inertia_ratio) * m, plan.arm.joints[Bench::kJoint].damping, p.b_v, p.k_vc, p.b_vc,
-          p.tick, 0};
+  return {(1 + p.inertia_ratio) * m,
+          plan.arm.joints[Bench::kJoint].damping,
+          p.b_v,
+          p.k_vc,
+          p.b_vc,
+          p.tick,
+          0};
 }
 
 FeltJoint touching(FeltJoint joint, double wall) {
@@ -39,9 +44,8 @@ FeltJoint touching(FeltJoint joint, double wall) {
 }
 
 std::complex<double> theory(const FeltJoint& joint, const Setting& s, double f) {
-  return s.kind == CouplingKind::standard
-             ? joint.standard(f)
-             : joint.proposed(f, s.eta, Parameters{}.alpha / joint.m);
+  return s.kind == CouplingKind::standard ? joint.standard(f)
+                                          : joint.proposed(f, s.eta, Parameters{}.alpha / joint.m);
 }
 
 double off(std::complex<double> value, std::complex<double> wanted) {
@@ -71,8 +75,8 @@ Felt shake(Laboratory& lab, const Bench& bench, const std::vector<Setting>& sett
   Felt felt{settings, {}, {}};
   for (std::size_t i = 0; i < trials.size(); ++i) {
     felt.joints.push_back(touching(free_joint(trials[i].plan), settings[i].wall));
-    felt.seen.push_back(measured_impedance(results[i].session, Bench::settled(), Bench::kJoint,
-                                           bench.shaking()));
+    felt.seen.push_back(
+        measured_impedance(results[i].session, Bench::settled(), Bench::kJoint, bench.shaking()));
   }
   return felt;
 }
@@ -103,8 +107,8 @@ double worst_off_theory(const Felt& felt, double to) {
   double worst = 0;
   for (std::size_t i = 0; i < felt.seen.size(); ++i) {
     worst = std::max(worst, furthest(felt.seen[i], Bench::kLowest, to, [&](double f, auto Z) {
-      return off(Z, theory(felt.joints[i], felt.settings[i], f));
-    }));
+                       return off(Z, theory(felt.joints[i], felt.settings[i], f));
+                     }));
   }
   return worst;
 }
@@ -134,8 +138,7 @@ FigurePanel scaling_panel(const Felt& felt, std::size_t at_one, double w_f) {
     const char* color = kFamilyInk[ink++];
     Series points{fmt::format("{:.3g} Hz", *found), color, Series::Style::points, {}};
     for (std::size_t i = 1; i < felt.seen.size(); ++i) {
-      points.points.push_back(
-          {felt.settings[i].eta, std::abs(felt.seen[i].Z[k] / reference.Z[k])});
+      points.points.push_back({felt.settings[i].eta, std::abs(felt.seen[i].Z[k] / reference.Z[k])});
     }
     panel.series.push_back(scaling_line(felt.joints.front(), w_f, *found, color));
     panel.series.push_back(points);
@@ -165,27 +168,25 @@ void free_motion(Laboratory& lab, const Bench& bench, Outcome& outcome) {
     Impedance expected{felt.seen[i].f, {}};
     for (const double f : expected.f) expected.Z.push_back(joint.proposed(f, eta, w_f));
     const double inertia_seen = apparent_inertia(felt.seen[i], 3);
-    off_inertia =
-        std::max(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
+    off_inertia = std::max(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
   }
   outcome.checks.push_back(at_most("free: impedance off (24) in ticks, 0.5 to 50 Hz, all couplings",
                                    worst_off_theory(felt, 50), 0.10));
-  outcome.checks.push_back(at_most(
-      "free: |Z| off eta (M_L j w + b), 0.5 to 1 Hz, eta 0.4 to 5", off_low, 0.10));
-  outcome.checks.push_back(at_most(
-      "free: |Z| off eta (M_L j w + b), 5 to 15 Hz, eta 0.4 to 1", off_ideal, 0.15));
-  outcome.checks.push_back(at_most(
-      "free: apparent inertia Im Z / w up to 3 Hz off that of (24) in ticks, eta 0.4 to 1",
-      off_inertia, 0.10));
+  outcome.checks.push_back(
+      at_most("free: |Z| off eta (M_L j w + b), 0.5 to 1 Hz, eta 0.4 to 5", off_low, 0.10));
+  outcome.checks.push_back(
+      at_most("free: |Z| off eta (M_L j w + b), 5 to 15 Hz, eta 0.4 to 1", off_ideal, 0.15));
+  outcome.checks.push_back(
+      at_most("free: apparent inertia Im Z / w up to 3 Hz off that of (24) in ticks, eta 0.4 to 1",
+              off_inertia, 0.10));
 }
 
 void in_contact(Laboratory& lab, const Bench& bench, Outcome& outcome) {
   std::vector<Setting> settings{{CouplingKind::standard, 1, kWall}};
   for (const double eta : kInContact) settings.push_back({CouplingKind::proposed, eta, kWall});
   const Felt felt = shake(lab, bench, settings);
-  FigurePanel panel =
-      impedance_panel(felt, fmt::format("Impedance felt at a wall of {} N/m (lines: theory)",
-                                        kWall));
+  FigurePanel panel = impedance_panel(
+      felt, fmt::format("Impedance felt at a wall of {} N/m (lines: theory)", kWall));
   Series wall{"the wall alone", kContactInk, Series::Style::dashed, {}};
   for (const double f : felt.seen.front().f) {
     const double w = 2 * std::numbers::pi * f;
@@ -235,9 +236,9 @@ void stiffness(Laboratory& lab, const Bench& bench, Outcome& outcome) {
   }
   panel.series = {same, soft, points[0], points[1]};
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(at_most(
-      "standard: stiffness felt off 1 / (1/K + r^2/k_vc), walls of 50 to 1000 N/m", off_series,
-      0.02));
+  outcome.checks.push_back(
+      at_most("standard: stiffness felt off 1 / (1/K + r^2/k_vc), walls of 50 to 1000 N/m",
+              off_series, 0.02));
   outcome.checks.push_back(at_most(
       "proposed: stiffness felt off that of the wall, walls of 50 to 1000 N/m", off_wall, 0.03));
 }

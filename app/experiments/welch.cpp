@@ -21,8 +21,8 @@ class Transform {
   explicit Transform(std::size_t length)
       : in_(fftw_alloc_real(length)),
         out_(fftw_alloc_complex(length / 2 + 1)),
-        plan_(fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(),
-                                   FFTW_ESTIMATE)) {}
+        plan_(
+            fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE)) {}
 
   double* in() { return in_.get(); }
   void run() { fftw_execute(plan_.get()); }

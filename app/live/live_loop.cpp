@@ -98,8 +98,7 @@ void LiveLoop::record(const std::filesystem::path& out, const SessionInfo& info,
 void LiveLoop::stop_recording() {
   wanted_recorder_.store(nullptr, std::memory_order_release);
   // The loop answers within a tick; one that has stopped never does, and does not write either.
-  while (present_recorder_.load(std::memory_order_acquire) != nullptr &&
-         thread_.status().running) {
+  while (present_recorder_.load(std::memory_order_acquire) != nullptr && thread_.status().running) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   present_recorder_.store(nullptr);

@@ -17,8 +17,8 @@ namespace limpid {
 // From the window to the loop; the newest wins.
 struct Controls {
   Parameters parameters;
-  bool force = true;    // armed
-  bool grab = false;    // the hand holds the tip
+  bool force = true;         // armed
+  bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   std::uint32_t resets = 0;  // start over whenever this counts on
 };
@@ -64,7 +64,7 @@ class LiveLoop {
   const HapticThread& thread() const { return thread_; }
 
  private:
-  void tick(const TickTiming& timing);  // the loop's
+  void tick(const TickTiming& timing);       // the loop's
   void begin_recording(const Vec3& target);  // the loop's
   void publish(const TickTiming& timing);
 

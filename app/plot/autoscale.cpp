@@ -8,10 +8,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kMargin = 0.08;     // of the data's span, on both sides
-constexpr double kWasteful = 0.62;   // shrink when the data needs less of the axis than this ...
-constexpr double kPatience = 1.0;    // ... for so long [s]
-constexpr double kGlide = 0.09;      // time constant [s]
+constexpr double kMargin = 0.08;    // of the data's span, on both sides
+constexpr double kWasteful = 0.62;  // shrink when the data needs less of the axis than this ...
+constexpr double kPatience = 1.0;   // ... for so long [s]
+constexpr double kGlide = 0.09;     // time constant [s]
 
 Limits around(const Limits& data, double smallest_span) {
   double low = data.low;

@@ -9,8 +9,8 @@ namespace limpid {
 namespace {
 
 constexpr double kGapTicks = 1.5;
-constexpr double kResetGap = 0.2;      // shown between two runs [s]
-constexpr double kSameGesture = 0.5;   // marks of one key closer than this are one [s]
+constexpr double kResetGap = 0.2;     // shown between two runs [s]
+constexpr double kSameGesture = 0.5;  // marks of one key closer than this are one [s]
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace

@@ -27,8 +27,8 @@ class History {
  public:
   struct Options {
     int channels = 1;
-    double seconds = 60;   // how much to keep at least [s]
-    double tick = 0.001;   // time between rows [s]; more than 1.5 of it is a gap
+    double seconds = 60;  // how much to keep at least [s]
+    double tick = 0.001;  // time between rows [s]; more than 1.5 of it is a gap
   };
 
   // Throws std::invalid_argument when an option is not positive.

@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kNoticeTime = 4;      // [s]
+constexpr double kNoticeTime = 4;  // [s]
 constexpr double kWheelStep = 1.18;
 constexpr float kLeastHeight = 110;    // of curves and time axis under the legend [px]
 constexpr float kDash = 6;             // [px] at scale 1
@@ -66,8 +66,8 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
   const ScreenRect outer{min, {min.x + size.x, min.y + size.y}};
   const float title_end = draw_title(list, outer, scale);
   const float title_bottom = min.y + text_size(Face::semibold, spec_.title).y + 4 * scale;
-  const float legend = legend_.place_outside(outer, title_end, title_bottom,
-                                             kLeastHeight * scale, spec_, scale);
+  const float legend =
+      legend_.place_outside(outer, title_end, title_bottom, kLeastHeight * scale, spec_, scale);
   const ImVec2 label = text_size(Face::small, "\u221200.00");
   ScreenRect area{
       {std::round(min.x + label.x + 8 * scale), std::round(title_bottom + legend + 5 * scale)},
@@ -137,14 +137,15 @@ void Plot::zoom_values(double factor, double around) {
 
 void Plot::handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& events) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool near_playback = group.playback() && frame.area.contains(io.MousePos) &&
+  const bool near_playback =
+      group.playback() && frame.area.contains(io.MousePos) &&
       std::abs(frame.x_of(*group.playback()) - io.MousePos.x) < kGrip * frame.scale;
   if (hovered_ && near_playback) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (ImGui::IsItemActivated()) {
-    drag_ = near_playback                           ? Drag::playback
-            : io.MousePos.x < frame.area.min.x      ? Drag::values
-            : hovered_curve_ < 0                    ? Drag::pan
-                                                    : Drag::none;
+    drag_ = near_playback                      ? Drag::playback
+            : io.MousePos.x < frame.area.min.x ? Drag::values
+            : hovered_curve_ < 0               ? Drag::pan
+                                               : Drag::none;
   }
   if (!ImGui::IsItemActive()) {
     drag_ = Drag::none;
@@ -174,7 +175,9 @@ void Plot::draw_curves(const PlotFrame& frame, const History& history) {
     make_trace(history, curve, frame.window, rows_, kDash * frame.scale, traces_[i]);
     const bool pointed_at = hovered_curve_ == static_cast<int>(i);
     draw_trace(frame, traces_[i], ink(frame.palette, curve.ink, curve.shade),
-               hovered_curve_ < 0 ? 1.0f : pointed_at ? 1.5f : 0.3f);
+               hovered_curve_ < 0 ? 1.0f
+               : pointed_at       ? 1.5f
+                                  : 0.3f);
   }
   if (history.empty()) {
     const std::string text = "no data yet";

@@ -32,10 +32,10 @@ struct PlotFrame {
   ImDrawList& list;
   const Palette& palette;
   float scale;
-  ScreenRect outer;       // the whole plot
-  ScreenRect area;        // where the curves are
+  ScreenRect outer;  // the whole plot
+  ScreenRect area;   // where the curves are
   PixelWindow window;
-  Limits y;        // in the channels' unit
+  Limits y;  // in the channels' unit
 
   float x_of(double time) const { return area.min.x + static_cast<float>(window.pixel(time)); }
   float y_of(double value) const {

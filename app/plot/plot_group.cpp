@@ -32,8 +32,7 @@ void PlotGroup::begin_frame(const History& history, std::optional<double> playba
 
 void PlotGroup::pan(double seconds) {
   stop_ += seconds;
-  following_ = !playback_ && seconds > 0 && stop_ >= data_stop_ &&
-               stop_ >= data_start_ + length_;
+  following_ = !playback_ && seconds > 0 && stop_ >= data_stop_ && stop_ >= data_start_ + length_;
 }
 
 void PlotGroup::zoom(double factor, double around) {

@@ -6,7 +6,7 @@
 namespace limpid {
 namespace {
 
-constexpr float kSwatch = 14;   // [px] at scale 1
+constexpr float kSwatch = 14;  // [px] at scale 1
 constexpr float kApart = 12;
 constexpr float kPad = 5;
 

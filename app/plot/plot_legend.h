@@ -16,8 +16,7 @@ class PlotLegend {
                       float least_height, const PlotSpec& spec, float scale);
 
   // Where place_outside() found no room: the corner where it hides least of the traces.
-  void place_inside(const PlotFrame& frame, const PlotSpec& spec,
-                    const std::vector<Trace>& traces);
+  void place_inside(const PlotFrame& frame, const PlotSpec& spec, const std::vector<Trace>& traces);
 
   // Curve under the mouse, -1 for none.
   int curve_at(ImVec2 mouse) const;

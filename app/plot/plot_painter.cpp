@@ -54,8 +54,8 @@ void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
       continue;
     }
     draw_text(frame.list, Face::small,
-              {frame.area.min.x - size.x - 6 * frame.scale, y - 0.5f * size.y},
-              frame.palette.muted, label);
+              {frame.area.min.x - size.x - 6 * frame.scale, y - 0.5f * size.y}, frame.palette.muted,
+              label);
   }
 }
 
@@ -73,8 +73,8 @@ void draw_time_axis(const PlotFrame& frame, double time_offset) {
     const std::string label = time_text(ticks.at(i), ticks.step, clock);
     const ImVec2 size = text_size(Face::small, label);
     // Pushed inwards at the ends rather than cut off or left out.
-    const float left = std::clamp(x - 0.5f * size.x, frame.area.min.x - 0.3f * size.x,
-                                  frame.outer.max.x - size.x);
+    const float left =
+        std::clamp(x - 0.5f * size.x, frame.area.min.x - 0.3f * size.x, frame.outer.max.x - size.x);
     if (std::abs(left + 0.5f * size.x - x) > 0.4f * size.x) continue;
     draw_text(frame.list, Face::small, {left, frame.area.max.y + 4 * frame.scale},
               frame.palette.muted, label);

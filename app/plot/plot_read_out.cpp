@@ -16,8 +16,7 @@ struct Line {
 // As many digits as the screen can show, not as many as the number has.
 std::string value_text(const PlotFrame& frame, const PlotSpec& spec, double value) {
   const double resolution = std::abs(spec.factor) * frame.y.span() / 1000;
-  const int exponent =
-      common_exponent(frame.y.low * spec.factor, frame.y.high * spec.factor);
+  const int exponent = common_exponent(frame.y.low * spec.factor, frame.y.high * spec.factor);
   const double unit = std::pow(10.0, exponent);
   std::string text = fixed_text(value * spec.factor / unit, decimals_of(resolution / unit));
   if (exponent != 0) text += exponent_text(exponent);
@@ -48,8 +47,8 @@ void draw_box(const PlotFrame& frame, const std::string& title, const std::vecto
     labels = std::max(labels, text_size(Face::small, line.label).x);
     values = std::max(values, text_size(Face::small, line.value).x);
   }
-  const float width = std::max(text_size(Face::small, title).x,
-                               swatch + 6 * s + labels + 12 * s + values) + 14 * s;
+  const float width =
+      std::max(text_size(Face::small, title).x, swatch + 6 * s + labels + 12 * s + values) + 14 * s;
   const float tall = height * static_cast<float>(lines.size() + 1) + 10 * s;
   float left = line_x + 10 * s;
   if (left + width > frame.area.max.x) left = line_x - 10 * s - width;

@@ -12,14 +12,14 @@ struct Curve {
   int channel = 0;
   std::string label = {};
   Ink ink = Ink::neutral;
-  float shade = 0;         // see ink()
+  float shade = 0;  // see ink()
   bool dashed = false;
-  int dash_channel = -1;   // >= 0: dashed wherever this channel is below 0.5 (standard coupling)
+  int dash_channel = -1;  // >= 0: dashed wherever this channel is below 0.5 (standard coupling)
   bool visible = true;
 };
 
 struct Threshold {
-  double value;            // in the channels' unit
+  double value;  // in the channels' unit
   std::string label;
   Ink ink = Ink::neutral;
   bool always_in_view = false;  // autoscale makes room for it
@@ -27,12 +27,12 @@ struct Threshold {
 
 struct PlotSpec {
   std::string title = {};
-  std::string unit = {};         // after multiplication by factor
-  double factor = 1;        // from the channels' unit, such as 1000 from rad to mrad
-  std::string file_name = {};    // for saving, without folder and extension: "coordination-error"
+  std::string unit = {};       // after multiplication by factor
+  double factor = 1;           // from the channels' unit, such as 1000 from rad to mrad
+  std::string file_name = {};  // for saving, without folder and extension: "coordination-error"
   std::vector<Curve> curves = {};
   std::vector<Threshold> thresholds = {};
-  bool zero_line = true;    // emphasised and always in view
+  bool zero_line = true;        // emphasised and always in view
   double smallest_span = 1e-6;  // autoscale shows at least this much, in the channels' unit, > 0
 };
 

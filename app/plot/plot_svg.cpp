@@ -12,9 +12,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kFont = 12;       // [px]
-constexpr double kLine = 1.4;      // [px]
-constexpr double kDash = 6;        // [px]
+constexpr double kFont = 12;         // [px]
+constexpr double kLine = 1.4;        // [px]
+constexpr double kDash = 6;          // [px]
 constexpr int kColumnsPerPixel = 2;  // pictures are looked at closely
 
 std::string escaped(const std::string& text) {
@@ -36,7 +36,10 @@ std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b
 class SvgPlot {
  public:
   SvgPlot(const PlotSpec& spec, const History& history, const PlotPicture& picture)
-      : spec_(spec), history_(history), picture_(picture), right_(picture.width - 14.0),
+      : spec_(spec),
+        history_(history),
+        picture_(picture),
+        right_(picture.width - 14.0),
         bottom_(picture.height - 42.0) {}
 
   std::string write() {
@@ -63,12 +66,14 @@ class SvgPlot {
   void label(double x, double y, const char* anchor, Rgb rgb, const std::string& what,
              const char* weight = "400") {
     add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" "
-        "font-weight=\"{}\">{}</text>\n", x, y, anchor, hex(rgb), weight, escaped(what));
+        "font-weight=\"{}\">{}</text>\n",
+        x, y, anchor, hex(rgb), weight, escaped(what));
   }
 
   void line(double x1, double y1, double x2, double y2, Rgb rgb, const char* dash = "none") {
     add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
-        "stroke-dasharray=\"{}\"/>\n", x1, y1, x2, y2, hex(rgb), dash);
+        "stroke-dasharray=\"{}\"/>\n",
+        x1, y1, x2, y2, hex(rgb), dash);
   }
 
   double x_of(double time) const {
@@ -88,8 +93,8 @@ class SvgPlot {
     add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
         left_, top_, right_ - left_, bottom_ - top_);
     std::string unit = spec_.unit;
-    const int exponent = common_exponent(picture_.y.low * spec_.factor,
-                                         picture_.y.high * spec_.factor);
+    const int exponent =
+        common_exponent(picture_.y.low * spec_.factor, picture_.y.high * spec_.factor);
     if (exponent != 0) unit = exponent_text(exponent) + " " + unit;
     label(left_, 20, "start", kLightPalette.text, spec_.title + "  [" + unit + "]", "600");
   }
@@ -165,7 +170,8 @@ class SvgPlot {
   // The outline of the band, filled; its stroke gives thin bands the width of a line.
   void band(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
     add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" "
-        "points=\"", hex(rgb), kLine);
+        "points=\"",
+        hex(rgb), kLine);
     for (const TracePoint& p : points) point(p, window, p.high);
     for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, window, p->low);
     add("\"/>\n");
@@ -173,7 +179,8 @@ class SvgPlot {
 
   void polyline(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
     add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
-        "points=\"", hex(rgb), kLine);
+        "points=\"",
+        hex(rgb), kLine);
     for (const TracePoint& p : points) point(p, window, p.low);
     add("\"/>\n");
   }
@@ -184,8 +191,9 @@ class SvgPlot {
       if (!curve.visible) continue;
       const double y = picture_.height - 10;
       add("<line x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"2\" "
-          "stroke-dasharray=\"{}\"/>\n", x, y - 4, x + 18, y - 4,
-          hex(ink(kLightPalette, curve.ink, curve.shade)), curve.dashed ? "5 3" : "none");
+          "stroke-dasharray=\"{}\"/>\n",
+          x, y - 4, x + 18, y - 4, hex(ink(kLightPalette, curve.ink, curve.shade)),
+          curve.dashed ? "5 3" : "none");
       label(x + 23, y, "start", kLightPalette.text, curve.label);
       x += 40 + 0.6 * kFont * static_cast<double>(curve.label.size());
     }

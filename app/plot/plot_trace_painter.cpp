@@ -12,7 +12,7 @@ constexpr float kDotsFrom = 7;      // samples further apart than this get dots 
 constexpr float kTolerance = 0.2f;  // by which points may be left out [px]
 constexpr float kTallFrom = 6;      // height that neighbouring columns share [px]
 constexpr std::size_t kGroup = 12;  // columns looked at together
-constexpr float kSoftUpTo = 2.5f;     // wider bands need no soft rim [px]
+constexpr float kSoftUpTo = 2.5f;   // wider bands need no soft rim [px]
 
 // A point on the screen with the upper and lower edge of the curve there.
 struct ScreenPoint {
@@ -169,8 +169,7 @@ void draw_dots(const PlotFrame& frame, std::span<const TracePoint> points, ImU32
 
 bool far_apart(const PlotFrame& frame, std::span<const TracePoint> points) {
   if (points.size() < 2) return true;
-  const float apart =
-      (points.back().x - points.front().x) / static_cast<float>(points.size() - 1);
+  const float apart = (points.back().x - points.front().x) / static_cast<float>(points.size() - 1);
   return apart >= kDotsFrom * frame.scale;
 }
 

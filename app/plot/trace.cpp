@@ -43,7 +43,10 @@ class Pen {
 class Dashes {
  public:
   Dashes(const History& history, const Curve& curve, const PixelWindow& window, double dash)
-      : history_(history), curve_(curve), dash_(dash), period_(kDashPeriod * dash),
+      : history_(history),
+        curve_(curve),
+        dash_(dash),
+        period_(kDashPeriod * dash),
         phase_(std::fmod(static_cast<double>(window.first_pixel), period_)) {}
 
   bool dashed(SampleIndex row) const {

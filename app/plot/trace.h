@@ -32,8 +32,8 @@ PixelWindow pixel_window(double stop, double length, int pixels);
 void pixel_rows(const History& history, const PixelWindow& window, std::vector<SampleIndex>& rows);
 
 struct TracePoint {
-  float x;     // [pixel] from the left end of the window
-  float low;   // in the channel's unit; low == high where a point is one sample
+  float x;    // [pixel] from the left end of the window
+  float low;  // in the channel's unit; low == high where a point is one sample
   float high;
 };
 

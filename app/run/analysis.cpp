@@ -50,7 +50,8 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
   arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
   const Eigen::MatrixXd JJ = J.transpose() * J;
   const std::vector<double> b_d = device_damping(description, p);
-  const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(b_d.data(), arm.dof()).array() + p.b_v;
+  const Eigen::VectorXd b =
+      Eigen::Map<const Eigen::VectorXd>(b_d.data(), arm.dof()).array() + p.b_v;
   return {(1 + p.inertia_ratio) * M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
 }
 

@@ -13,14 +13,14 @@
 namespace limpid {
 
 struct Analysis {
-  std::vector<LockedMode> modes;      // lightest first
-  std::vector<double> w_f, w_c;       // of each mode [rad/s]
-  double b = 0;                       // b_d + b_v at the least damped joint [N m s/rad]
-  double eta_min = 0;                 // (25), the worst mode
-  std::optional<double> eta_min_band; // where only frequencies up to w_b count
-  double eta_min_grip = 0;            // Routh, for hand.stiffness and hand.damping
+  std::vector<LockedMode> modes;       // lightest first
+  std::vector<double> w_f, w_c;        // of each mode [rad/s]
+  double b = 0;                        // b_d + b_v at the least damped joint [N m s/rad]
+  double eta_min = 0;                  // (25), the worst mode
+  std::optional<double> eta_min_band;  // where only frequencies up to w_b count
+  double eta_min_grip = 0;             // Routh, for hand.stiffness and hand.damping
   Condition3 condition3;
-  bool passive = false;               // eta >= eta_min
+  bool passive = false;  // eta >= eta_min
 };
 
 // At configuration x, the hand's spring and damper at the tip. w_b [rad/s].

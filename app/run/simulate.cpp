@@ -104,7 +104,7 @@ void apply_change(Parameters& p, const SettingChange& change) {
   if (!change.setting.ends_with("= ")) return apply_setting(p, change.setting);
   const ParameterInfo* info = find_parameter(change.key());
   if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");
-  if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.**field = kFromArm;
+  if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.** field = kFromArm;
 }
 
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {

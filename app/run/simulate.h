@@ -38,8 +38,8 @@ struct RunEnd {
 };
 
 struct RunPace {
-  bool realtime = false;                     // paced at the tick rate by the haptic thread
-  const std::atomic<bool>* stop = nullptr;   // set it to end early
+  bool realtime = false;                    // paced at the tick rate by the haptic thread
+  const std::atomic<bool>* stop = nullptr;  // set it to end early
 };
 
 // Makes a recorded change. Errors: ParameterError.

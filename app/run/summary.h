@@ -23,9 +23,9 @@ class Summary {
   RowLayout layout_;
   std::uint64_t rows_ = 0;
   double time_ = 0;
-  double largest_error_ = 0;         // |x_E| [rad]
-  double largest_contact_ = 0;       // |f2| [N m]
-  double human_square_sum_ = 0;      // of |f1| [N^2 m^2]
+  double largest_error_ = 0;                                            // |x_E| [rad]
+  double largest_contact_ = 0;                                          // |f2| [N m]
+  double human_square_sum_ = 0;                                         // of |f1| [N^2 m^2]
   double energy_total_ = 0, energy_commanded_ = 0, highest_total_ = 0;  // [J]
   std::uint64_t in_contact_ = 0;
   std::vector<double> memorable_;

@@ -13,9 +13,7 @@ class Player {
   explicit Player(Session session) : session_(std::move(session)) {}
 
   const Session& session() const { return session_; }
-  double duration() const {
-    return static_cast<double>(session_.size()) * session_.info.tick;
-  }
+  double duration() const { return static_cast<double>(session_.size()) * session_.info.tick; }
   double time() const { return time_; }  // [s]
   std::size_t index() const {
     const auto k = static_cast<std::size_t>(std::max(0.0, time_ / session_.info.tick + 1e-6));

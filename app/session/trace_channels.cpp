@@ -63,9 +63,11 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
     if (again && !rerun) break;
     error.curves.push_back(curve(Channel::error, "|x_E|", Ink::proxy, 0, again));
     energy.curves.push_back(curve(Channel::energy_total, "total", Ink::energy, 0, again));
-    energy.curves.push_back(curve(Channel::energy_commanded, "commanded", Ink::energy, 0.5f, again));
+    energy.curves.push_back(
+        curve(Channel::energy_commanded, "commanded", Ink::energy, 0.5f, again));
     torque.curves.push_back(curve(Channel::human, "|f1|", Ink::hand, 0, again));
-    torque.curves.push_back(curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
+    torque.curves.push_back(
+        curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
     torque.curves.push_back(curve(Channel::contact, "|f2|", Ink::contact, 0, again));
   }
   for (int j = 0; j < std::min(layout_.dof(), kMostJointCurves); ++j) {

@@ -12,14 +12,14 @@ namespace limpid {
 
 // Channels of one run, in this order; the joints' follow one by one.
 enum class Channel : std::uint8_t {
-  kind,           // 0 standard, 1 proposed
-  error,          // |x_E| [rad]
-  energy_total,   // [J]
+  kind,          // 0 standard, 1 proposed
+  error,         // |x_E| [rad]
+  energy_total,  // [J]
   energy_commanded,
-  human,          // |f1| [N m]
-  human_estimate, // |f1_hat|
-  contact,        // |f2|
-  joints,         // x_E of each joint [rad]
+  human,           // |f1| [N m]
+  human_estimate,  // |f1_hat|
+  contact,         // |f2|
+  joints,          // x_E of each joint [rad]
 };
 
 class TraceChannels {

@@ -10,7 +10,7 @@
 namespace limpid {
 namespace {
 
-constexpr float kRegularSize = 16;    // height of a line [px] at scale 1
+constexpr float kRegularSize = 16;  // height of a line [px] at scale 1
 constexpr float kSmallSize = 14;
 constexpr float kDigitWidth = 0.51f;  // of that height, as wide as Inter's 0
 

@@ -50,8 +50,7 @@ void show_tooltip(const ParameterInfo& info, double paper_value, const char* bro
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
   if (number) {
-    const std::string range =
-        three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
+    const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
     ImGui::Text("%s, %s", info.key, range.c_str());
     ImGui::Text("Paper: %s (right click). Double click to type.",
                 with_unit(info, paper_value).c_str());
@@ -235,8 +234,7 @@ double slider_value(const ParameterInfo& info, double place) {
   const double low = slider_low(info);
   const double high = info.slider_maximum;
   const double at = std::clamp(place, 0.0, 1.0);
-  const double value =
-      info.logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
+  const double value = info.logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
   return is_int(info) ? std::round(value) : value;
 }
 
@@ -249,8 +247,8 @@ void set_parameter_number(Parameters& parameters, const ParameterInfo& info, dou
   std::visit(
       [&](auto field) {
         using Value = std::remove_reference_t<decltype(parameters.*field)>;
-        parameters.*field = static_cast<Value>(std::is_same_v<Value, double> ? allowed
-                                                                            : std::round(allowed));
+        parameters.*field =
+            static_cast<Value>(std::is_same_v<Value, double> ? allowed : std::round(allowed));
       },
       info.field);
 }
@@ -274,8 +272,7 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
     if (changed) set_parameter_number(parameters, info, value);
   }
   ImGui::EndGroup();
-  const bool is_choice =
-      !std::holds_alternative<double Parameters::*>(info.field) && !is_int(info);
+  const bool is_choice = !std::holds_alternative<double Parameters::*>(info.field) && !is_int(info);
   if (is_choice && broken != nullptr) {
     draw_broken_frame({ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
   }

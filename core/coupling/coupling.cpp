@@ -13,8 +13,8 @@ Condition3 condition3(const Parameters& p, std::span<const double> b_d) {
   c.device_margin = least - device_needs;
   c.proxy_margin = p.b_v - proxy_needs;
   constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
-  c.holds = c.device_margin >= -kRoundOff * device_needs &&
-            c.proxy_margin >= -kRoundOff * proxy_needs;
+  c.holds =
+      c.device_margin >= -kRoundOff * device_needs && c.proxy_margin >= -kRoundOff * proxy_needs;
   return c;
 }
 

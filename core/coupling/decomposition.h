@@ -20,9 +20,9 @@ struct Dynamics {
 //     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = C2^T - (C1 + C2)^T phi = -C_EL^T
 template <int N>
 struct Decomposition {
-  Mat<N> M_L;       // locked inertia [kg m^2]
-  Mat<N> phi;       // (7) [-]
-  Vec<N> v_L, v_E;  // (8) locked and shape velocity [rad/s]
+  Mat<N> M_L;         // locked inertia [kg m^2]
+  Mat<N> phi;         // (7) [-]
+  Vec<N> v_L, v_E;    // (8) locked and shape velocity [rad/s]
   Mat<N> C_LE, C_EL;  // (11) [kg m^2/s]
 
   Decomposition(const Dynamics<N>& device, const Dynamics<N>& proxy) {

@@ -9,7 +9,8 @@ namespace limpid {
 // With f1_hat = z + alpha v, (17) says f1_hat' = L (f1 - f1_hat), L = alpha M^-1: the disturbance
 //     d = M vdot + C v - tau
 // seen through a first-order filter. Over one tick this is
-//     f1_hat_k = E f1_hat_k-1 + (1 - E) d_k,   E = (1 + A + A^2/2)^-1 ~ exp(-A),   A = T alpha M^-1,
+//     f1_hat_k = E f1_hat_k-1 + (1 - E) d_k,   E = (1 + A + A^2/2)^-1 ~ exp(-A),   A = T alpha
+//     M^-1,
 // second-order accurate, and with 0 < E < 1 stable for every alpha and T.
 //
 // The velocity difference of two sampled velocities averages the accelerations of the last two

@@ -10,15 +10,14 @@ namespace {
 //     Idot / 2 = 1/2 ([w]x I - I [w]x) + (u.mc) 1 - 1/2 (mc u^T + u mc^T).
 Symmetric3 half_rate(const Symmetric3& I, const Vec3& mc, const Vec3& w, const Vec3& u) {
   const double x = u.x() * mc.x(), y = u.y() * mc.y(), z = u.z() * mc.z();
-  return {w.y() * I.xz - w.z() * I.xy + y + z,
-          w.z() * I.xy - w.x() * I.yz + x + z,
-          w.x() * I.yz - w.y() * I.xz + x + y,
-          0.5 * (w.y() * I.yz - w.x() * I.xz + w.z() * (I.xx - I.yy) - mc.x() * u.y() -
-                 mc.y() * u.x()),
-          0.5 * (w.x() * I.xy - w.z() * I.yz + w.y() * (I.zz - I.xx) - mc.x() * u.z() -
-                 mc.z() * u.x()),
-          0.5 * (w.z() * I.xz - w.y() * I.xy + w.x() * (I.yy - I.zz) - mc.y() * u.z() -
-                 mc.z() * u.y())};
+  return {
+      w.y() * I.xz - w.z() * I.xy + y + z,
+      w.z() * I.xy - w.x() * I.yz + x + z,
+      w.x() * I.yz - w.y() * I.xz + x + y,
+      0.5 * (w.y() * I.yz - w.x() * I.xz + w.z() * (I.xx - I.yy) - mc.x() * u.y() - mc.y() * u.x()),
+      0.5 * (w.x() * I.xy - w.z() * I.yz + w.y() * (I.zz - I.xx) - mc.x() * u.z() - mc.z() * u.x()),
+      0.5 *
+          (w.z() * I.xz - w.y() * I.xy + w.x() * (I.yy - I.zz) - mc.y() * u.z() - mc.z() * u.y())};
 }
 
 }  // namespace
@@ -31,8 +30,7 @@ Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(link.inertia);
     const Vec3& moments = principal.eigenvalues();  // smallest first
     const Mat3& axes = principal.eigenvectors();
-    links_[i] = {link.mass, link.com, moments[0],
-                 std::sqrt(moments[1] - moments[0]) * axes.col(1),
+    links_[i] = {link.mass, link.com, moments[0], std::sqrt(moments[1] - moments[0]) * axes.col(1),
                  std::sqrt(moments[2] - moments[0]) * axes.col(2)};
   }
   tip_ = description.tip.translation();

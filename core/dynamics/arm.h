@@ -44,9 +44,9 @@ class Arm {
   // What is moved there.
   struct Bodies {
     std::array<Body, kCapacity<N>> link;
-    std::array<Vec3, kCapacity<N>> c;     // centres of mass of the links [m]
-    std::array<Vec3, kCapacity<N>> g, e;  // their inertia about it is d 1 + g g^T + e e^T
-    std::array<Body, kCapacity<N>> outer;  // link j and all beyond it as one
+    std::array<Vec3, kCapacity<N>> c;              // centres of mass of the links [m]
+    std::array<Vec3, kCapacity<N>> g, e;           // their inertia about it is d 1 + g g^T + e e^T
+    std::array<Body, kCapacity<N>> outer;          // link j and all beyond it as one
     std::array<Vec3, kCapacity<N>> moment, force;  // momentum of outer[j] while joint j turns at 1
   };
 
@@ -93,13 +93,13 @@ class Arm {
   // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
   // own axes. Where the axis is one of those, Q only reorders: Q and Q^T are left out.
   struct JointModel {
-    Mat3 R0;        // or R0 Q
-    bool shifted;   // R0 is not the identity
-    bool oblique;   // the axis is none of x, y, z
-    Mat3 back;      // Q^T where oblique
+    Mat3 R0;                   // or R0 Q
+    bool shifted;              // R0 is not the identity
+    bool oblique;              // the axis is none of x, y, z
+    Mat3 back;                 // Q^T where oblique
     int first, second, third;  // columns: first turns towards second, third is the axis
-    double sign;    // -1 where the axis points against the third column
-    Vec3 offset;    // origin in the previous link's frame [m]
+    double sign;               // -1 where the axis points against the third column
+    Vec3 offset;               // origin in the previous link's frame [m]
   };
   struct LinkModel {
     double mass;  // [kg]

@@ -22,9 +22,9 @@ struct Joint {
 
 struct Link {
   std::string name;
-  double mass = 0;                 // [kg]
-  Vec3 com = Vec3::Zero();         // centre of mass in the link frame [m]
-  Mat3 inertia = Mat3::Zero();     // about the centre of mass, axes of the link [kg m^2]
+  double mass = 0;              // [kg]
+  Vec3 com = Vec3::Zero();      // centre of mass in the link frame [m]
+  Mat3 inertia = Mat3::Zero();  // about the centre of mass, axes of the link [kg m^2]
 };
 
 // What to draw: one shape fixed to a link. `size` is the box's edges, (radius, length, -) of a
@@ -34,7 +34,7 @@ struct Visual {
   int link = -1;                   // index into links, -1 the base
   Pose origin = Pose::Identity();  // in the link frame
   Shape shape = Shape::mesh;
-  std::string mesh;                // absolute path of a glTF file
+  std::string mesh;  // absolute path of a glTF file
   Vec3 size = Vec3::Ones();
 };
 
@@ -47,12 +47,12 @@ struct NamedFrame {
 
 struct ArmDescription {
   std::string name;
-  std::vector<Joint> joints;       // n, base first
-  std::vector<Link> links;         // n, link i is moved by joint i; its frame is that of joint i
-  Pose tip = Pose::Identity();     // in the last link's frame
+  std::vector<Joint> joints;    // n, base first
+  std::vector<Link> links;      // n, link i is moved by joint i; its frame is that of joint i
+  Pose tip = Pose::Identity();  // in the last link's frame
   std::vector<NamedFrame> frames;
   std::vector<Visual> visuals;
-  std::string urdf;                // the text it came from
+  std::string urdf;  // the text it came from
 
   int dof() const { return static_cast<int>(joints.size()); }
 };

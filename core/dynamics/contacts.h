@@ -13,9 +13,9 @@ namespace limpid {
 // d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
 template <int N>
 struct Contact {
-  double depth = 0;  // [m], or [rad] in joint space; negative: apart
-  Vec<N> gradient;   // of the depth [m/rad] or [-]
-  double stiffness = 0;  // [N/m] or [N m/rad]
+  double depth = 0;            // [m], or [rad] in joint space; negative: apart
+  Vec<N> gradient;             // of the depth [m/rad] or [-]
+  double stiffness = 0;        // [N/m] or [N m/rad]
   Vec3 point = Vec3::Zero();   // on the arm [m]
   Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
 };

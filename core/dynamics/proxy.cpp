@@ -9,7 +9,9 @@ namespace limpid {
 
 template <int N>
 Proxy<N>::Proxy(const ArmDescription& arm, const Scene& scene)
-    : arm_(arm), contacts_(arm, scene), forces_(contacts_.capacity()),
+    : arm_(arm),
+      contacts_(arm, scene),
+      forces_(contacts_.capacity()),
       touching_(std::make_unique<bool[]>(contacts_.capacity())) {
   place(Vec<N>::Zero(arm.dof()), Vec<N>::Zero(arm.dof()), ratio_);
 }

@@ -44,8 +44,8 @@ class Proxy {
   const Vec<N>& v() const { return v_; }
   const Mat<N>& M() const { return M_; }
   const Mat<N>& C() const { return C_; }
-  double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }  // [J]
-  double contact_potential() const { return contacts_.potential(); }   // [J]
+  double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }   // [J]
+  double contact_potential() const { return contacts_.potential(); }  // [J]
 
   // Of the last tick:
   const Vec<N>& tau() const { return tau_; }    // tau2 as it acted [N m]

@@ -11,62 +11,62 @@ namespace limpid {
 
 struct Plane {
   std::string name;
-  Vec3 point = Vec3::Zero();       // on the surface [m]
-  Vec3 normal = Vec3::UnitZ();     // unit, out of the material
-  double stiffness = 600;          // [N/m]
+  Vec3 point = Vec3::Zero();    // on the surface [m]
+  Vec3 normal = Vec3::UnitZ();  // unit, out of the material
+  double stiffness = 600;       // [N/m]
 };
 
 struct Sphere {
   std::string name;
-  Vec3 center = Vec3::Zero();      // [m]
-  double radius = 0.05;            // [m]
-  double stiffness = 600;          // [N/m]
+  Vec3 center = Vec3::Zero();  // [m]
+  double radius = 0.05;        // [m]
+  double stiffness = 600;      // [N/m]
 };
 
 struct Box {
   std::string name;
-  Pose pose = Pose::Identity();    // of its centre
-  Vec3 size = Vec3::Constant(0.1); // full edge lengths [m]
-  double stiffness = 600;          // [N/m]
+  Pose pose = Pose::Identity();     // of its centre
+  Vec3 size = Vec3::Constant(0.1);  // full edge lengths [m]
+  double stiffness = 600;           // [N/m]
 };
 
 // A stiff stop of one joint, in joint space (the paper's proximal contact): the joint touches it
 // when direction * (x2[joint] - angle) > 0.
 struct JointContact {
   std::string name;
-  int joint = 0;                   // index, base first
-  double angle = 0;                // [rad]
-  double direction = 1;            // +1: touched from below, -1: from above
-  double stiffness = 20;           // [N m/rad]
+  int joint = 0;          // index, base first
+  double angle = 0;       // [rad]
+  double direction = 1;   // +1: touched from below, -1: from above
+  double stiffness = 20;  // [N m/rad]
 };
 
 // A part of the arm that touches: a capsule (a point if both ends agree) fixed to a link.
 struct Probe {
   std::string name;
-  int link = 0;                    // index of the moving link it sits on
-  Vec3 from = Vec3::Zero();        // in the link frame [m]
-  Vec3 to = Vec3::Zero();          // in the link frame [m]
-  double radius = 0;               // [m]
+  int link = 0;              // index of the moving link it sits on
+  Vec3 from = Vec3::Zero();  // in the link frame [m]
+  Vec3 to = Vec3::Zero();    // in the link frame [m]
+  double radius = 0;         // [m]
 };
 
 // Something to look at only.
 struct SceneVisual {
-  std::string file;                // glTF, absolute path
+  std::string file;  // glTF, absolute path
   Pose pose = Pose::Identity();
   double scale = 1;
 };
 
 struct Scene {
   std::string title;
-  std::string about;               // one sentence for people
-  double tip_radius = 0;           // [m]; the tip is always a probe
+  std::string about;      // one sentence for people
+  double tip_radius = 0;  // [m]; the tip is always a probe
   std::vector<Plane> planes;
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
   std::vector<JointContact> joint_contacts;
-  std::vector<Probe> probes;       // besides the tip
+  std::vector<Probe> probes;  // besides the tip
   std::vector<SceneVisual> visuals;
-  std::string toml;                // the text it came from
+  std::string toml;  // the text it came from
 };
 
 }  // namespace limpid

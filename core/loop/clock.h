@@ -20,9 +20,7 @@ struct MonotonicTime {
   void sleep_until(nanoseconds moment) const noexcept;  // returns at once if it has passed
 };
 
-inline double in_seconds(nanoseconds time) {
-  return std::chrono::duration<double>(time).count();
-}
+inline double in_seconds(nanoseconds time) { return std::chrono::duration<double>(time).count(); }
 
 struct Wake {
   std::int64_t tick;    // 0, 1, 2, ..., none left out

@@ -23,9 +23,9 @@ struct TickTiming {
 
 struct LoopStatus {
   bool running = false;
-  std::string failure;       // what an exception said that stopped the loop; else empty
-  double rate = 0;           // over the last second [Hz]; 0 when not running or stuck in a tick
-  std::int64_t ticks = 0;    // that have begun since start(); the others as in ClockCounts
+  std::string failure;     // what an exception said that stopped the loop; else empty
+  double rate = 0;         // over the last second [Hz]; 0 when not running or stuck in a tick
+  std::int64_t ticks = 0;  // that have begun since start(); the others as in ClockCounts
   std::int64_t late = 0;
   std::int64_t missed = 0;
   std::int64_t slipped = 0;

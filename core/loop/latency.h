@@ -23,8 +23,7 @@ class LatencyHistogram {
   void add(double seconds) noexcept {
     bins_[bin(seconds)].fetch_add(1, std::memory_order_relaxed);
     double max = max_.load(std::memory_order_relaxed);
-    while (seconds > max &&
-           !max_.compare_exchange_weak(max, seconds, std::memory_order_relaxed)) {
+    while (seconds > max && !max_.compare_exchange_weak(max, seconds, std::memory_order_relaxed)) {
     }
   }
 

@@ -84,13 +84,13 @@ std::string found(const ParameterValue& value) {
 
 [[noreturn]] void refuse(const ParameterInfo& info, const ParameterValue& value,
                          const std::string& allowed) {
-  throw ParameterError(std::string(info.key) + ": " + found(value) + " is not allowed; allowed: " +
-                       allowed);
+  throw ParameterError(std::string(info.key) + ": " + found(value) +
+                       " is not allowed; allowed: " + allowed);
 }
 
 std::string range(const ParameterInfo& info, const char* what) {
-  std::string text = std::string(what) + " from " + number(info.minimum) + " to " +
-                     number(info.maximum);
+  std::string text =
+      std::string(what) + " from " + number(info.minimum) + " to " + number(info.maximum);
   return std::strcmp(info.unit, "-") == 0 ? text : text + " " + info.unit;
 }
 

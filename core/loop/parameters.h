@@ -22,18 +22,18 @@ inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 
 struct Parameters {
   CouplingKind kind = CouplingKind::proposed;
-  double k_vc = 10;                // [N m/rad]
-  double b_vc = 0.001;             // [N m s/rad]
-  double b_v = 0.012;              // [N m s/rad]
-  double eta = 1;                  // [-]
-  double alpha = 0.035;            // [N m s/rad]
+  double k_vc = 10;      // [N m/rad]
+  double b_vc = 0.001;   // [N m s/rad]
+  double b_v = 0.012;    // [N m s/rad]
+  double eta = 1;        // [-]
+  double alpha = 0.035;  // [N m s/rad]
   bool anti_windup = true;
   VelocitySource velocity = VelocitySource::raw;
-  double inertia_ratio = 1e-4;     // M2 = ratio * M(x2) [-]
-  double inertia_error = 1;        // factor on the M1, C1 the controller believes [-]
-  double hand_stiffness = 300;     // [N/m]
-  double hand_damping = 2;         // [N s/m]
-  double tick = 0.001;             // T [s]
+  double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
+  double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]
+  double hand_stiffness = 300;  // [N/m]
+  double hand_damping = 2;      // [N s/m]
+  double tick = 0.001;          // T [s]
   int substeps = 20;
   double encoder_step = 0;         // [rad]
   double friction = kFromArm;      // Coulomb, every joint [N m]
@@ -47,17 +47,17 @@ struct Parameters {
 struct ParameterInfo {
   using Field = std::variant<double Parameters::*, int Parameters::*, bool Parameters::*,
                              CouplingKind Parameters::*, VelocitySource Parameters::*>;
-  const char* key;                 // "coupling.eta"
-  const char* label;               // short, for a slider
+  const char* key;    // "coupling.eta"
+  const char* label;  // short, for a slider
   Field field;
-  const char* unit;                // "-" for none
-  double minimum;                  // allowed
+  const char* unit;  // "-" for none
+  double minimum;    // allowed
   double maximum;
-  double slider_minimum;           // the part of it worth a slider
+  double slider_minimum;  // the part of it worth a slider
   double slider_maximum;
-  bool logarithmic;                // the slider
-  bool live;                       // may change while the loop runs
-  const char* meaning;             // one or two sentences with the equation's number
+  bool logarithmic;     // the slider
+  bool live;            // may change while the loop runs
+  const char* meaning;  // one or two sentences with the equation's number
 };
 
 std::span<const ParameterInfo> parameter_table();

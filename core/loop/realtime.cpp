@@ -16,7 +16,7 @@ namespace limpid {
 namespace {
 
 constexpr int kPriority = 80;
-constexpr int kRtkitPriority = 15;         // rtkit grants 20 at most
+constexpr int kRtkitPriority = 15;           // rtkit grants 20 at most
 constexpr rlim_t kRtkitTimeLimit = 190'000;  // [us], rtkit demands 200 ms at most
 
 bool become_fifo(int priority) {

@@ -86,8 +86,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
                             p.b_v + p.b_vc + p.k_vc * T / 2, ff.from_f2_2};
   proxy_.advance(T, drive);
   potential_ = proxy_.contact_potential();
-  command_ = device_torque<N>(p, in.measured, v1, x2_, vbar2_) + ff.tau1 +
-             ff.from_f2_1 * proxy_.f();
+  command_ =
+      device_torque<N>(p, in.measured, v1, x2_, vbar2_) + ff.tau1 + ff.from_f2_1 * proxy_.f();
   vbar2_ = proxy_.vbar();
 
   diverged_ = diverged_ || !command_.allFinite();

@@ -19,7 +19,8 @@ double eta_min_band(const LockedMode& mode, double w_b) {
 }
 
 double eta_min_grip(const LockedMode& mode, double k_h, double b_h) {
-  // m s^3 + A s^2 + (B + b_h w_f/eta) s + k_h w_f/eta: stable if A (B + b_h w_f/eta) > m k_h w_f/eta
+  // m s^3 + A s^2 + (B + b_h w_f/eta) s + k_h w_f/eta: stable if A (B + b_h w_f/eta) > m k_h
+  // w_f/eta
   const double w_f = mode.w_f();
   const double A = mode.m * w_f + mode.b + b_h;
   const double B = mode.b * w_f + k_h;

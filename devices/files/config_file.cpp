@@ -33,8 +33,8 @@ void set(Parameters& p, const std::string& key, const ParameterValue& value) {
 
 void set_from(Parameters& p, const std::string& key, const toml::node& node) {
   if (const auto value = value_of(node)) return set(p, key, *value);
-  throw ParameterError(fmt::format("{}: {} is not allowed; allowed: one value", key,
-                                   found_text(node)));
+  throw ParameterError(
+      fmt::format("{}: {} is not allowed; allowed: one value", key, found_text(node)));
 }
 
 void apply_table(Parameters& p, const toml::table& table, const std::string& prefix,
@@ -86,8 +86,8 @@ void apply_config_text(Parameters& p, std::string_view text, const std::string& 
 void apply_setting(Parameters& p, std::string_view setting) {
   const auto equals = setting.find('=');
   const std::string key(trimmed(setting.substr(0, equals)));
-  const std::string value(
-      equals == std::string_view::npos ? "" : trimmed(setting.substr(equals + 1)));
+  const std::string value(equals == std::string_view::npos ? ""
+                                                           : trimmed(setting.substr(equals + 1)));
   if (key.empty() || value.empty()) {
     throw ParameterError(
         fmt::format("'{}': not a setting; needed: key=value, as coupling.eta=0.6", setting));

@@ -65,8 +65,8 @@ struct Csv {
       refuse(fmt::format("{}: \"{:.40}\" is not a number", column, field));
     }
     if (!(std::abs(x) <= limit)) {
-      refuse(fmt::format("{}: {} is not allowed; allowed: from -{} to {}", column, x, limit,
-                         limit));
+      refuse(
+          fmt::format("{}: {} is not allowed; allowed: from -{} to {}", column, x, limit, limit));
     }
     return x;
   }
@@ -117,8 +117,7 @@ void start_at_zero(HandPath& path) {
 
 // The last sample at or before t; t must not lie before the first.
 std::size_t before(const std::vector<double>& time, double t) {
-  return static_cast<std::size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin()) -
-         1;
+  return static_cast<std::size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin()) - 1;
 }
 
 }  // namespace
@@ -162,12 +161,16 @@ HandPath hand_of(const Session& session, const std::string& where) {
     const double grip = session.at(k, Column::hand_grip)[0];
     for (const double x : target) {
       if (std::abs(x) <= kFarthest) continue;
-      throw FileError(fmt::format("{}: /hand/target: row {}: {} is not allowed; allowed: from "
-                                  "-{} to {} m", where, k, x, kFarthest, kFarthest));
+      throw FileError(
+          fmt::format("{}: /hand/target: row {}: {} is not allowed; allowed: from "
+                      "-{} to {} m",
+                      where, k, x, kFarthest, kFarthest));
     }
     if (!(grip >= 0 && grip <= 1)) {
-      throw FileError(fmt::format("{}: /hand/grip: row {}: {} is not allowed; allowed: from 0 to "
-                                  "1", where, k, grip));
+      throw FileError(
+          fmt::format("{}: /hand/grip: row {}: {} is not allowed; allowed: from 0 to "
+                      "1",
+                      where, k, grip));
     }
     path.time.push_back(session.at(k, Column::time)[0]);
     path.position.emplace_back(target[0], target[1], target[2]);
@@ -201,8 +204,8 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
     }
   }
   if (path.time.size() < 2) {
-    throw FileError(fmt::format("{}: {} samples; needed: a header and at least 2", where,
-                                path.time.size()));
+    throw FileError(
+        fmt::format("{}: {} samples; needed: a header and at least 2", where, path.time.size()));
   }
   start_at_zero(path);
   find_velocities(path);

@@ -15,16 +15,17 @@ namespace limpid {
 // (C1), without overshoot; before the first and after the last sample the hand rests there.
 // Asking never allocates.
 struct HandPath {
-  std::vector<double> time;      // N, from 0 [s]
-  std::vector<Vec3> position;    // N [m]
-  std::vector<Vec3> velocity;    // N, of the cubic at the samples [m/s]
-  std::vector<double> grip;      // N, 1 the hand holds, 0 it let go [-]
-  std::string source;            // the file, for people
-  double tick = 0;               // T of the session it came from [s]; 0 from CSV
+  std::vector<double> time;    // N, from 0 [s]
+  std::vector<Vec3> position;  // N [m]
+  std::vector<Vec3> velocity;  // N, of the cubic at the samples [m/s]
+  std::vector<double> grip;    // N, 1 the hand holds, 0 it let go [-]
+  std::string source;          // the file, for people
+  double tick = 0;             // T of the session it came from [s]; 0 from CSV
 
   // [s]; a session's lasts N ticks, so that feeding it back gives as many rows.
-  double duration() const { return tick > 0 ? tick * static_cast<double>(time.size())
-                                            : time.back(); }
+  double duration() const {
+    return tick > 0 ? tick * static_cast<double>(time.size()) : time.back();
+  }
 
   Vec3 at(double t) const;         // t [s] from the first sample; a sample at its time, exactly
   double grip_at(double t) const;  // held from sample to sample

@@ -30,8 +30,8 @@ herr_t collect(unsigned, const H5E_error2_t* error, void* data) {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const char* name, const char* found,
                          const char* allowed) {
-  throw FileError(fmt::format("{}: attribute {}: {}; needed: {}", file.string(), name, found,
-                              allowed));
+  throw FileError(
+      fmt::format("{}: attribute {}: {}; needed: {}", file.string(), name, found, allowed));
 }
 
 // Opens a scalar attribute of one class of type.
@@ -71,8 +71,8 @@ void write_text(hid_t object, const char* name, const std::string& text,
   write_scalar(object, name, type.get(), type.get(), &pointer, file);
 }
 
-void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as,
-                  const void* value, const std::filesystem::path& file) {
+void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as, const void* value,
+                  const std::filesystem::path& file) {
   const Dataspace space(H5Screate(H5S_SCALAR));
   const Attribute attribute(
       H5Acreate2(object, name, stored_as, space.get(), H5P_DEFAULT, H5P_DEFAULT));

@@ -68,8 +68,8 @@ void check(bool ok, const std::filesystem::path& file, const char* what);
 // A scalar UTF-8 attribute of any length, which h5py reads as str.
 void write_text(hid_t object, const char* name, const std::string& text,
                 const std::filesystem::path& file);
-void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as,
-                  const void* value, const std::filesystem::path& file);
+void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as, const void* value,
+                  const std::filesystem::path& file);
 
 // Errors of the readers: FileError if there is no such attribute or it is of another kind.
 std::string read_text(hid_t object, const char* name, const std::filesystem::path& file);

@@ -76,8 +76,7 @@ void check_heaps(const std::filesystem::path& file) {
     const std::string block = bytes_at(in, from, kBlock + kSignature.size() - 1);
     for (const char* found = block.data();;) {
       const auto left = static_cast<std::size_t>(block.data() + block.size() - found);
-      found = static_cast<const char*>(
-          memmem(found, left, kSignature.data(), kSignature.size()));
+      found = static_cast<const char*>(memmem(found, left, kSignature.data(), kSignature.size()));
       if (found == nullptr) break;
       check_heap(in, from + static_cast<std::uint64_t>(found - block.data()), size, file);
       ++found;

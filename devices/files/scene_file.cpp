@@ -128,8 +128,8 @@ bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
 }
 
 void check_counts(const Scene& scene, const std::string& where) {
-  const std::size_t contacts = scene.planes.size() + scene.spheres.size() + scene.boxes.size() +
-                               scene.joint_contacts.size();
+  const std::size_t contacts =
+      scene.planes.size() + scene.spheres.size() + scene.boxes.size() + scene.joint_contacts.size();
   if (contacts > kMostContacts) {
     throw FileError(fmt::format("{}: {} planes, spheres, boxes and joint contacts; at most {}",
                                 where, contacts, kMostContacts));
@@ -151,8 +151,8 @@ Scene parse_scene(const std::string& text, const std::string& where, const fs::p
                   const ArmDescription& arm) {
   const toml::table table = parse_toml(text, where);
   const TomlTable t(table, where, "");
-  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "joint_contact",
-                "probe", "visual"});
+  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "joint_contact", "probe",
+                "visual"});
   Scene scene;
   scene.title = t.text("title").value_or("");
   scene.about = t.text("about").value_or("");

@@ -14,21 +14,21 @@
 namespace limpid {
 
 struct SessionInfo {
-  double tick = 0.001;       // T [s]
+  double tick = 0.001;  // T [s]
   int dof = 3;
-  std::string created;       // ISO 8601; filled in by the writer if empty
+  std::string created;  // ISO 8601; filled in by the writer if empty
   std::string app_version;
   std::uint64_t seed = 0;
-  std::string source;        // what the hand was
-  std::string config;        // all parameters at row 0 (TOML)
-  std::string device_urdf;   // whole text
-  std::string scene;         // whole text (TOML)
+  std::string source;       // what the hand was
+  std::string config;       // all parameters at row 0 (TOML)
+  std::string device_urdf;  // whole text
+  std::string scene;        // whole text (TOML)
 };
 
 // A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.
 struct SettingChange {
   std::uint64_t row = 0;
-  std::string setting;       // at most 120 characters; no value: back to the arm's own
+  std::string setting;  // at most 120 characters; no value: back to the arm's own
 
   std::string_view key() const { return std::string_view(setting).substr(0, setting.find(' ')); }
 };
@@ -60,8 +60,8 @@ class SessionWriter {
 
   void append(std::span<const double> rows);  // any whole number of rows
   void append(const SettingChange& change);
-  void close();                               // flush, close, rename
-  std::uint64_t rows_written() const;         // handed over so far
+  void close();                        // flush, close, rename
+  std::uint64_t rows_written() const;  // handed over so far
   const std::filesystem::path& part() const;
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 using hdf5::check;
 
-constexpr double kFlushSeconds = 0.5;      // rows reach the disk this often
+constexpr double kFlushSeconds = 0.5;  // rows reach the disk this often
 constexpr double kMostChunkRows = 16384;
 constexpr hsize_t kEventChunk = 64;
 
@@ -74,8 +74,8 @@ hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank,
 }
 
 // Appends `count` rows behind the first `from`.
-bool append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width,
-               hid_t type, const void* data) {
+bool append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+               const void* data) {
   const std::array<hsize_t, 2> extent{from + count, width};
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, width};
@@ -161,10 +161,10 @@ void SessionFile::create_column(const ColumnInfo& column) {
 void SessionFile::create_events() {
   const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE));
   const hdf5::Datatype text = setting_type();
-  event_row_ = create_growing(file_.get(), kEventRowPath, H5T_STD_U64LE, 1, 1,
-                              creation.get(), kEventChunk);
-  event_setting_ = create_growing(file_.get(), kEventSettingPath, text.get(), 1, 1,
-                                  creation.get(), kEventChunk);
+  event_row_ =
+      create_growing(file_.get(), kEventRowPath, H5T_STD_U64LE, 1, 1, creation.get(), kEventChunk);
+  event_setting_ =
+      create_growing(file_.get(), kEventSettingPath, text.get(), 1, 1, creation.get(), kEventChunk);
   check(event_row_ && event_setting_, path_, "cannot write");
   hdf5::write_text(event_row_.get(), "unit", "-", path_);
   hdf5::write_text(event_row_.get(), "what", "row from which the setting holds", path_);
@@ -193,8 +193,8 @@ void SessionFile::append(std::span<const double> rows) {
 
 void SessionFile::append(const SettingChange& change) {
   if (change.setting.size() > kSettingLength) {
-    throw FileError(fmt::format("{}: setting of {} characters, at most {} are kept",
-                                path_.string(), change.setting.size(), kSettingLength));
+    throw FileError(fmt::format("{}: setting of {} characters, at most {} are kept", path_.string(),
+                                change.setting.size(), kSettingLength));
   }
   if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
   changes_.push_back(change);
@@ -227,8 +227,7 @@ void SessionFile::write_column(const ColumnInfo& column, std::uint64_t count) {
   }
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers_.data();
   const hdf5::Dataset& dataset = columns_[column_index(column.column)];
-  check(append_to(dataset, flushed_rows_, count,
-                  static_cast<hsize_t>(layout_.width(column.column)),
+  check(append_to(dataset, flushed_rows_, count, static_cast<hsize_t>(layout_.width(column.column)),
                   column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data) &&
             H5Dflush(dataset.get()) >= 0,
         path_, "cannot write");
@@ -244,12 +243,12 @@ void SessionFile::write_changes() {
     settings.resize(rows.size() * kSettingLength, '\0');
   }
   const hdf5::Datatype text = setting_type();
-  check(append_to(event_setting_, flushed_changes_, rows.size(), 1, text.get(), settings.data()) &&
-            H5Dflush(event_setting_.get()) >= 0 &&
-            append_to(event_row_, flushed_changes_, rows.size(), 1, H5T_NATIVE_UINT64,
-                      rows.data()) &&
-            H5Dflush(event_row_.get()) >= 0,
-        path_, "cannot write");
+  check(
+      append_to(event_setting_, flushed_changes_, rows.size(), 1, text.get(), settings.data()) &&
+          H5Dflush(event_setting_.get()) >= 0 &&
+          append_to(event_row_, flushed_changes_, rows.size(), 1, H5T_NATIVE_UINT64, rows.data()) &&
+          H5Dflush(event_row_.get()) >= 0,
+      path_, "cannot write");
   flushed_changes_ += rows.size();
   changes_.clear();
 }

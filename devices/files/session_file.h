@@ -59,9 +59,9 @@ class SessionFile {
   std::uint64_t chunk_rows_;
   std::uint64_t flushed_rows_ = 0;
   std::uint64_t flushed_changes_ = 0;
-  std::vector<double> pending_;           // rows of the chunk that is not full yet
-  std::vector<SettingChange> changes_;    // not written yet
-  std::vector<double> numbers_;           // one column of that chunk
+  std::vector<double> pending_;         // rows of the chunk that is not full yet
+  std::vector<SettingChange> changes_;  // not written yet
+  std::vector<double> numbers_;         // one column of that chunk
   std::vector<std::uint8_t> bytes_;
   hdf5::File file_;
   std::array<hdf5::Dataset, kColumns> columns_;

@@ -67,12 +67,11 @@ void check_place(const fs::path& out, bool force) {
 
 void check_session_info(const SessionInfo& info, const fs::path& file) {
   if (!(info.tick > 0 && info.tick <= 0.1)) {
-    throw FileError(fmt::format("{}: tick {} s; allowed: more than 0, up to 0.1", file.string(),
-                                info.tick));
+    throw FileError(
+        fmt::format("{}: tick {} s; allowed: more than 0, up to 0.1", file.string(), info.tick));
   }
   if (info.dof < 1 || info.dof > kMaxDof) {
-    throw FileError(
-        fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
+    throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
   }
 }
 
@@ -89,8 +88,8 @@ void publish(const fs::path& finished, const fs::path& out, bool force) {
 }
 
 WriteLock::WriteLock(const fs::path& file, Make make)
-    : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC | (make == Make::yes ? O_CREAT : 0),
-                         0644)) {
+    : descriptor_(
+          ::open(file.c_str(), O_RDWR | O_CLOEXEC | (make == Make::yes ? O_CREAT : 0), 0644)) {
   if (descriptor_ < 0) fail(file, "cannot open", errno);
   // A lock of the open file, not of the process, so that it works between threads too; HDF5's own
   // locks (flock) are of another kind and do not meet it.

@@ -189,8 +189,8 @@ std::vector<std::string> read_event_settings(const Source& source, const fs::pat
     refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, kSettingLength));
   }
   std::string all(source.rows * length, '\0');
-  if (!all.empty() && H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                              all.data()) < 0) {
+  if (!all.empty() &&
+      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
     refuse(file, fmt::format("{}: cannot be read", source.path));
   }
   std::vector<std::string> settings;

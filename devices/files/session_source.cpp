@@ -36,8 +36,8 @@ Source open_source(hid_t root, const char* path, hsize_t width, const std::files
 
 Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
                    const std::filesystem::path& file) {
-  Source source = open_source(root, column.path,
-                              static_cast<hsize_t>(layout.width(column.column)), file);
+  Source source =
+      open_source(root, column.path, static_cast<hsize_t>(layout.width(column.column)), file);
   const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
   const bool number = H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == 8;
   const bool byte = H5Tget_class(type.get()) == H5T_INTEGER && H5Tget_size(type.get()) == 1;

@@ -23,8 +23,7 @@ struct Source {
 bool exists(hid_t root, const std::string& path);
 
 // Errors: FileError for what is no dataset or of another shape (or, for a column, type).
-Source open_source(hid_t root, const char* path, hsize_t width,
-                   const std::filesystem::path& file);
+Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file);
 Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
                    const std::filesystem::path& file);
 

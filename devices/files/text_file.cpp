@@ -15,8 +15,8 @@ std::string read_text(const std::filesystem::path& file, std::size_t limit) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) {
     const bool absent = status.type() == std::filesystem::file_type::not_found;
-    throw FileError(fmt::format("{}: {}", file.string(),
-                                absent ? "no such file" : error.message()));
+    throw FileError(
+        fmt::format("{}: {}", file.string(), absent ? "no such file" : error.message()));
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw FileError(fmt::format("{}: not a file that can be read", file.string()));
@@ -26,8 +26,8 @@ std::string read_text(const std::filesystem::path& file, std::size_t limit) {
 
   const auto size = std::filesystem::file_size(file);
   if (size > limit) {
-    throw FileError(fmt::format("{}: {} bytes long, at most {} are read", file.string(), size,
-                                limit));
+    throw FileError(
+        fmt::format("{}: {} bytes long, at most {} are read", file.string(), size, limit));
   }
   std::string text(size, '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));

@@ -46,8 +46,8 @@ toml::table parse_toml(std::string_view text, const std::string& where) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw FileError(fmt::format("{}:{}: not TOML: {}", where, error.source().begin.line,
-                                error.description()));
+    throw FileError(
+        fmt::format("{}:{}: not TOML: {}", where, error.source().begin.line, error.description()));
   }
 }
 
@@ -145,8 +145,7 @@ void TomlTable::refuse(const char* key, const std::string& allowed) const {
 }
 
 void TomlTable::refuse_missing(const char* key) const {
-  throw FileError(
-      fmt::format("{}:{}: {}: missing", where_, table_.source().begin.line, full(key)));
+  throw FileError(fmt::format("{}:{}: {}: missing", where_, table_.source().begin.line, full(key)));
 }
 
 }  // namespace limpid

@@ -41,9 +41,8 @@ void merge(Link& link, const urdf::Inertial& body, const Pose& at) {
       body.ixy, body.iyy, body.iyz,         //
       body.ixz, body.iyz, body.izz;
   const double mass = link.mass + body.mass;
-  const Vec3 com = mass > 0 ? Vec3((link.mass * link.com + body.mass * in_link.translation()) /
-                                   mass)
-                            : link.com;
+  const Vec3 com =
+      mass > 0 ? Vec3((link.mass * link.com + body.mass * in_link.translation()) / mass) : link.com;
   link.inertia += point_inertia(link.mass, link.com - com) +
                   in_link.linear() * inertia * in_link.linear().transpose() +
                   point_inertia(body.mass, in_link.translation() - com);
@@ -84,8 +83,8 @@ class Chain {
       link = model.getLink(joint.child_link_name);
     }
     if (arm_.joints.empty()) {
-      throw FileError(fmt::format("{}: no joint that moves; needed: 1 to {}", places_.where,
-                                  kMaxDof));
+      throw FileError(
+          fmt::format("{}: no joint that moves; needed: 1 to {}", places_.where, kMaxDof));
     }
     arm_.tip = here_;
     for (std::size_t i = 0; i < arm_.links.size(); ++i) check_inertia(i);
@@ -103,9 +102,9 @@ class Chain {
 
   void add_inertial(const urdf::Link& link) {
     const urdf::Inertial& body = *link.inertial;
-    for (const double x : {body.mass, body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz,
-                           body.origin.position.x, body.origin.position.y,
-                           body.origin.position.z}) {
+    for (const double x :
+         {body.mass, body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz,
+          body.origin.position.x, body.origin.position.y, body.origin.position.z}) {
       if (!std::isfinite(x)) places_.refuse_link(link.name, "inertial: a number is not finite");
     }
     if (body.mass < 0) {
@@ -124,8 +123,8 @@ class Chain {
       return;
     }
     if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS) {
-      places_.refuse_joint(joint.name, fmt::format("{}; allowed: revolute, continuous, fixed",
-                                                   kind_of(joint)));
+      places_.refuse_joint(joint.name,
+                           fmt::format("{}; allowed: revolute, continuous, fixed", kind_of(joint)));
     }
     if (joint.mimic) places_.refuse_joint(joint.name, "mimics another joint; not supported");
     if (arm_.dof() == kMaxDof) {
@@ -151,13 +150,14 @@ class Chain {
       if (!(out.lower < out.upper) || !std::isfinite(out.upper - out.lower)) {
         places_.refuse_joint(joint.name,
                              fmt::format("limits from {} to {} rad; needed: finite, lower below "
-                                         "upper", out.lower, out.upper));
+                                         "upper",
+                                         out.lower, out.upper));
       }
     }
     out.effort = limit_of(joint, &urdf::JointLimits::effort, 0);
     if (!(out.effort > 0 && std::isfinite(out.effort))) {
-      places_.refuse_joint(joint.name, fmt::format("effort {} N m in <limit>; needed: more than 0",
-                                                   out.effort));
+      places_.refuse_joint(
+          joint.name, fmt::format("effort {} N m in <limit>; needed: more than 0", out.effort));
     }
     if (joint.dynamics) {
       out.damping = at_least_zero(joint.name, "damping", joint.dynamics->damping);
@@ -181,8 +181,7 @@ class Chain {
       places_.refuse_link(link.name, "inertia is not that of any body (a negative moment)");
     }
     const Vec3& axis = arm_.joints[i].axis;
-    const double about_joint =
-        axis.dot((link.inertia + point_inertia(link.mass, link.com)) * axis);
+    const double about_joint = axis.dot((link.inertia + point_inertia(link.mass, link.com)) * axis);
     if (!(about_joint > 0 && std::isfinite(about_joint))) {
       places_.refuse_link(link.name,
                           fmt::format("inertia {} kg m^2 about joint '{}'; needed: more than 0 "

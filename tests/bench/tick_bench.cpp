@@ -144,8 +144,7 @@ void print_recorded_run() {
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
   info.scene = plan.scene.toml;
-  const std::filesystem::path out =
-      std::filesystem::temp_directory_path() / "limpid_tick_bench.h5";
+  const std::filesystem::path out = std::filesystem::temp_directory_path() / "limpid_tick_bench.h5";
 
   std::vector<double> rows(plan.rows * static_cast<std::size_t>(RowLayout(info.dof).stride()));
   report("headless run", plan, [&] {
