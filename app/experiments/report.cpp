@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/experiments/experiment.h"
+#include "app/markup.h"
 
 namespace limpid {
 namespace {
@@ -46,20 +47,6 @@ a { color: inherit; }
   img { max-height: 190mm; object-fit: contain; }
 }
 )css";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 // JSON has no infinite numbers: they are null there.
 std::string number(const json& value) {

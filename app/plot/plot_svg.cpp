@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "app/markup.h"
 #include "app/plot/plot_export.h"
 #include "app/plot/ticks.h"
 #include "app/plot/trace.h"
@@ -16,20 +17,6 @@ constexpr double kFont = 12;         // [px]
 constexpr double kLine = 1.4;        // [px]
 constexpr double kDash = 6;          // [px]
 constexpr int kColumnsPerPixel = 2;  // pictures are looked at closely
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
