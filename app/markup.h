@@ -1,0 +1,23 @@
+// Text inside HTML and SVG.
+#pragma once
+
+#include <string>
+
+namespace limpid {
+
+// `text` with the characters that markup would take for its own replaced.
+inline std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace limpid
