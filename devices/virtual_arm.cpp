@@ -86,14 +86,16 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   const double grip_damping = h / 2 * b_h + h * h / 4 * k_h;  // of the substep's midpoint
   const Vec<N> x_start = x_;
   Vec<N> x_model = x_;
+  Vec<N> dv = Vec<N>::Zero(x_.size());
   Vec3 tip_model = Vec3::Zero();
   const typename Arm<N>::Angles start = Arm<N>::angles(x_start);
   hand_torque_.setZero();
   for (int s = 0; s < p.substeps; ++s) {
     if (s % kShare == 0) {
-      x_model = x_ + std::min(kShare, p.substeps - s) * h / 2 * v_;
+      const int ahead = std::min(kShare, p.substeps - s);
+      x_model = x_ + ahead * h / 2 * v_;
       arm_.frames(Arm<N>::turned(start, x_model - x_start), frames_);
-      arm_.inertia_bias(frames_, v_, M_, Cv_);
+      arm_.inertia_bias(frames_, v_ + 0.5 * ahead * dv, M_, Cv_);
       tip_model = arm_.tip(frames_);
       arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);
     }
@@ -115,7 +117,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     Vec<N> b = torque - Cv_ + r.torque - r.damping.cwiseProduct(v_);
     b.noalias() += J_.transpose() * pull;
     b *= h;
-    const Vec<N> dv = solve_symmetric<N>(A, b);
+    dv = solve_symmetric<N>(A, b);
 
     const Vec3 force = pull - (b_h / 2 + h / 4 * k_h) * (J_ * dv);
     hand_torque_.noalias() += J_.transpose() * force;

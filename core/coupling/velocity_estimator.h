@@ -62,7 +62,7 @@ class VelocityEstimator {
       const double chord = (x - ago(length)[joint]) / static_cast<double>(length);
       for (std::size_t i = 1; i < length; ++i) {
         const double miss = ago(i)[joint] - (x - chord * static_cast<double>(i));
-        if (std::abs(miss) > step) return slope / T;
+        if (std::abs(miss) > step * (1 + 1e-9)) return slope / T;
       }
       slope = chord;
     }

@@ -93,19 +93,19 @@ class Arm {
   // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
   // own axes. Where the axis is one of those, Q only reorders: Q and Q^T are left out.
   struct JointModel {
-    Mat3 R0;                   // or R0 Q
-    bool shifted;              // R0 is not the identity
-    bool oblique;              // the axis is none of x, y, z
-    Mat3 back;                 // Q^T where oblique
-    int first, second, third;  // columns: first turns towards second, third is the axis
-    double sign;               // -1 where the axis points against the third column
-    Vec3 offset;               // origin in the previous link's frame [m]
+    Mat3 R0 = Mat3::Identity();            // or R0 Q
+    bool shifted = false;                  // R0 is not the identity
+    bool oblique = false;                  // the axis is none of x, y, z
+    Mat3 back = Mat3::Identity();          // Q^T where oblique
+    int first = 0, second = 1, third = 2;  // columns: first turns towards second, third the axis
+    double sign = 1;                       // -1 where the axis points against the third column
+    Vec3 offset = Vec3::Zero();            // origin in the previous link's frame [m]
   };
   struct LinkModel {
-    double mass;  // [kg]
-    Vec3 com;     // in the link's frame [m]
-    double d;     // inertia about com: d 1 + g g^T + e e^T [kg m^2]
-    Vec3 g, e;    // in the link's axes
+    double mass = 0;                          // [kg]
+    Vec3 com = Vec3::Zero();                  // in the link's frame [m]
+    double d = 0;                             // inertia about com: d 1 + g g^T + e e^T [kg m^2]
+    Vec3 g = Vec3::Zero(), e = Vec3::Zero();  // in the link's axes
   };
 
   std::size_t size() const { return static_cast<std::size_t>(dof()); }

@@ -21,9 +21,13 @@ TEST(MouseHand, StaysWithTheTipUntilItGrabs) {
 TEST(MouseHand, ClosesAndOpensItsGripWithinATwentiethOfASecond) {
   MouseHand hand;
   hand.reset(kTip);
-  for (int k = 1; k <= 50; ++k) EXPECT_NEAR(hand.step(true, kTip, kTip, kGrip, T).grip, k / 50.0, 1e-12);
+  for (int k = 1; k <= 50; ++k) {
+    EXPECT_NEAR(hand.step(true, kTip, kTip, kGrip, T).grip, k / 50.0, 1e-12);
+  }
   EXPECT_EQ(hand.step(true, kTip, kTip, kGrip, T).grip, 1);
-  for (int k = 49; k >= 0; --k) EXPECT_NEAR(hand.step(false, kTip, kTip, kGrip, T).grip, k / 50.0, 1e-12);
+  for (int k = 49; k >= 0; --k) {
+    EXPECT_NEAR(hand.step(false, kTip, kTip, kGrip, T).grip, k / 50.0, 1e-12);
+  }
   EXPECT_EQ(hand.step(false, kTip, Vec3::Zero(), kGrip, T).grip, 0);
 }
 

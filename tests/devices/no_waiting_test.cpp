@@ -155,7 +155,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       p.eta = k / 70 % 2 ? 0.8 : 2;
       const double t = 1e-3 * k;
       const Vec3 goal = home + 0.03 * Vec3(std::sin(9 * t), std::sin(7 * t), -std::sin(5 * t));
-      const HandInput input = hand.step(k % 500 < 400, goal, crowded.tip(), p.hand_stiffness, p.tick);
+      const HandInput input =
+          hand.step(k % 500 < 400, goal, crowded.tip(), p.hand_stiffness, p.tick);
       crowded.step(p, {input, k % 600 < 500}, row);
       touched += crowded.contacts(contacts);
       ring.push(row);

@@ -135,7 +135,8 @@ TEST(ControllerEnergy, OfAStableLoopIsNeverProduced) {
       }
       const Rows rows = follow(p, scene, hand);
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        ASSERT_LE(rows.at(k, Column::energy_total), 1e-4) << name << ", eta " << eta << ", row " << k;
+        ASSERT_LE(rows.at(k, Column::energy_total), 1e-4)
+            << name << ", eta " << eta << ", row " << k;
       }
     }
   }

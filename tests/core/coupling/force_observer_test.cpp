@@ -49,7 +49,9 @@ TEST(ForceObserver, FindsAConstantForceWithEveryGainAndTick) {
           body.estimate(observer, alpha, T);
         }
         Eigen::VectorXd left = modes.eigenvectors().transpose() * f1;
-        for (int i = 0; i < n; ++i) left[i] *= std::exp(-alpha / modes.eigenvalues()[i] * kTicks * T);
+        for (int i = 0; i < n; ++i) {
+          left[i] *= std::exp(-alpha / modes.eigenvalues()[i] * kTicks * T);
+        }
         const Eigen::VectorXd wanted = f1 - modes.eigenvectors() * left;
         EXPECT_LT((observer.present() - wanted).norm(), 1e-4 * f1.norm())
             << n << " joints, alpha " << alpha << ", T " << T;

@@ -50,7 +50,8 @@ TEST(InverseKinematics, StaysWithinTheLimits) {
 
 TEST(InverseKinematics, FindsNothingOutOfReach) {
   const ArmDescription arm = random_arm(3, 8);
-  const Vec3 far = arm.joints[0].origin.translation() + 1.01 * reach(arm) * Vec3(1, 2, 3).normalized();
+  const Vec3 away = 1.01 * reach(arm) * Vec3(1, 2, 3).normalized();
+  const Vec3 far = arm.joints[0].origin.translation() + away;
   EXPECT_FALSE(inverse_kinematics(arm, far, Eigen::VectorXd::Zero(3)));
 }
 
