@@ -115,8 +115,8 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
     scene.boxes.push_back(box);
   }
   scene.joint_contacts.push_back({"", 0, 0.02, 1, 20});
-  scene.probes.push_back({"", description.dof() - 1, Vec3::Zero(), description.tip.translation(),
-                          0.01});
+  scene.probes.push_back(
+      {"", description.dof() - 1, Vec3::Zero(), description.tip.translation(), 0.01});
   return scene;
 }
 

@@ -84,8 +84,9 @@ TEST(CoordinationError, StaysSmallInMotionWithTheProposedCoupling) {
   const auto largest = [](const Rows& rows) {
     double error = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      error = std::max(error, (rows.vec(k, Column::device_position) -
-                               rows.vec(k, Column::proxy_position)).norm());
+      error = std::max(
+          error,
+          (rows.vec(k, Column::device_position) - rows.vec(k, Column::proxy_position)).norm());
     }
     return error;
   };

@@ -20,8 +20,8 @@ Camera general_camera() {
 
 TEST(Camera, ProjectsAPointOfARayBackToItsPixel) {
   const Camera camera = general_camera();
-  for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(0, 0), Eigen::Vector2d(913.5, 207.25),
-                                      Eigen::Vector2d(1280, 720)}) {
+  for (const Eigen::Vector2d& pixel :
+       {Eigen::Vector2d(0, 0), Eigen::Vector2d(913.5, 207.25), Eigen::Vector2d(1280, 720)}) {
     const Ray ray = camera.ray(pixel);
     EXPECT_NEAR(ray.direction.norm(), 1, 1e-12);
     const auto back = camera.project(ray.origin + 0.37 * ray.direction);
@@ -73,8 +73,8 @@ TEST(Camera, FramesEveryCornerInWideAndTallViewports) {
   for (const Eigen::Vector2d& size : {Eigen::Vector2d(1600, 400), Eigen::Vector2d(300, 900)}) {
     Camera camera;
     camera.resize(size.x(), size.y());
-    for (const auto view : {Camera::View::iso, Camera::View::top, Camera::View::front,
-                            Camera::View::side}) {
+    for (const auto view :
+         {Camera::View::iso, Camera::View::top, Camera::View::front, Camera::View::side}) {
       camera.look(view);
       camera.frame(bounds);
       camera.finish();

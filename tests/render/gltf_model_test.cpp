@@ -114,8 +114,7 @@ TEST(GltfModel, RefusesWhatDoesNotBeginLikeGltf) {
 TEST(GltfModel, RefusesEveryTruncation) {
   const Bytes whole = glb(triangle_json(), triangle_data());
   for (std::size_t size = 0; size < whole.size(); size += 7)
-    EXPECT_NE(refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))),
-              "");
+    EXPECT_NE(refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), "");
 }
 
 TEST(GltfModel, RefusesAnotherVersion) {

@@ -25,9 +25,7 @@ class Random {
     while (d.norm() < 0.1 || d.norm() > 1) d = point(1);
     return d.normalized();
   }
-  Mat3 rotation() {
-    return Eigen::AngleAxisd(between(-3, 3), direction()).toRotationMatrix();
-  }
+  Mat3 rotation() { return Eigen::AngleAxisd(between(-3, 3), direction()).toRotationMatrix(); }
   Eigen::VectorXd vector(int n, double size) {
     Eigen::VectorXd v(n);
     for (double& c : v) c = between(-size, size);

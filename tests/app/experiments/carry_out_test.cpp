@@ -26,8 +26,8 @@ std::string read(const fs::path& file) {
 Outcome sound(Laboratory&) {
   Outcome outcome;
   outcome.figure.title = "Sound";
-  outcome.figure.panels = {{.title = "P", .series = {{"s", kHandInk, Series::Style::line,
-                                                      {{0, 0}, {1, 1}}}}}};
+  outcome.figure.panels = {
+      {.title = "P", .series = {{"s", kHandInk, Series::Style::line, {{0, 0}, {1, 1}}}}}};
   outcome.checks = {at_most("three at most four", 3, 4), at_least("three at least three", 3, 3)};
   return outcome;
 }
@@ -67,8 +67,8 @@ TEST_F(CarryOut, LeavesTableFigureAndVerdict) {
   EXPECT_EQ(verdict.at("passed"), true);
   ASSERT_EQ(verdict.at("checks").size(), 2u);
   EXPECT_EQ(verdict.at("checks")[0],
-            (nlohmann::json{{"what", "three at most four"}, {"value", 3.0}, {"bound", 4.0},
-                            {"passed", true}}));
+            (nlohmann::json{
+                {"what", "three at most four"}, {"value", 3.0}, {"bound", 4.0}, {"passed", true}}));
 }
 
 TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {

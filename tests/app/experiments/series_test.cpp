@@ -49,8 +49,9 @@ TEST(Series, RootMeanSquareCountsTheRowsAskedFor) {
 
 TEST(Series, OverTimeThinsEvenlyAndStartsAtTheFirstRow) {
   const Session s = ramp(1000);
-  const Series all = over_time(s, "", "#000000", Series::Style::line,
-                               [](std::size_t k) { return static_cast<double>(k); }, 100);
+  const Series all = over_time(
+      s, "", "#000000", Series::Style::line, [](std::size_t k) { return static_cast<double>(k); },
+      100);
   ASSERT_EQ(all.points.size(), 100u);
   for (std::size_t i = 0; i < 100; ++i) {
     EXPECT_EQ(all.points[i].y, static_cast<double>(10 * i));

@@ -95,9 +95,7 @@ TEST(Recorder, RefusesAtOnceWhatItCannotWrite) {
               }),
               HasSubstr("no/such/folder"));
   test::write_file(dir / "a.h5", "mine");
-  EXPECT_THAT(test::refusal([&] {
-                Recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
-              }),
+  EXPECT_THAT(test::refusal([&] { Recorder(dir / "a.h5", sample_info(3), Parameters{}, false); }),
               HasSubstr("a.h5"));
   EXPECT_EQ(test::file_bytes(dir / "a.h5"), "mine");
 }

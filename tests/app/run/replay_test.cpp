@@ -26,14 +26,10 @@ RunPlan eventful() {
   RunPlan plan = test::plan("obstacles.toml", "touch.csv", 3);
   plan.parameters.eta = 0.8;
   plan.parameters.hand_stiffness = 417.3;
-  plan.changes = {{500, "coupling.kind = \"standard\""},
-                  {900, "coupling.eta = 2.123456789012345"},
-                  {901, "coupling.kind = \"proposed\""},
-                  {1200, "observer.velocity = \"adaptive\""},
-                  {1200, "device.encoder_step = 4e-4"},
-                  {1500, "device.damping = 0.02"},
-                  {1800, "proxy.inertia_ratio = 0.01"},
-                  {2100, "device.damping = "},
+  plan.changes = {{500, "coupling.kind = \"standard\""}, {900, "coupling.eta = 2.123456789012345"},
+                  {901, "coupling.kind = \"proposed\""}, {1200, "observer.velocity = \"adaptive\""},
+                  {1200, "device.encoder_step = 4e-4"},  {1500, "device.damping = 0.02"},
+                  {1800, "proxy.inertia_ratio = 0.01"},  {2100, "device.damping = "},
                   {2200, "device.torque_limit = 0.1"}};
   for (std::size_t k = 0; k < plan.rows; ++k) plan.force.push_back(k % 1000 < 800);
   return plan;

@@ -52,11 +52,11 @@ TEST(Simulate, GivesTheSameBitsTwice) {
 TEST(Simulate, GivesTheSameBitsAtItsOwnPaceAndAsFastAsItGoes) {
   const RunPlan p = plan("table.toml", "touch.csv", 0.3);
   Rows paced(RowLayout(3));
-  const RunEnd end = simulate(p, {.realtime = true},
-                              [&](std::span<const double> row, const Parameters*) {
-                                paced.add(row);
-                                return true;
-                              });
+  const RunEnd end =
+      simulate(p, {.realtime = true}, [&](std::span<const double> row, const Parameters*) {
+        paced.add(row);
+        return true;
+      });
   EXPECT_EQ(end.rows, 300u);
   EXPECT_EQ(first_difference(rows_of(p), paced), -1);
 }
@@ -65,11 +65,10 @@ TEST(Simulate, StopsWhenItIsToldTo) {
   const RunPlan p = plan("table.toml", "touch.csv", 2);
   std::atomic<bool> stop = false;
   std::uint64_t count = 0;
-  const RunEnd end =
-      simulate(p, {.stop = &stop}, [&](std::span<const double>, const Parameters*) {
-        stop = ++count == 123;
-        return true;
-      });
+  const RunEnd end = simulate(p, {.stop = &stop}, [&](std::span<const double>, const Parameters*) {
+    stop = ++count == 123;
+    return true;
+  });
   EXPECT_TRUE(end.stopped);
   EXPECT_EQ(end.rows, 123u);
 }
@@ -77,8 +76,8 @@ TEST(Simulate, StopsWhenItIsToldTo) {
 TEST(Simulate, StopsWhenItsSinkHasEnough) {
   const RunPlan p = plan("table.toml", "touch.csv", 2);
   std::uint64_t count = 0;
-  const RunEnd end = simulate(
-      p, {}, [&](std::span<const double>, const Parameters*) { return ++count < 45; });
+  const RunEnd end =
+      simulate(p, {}, [&](std::span<const double>, const Parameters*) { return ++count < 45; });
   EXPECT_TRUE(end.stopped);
   EXPECT_EQ(end.rows, 45u);
 }

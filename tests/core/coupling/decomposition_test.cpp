@@ -97,8 +97,7 @@ TEST_P(DecompositionOfJoints, HasTheCoriolisBlocksOfElevenMultipliedOut) {
 TEST_P(DecompositionOfJoints, HasItsTwoCouplingBlocksSkewToEachOther) {
   const Decomposition<kAnyDof> d = at(0);
   const Matrix I = Matrix::Identity(n(), n());
-  const Matrix C_EL =
-      d.phi.transpose() * device_.C + (d.phi.transpose() - I) * proxy_.C;
+  const Matrix C_EL = d.phi.transpose() * device_.C + (d.phi.transpose() - I) * proxy_.C;
   EXPECT_LT((d.C_EL + d.C_LE.transpose()).norm(), 1e-15 * size_);
   EXPECT_LT((d.C_EL - C_EL).norm(), 1e-12 * size_);
 }

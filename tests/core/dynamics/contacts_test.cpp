@@ -251,8 +251,8 @@ TEST(Contacts, HaveRoomForEveryPairAndKnowTheEnergyInThem) {
   World w(3);
   const Vec3 tip = w.arm.tip(w.frames);
   for (int i = 0; i < 5; ++i) {
-    w.scene.spheres.push_back({"", tip + 0.01 * Random(static_cast<unsigned>(i)).direction(), 0.03,
-                               100.0 * (i + 1)});
+    w.scene.spheres.push_back(
+        {"", tip + 0.01 * Random(static_cast<unsigned>(i)).direction(), 0.03, 100.0 * (i + 1)});
   }
   w.scene.joint_contacts.push_back({"", 1, w.x[1] - 0.2, 1, 20});
   Contacts<kAnyDof> contacts(w.description, w.scene);

@@ -15,9 +15,7 @@ using test::random_arm;
 using AnyProxy = Proxy<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 
-ProxyDrive<kAnyDof> no_drive(int n) {
-  return {Vector::Zero(n), 0, Mat<kAnyDof>::Zero(n, n)};
-}
+ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0, Mat<kAnyDof>::Zero(n, n)}; }
 
 TEST(ProxyInContact, OfOneJointFollowsTheScalarMidpointRule) {
   constexpr double T = 0.001, K = 20, k_vc = 10, b = 0.013, kAngle = 0.2;
@@ -98,8 +96,8 @@ Scene crowd(const ArmDescription& description, const Vector& x) {
   box.pose.translation() = tip + Vec3(0.05, 0, 0);
   scene.boxes.push_back(box);
   scene.joint_contacts.push_back({"", 0, x[0] + 0.05, 1, 20});
-  scene.probes.push_back({"", description.dof() - 1, Vec3::Zero(),
-                          0.9 * description.tip.translation(), 0.01});
+  scene.probes.push_back(
+      {"", description.dof() - 1, Vec3::Zero(), 0.9 * description.tip.translation(), 0.01});
   return scene;
 }
 

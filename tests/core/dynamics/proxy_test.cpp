@@ -15,9 +15,7 @@ using test::random_arm;
 using AnyProxy = Proxy<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 
-ProxyDrive<kAnyDof> no_drive(int n) {
-  return {Vector::Zero(n), 0, Mat<kAnyDof>::Zero(n, n)};
-}
+ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0, Mat<kAnyDof>::Zero(n, n)}; }
 
 class ProxyOfJoints : public testing::TestWithParam<std::tuple<int, double, double>> {
  protected:

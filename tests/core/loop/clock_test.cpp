@@ -129,8 +129,8 @@ TEST(Clock, LetsAStallWhileCatchingUpSlipRatherThanProlongTheSeries) {
 }
 
 TEST(Clock, SleepsAfterCatchingUpForTwentyPeriodsHoweverSlowTheTicksAre) {
-  for (const nanoseconds compute : {nanoseconds(1050us), nanoseconds(1500us), nanoseconds(9ms),
-                                    nanoseconds(60ms)}) {
+  for (const nanoseconds compute :
+       {nanoseconds(1050us), nanoseconds(1500us), nanoseconds(9ms), nanoseconds(60ms)}) {
     World world;
     TestClock clock = clock_in(world);
     clock.wait();

@@ -1,7 +1,6 @@
 #include "core/loop/haptic_thread.h"
 
 #include <gtest/gtest.h>
-
 #include <pthread.h>
 #include <sched.h>
 

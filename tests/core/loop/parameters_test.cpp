@@ -43,11 +43,11 @@ TEST(Parameters, DefaultToThePapersValues) {
 
 TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
   const std::set<std::string> contract{
-      "coupling.kind",         "coupling.k_vc",      "coupling.b_vc",      "coupling.b_v",
-      "coupling.eta",          "observer.alpha",     "observer.anti_windup", "observer.velocity",
-      "proxy.inertia_ratio",   "model.inertia_error", "hand.stiffness",    "hand.damping",
-      "loop.tick",             "device.substeps",    "device.encoder_step", "device.friction",
-      "device.damping",        "device.torque_limit"};
+      "coupling.kind",       "coupling.k_vc",       "coupling.b_vc",        "coupling.b_v",
+      "coupling.eta",        "observer.alpha",      "observer.anti_windup", "observer.velocity",
+      "proxy.inertia_ratio", "model.inertia_error", "hand.stiffness",       "hand.damping",
+      "loop.tick",           "device.substeps",     "device.encoder_step",  "device.friction",
+      "device.damping",      "device.torque_limit"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;

@@ -28,8 +28,7 @@ TEST(TraceRing, ReturnsRowsInOrderAcrossTheSeam) {
   double next_in = 0;
   double next_out = 0;
   for (int round = 0; round < 10; ++round) {
-    for (int i = 0; i < 3; ++i, ++next_in)
-      ASSERT_TRUE(ring.push(std::array{next_in, -next_in}));
+    for (int i = 0; i < 3; ++i, ++next_in) ASSERT_TRUE(ring.push(std::array{next_in, -next_in}));
     ASSERT_EQ(ring.size(), 3u);
     ASSERT_EQ(ring.pop(out), 3u);
     for (std::size_t i = 0; i < 3; ++i, ++next_out) {

@@ -79,9 +79,7 @@ double slowest(const LockedMode& mode, double eta, double k, double b_h) {
   const double w_f = mode.w_f();
   Eigen::Matrix3d companion;
   companion << -(mode.m * w_f + mode.b + b_h) / mode.m,
-      -(mode.b * w_f + k + b_h * w_f / eta) / mode.m, -k * w_f / eta / mode.m,
-      1, 0, 0,
-      0, 1, 0;
+      -(mode.b * w_f + k + b_h * w_f / eta) / mode.m, -k * w_f / eta / mode.m, 1, 0, 0, 0, 1, 0;
   return companion.eigenvalues().real().maxCoeff();
 }
 
@@ -149,9 +147,9 @@ TEST(EtaMinGrip, OfDiagonalMatricesIsTheWorstOfTheirModes) {
       b_h[i] = random.between(0, 0.005);
       worst = std::max(worst, eta_min_grip({m[i], b[i], 0.035}, k[i], b_h[i]));
     }
-    const double limit = eta_min_grip(m.asDiagonal().toDenseMatrix(), b, 0.035,
-                                      k.asDiagonal().toDenseMatrix(),
-                                      b_h.asDiagonal().toDenseMatrix());
+    const double limit =
+        eta_min_grip(m.asDiagonal().toDenseMatrix(), b, 0.035, k.asDiagonal().toDenseMatrix(),
+                     b_h.asDiagonal().toDenseMatrix());
     EXPECT_NEAR(limit, worst, 2e-6);
   }
 }
@@ -195,8 +193,8 @@ TEST(LockedModes, AreTheEigenvaluesOfTheInertiaLightestFirst) {
     EXPECT_EQ(modes[i].alpha, 0.035);
     EXPECT_GE(modes[i].m, modes[i > 0 ? i - 1 : 0].m);
     product *= modes[i].m;
-    EXPECT_NEAR((M - modes[i].m * Eigen::MatrixXd::Identity(5, 5)).determinant() /
-                    M.determinant(), 0, 1e-9);
+    EXPECT_NEAR((M - modes[i].m * Eigen::MatrixXd::Identity(5, 5)).determinant() / M.determinant(),
+                0, 1e-9);
   }
   EXPECT_NEAR(product, M.determinant(), 1e-12 * product);
 }

@@ -1,7 +1,6 @@
-#include "devices/files/config_file.h"
-
 #include <random>
 
+#include "devices/files/config_file.h"
 #include "test_files.h"
 
 namespace limpid {
@@ -22,7 +21,8 @@ kind = "standard"
 eta = 2
 [hand]
 stiffness = 1e3
-)", "x.toml");
+)",
+                    "x.toml");
   Parameters wanted;
   wanted.alpha = 0.05;
   wanted.kind = CouplingKind::standard;
@@ -111,10 +111,15 @@ TEST(Setting, TakesTomlValuesAndBareWords) {
 }
 
 TEST(Setting, RefusesWhatIsNone) {
-  const char* const cases[] = {"",        "coupling.eta",     "=1",
-                               "coupling.eta=",               "coupling.eta=1\ncoupling.b_v=2",
-                               "coupling.eta=nan",            "coupling.eta=one",
-                               "coupling.eat=1",              "coupling.eta=[1]"};
+  const char* const cases[] = {"",
+                               "coupling.eta",
+                               "=1",
+                               "coupling.eta=",
+                               "coupling.eta=1\ncoupling.b_v=2",
+                               "coupling.eta=nan",
+                               "coupling.eta=one",
+                               "coupling.eat=1",
+                               "coupling.eta=[1]"};
   for (const char* setting : cases) {
     Parameters p;
     EXPECT_NE(refusal<ParameterError>([&] { apply_setting(p, setting); }), "") << setting;

@@ -1,10 +1,9 @@
-#include "devices/files/hand_file.h"
-
 #include <math.h>  // Boost's header below needs it
 
 #include <boost/math/interpolators/pchip.hpp>
 #include <cmath>
 
+#include "devices/files/hand_file.h"
 #include "test_files.h"
 
 namespace limpid {
@@ -16,8 +15,9 @@ using testing::HasSubstr;
 HandPath parse(const std::string& text) { return parse_hand_csv(text, "x.csv"); }
 
 TEST(Hand, TakesMoreColumnsCarriageReturnsSpacesAndBlankLinesAtTheEnd) {
-  const HandPath path = parse("time_s, x_m,y_m,z_m,force_N\r\n1,0.1,0.2,0.3,9\r\n"
-                              "2, 0.2 ,1e-1,-0.3,nan\r\n\r\n\n");
+  const HandPath path = parse(
+      "time_s, x_m,y_m,z_m,force_N\r\n1,0.1,0.2,0.3,9\r\n"
+      "2, 0.2 ,1e-1,-0.3,nan\r\n\r\n\n");
   ASSERT_EQ(path.time, (std::vector<double>{0, 1}));
   EXPECT_EQ(path.position[1], Vec3(0.2, 0.1, -0.3));
   EXPECT_EQ(path.grip, (std::vector<double>{1, 1}));

@@ -1,5 +1,4 @@
 #include "devices/files/scene_file.h"
-
 #include "test_files.h"
 
 namespace limpid {

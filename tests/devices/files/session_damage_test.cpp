@@ -23,8 +23,8 @@ TEST(DamagedSession, IsRefusedWhereverItIsCut) {
   const std::string whole = test::file_bytes(dir / "a.h5");
   std::mt19937 random(3);
   for (int round = 0; round < 60; ++round) {
-    const std::size_t length = round < 20 ? static_cast<std::size_t>(round) * 97
-                                          : random() % whole.size();
+    const std::size_t length =
+        round < 20 ? static_cast<std::size_t>(round) * 97 : random() % whole.size();
     test::write_file(dir / "cut.h5", whole.substr(0, length));
     EXPECT_THAT(refusal([&] { read_session(dir / "cut.h5"); }), HasSubstr("cut.h5")) << length;
     test::write_file(dir / "cut.h5.part", whole.substr(0, length));
@@ -66,8 +66,8 @@ TEST(DamagedSession, SaysWhichRowsAreScrambled) {
 
 TEST(Session, RefusesAFileThatIsNotHdf5) {
   const test::TempDir dir;
-  for (const std::string& text : {std::string(), std::string("time_s,x_m\n"),
-                                 std::string(10000, '\0')}) {
+  for (const std::string& text :
+       {std::string(), std::string("time_s,x_m\n"), std::string(10000, '\0')}) {
     test::write_file(dir / "a.h5", text);
     EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }), HasSubstr("not an HDF5 file"));
   }
@@ -141,10 +141,15 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
       {[](Vandal& v) { v.remove("/hand"); }, {"/hand/target", "missing"}},
       {[](Vandal& v) { v.remove("/proxy/velocity"); }, {"/proxy/velocity", "missing"}},
       {[](Vandal& v) { v.dataset("/time", H5T_IEEE_F64LE, {49}); }, {"/time", "49", "50"}},
-      {[](Vandal& v) { v.dataset("/hand/target", H5T_IEEE_F64LE, {50, 2}); },
+      {[](Vandal& v) {
+         v.dataset("/hand/target", H5T_IEEE_F64LE, {50, 2});
+       },
        {"/hand/target", "2 wide", "N x 3"}},
       {[](Vandal& v) { v.dataset("/hand/target", H5T_IEEE_F64LE, {150}); }, {"/hand/target"}},
-      {[](Vandal& v) { v.dataset("/hand/target", H5T_IEEE_F64LE, {5, 10, 3}); }, {"/hand/target"}},
+      {[](Vandal& v) {
+         v.dataset("/hand/target", H5T_IEEE_F64LE, {5, 10, 3});
+       },
+       {"/hand/target"}},
       {[](Vandal& v) { v.dataset("/coupling/eta", H5T_IEEE_F32LE, {50}); },
        {"/coupling/eta", "float64"}},
       {[](Vandal& v) { v.dataset("/coupling/eta", H5T_STD_I64LE, {50}); },
@@ -196,8 +201,8 @@ TEST(ForeignSession, NeedNotHaveWhatTheContractDoesNotAskFor) {
   test::write_sample(dir / "a.h5", 50);
   {
     Vandal vandal(dir / "a.h5");
-    for (const char* path : {"/hand/grip", "/device/force_wanted", "/energy/contact_potential",
-                             "/events"}) {
+    for (const char* path :
+         {"/hand/grip", "/device/force_wanted", "/energy/contact_potential", "/events"}) {
       vandal.remove(path);
     }
   }

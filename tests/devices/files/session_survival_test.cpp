@@ -82,8 +82,8 @@ TEST(KilledRecording, LacksAtMostTheLastSecondAndIsRecovered) {
   for (int round = 0; round < 12; ++round) {
     const test::TempDir dir;
     Recording recording(dir / "a.h5");
-    const std::uint64_t handed = recording.kill_after(
-        1000 + random() % 4000, std::chrono::microseconds(random() % 20000));
+    const std::uint64_t handed =
+        recording.kill_after(1000 + random() % 4000, std::chrono::microseconds(random() % 20000));
     const Session left = read_session(dir / "a.h5.part");
     EXPECT_GE(left.size() + 1000, handed);
     expect_sample(left);
@@ -140,7 +140,7 @@ int exit_status_with_limit(rlim_t bytes, int (*work)(const fs::path&), const fs:
     }
     const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
     setrlimit(RLIMIT_FSIZE, &none);  // what is printed may go to a file
-    exit(status);  // with everything that libraries do at exit
+    exit(status);                    // with everything that libraries do at exit
   }
   int status = 0;
   waitpid(child, &status, 0);

@@ -42,8 +42,8 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
     SessionWriter writer(dir / "a.h5", sample_info(dof), false);
     const auto stride = static_cast<std::size_t>(layout.stride());
     std::size_t at = 0;
-    for (const std::size_t piece : {std::size_t{1}, std::size_t{600}, std::size_t{0},
-                                    std::size_t{633}}) {
+    for (const std::size_t piece :
+         {std::size_t{1}, std::size_t{600}, std::size_t{0}, std::size_t{633}}) {
       writer.append(std::span(rows).subspan(at * stride, piece * stride));
       at += piece;
     }
@@ -121,8 +121,9 @@ if len(sys.argv) > 3:
     assert f["/events/row"][0] == 3 and f["/events/setting"][0] == b"coupling.k_vc = 8"
 )");
   const auto python = [&](const fs::path& file, const std::string& rest) {
-    return std::system(("/usr/bin/python3 " + (dir / "check.py").string() + " " + file.string() +
-                        " " + rest).c_str());
+    return std::system(
+        ("/usr/bin/python3 " + (dir / "check.py").string() + " " + file.string() + " " + rest)
+            .c_str());
   };
   test::write_sample(dir / "a.h5", 1234);
   EXPECT_EQ(python(dir / "a.h5", "1234 events"), 0);
@@ -194,7 +195,9 @@ TEST(Session, LeavesAloneWhatAppearedWhileRecording) {
 TEST(Session, RefusesSettingsThatAreTooLongAndPartsOfRows) {
   const test::TempDir dir;
   SessionWriter writer(dir / "a.h5", sample_info(), false);
-  EXPECT_THAT(refusal([&] { writer.append(SettingChange{0, std::string(121, 's')}); }),
+  EXPECT_THAT(refusal([&] {
+                writer.append(SettingChange{0, std::string(121, 's')});
+              }),
               HasSubstr("120"));
   const std::vector<double> half(7);
   EXPECT_THROW(writer.append(half), std::invalid_argument);

@@ -1,5 +1,4 @@
 #include "devices/files/urdf_file.h"
-
 #include "test_files.h"
 
 namespace limpid {
@@ -32,13 +31,13 @@ ArmDescription parse(const std::string& inside) {
 }
 
 TEST(Urdf, ReadsEveryNumberOfAJoint) {
-  const ArmDescription arm = parse(
-      link("a") +
-      joint("a", "b", "revolute",
-            "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='0 3 4'/>"
-            "<limit lower='-0.5' upper='1.5' effort='2' velocity='1'/>"
-            "<dynamics damping='0.1' friction='0.2'/>") +
-      link("b"));
+  const ArmDescription arm =
+      parse(link("a") +
+            joint("a", "b", "revolute",
+                  "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='0 3 4'/>"
+                  "<limit lower='-0.5' upper='1.5' effort='2' velocity='1'/>"
+                  "<dynamics damping='0.1' friction='0.2'/>") +
+            link("b"));
   ASSERT_EQ(arm.dof(), 1);
   const Joint& j = arm.joints[0];
   EXPECT_EQ(j.name, "a_b");
@@ -53,13 +52,14 @@ TEST(Urdf, ReadsEveryNumberOfAJoint) {
 
 TEST(Urdf, TurnsRollPitchYawInThatOrderAboutFixedAxes) {
   const ArmDescription arm =
-      parse(link("a") + joint("a", "b", "continuous",
-                              "<origin rpy='0.3 -0.4 0.5'/><limit effort='1' velocity='1'/>") +
+      parse(link("a") +
+            joint("a", "b", "continuous",
+                  "<origin rpy='0.3 -0.4 0.5'/><limit effort='1' velocity='1'/>") +
             link("b"));
-  const Mat3 wanted = (Eigen::AngleAxisd(0.5, Vec3::UnitZ()) *
-                       Eigen::AngleAxisd(-0.4, Vec3::UnitY()) *
-                       Eigen::AngleAxisd(0.3, Vec3::UnitX()))
-                          .toRotationMatrix();
+  const Mat3 wanted =
+      (Eigen::AngleAxisd(0.5, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.4, Vec3::UnitY()) *
+       Eigen::AngleAxisd(0.3, Vec3::UnitX()))
+          .toRotationMatrix();
   EXPECT_LT((arm.joints[0].origin.linear() - wanted).norm(), 1e-15);
   EXPECT_EQ(arm.joints[0].upper, std::numeric_limits<double>::infinity());
 }
@@ -71,8 +71,7 @@ TEST(Urdf, MergesLinksBehindFixedJoints) {
       "<inertia ixx='0' ixy='0' ixz='0' iyy='0.25' iyz='0' izz='0.25'/></inertial>";
   const ArmDescription arm = parse(
       link("world") + joint("world", "a", "fixed", "<origin xyz='0 0 7'/>") + link("a") +
-      joint("a", "b", "revolute", std::string("<axis xyz='0 1 0'/>") + kLimit) +
-      link("b", rod) +
+      joint("a", "b", "revolute", std::string("<axis xyz='0 1 0'/>") + kLimit) + link("b", rod) +
       joint("b", "c", "fixed", "<origin xyz='1 0 0' rpy='0.7 0 0'/>") + link("c", rod) +
       joint("c", "d", "fixed", "<origin xyz='1 0 0' rpy='0 0 1'/>") + link("d", ""));
   ASSERT_EQ(arm.dof(), 1);
@@ -163,12 +162,14 @@ TEST(Urdf, RefusesWhatIsNoArm) {
        {"x.urdf:4", "a_b", "friction -1"}},
       {link("a") + joint("a", "b") + link("b", ""), {"x.urdf:4", "'b'", "inertia 0"}},
       {link("a") + joint("a", "b") +
-           link("b", "<inertial><mass value='-1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
-                     "iyz='0' izz='1'/></inertial>"),
+           link("b",
+                "<inertial><mass value='-1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+                "iyz='0' izz='1'/></inertial>"),
        {"x.urdf:4", "'b'", "mass -1"}},
       {link("a") + joint("a", "b") +
-           link("b", "<inertial><mass value='1'/><inertia ixx='1' ixy='2' ixz='0' iyy='1' "
-                     "iyz='0' izz='1'/></inertial>"),
+           link("b",
+                "<inertial><mass value='1'/><inertia ixx='1' ixy='2' ixz='0' iyy='1' "
+                "iyz='0' izz='1'/></inertial>"),
        {"x.urdf:4", "'b'", "negative moment"}},
       {link("a") + joint("a", "b") + link("b", "<inertial><mass value='1'/></inertial>"),
        {"x.urdf"}},
