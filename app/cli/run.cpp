@@ -86,7 +86,8 @@ int run(const RunOptions& options) {
   std::signal(SIGTERM, interrupt);
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
-    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force);
+    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
+                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
   }
 
   Summary summary(RowLayout(plan.arm.dof()));

@@ -71,7 +71,8 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   std::optional<Recorder> recorder;
   if (trial.keep) {
     fs::create_directories(file.parent_path());
-    recorder.emplace(file, result.session.info, trial.plan.parameters, true);
+    recorder.emplace(file, result.session.info, trial.plan.parameters, true,
+                     Recorder::kWaitingRoom);
   }
   std::vector<double>& rows = result.session.rows;
   rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));

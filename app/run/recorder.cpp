@@ -9,20 +9,20 @@ namespace {
 
 constexpr std::size_t kBlockRows = 512;
 
-// Half a minute at 1 kHz for a small arm, and never more than 64 MiB.
-std::size_t ring_rows(int stride) {
+// Never more than 64 MiB.
+std::size_t ring_rows(std::size_t room, int stride) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   const std::size_t fit = kBytes / (static_cast<std::size_t>(stride) * sizeof(double));
-  return std::min(std::size_t{1} << 15, std::bit_floor(fit));
+  return std::min(room, std::bit_floor(fit));
 }
 
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
-                   const Parameters& initial, bool force)
+                   const Parameters& initial, bool force, std::size_t room)
     : out_(out),
       writer_(out, info, force),
-      ring_(ring_rows(RowLayout(info.dof).stride()),
+      ring_(ring_rows(room, RowLayout(info.dof).stride()),
             static_cast<std::size_t>(RowLayout(info.dof).stride())),
       known_(initial),
       block_(kBlockRows * ring_.stride()),

@@ -16,10 +16,15 @@ namespace limpid {
 // that change travel beside the rows.
 class Recorder {
  public:
+  // Room for rows that wait to be written: half a minute at 1 kHz where a clock sets the pace;
+  // little, which stays in the processor's cache, where push_waiting() does.
+  static constexpr std::size_t kLiveRoom = 1 << 15;
+  static constexpr std::size_t kWaitingRoom = 1 << 11;
+
   // Opens the file at once, so that what cannot be written is known before the first tick.
   // Errors: FileError.
   Recorder(const std::filesystem::path& out, const SessionInfo& info, const Parameters& initial,
-           bool force);
+           bool force, std::size_t room = kLiveRoom);
   ~Recorder();  // without finish(): leaves what was written as OUT.h5.part
 
   // The loop's side: allocates and waits for nothing. False if there was no room.

@@ -155,7 +155,7 @@ void print_recorded_run() {
     });
   });
   report("headless run, recorded", plan, [&] {
-    Recorder recorder(out, info, plan.parameters, true);
+    Recorder recorder(out, info, plan.parameters, true, Recorder::kWaitingRoom);
     simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
       return recorder.push_waiting(row);
     });
