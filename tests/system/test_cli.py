@@ -14,7 +14,7 @@ import numpy as np
 from limpid_check.session import ATTRIBUTES, DATASETS, read_session
 from support import Started, SystemTest, WithAnArm, Words, limpid
 
-COMMANDS = ("play", "run", "analyze", "devices", "info", "recover")
+COMMANDS = ("play", "run", "experiment", "analyze", "devices", "info", "recover")
 
 
 class Help(SystemTest):

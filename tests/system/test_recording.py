@@ -12,8 +12,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from limpid_check.checks import verify
 from limpid_check.session import DATASETS, read_session
-from support import Started, WithAnArm, limpid
+from support import ASSETS, Started, WithAnArm, limpid
 
 
 def live_rows(part: Path) -> int:
@@ -125,6 +126,20 @@ class Recording(WithAnArm):
         self.assertTrue(self.part(out).exists())
         self.assertEqual(limpid("recover", "--force", self.part(out)).status, 0)
         self.assertGreaterEqual(len(read_session(out)), 100)
+
+
+class ShippedSessions(unittest.TestCase):
+    """The recordings that come with the program, made in its window."""
+
+    def test_they_verify_and_can_be_run_again(self) -> None:
+        sessions = sorted((ASSETS / "sessions").glob("*.h5"))
+        self.assertGreaterEqual(len(sessions), 2)
+        for path in sessions:
+            with self.subTest(path.name):
+                checks = verify(read_session(path))
+                self.assertEqual([c for c in checks if not c.passed], [])
+                done = limpid("run", "--hand", path)
+                self.assertEqual(done.status, 0, done.err)
 
 
 if __name__ == "__main__":
