@@ -6,11 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/interrupt.h"
 
 namespace limpid {
 namespace {
@@ -18,10 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kMostThreads = 256;
-
-// A signal can only reach something with a fixed address.
-std::atomic<bool> interrupted{false};
-void interrupt(int) { interrupted.store(true); }
 
 struct ExperimentOptions {
   std::string name;
@@ -102,8 +98,7 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOp
 int run(const ExperimentOptions& options) {
   const std::vector<const Experiment*> wanted = chosen(options.name);
   prepare(options.out);
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  catch_interrupts();
   bool passed = true;
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -13,6 +12,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
+#include "app/interrupt.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/summary.h"
@@ -21,10 +21,6 @@ namespace limpid {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-
-// A signal can only reach something with a fixed address.
-std::atomic<bool> interrupted{false};
-void interrupt(int) { interrupted.store(true); }
 
 // "12.3 of 30.0 s simulated, 4 s left" on a terminal, once a run takes over a second. Printed by a
 // thread of its own, so that no tick waits for a terminal.
@@ -82,8 +78,7 @@ void finish(Recorder& recorder) {
 
 int run(const RunOptions& options) {
   const RunPlan plan = make_plan(options.input);
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
     recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,

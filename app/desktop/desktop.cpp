@@ -5,19 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 
 #include "app/desktop/experiments_panel.h"
 #include "app/desktop/keys.h"
 #include "app/desktop/panels.h"
+#include "app/interrupt.h"
 #include "app/rtkit.h"
 #include "app/style/theme.h"
 
 namespace limpid {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int) { interrupted = 1; }
 
 // A border between panels that can be dragged: changes `size` by the mouse's motion along one axis.
 void splitter(const char* name, const ScreenRect& rect, bool vertical, double direction,
@@ -144,8 +141,7 @@ void run_desktop(const DesktopOptions& options) {
   // Pictures go before the window they are drawn in.
   const std::unique_ptr<Workbench, void (*)(Workbench*)> pictures(
       &bench, [](Workbench* b) { b->drop_pictures(); });
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  catch_interrupts();
   const std::string& device = options.device.empty() ? bench.settings.device : options.device;
   const std::string& scene = options.scene.empty() ? bench.settings.scene : options.scene;
   bench.open_world(device, scene);

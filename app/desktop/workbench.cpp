@@ -7,8 +7,8 @@
 
 #include "app/assets.h"
 #include "app/desktop/window.h"
+#include "app/run/replay.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/config_file.h"
 #include "devices/files/scene_file.h"
 #include "devices/files/urdf_file.h"
 
@@ -100,8 +100,7 @@ void Workbench::update(double dt) {
   if (live.snapshot().diverged && !was_diverged_) {
     cut_force();
     say("The loop became unstable; force is off. Choose a larger eta or a smaller alpha, then "
-        "start "
-        "over (Backspace).",
+        "start over (Backspace).",
         true);
   }
   was_diverged_ = live.snapshot().diverged;
@@ -217,15 +216,12 @@ void Workbench::toggle_recording() {
     close_playback();
     const std::string name =
         fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
-    SessionInfo info;
-    info.tick = parameters.tick;
-    info.dof = stage->arm().dof();
-    info.app_version = LIMPID_VERSION;
-    info.source = "mouse";
-    info.config = config_text(parameters);
-    info.device_urdf = stage->arm().urdf;
-    info.scene = stage->scene().toml;
-    live.record(sessions_dir() / name, info, parameters, false);
+    RunPlan plan;
+    plan.arm = stage->arm();
+    plan.scene = stage->scene();
+    plan.hand.source = "mouse";
+    plan.parameters = parameters;
+    live.record(sessions_dir() / name, session_info(plan), parameters, false);
     stage->history.mark(stage->channels().layout().in(row(), Column::time)[0], "recording", "rec");
   } catch (const std::exception& e) {
     say(e.what(), true);
