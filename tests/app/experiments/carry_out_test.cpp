@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "app/experiments/experiment.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -47,14 +48,8 @@ Laboratory::Options in(const fs::path& dir) {
 
 class CarryOut : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "limpid-carry-out-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    dir_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
-  fs::path dir_;
+  test::TempDir temp_;
+  const fs::path dir_ = temp_ / ".";
 };
 
 TEST_F(CarryOut, LeavesTableFigureAndVerdict) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "devices/files/file_error.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -25,14 +26,8 @@ std::string read(const fs::path& file) {
 
 class Figures : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "limpid-figure-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    dir_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(dir_); }
-
-  fs::path dir_;
+  test::TempDir temp_;
+  const fs::path dir_ = temp_ / ".";
 };
 
 Figure small() {

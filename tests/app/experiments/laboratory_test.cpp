@@ -6,6 +6,7 @@
 
 #include "app/experiments/passivity_trials.h"
 #include "app/experiments/series.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -27,12 +28,7 @@ std::vector<double> physics(const Session& session) {
 
 class Laboratories : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "limpid-laboratory-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    options_.dir = pattern;
-  }
-  void TearDown() override { fs::remove_all(options_.dir); }
+  void SetUp() override { options_.dir = temp_ / "."; }
 
   static Trial trial(const std::string& name, double eta) {
     Parameters p;
@@ -45,6 +41,7 @@ class Laboratories : public testing::Test {
 
   fs::path file(const std::string& name) const { return options_.dir / "test" / (name + ".h5"); }
 
+  test::TempDir temp_;
   Laboratory::Options options_;
 };
 
