@@ -16,6 +16,22 @@ Rig::Rig(const ArmDescription& arm, const Scene& scene) {
   }
 }
 
+TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
+  if (arm.dof() == 3) {
+    contacts_ = std::make_unique<Contacts<3>>(arm, scene);
+  } else {
+    contacts_ = std::make_unique<Contacts<kAnyDof>>(arm, scene);
+  }
+}
+
+void Rig::exchange(TouchWorld& world) noexcept {
+  if (auto* of = std::get_if<std::unique_ptr<Of<3>>>(&of_)) {
+    if (auto* c = std::get_if<0>(&world.contacts_)) (*of)->tick.exchange(*c);
+  } else if (auto* c = std::get_if<1>(&world.contacts_)) {
+    std::get<1>(of_)->tick.exchange(*c);
+  }
+}
+
 const RowLayout& Rig::layout() const {
   return std::visit([](const auto& of) -> const RowLayout& { return of->tick.layout(); }, of_);
 }
@@ -74,18 +90,7 @@ bool Rig::diverged() const {
 }
 
 std::size_t Rig::contacts(std::span<ContactForce> into) const noexcept {
-  return std::visit(
-      [&](const auto& of) {
-        const auto list = of->tick.proxy().contacts();
-        const auto forces = of->tick.proxy().contact_forces();
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < list.size() && count < into.size(); ++i) {
-          if (forces[i] <= 0) continue;
-          into[count++] = {list[i].point, forces[i] * list[i].normal};
-        }
-        return count;
-      },
-      of_);
+  return std::visit([&](const auto& of) { return of->tick.proxy().contacts().forces(into); }, of_);
 }
 
 RigStart rest_at(const ArmDescription& arm, const Vec3& target) {

@@ -19,18 +19,23 @@ struct RigInput {
   bool force = true;  // armed
 };
 
-// Where a contact is and how hard it pushes on the proxy.
-struct ContactForce {
-  Vec3 point;  // [m]
-  Vec3 force;  // [N]; zero in joint space
-};
-
 // A starting point of any size, e.g. the first row of a recording.
 struct RigStart {
   Eigen::VectorXd x1, v1, x2, v2;  // [rad, rad/s]
   Eigen::VectorXd f1_hat;          // [N m]
   Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
   bool armed = true;
+};
+
+// What a rig's arm can touch, ready to be taken in by a running loop.
+class TouchWorld {
+ public:
+  // Not for the haptic thread. Every mesh of the scene has its shape.
+  TouchWorld(const ArmDescription& arm, const Scene& scene);
+
+ private:
+  friend class Rig;
+  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<kAnyDof>>> contacts_;
 };
 
 class Rig {
@@ -44,6 +49,9 @@ class Rig {
   // Where it stands now, as a starting point; a recording of a running loop begins so. `into` has
   // vectors of this size already: nothing is allocated.
   void present(RigStart& into) const;
+  // Between two steps: takes in what can be touched from now on, made for the same arm, and gives
+  // out what could be until now. Contacts with meshes that stay remember their sides.
+  void exchange(TouchWorld& world) noexcept;
   // Reads the device, runs the tick, lives through it; writes the row (not its timing). Allocates
   // nothing.
   void step(const Parameters& p, const RigInput& input, std::span<double> row) noexcept;

@@ -53,7 +53,7 @@ void FrameTarget::begin(int width, int height, int samples) {
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);  // the backdrop covers every colour
 }
 
-void FrameTarget::finish(GLuint framebuffer, int x, int y) {
+void FrameTarget::finish(GLuint framebuffer, int x, int y, int width, int height) {
   if (samples_ > 1) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, buffers_->drawn);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffers_->resolved);
@@ -61,12 +61,12 @@ void FrameTarget::finish(GLuint framebuffer, int x, int y) {
                       GL_NEAREST);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(x, y, width_, height_);
+  glViewport(x, y, width, height);
   glDisable(GL_DEPTH_TEST);
   const ShaderProgram& program = samples_ > 1 ? plain_ : smooth_;
   program.use();
   program.set("picture", 0);
-  program.set("origin", glm::vec2(x, y));
+  program.set("place", glm::vec4(x, y, width, height));
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, buffers_->picture);
   glBindVertexArray(no_vertices_);

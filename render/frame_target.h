@@ -16,8 +16,8 @@ class FrameTarget {
 
   // Binds a cleared target of this size; sizes may change every frame.
   void begin(int width, int height, int samples);
-  // Brings the picture to a rectangle of `framebuffer`, which stays bound.
-  void finish(GLuint framebuffer, int x, int y);
+  // Brings the picture to a rectangle of `framebuffer`, which stays bound; it may be larger.
+  void finish(GLuint framebuffer, int x, int y, int width, int height);
 
  private:
   struct Buffers {

@@ -4,6 +4,8 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -13,10 +15,11 @@ namespace limpid {
 
 // What a typed element of an accessor looks like in memory, after all of it was checked.
 struct Elements {
-  const unsigned char* first;
-  std::size_t count, stride;
-  int components, component_type;
-  bool normalized;
+  const unsigned char* first = nullptr;
+  std::size_t count = 0, stride = 0;
+  int components = 0, component_type = 0;
+  bool normalized = false;
+  std::shared_ptr<const std::vector<unsigned char>> own;  // of a sparse accessor, put together
 };
 
 class GltfAccessor {
@@ -25,7 +28,8 @@ class GltfAccessor {
   GltfAccessor(const tinygltf::Model& gltf, const std::string& name) : gltf_(gltf), name_(name) {}
 
   // All of these throw std::runtime_error naming the file for what does not exist or fit.
-  Elements elements(int accessor) const;
+  Elements elements(int accessor);
+  std::span<const unsigned char> view(int buffer_view) const;
   Eigen::Vector4f element(const Elements& e, std::size_t i) const;  // missing parts: 0 0 0 1
   std::uint32_t index(const Elements& e, std::size_t i) const;
 
@@ -41,8 +45,11 @@ class GltfAccessor {
   }
 
  private:
+  void fill_in(const tinygltf::Accessor& accessor, Elements& e);
+
   const tinygltf::Model& gltf_;
   const std::string& name_;
+  std::size_t sparse_bytes_ = 0;  // put together so far
 };
 
 }  // namespace limpid

@@ -1,47 +1,69 @@
 #include "render/gltf_model.h"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
+#include <map>
+#include <numeric>
 
 #include "render/gltf_accessor.h"
+#include "render/gltf_file.h"
+#include "render/gltf_material.h"
+#include "render/gltf_triangles.h"
+#include "render/simplify.h"
 
 namespace limpid {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-constexpr std::size_t kMostVertices = 4'000'000;
-constexpr int kDeepestNode = 64;
+constexpr std::size_t kMostVertices = 8'000'000;
+constexpr std::size_t kMostTriangles = 6'000'000;
+constexpr std::size_t kMostPrimitives = 1'000'000;  // over all nodes
+constexpr int kDeepestNode = 256;
+constexpr float kFarthest = 1e6f;  // [m]
 
 class Reader {
  public:
-  Reader(const tinygltf::Model& gltf, const std::string& name) : gltf_(gltf), file_(gltf, name) {}
+  Reader(const GltfFile& source, const std::string& name, const LoadProgress& progress)
+      : gltf_(source.gltf),
+        file_(source.gltf, name),
+        materials_(source, file_, name, model_),
+        progress_(progress),
+        expected_(std::max<std::size_t>(1, source.gltf.nodes.size())) {
+    for (const std::string& warning : source.warnings) add_warning(model_, warning);
+  }
 
   Model read();
 
  private:
+  std::vector<int> roots() const;
   Eigen::Affine3d transform(const tinygltf::Node& node) const;
   void add_node(int node, const Eigen::Affine3d& parent, int depth);
   void add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model);
-  void add_indices(const tinygltf::Primitive& primitive, std::uint32_t first, std::size_t count,
-                   bool mirrored);
-  void add_material(const tinygltf::Primitive& primitive, std::uint32_t first);
-  void smooth_normals(std::uint32_t first_vertex, std::size_t first_index);
-  int image_of(int texture);
+  void add_vertices(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
+                    const Elements& positions, const Eigen::Affine3d& to_model);
+  bool add_normals(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
+                   std::size_t count, const Eigen::Affine3d& to_model);
+  void join_parts();
+  void check_wanted() const;
 
   const tinygltf::Model& gltf_;
   GltfAccessor file_;
   Model model_;
-  std::vector<int> image_index_;
+  GltfMaterials materials_;
+  LoadProgress progress_;
+  std::size_t expected_, nodes_ = 0, primitives_ = 0, triangles_ = 0;
+  std::vector<bool> seen_;  // nodes
+  VertexUse use_;
+  std::map<Material, std::vector<std::uint32_t>> indices_;  // of the model, by material
 };
+
+void Reader::check_wanted() const {
+  if (progress_.cancel && progress_.cancel->load()) throw LoadCancelled("loading was cancelled");
+}
 
 Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
   Eigen::Affine3d out = Eigen::Affine3d::Identity();
   if (node.matrix.size() == 16) {
     out.matrix() = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
+    out.makeAffine();
   } else {
     if (node.translation.size() == 3)
       out.translate(Vec3(Eigen::Map<const Vec3>(node.translation.data())));
@@ -49,206 +71,186 @@ Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
       const Eigen::Quaterniond q(node.rotation[3], node.rotation[0], node.rotation[1],
                                  node.rotation[2]);
       if (!(q.norm() > 1e-6))
-        file_.refuse("node \"" + node.name + "\" has a rotation of length zero");
+        file_.refuse("node \"" + node.name.substr(0, 100) + "\" has a rotation of length zero");
       out.rotate(q.normalized());
     }
     if (node.scale.size() == 3) out.scale(Vec3(Eigen::Map<const Vec3>(node.scale.data())));
   }
   if (!out.matrix().allFinite())
-    file_.refuse("node \"" + node.name + "\" has a transform not finite");
+    file_.refuse("node \"" + node.name.substr(0, 100) + "\" has a transform that is not finite");
   return out;
 }
 
 void Reader::add_node(int index, const Eigen::Affine3d& parent, int depth) {
-  if (depth > kDeepestNode) file_.refuse("nodes are nested deeper than 64, or in a circle");
+  if (depth > kDeepestNode) file_.refuse("has nodes nested deeper than 256");
   const tinygltf::Node& node = file_.at(gltf_.nodes, index, "node");
+  // With one parent a node, the work is bounded by the size of the file.
+  if (seen_[static_cast<std::size_t>(index)])
+    file_.refuse("node " + std::to_string(index) + " has two parents or is in a circle");
+  seen_[static_cast<std::size_t>(index)] = true;
   const Eigen::Affine3d here = parent * transform(node);
+  if (node.skin >= 0) add_warning(model_, "skins are left out: shown as modelled");
   if (node.mesh >= 0)
     for (const auto& primitive : file_.at(gltf_.meshes, node.mesh, "mesh").primitives)
       add_primitive(primitive, here);
+  if (progress_.part)
+    *progress_.part = 0.3 + 0.6 * static_cast<double>(++nodes_) / static_cast<double>(expected_);
   for (const int child : node.children) add_node(child, here, depth + 1);
 }
 
-void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model) {
-  if (primitive.mode != TINYGLTF_MODE_TRIANGLES) file_.refuse("only triangle lists are drawn");
-  const auto attribute = [&](const char* key) {
-    const auto found = primitive.attributes.find(key);
-    return found == primitive.attributes.end() ? -1 : found->second;
-  };
-  if (attribute("POSITION") < 0) file_.refuse("a mesh has no POSITION");
-  const Elements positions = file_.elements(attribute("POSITION"));
-  const std::size_t count = positions.count;
-  if (positions.components != 3 || positions.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
-    file_.refuse("POSITION must be three floats");
-  if (model_.vertices.size() + count > kMostVertices) file_.refuse("more than 4 million vertices");
+int attribute(const tinygltf::Primitive& primitive, const std::string& key) {
+  const auto found = primitive.attributes.find(key);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
 
+void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model) {
+  check_wanted();
+  if (++primitives_ > kMostPrimitives) file_.refuse("has more than 1 million parts over all nodes");
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+    add_warning(model_, "points and lines are left out");
+    return;
+  }
+  if (primitive.extensions.count("KHR_draco_mesh_compression") != 0 &&
+      attribute(primitive, "POSITION") >= 0 &&
+      file_.at(gltf_.accessors, attribute(primitive, "POSITION"), "accessor").bufferView < 0)
+    file_.refuse("is compressed with KHR_draco_mesh_compression, which is not read");
+  if (attribute(primitive, "POSITION") < 0) file_.refuse("a mesh has no POSITION");
+  const Elements positions = file_.elements(attribute(primitive, "POSITION"));
+  if (positions.components != 3) file_.refuse("POSITION must have three components");
+
+  auto [corners, looked_at] =
+      read_triangles(file_, primitive, positions.count, kMostTriangles - triangles_);
+  triangles_ += looked_at;
+  if (corners.empty()) return;
+  const std::vector<std::uint32_t>& used = use_.renumber(corners, positions.count);
+  if (model_.vertices.size() + used.size() > kMostVertices)
+    file_.refuse("has more than 8 million vertices over all nodes");
   const auto first = static_cast<std::uint32_t>(model_.vertices.size());
-  const Eigen::Affine3f move = to_model.cast<float>();
-  for (std::size_t i = 0; i < count; ++i) {
+  add_vertices(primitive, used, positions, to_model);
+
+  if (to_model.linear().determinant() < 0)
+    for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i], corners[i + 1]);
+  if (!add_normals(primitive, used, positions.count, to_model))
+    smooth_normals(std::span(model_.vertices).subspan(first), corners);
+  auto& list = indices_[materials_.at(primitive.material).material];
+  list.reserve(list.size() + corners.size());
+  for (const std::uint32_t corner : corners) list.push_back(first + corner);
+}
+
+void Reader::add_vertices(const tinygltf::Primitive& primitive,
+                          const std::vector<std::uint32_t>& used, const Elements& positions,
+                          const Eigen::Affine3d& to_model) {
+  const GltfMaterial& material = materials_.at(primitive.material);
+  const std::size_t first = model_.vertices.size();
+  for (const std::uint32_t i : used) {
     Vertex v;
-    v.position = move * file_.element(positions, i).head<3>();
+    const Vec3 here = file_.element(positions, i).head<3>().cast<double>();
+    v.position = (to_model * here).cast<float>();
+    if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
+      file_.refuse("a vertex is farther than 1000 km from the origin");
     v.normal = Eigen::Vector3f::UnitZ();
+    v.color = material.color;
+    v.opacity = material.opacity;
+    v.surface = material.surface;
     model_.vertices.push_back(v);
   }
-  add_material(primitive, first);
-  const std::size_t first_index = model_.indices.size();
-  add_indices(primitive, first, count, to_model.linear().determinant() < 0);
-
-  // One optional stream of the primitive into one field of the vertices.
-  const auto stream = [&](const char* key, int fewest, auto&& put) {
-    if (attribute(key) < 0) return false;
-    const Elements e = file_.elements(attribute(key));
-    if (e.count != count || e.components < fewest)
-      file_.refuse(std::string(key) + " does not match POSITION");
-    for (std::size_t i = 0; i < count; ++i) put(model_.vertices[first + i], file_.element(e, i));
-    return true;
+  // One optional stream of the primitive into the fields of the vertices.
+  const auto stream = [&](const std::string& key, int fewest, auto&& put) {
+    const int accessor = attribute(primitive, key);
+    if (accessor < 0) return;
+    Elements e = file_.elements(accessor);
+    if (e.count != positions.count || e.components < fewest)
+      file_.refuse(key + " does not match POSITION");
+    if (key == "COLOR_0") e.normalized = true;  // always, though some files do not say so
+    for (std::size_t i = 0; i < used.size(); ++i)
+      put(model_.vertices[first + i], file_.element(e, used[i]));
   };
-  const Eigen::Matrix3f turn = move.linear().inverse().transpose();
-  const bool has_normals =
-      turn.allFinite() && stream("NORMAL", 3, [&](Vertex& v, const auto& n) {
-        const Eigen::Vector3f turned = turn * n.template head<3>();
-        v.normal = turned.norm() > 1e-12f ? Eigen::Vector3f(turned.normalized()) : v.normal;
-      });
-  if (!has_normals) smooth_normals(first, first_index);
-  stream("TEXCOORD_0", 2, [](Vertex& v, const auto& uv) { v.uv = uv.template head<2>(); });
-  stream("COLOR_0", 3,
-         [](Vertex& v, const auto& c) { v.color = v.color.cwiseProduct(c.template head<3>()); });
+  stream("TEXCOORD_" + std::to_string(material.uv_set), 2, [&](Vertex& v, const auto& uv) {
+    v.uv = (material.uv_move * uv.template head<2>()).cwiseMax(-kFarthest).cwiseMin(kFarthest);
+  });
+  const bool alpha = material.material.alpha != Material::Alpha::opaque;
+  stream("COLOR_0", 3, [&](Vertex& v, const auto& c) {
+    const Eigen::Vector4f color = c.cwiseMax(0.0f).cwiseMin(1.0f);
+    v.color = v.color.cwiseProduct(color.template head<3>());
+    if (alpha) v.opacity *= color[3];
+  });
 }
 
-void Reader::add_indices(const tinygltf::Primitive& primitive, std::uint32_t first,
-                         std::size_t count, bool mirrored) {
-  const std::size_t begin = model_.indices.size();
-  if (primitive.indices < 0) {
-    for (std::size_t i = 0; i < count; ++i)
-      model_.indices.push_back(first + static_cast<std::uint32_t>(i));
-  } else {
-    const Elements e = file_.elements(primitive.indices);
-    if (e.components != 1) file_.refuse("indices must be single numbers");
-    for (std::size_t i = 0; i < e.count; ++i) {
-      const std::uint32_t k = file_.index(e, i);
-      if (k >= count)
-        file_.refuse("index " + std::to_string(k) + " is outside of the mesh's " +
-                     std::to_string(count) + " vertices");
-      model_.indices.push_back(first + k);
+// False where there are none.
+bool Reader::add_normals(const tinygltf::Primitive& primitive,
+                         const std::vector<std::uint32_t>& used, std::size_t count,
+                         const Eigen::Affine3d& to_model) {
+  const int accessor = attribute(primitive, "NORMAL");
+  const Eigen::Matrix3f turn = to_model.linear().cast<float>().inverse().transpose();
+  if (accessor < 0 || !turn.allFinite()) return false;
+  const Elements e = file_.elements(accessor);
+  if (e.count != count || e.components < 3) file_.refuse("NORMAL does not match POSITION");
+  const std::size_t first = model_.vertices.size() - used.size();
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const Eigen::Vector3f turned = turn * file_.element(e, used[i]).head<3>();
+    const float length = turned.norm();
+    if (length > 1e-12f && std::isfinite(length))
+      model_.vertices[first + i].normal = turned / length;
+  }
+  return true;
+}
+
+// The default scene's nodes; of a file without scenes those that nobody has as a child.
+std::vector<int> Reader::roots() const {
+  if (!gltf_.scenes.empty())
+    return file_.at(gltf_.scenes, std::max(0, gltf_.defaultScene), "scene").nodes;
+  std::vector<int> all(gltf_.nodes.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<bool> child(gltf_.nodes.size());
+  for (const auto& node : gltf_.nodes)
+    for (const int i : node.children) {
+      file_.at(gltf_.nodes, i, "node");
+      child[static_cast<std::size_t>(i)] = true;
     }
-  }
-  if ((model_.indices.size() - begin) % 3 != 0) file_.refuse("indices do not make whole triangles");
-  if (mirrored)
-    for (std::size_t i = begin; i < model_.indices.size(); i += 3)
-      std::swap(model_.indices[i], model_.indices[i + 1]);
-  model_.parts.back().first = static_cast<std::uint32_t>(begin);
-  model_.parts.back().count = static_cast<std::uint32_t>(model_.indices.size() - begin);
+  std::erase_if(all, [&](int i) { return child[static_cast<std::size_t>(i)]; });
+  return all;
 }
 
-void Reader::add_material(const tinygltf::Primitive& primitive, std::uint32_t first) {
-  model_.parts.emplace_back();
-  if (primitive.material < 0) return;
-  const auto& pbr = file_.at(gltf_.materials, primitive.material, "material").pbrMetallicRoughness;
-  for (std::size_t i = first; i < model_.vertices.size(); ++i) {
-    Vertex& v = model_.vertices[i];
-    if (pbr.baseColorFactor.size() >= 3)
-      v.color = Eigen::Map<const Vec3>(pbr.baseColorFactor.data()).cast<float>();
-    v.surface = Eigen::Vector2d(pbr.metallicFactor, pbr.roughnessFactor).cast<float>();
+void Reader::join_parts() {
+  for (auto& [material, list] : indices_) {
+    model_.parts.push_back({static_cast<std::uint32_t>(model_.indices.size()),
+                            static_cast<std::uint32_t>(list.size()), material});
+    model_.indices.insert(model_.indices.end(), list.begin(), list.end());
+    list = {};
   }
-  if (pbr.baseColorTexture.index >= 0)
-    model_.parts.back().image = image_of(pbr.baseColorTexture.index);
-}
-
-void Reader::smooth_normals(std::uint32_t first_vertex, std::size_t first_index) {
-  std::vector<Eigen::Vector3f> sum(model_.vertices.size() - first_vertex, Eigen::Vector3f::Zero());
-  for (std::size_t i = first_index; i < model_.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return model_.indices[i + k]; };
-    const auto at_corner = [&](std::size_t k) { return model_.vertices[corner(k)].position; };
-    const Eigen::Vector3f n = (at_corner(1) - at_corner(0)).cross(at_corner(2) - at_corner(0));
-    for (std::size_t k = 0; k < 3; ++k) sum[corner(k) - first_vertex] += n;
-  }
-  for (std::size_t i = 0; i < sum.size(); ++i)
-    if (sum[i].norm() > 0) model_.vertices[first_vertex + i].normal = sum[i].normalized();
-}
-
-int Reader::image_of(int texture) {
-  const int source = file_.at(gltf_.textures, texture, "texture").source;
-  const tinygltf::Image& image = file_.at(gltf_.images, source, "image");
-  int& known = image_index_[static_cast<std::size_t>(source)];
-  if (known >= 0) return known;
-  const auto pixels = static_cast<std::size_t>(std::max(0, image.width)) *
-                      static_cast<std::size_t>(std::max(0, image.height));
-  if (pixels == 0 || image.bits != 8 || image.component != 4 || image.image.size() != 4 * pixels)
-    file_.refuse("image " + std::to_string(source) + " is not a readable 8-bit picture");
-  model_.images.push_back({image.width, image.height, image.image});
-  return known = static_cast<int>(model_.images.size()) - 1;
 }
 
 Model Reader::read() {
-  image_index_.assign(gltf_.images.size(), -1);
-  if (gltf_.scenes.empty()) file_.refuse("has no scene");
-  const auto& scene = file_.at(gltf_.scenes, std::max(0, gltf_.defaultScene), "scene");
-  for (const int node : scene.nodes) add_node(node, Eigen::Affine3d::Identity(), 0);
-  if (model_.indices.empty()) file_.refuse("contains no triangles");
+  constexpr std::array kKnown = {"KHR_texture_transform", "KHR_mesh_quantization",
+                                 "KHR_lights_punctual"};
+  for (const std::string& name : gltf_.extensionsRequired)
+    if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end() &&
+        !name.starts_with("KHR_materials_"))
+      file_.refuse("requires the extension " + name.substr(0, 100) + ", which is not read");
+  seen_.assign(gltf_.nodes.size(), false);
+  for (const int node : roots()) add_node(node, Eigen::Affine3d::Identity(), 0);
+  if (indices_.empty()) file_.refuse("contains no triangles");
+  join_parts();
+  check_wanted();
+  add_coarse(model_);
+  if (progress_.part) *progress_.part = 1;
   return std::move(model_);
 }
 
-// A GLB file says its own length; tinygltf trusts it in places, so it is compared first.
-void check_glb_header(std::span<const unsigned char> bytes, const std::string& name) {
-  std::uint32_t words[3];
-  if (bytes.size() < 20) throw std::runtime_error(name + ": is too short for a glTF file");
-  std::memcpy(words, bytes.data(), sizeof words);
-  if (words[0] != 0x46546C67u)
-    throw std::runtime_error(name + ": is not a glTF file (it begins neither with glTF nor {)");
-  if (words[1] != 2)
-    throw std::runtime_error(name + ": is glTF " + std::to_string(words[1]) + ", not 2");
-  if (words[2] != bytes.size())
-    throw std::runtime_error(name + ": is truncated or padded, it has " +
-                             std::to_string(bytes.size()) + " bytes and says " +
-                             std::to_string(words[2]));
-}
-
-bool refuse_other_files(std::vector<unsigned char>*, std::string* error, const std::string& path,
-                        void*) {
-  if (error) *error += "refers to another file, \"" + path + "\"; embed it instead\n";
-  return false;
-}
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
-Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name) {
-  if (bytes.size() > kLargestFile)
-    throw std::runtime_error(name + ": is larger than the 64 MiB that are read");
-  tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({[](const std::string&, void*) { return true; },
-                         [](const std::string& path, void*) { return path; }, refuse_other_files,
-                         [](std::string*, const std::string&, const std::vector<unsigned char>&,
-                            void*) { return false; },
-                         nullptr});
-  tinygltf::Model gltf;
-  std::string error, warning;
-  const auto length = static_cast<unsigned>(bytes.size());
-  bool good = false;
-  if (!bytes.empty() && bytes[0] == '{') {
-    good = loader.LoadASCIIFromString(&gltf, &error, &warning,
-                                      reinterpret_cast<const char*>(bytes.data()), length, "");
-  } else {
-    check_glb_header(bytes, name);
-    good = loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes.data(), length);
-  }
-  if (!good)
-    throw std::runtime_error(name + ": " +
-                             (error.empty() ? "is not valid glTF" : first_line(error)));
-  return Reader(gltf, name).read();
+Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
+                 const std::filesystem::path& folder, const LoadProgress& progress) {
+  const GltfFile source = parse_gltf_file(bytes, name, folder);
+  if (progress.part) *progress.part = 0.3;
+  return Reader(source, name, progress).read();
 }
 
-Model load_gltf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = file ? static_cast<std::streamoff>(file.tellg()) : std::streamoff{-1};
-  if (size < 0) throw std::runtime_error(path.string() + ": cannot be read");
-  if (static_cast<std::size_t>(size) > kLargestFile)
-    throw std::runtime_error(path.string() + ": is larger than the 64 MiB that are read");
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
-  file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!file) throw std::runtime_error(path.string() + ": cannot be read");
-  return parse_gltf(bytes, path.string());
+Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress) {
+  const auto bytes = read_bytes(path, kLargestGltf);
+  if (progress.part) *progress.part = 0.1;
+  const auto folder = path.parent_path();
+  return parse_gltf(bytes, path.string(), folder.empty() ? "." : folder, progress);
 }
 
 }  // namespace limpid

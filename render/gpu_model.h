@@ -10,22 +10,35 @@ namespace limpid {
 
 class GpuModel {
  public:
+  // A piece of a part that is drawn in one call, small enough to be worth leaving out.
+  struct Piece {
+    std::uint32_t first, count;  // indices
+    Material material;
+    Eigen::AlignedBox3f box;
+  };
+
   explicit GpuModel(const Model& model);
 
-  // All triangles at once, textures ignored.
-  void draw() const;
-  // Part by part with its texture (white where it has none) bound to unit 0.
-  void draw_textured(GLuint white) const;
+  // The coarse pieces are the fine ones where the model has none.
+  const std::vector<Piece>& pieces(bool coarse) const { return coarse ? coarse_ : fine_; }
+  bool has_coarse() const { return has_coarse_; }
+  const Eigen::AlignedBox3f& box() const { return box_; }
+  GLuint texture(int image) const { return textures_[static_cast<std::size_t>(image)]; }
+
+  void bind() const { glBindVertexArray(array_); }
+  void draw(const Piece& piece) const;  // after bind()
+  void draw(bool coarse = false) const;  // all of it, binds
 
  private:
   GlVertexArray array_;
   GlBuffer vertices_, indices_;
-  GLsizei count_;
-  std::vector<Part> parts_;
+  std::vector<Piece> fine_, coarse_;
+  bool has_coarse_;
+  Eigen::AlignedBox3f box_;
   std::vector<GlTexture> textures_;
 };
 
-// A 1 x 1 or larger sRGB texture with mipmaps.
+// A 1 x 1 or larger texture with mipmaps.
 GlTexture upload(const Image& image);
 
 }  // namespace limpid

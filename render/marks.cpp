@@ -29,6 +29,9 @@ glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double alo
   return to_glm(m);
 }
 
+// A touch is seen at once, and a harder one covers more, though never everything.
+double patch_radius(double force) { return 0.016 + 0.026 * (1 - std::exp(-force / 4)); }
+
 void add_arrow(const Vec3& from, const Vec3& force, const palette::Rgb& color, double size,
                std::vector<SolidMark>& out) {
   if (!from.allFinite() || !(force.norm() > kLeastForce) || !force.allFinite()) return;
@@ -66,9 +69,11 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
     if (state.show_forces)
       add_arrow(contact.position, contact.force, palette::kContact, size, marks.solids);
     const double age = std::clamp(contact.age / kFlashTime, 0.0, 1.0);
-    const double radius = 0.026 * size;
-    marks.flashes.push_back({place(contact.position, contact.force.normalized(), radius, radius),
-                             glm::vec2(1 - age, 0.25 + 0.65 * age)});
+    const double radius = patch_radius(contact.force.norm()) * size;
+    const Vec3 out = contact.normal.norm() > 0.5 ? contact.normal : contact.force;
+    if (!out.allFinite()) continue;
+    marks.flashes.push_back({place(contact.position, out.normalized(), radius, radius),
+                             glm::vec2(1 - age, 0.30 + 0.65 * age)});
   }
   if (state.show_forces)
     add_arrow(state.device.tip, state.hand_force, palette::kHand, size, marks.solids);

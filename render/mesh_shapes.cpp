@@ -25,7 +25,7 @@ std::uint32_t add(Model& model, const Vec3& position, const Vec3& normal, const 
 }
 
 Model finished(Model model) {
-  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), -1}};
+  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), {}}};
   return model;
 }
 
@@ -184,7 +184,7 @@ void append(Model& model, const Model& other) {
   const auto first = static_cast<std::uint32_t>(model.vertices.size());
   model.vertices.insert(model.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const std::uint32_t i : other.indices) model.indices.push_back(first + i);
-  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), -1}};
+  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), {}}};
 }
 
 }  // namespace limpid

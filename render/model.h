@@ -1,7 +1,10 @@
-// A triangle mesh ready to be drawn: one vertex list, cut into parts by texture.
+// A triangle mesh ready to be drawn or touched: one vertex list, cut into parts by material.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/math/sizes.h"
@@ -14,23 +17,47 @@ struct Vertex {
   Eigen::Vector2f uv = Eigen::Vector2f::Zero();
   Eigen::Vector3f color = Eigen::Vector3f::Constant(0.8f);  // linear, times the texture
   Eigen::Vector2f surface = Eigen::Vector2f(0.0f, 0.5f);    // metallic, roughness
+  float opacity = 1;
 };
 
 struct Image {
+  enum class Wrap : std::uint8_t { repeat, mirror, clamp };
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  // sRGB, top row first
+  std::vector<std::uint8_t> rgba;  // top row first
+  bool srgb = true;                // colours; numbers otherwise
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+};
+
+// What the vertices do not say. Images are numbers in Model::images, -1 for none.
+struct Material {
+  enum class Alpha : std::uint8_t { opaque, mask, blend };
+  int color = -1;     // times the vertices' colour and opacity
+  int surface = -1;   // green: roughness, blue: metallic, times the vertices'
+  int normal = -1;    // bumps, in the frame of the texture
+  int emission = -1;  // times `glow`
+  float bump = 1;     // of the normal texture
+  std::array<float, 3> glow{};  // light of its own, linear
+  Alpha alpha = Alpha::opaque;
+  float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there
+  bool two_sided = false;
+
+  auto operator<=>(const Material&) const = default;
 };
 
 struct Part {
   std::uint32_t first = 0, count = 0;  // indices
-  int image = -1;                      // -1: no texture
+  Material material = {};
 };
 
 struct Model {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
-  std::vector<Part> parts;
+  std::vector<Part> parts;             // one a material, together all indices in order
   std::vector<Image> images;
+  // Of a large model a version with fewer triangles over the same vertices; else empty.
+  std::vector<std::uint32_t> coarse;
+  std::vector<Part> coarse_parts;
+  std::vector<std::string> warnings;  // what was left out of the file, a line each
 
   Eigen::AlignedBox3d bounds() const {
     Eigen::AlignedBox3d box;

@@ -1,7 +1,7 @@
 #include "render/scene_items.h"
 
 #include <algorithm>
-#include <map>
+#include <array>
 
 #include "render/gltf_model.h"
 #include "render/mesh_shapes.h"
@@ -11,12 +11,6 @@ namespace {
 
 const Paint kObject{{0.85f, 0.84f, 0.82f}, 0, 0.5f};
 const Paint kPlainArm{{0.75f, 0.76f, 0.78f}, 0, 0.4f};
-
-Bounds moved(const Bounds& box, const Eigen::Affine3d& by) {
-  Bounds out;
-  for (int i = 0; i < 8; ++i) out.extend(by * box.corner(static_cast<Bounds::CornerType>(i)));
-  return out;
-}
 
 // Link frames at q = 0.
 std::vector<Pose> zero_poses(const ArmDescription& arm) {
@@ -163,64 +157,91 @@ void add_joint_walls(const ArmDescription& arm, const Scene& scene, SceneItems& 
   }
 }
 
-Bounds bounds_of(const ArmDescription& arm, const SceneItems& items, double reach) {
+// The arm at rest, and the room in front of it where the hand will be.
+Bounds bounds_of_arm(const ArmDescription& arm, const SceneItems& items) {
   const std::vector<Pose> links = zero_poses(arm);
   Bounds box;
   for (const auto* list : {&items.base, &items.moving})
     for (const Item& item : *list)
       box.extend(moved(item.model.bounds(), pose_of(links, item.link) * item.pose));
-  // The room in front of the arm, where the hand will be.
   const Vec3 root = links.empty() ? Vec3::Zero() : Vec3(links[0].translation());
-  box.extend(root + reach * Vec3(0.25, -0.26, 0.0));
-  box.extend(root + reach * Vec3(0.85, 0.26, 0.28));
-  // Of what can be touched only what stands in that room: a desk may be larger than the picture.
-  const Bounds near(box.center() - 0.6 * reach * Vec3::Ones(),
-                    box.center() + 0.6 * reach * Vec3::Ones());
-  for (const Item& item : items.world) {
-    const Bounds part = moved(item.model.bounds(), item.pose);
-    if (near.contains(part)) box.extend(part);
-  }
+  box.extend(root + items.reach * Vec3(0.25, -0.26, 0.0));
+  box.extend(root + items.reach * Vec3(0.85, 0.26, 0.28));
   return box;
 }
 
 // The grid lies on the highest level plane, as far as the model that shows the plane goes;
 // without one, on the ground.
-void add_grid_area(const Scene& scene, SceneItems& items) {
-  const Vec3 half = 0.7 * items.bounds.diagonal().norm() * Vec3(1, 1, 0);
-  Vec3 middle = items.bounds.center();
-  middle.z() = items.ground;
-  items.grid = Bounds(middle - half, middle + half);
-  for (const Plane& plane : scene.planes) {
-    const double height = plane.point.z();
-    if (plane.normal.normalized().z() < 0.999 || height < items.grid.max().z()) continue;
+Bounds grid_of(const SceneItems& items, const Surroundings& around,
+               const std::vector<Bounds>& world) {
+  const Vec3 half = 0.7 * around.bounds.diagonal().norm() * Vec3(1, 1, 0);
+  Vec3 middle = around.bounds.center();
+  middle.z() = around.ground;
+  Bounds grid(middle - half, middle + half);
+  for (const double height : items.level_planes) {
+    if (height < grid.max().z()) continue;
     middle.z() = height;
-    items.grid = Bounds(middle - half, middle + half);
-    for (const Item& item : items.world) {
-      const Bounds box = moved(item.model.bounds(), item.pose);
+    grid = Bounds(middle - half, middle + half);
+    for (const Bounds& box : world) {
       if (std::abs(box.max().z() - height) > 0.002) continue;
       const Vec3 margin(0.012, 0.012, 0);
-      items.grid = Bounds(box.min() + margin, box.max() - margin);
-      items.grid.min().z() = items.grid.max().z() = height;
+      grid = Bounds(box.min() + margin, box.max() - margin);
+      grid.min().z() = grid.max().z() = height;
     }
   }
+  return grid;
 }
 
 }  // namespace
 
-SceneItems collect_items(const ArmDescription& arm, const Scene& scene) {
-  SceneItems items;
-  const double reach = reach_of(arm);
-  add_arm(arm, items);
-  add_scene(scene, reach, items);
+Bounds moved(const Bounds& box, const Eigen::Affine3d& by) {
+  Bounds out;
+  for (int i = 0; i < 8; ++i) out.extend(by * box.corner(static_cast<Bounds::CornerType>(i)));
+  return out;
+}
+
+Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>& meshes) {
+  std::vector<Bounds> world;
+  for (const Item& item : items.world) world.push_back(moved(item.model.bounds(), item.pose));
+  Surroundings around{items.arm_bounds, 0, {}};
+  // Of what can be touched only what stands in the arm's room: a desk may be larger than the
+  // picture.
+  const Vec3 room = 0.6 * items.reach * Vec3::Ones();
+  const Bounds near(around.bounds.center() - room, around.bounds.center() + room);
+  const std::array<const std::vector<Bounds>*, 2> all = {&world, &meshes};
+  for (const auto* list : all)
+    for (const Bounds& box : *list)
+      if (near.contains(box)) around.bounds.extend(box);
+  // Of a mesh that is larger, what the arm can reach of it.
+  for (const Bounds& box : meshes)
+    if (near.intersects(box)) around.bounds.extend(near.intersection(box));
+  around.ground = around.bounds.min().z();
+  for (const auto* list : all)
+    for (const Bounds& box : *list) around.ground = std::min(around.ground, box.min().z());
+  around.grid = grid_of(items, around, world);
+  return around;
+}
+
+void collect_scene_items(const ArmDescription& arm, const Scene& scene, SceneItems& items) {
+  items.world.clear();
+  items.walls.clear();
+  items.probes.clear();
+  items.level_planes.clear();
+  add_scene(scene, items.reach, items);
   add_joint_walls(arm, scene, items);
   for (const Probe& probe : scene.probes)
     items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
                             Pose::Identity(), probe.link});
-  items.bounds = bounds_of(arm, items, reach);
-  items.ground = items.bounds.min().z();
-  for (const Item& item : items.world)
-    items.ground = std::min(items.ground, moved(item.model.bounds(), item.pose).min().z());
-  add_grid_area(scene, items);
+  for (const Plane& plane : scene.planes)
+    if (plane.normal.normalized().z() > 0.999) items.level_planes.push_back(plane.point.z());
+}
+
+SceneItems collect_items(const ArmDescription& arm, const Scene& scene) {
+  SceneItems items;
+  items.reach = reach_of(arm);
+  add_arm(arm, items);
+  items.arm_bounds = bounds_of_arm(arm, items);
+  collect_scene_items(arm, scene, items);
   return items;
 }
 

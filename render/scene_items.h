@@ -22,12 +22,26 @@ struct SceneItems {
   std::vector<Item> world;   // what can be touched, solid
   std::vector<Item> walls;   // stops of joints, translucent; `link` is the one before the joint
   std::vector<Item> probes;  // parts of the arm that touch, translucent
-  Bounds bounds;             // to be framed by a camera [m]
-  double ground = 0;         // height of the floor under everything [m]
-  Bounds grid;               // where the floor grid is, flat [m]
+  Bounds arm_bounds;         // of the arm at rest and the room in front of it [m]
+  double reach = 0;          // of the arm [m]
+  std::vector<double> level_planes;  // heights of what can be touched from above [m]
 };
 
 // Throws std::runtime_error naming the file that cannot be loaded.
 SceneItems collect_items(const ArmDescription& arm, const Scene& scene);
+// The same where only the scene is another one; `items` came from this arm.
+void collect_scene_items(const ArmDescription& arm, const Scene& scene, SceneItems& items);
+
+// What follows from all that is drawn together.
+struct Surroundings {
+  Bounds bounds;      // to be framed by a camera [m]
+  double ground = 0;  // height of the floor under everything [m]
+  Bounds grid;        // where the floor grid is, flat [m]
+};
+
+// `meshes` are boxes of what is drawn besides the items.
+Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>& meshes);
+
+Bounds moved(const Bounds& box, const Eigen::Affine3d& by);
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "render/frustum.h"
 #include "render/glm_door.h"
 #include "render/mesh_shapes.h"
 
@@ -25,7 +26,8 @@ glm::vec4 srgb(const palette::Rgb& c) { return {c[0], c[1], c[2], 1}; }
 std::vector<Drawable> upload_all(const std::vector<Item>& items) {
   std::vector<Drawable> out;
   for (const Item& item : items)
-    out.push_back({GpuModel(item.model), to_glm(item.pose), item.link});
+    out.push_back(
+        {std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link});
   return out;
 }
 
@@ -34,21 +36,10 @@ std::string renderer_name() {
   return name ? reinterpret_cast<const char*>(name) : "";
 }
 
-std::string shadow_defines(const Quality& quality, int hard_taps) {
-  const int taps = quality.shadow_size <= 0 ? 0 : quality.soft ? 25 : hard_taps;
-  return "SHADOW_TAPS " + std::to_string(taps) + "\nSHADOW_SIZE " +
-         std::to_string(std::max(1, quality.shadow_size)) + ".0\n";
-}
-
 }  // namespace
 
-ScenePainter::Lighting::Lighting(const std::filesystem::path& shaders, const Quality& quality)
-    : lit(shaders, "lit", "lit", shadow_defines(quality, 4)),
-      matte(shaders, "lit", "matte", shadow_defines(quality, 1) + "MATTE 1\n"),
-      ground(shaders, "ground", "ground", shadow_defines(quality, 1)),
-      shadow(quality.shadow_size) {}
-
-ScenePainter::ScenePainter(const std::filesystem::path& shaders, const SceneItems& items)
+ScenePainter::ScenePainter(const std::filesystem::path& shaders, const SceneItems& items,
+                           const Surroundings& around)
     : shaders_(shaders),
       quality_(Quality::automatic(renderer_name())),
       depth_only_(shaders, "shadow", "shadow"),
@@ -57,52 +48,70 @@ ScenePainter::ScenePainter(const std::filesystem::path& shaders, const SceneItem
       flash_(shaders, "flash", "flash"),
       line_(shaders, "line", "line"),
       backdrop_(shaders, "backdrop", "backdrop"),
-      lighting_(std::make_unique<Lighting>(shaders, quality_)),
-      white_(upload({1, 1, {255, 255, 255, 255}})),
+      outline_(shaders, "outline", "outline"),
+      lit_(std::make_unique<LitPass>(shaders, quality_)),
       ball_(make_sphere(1, {})),
       cone_(make_cone({})),
       tube_(make_tube({})),
       patch_(make_patch(1, {})),
       base_(upload_all(items.base)),
-      moving_(upload_all(items.moving)),
-      world_(upload_all(items.world)),
-      walls_(upload_all(items.walls)),
-      probes_(upload_all(items.probes)),
-      bounds_(items.bounds),
-      ground_height_(static_cast<float>(items.ground)),
-      textured_world_(std::any_of(items.world.begin(), items.world.end(),
-                                  [](const Item& item) { return !item.model.images.empty(); })) {
+      moving_(upload_all(items.moving)) {
   glBindBuffer(GL_UNIFORM_BUFFER, frame_block_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof(FrameBlock), nullptr, GL_STREAM_DRAW);
   glBindBuffer(GL_UNIFORM_BUFFER, 0);
+  set_scene_items(items);
+  set_surroundings(around);
 }
 
 void ScenePainter::set_quality(const Quality& quality) {
-  lighting_ = std::make_unique<Lighting>(shaders_, quality);
+  lit_ = std::make_unique<LitPass>(shaders_, quality);
   quality_ = quality;
 }
 
-template <class Draw>
-void ScenePainter::each(const std::vector<Drawable>& list, const Links& links,
-                        Draw&& draw_one) const {
-  for (const Drawable& item : list) {
-    const auto link = static_cast<std::size_t>(std::max(0, item.link));
-    if (item.link < 0) {
-      draw_one(item.model, item.pose);
-    } else if (link < links.size()) {
-      draw_one(item.model, links[link] * item.pose);
+void ScenePainter::set_scene_items(const SceneItems& items) {
+  world_ = upload_all(items.world);
+  walls_ = upload_all(items.walls);
+  probes_ = upload_all(items.probes);
+  textured_world_ = std::any_of(items.world.begin(), items.world.end(),
+                                [](const Item& item) { return !item.model.images.empty(); });
+}
+
+void ScenePainter::set_meshes(const std::vector<PlacedMesh>& meshes) {
+  decltype(uploaded_) uploaded;
+  meshes_.clear();
+  highlighted_.clear();
+  for (const PlacedMesh& mesh : meshes) {
+    auto& model = uploaded[mesh.model];
+    if (!model) {
+      const auto known = uploaded_.find(mesh.model);
+      model = known != uploaded_.end() ? known->second
+                                       : std::make_shared<const GpuModel>(*mesh.model);
     }
+    meshes_.push_back({model, mesh.pose, -1});
+    if (mesh.highlighted) highlighted_.push_back(meshes_.back());
   }
+  uploaded_ = std::move(uploaded);
+}
+
+void ScenePainter::set_surroundings(const Surroundings& around) {
+  bounds_ = around.bounds;
+  ground_height_ = static_cast<float>(around.ground);
+}
+
+bool ScenePainter::too_many_triangles() const {
+  return LitPass::in_view(meshes_, view_) + LitPass::in_view(world_, view_) > quality_.triangles;
 }
 
 void ScenePainter::begin_frame(const Mood& mood, const Camera& camera) {
   const glm::vec3 to_light = glm::normalize(glm::vec3(-0.30f, -0.55f, 1.0f));
-  lighting_->shadow.aim(bounds_, to_light);
+  lit_->shadow.aim(bounds_, to_light);
   const glm::vec2 size(camera.width(), camera.height());
-  const FrameBlock block{to_glm(Eigen::Matrix4d(camera.projection() * camera.view())),
-                         lighting_->shadow.lookup(),
+  view_ = to_glm(Eigen::Matrix4d(camera.projection() * camera.view()));
+  coarse_ = too_many_triangles();
+  const FrameBlock block{view_,
+                         lit_->shadow.lookup(),
                          glm::vec4(to_glm(camera.eye()), 1),
-                         glm::vec4(to_light, lighting_->shadow.texel()),
+                         glm::vec4(to_light, lit_->shadow.texel()),
                          mood.key,
                          mood.sky,
                          mood.earth,
@@ -116,34 +125,27 @@ void ScenePainter::begin_frame(const Mood& mood, const Camera& camera) {
 
 void ScenePainter::draw_shadows(const Links& proxy) {
   if (quality_.shadow_size <= 0) return;
-  lighting_->shadow.begin();
+  lit_->shadow.begin();
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 3.0f);
   depth_only_.use();
   const auto draw_one = [&](const GpuModel& model, const glm::mat4& pose) {
-    depth_only_.set("model_to_clip", lighting_->shadow.clip() * pose);
-    model.draw();
+    const glm::mat4 to_clip = lit_->shadow.clip() * pose;
+    if (!in_sight(model.box(), to_clip)) return;
+    depth_only_.set("model_to_clip", to_clip);
+    model.draw(true);  // a shadow's edge is not that sharp
   };
   each(base_, {}, draw_one);
   each(moving_, proxy, draw_one);
   each(world_, {}, draw_one);
+  glDisable(GL_CULL_FACE);  // meshes may be open sheets
+  each(meshes_, {}, draw_one);
+  glEnable(GL_CULL_FACE);
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void ScenePainter::draw_lit(const ShaderProgram& program, const std::vector<Drawable>& list,
-                            const Links& links, const glm::vec4& tint) const {
-  program.use();
-  program.set("base_texture", 0);
-  program.set("shadow_map", 1);
-  program.set("tint", tint);
-  each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
-    program.set("model", pose);
-    model.draw_textured(white_);
-  });
-}
-
 void ScenePainter::draw_ground() const {
-  const ShaderProgram& ground = lighting_->ground;
+  const ShaderProgram& ground = lit_->ground;
   ground.use();
   ground.set("shadow_map", 1);
   const auto size = static_cast<float>(1.1 * bounds_.diagonal().norm());
@@ -156,23 +158,43 @@ void ScenePainter::draw_ground() const {
 
 // Stencil 2 marks the arm: a ghost behind it stays hidden, one behind the scene shines through.
 void ScenePainter::draw_solid(const Mood& mood, const Links& proxy) {
-  lighting_->shadow.bind(1);
+  lit_->shadow.bind(1);
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   glStencilFunc(GL_ALWAYS, 2, 0xff);
-  draw_lit(lighting_->lit, moving_, proxy, linear(palette::kProxy, 0.85f));
-  draw_lit(lighting_->lit, base_, {}, glm::vec4(0));
+  lit_->draw_solid(moving_, proxy, view_, {.tint = linear(palette::kProxy, 0.85f)});
+  lit_->draw_solid(base_, {}, view_, {});
   glStencilFunc(GL_ALWAYS, 0, 0xff);
   const bool cheap = !quality_.soft && !textured_world_;
-  draw_lit(cheap ? lighting_->matte : lighting_->lit, world_, {}, mood.object_tint);
+  const LitPass::Look world{.tint = mood.object_tint, .matte = cheap, .coarse = coarse_};
+  lit_->draw_solid(world_, {}, view_, world);
+  lit_->draw_solid(meshes_, {}, view_, {.coarse = coarse_});
   draw_ground();
 
   backdrop_.use();
   glBindVertexArray(no_vertices_);
   glDepthMask(GL_FALSE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_BLEND);
+  lit_->draw_blended(world_, {}, view_, world);
+  lit_->draw_blended(meshes_, {}, view_, {.coarse = coarse_});
+  glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDisable(GL_STENCIL_TEST);
+  draw_outlines(mood);
+}
+
+// The inside of a slightly larger copy shows around the edge of what is highlighted.
+void ScenePainter::draw_outlines(const Mood& mood) const {
+  if (highlighted_.empty()) return;
+  glCullFace(GL_FRONT);
+  outline_.use();
+  outline_.set("tint", mood.outline);
+  each(highlighted_, {}, [&](const GpuModel& model, const glm::mat4& pose) {
+    outline_.set("model", pose);
+    model.draw(coarse_);
+  });
+  glCullFace(GL_BACK);
 }
 
 void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
@@ -242,7 +264,6 @@ void ScenePainter::draw_marks(const Marks& marks) {
   draw_solid_marks(marks, 0.45f);
   glDepthFunc(GL_LEQUAL);
   glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);  // a contact is half inside of what it touches
   flash_.use();
   flash_.set("tint", srgb(palette::kContact));
   for (const FlashMark& mark : marks.flashes) {
@@ -250,7 +271,6 @@ void ScenePainter::draw_marks(const Marks& marks) {
     flash_.set("pulse", mark.pulse);
     patch_.draw();
   }
-  glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glDepthMask(GL_TRUE);
   draw_solid_marks(marks, 1.0f);

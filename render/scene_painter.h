@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "render/camera.h"
 #include "render/gpu_model.h"
 #include "render/line_batch.h"
+#include "render/lit_pass.h"
 #include "render/marks.h"
 #include "render/mood.h"
 #include "render/palette.h"
@@ -18,18 +20,20 @@
 
 namespace limpid {
 
-struct Drawable {
-  GpuModel model;
-  glm::mat4 pose;  // in the frame of `link`
-  int link;        // -1: the world
+struct PlacedMesh {
+  std::shared_ptr<const Model> model;
+  glm::mat4 pose;
+  bool highlighted;
 };
-
-// The link frames of one arm; empty if it is not drawn.
-using Links = std::vector<glm::mat4>;
 
 class ScenePainter {
  public:
-  ScenePainter(const std::filesystem::path& shaders, const SceneItems& items);
+  ScenePainter(const std::filesystem::path& shaders, const SceneItems& items,
+               const Surroundings& around);
+
+  void set_scene_items(const SceneItems& items);  // all but the arm
+  void set_meshes(const std::vector<PlacedMesh>& meshes);
+  void set_surroundings(const Surroundings& around);
 
   // What all passes share: camera, light, colours. First of all.
   void begin_frame(const Mood& mood, const Camera& camera);
@@ -50,16 +54,8 @@ class ScenePainter {
   void set_pixel_scale(double scale) { pixel_scale_ = static_cast<float>(scale); }
 
  private:
-  // What depends on the quality, made anew when it changes.
-  struct Lighting {
-    Lighting(const std::filesystem::path& shaders, const Quality& quality);
-    ShaderProgram lit, matte, ground;
-    ShadowMap shadow;
-  };
-  template <class Draw>
-  void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one) const;
-  void draw_lit(const ShaderProgram& program, const std::vector<Drawable>& list, const Links& links,
-                const glm::vec4& tint) const;
+  bool too_many_triangles() const;
+  void draw_outlines(const Mood& mood) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
   void draw_ground() const;
@@ -67,16 +63,19 @@ class ScenePainter {
 
   std::filesystem::path shaders_;
   Quality quality_;
-  ShaderProgram depth_only_, ghost_depth_, ghost_, flash_, line_, backdrop_;
-  std::unique_ptr<Lighting> lighting_;
+  ShaderProgram depth_only_, ghost_depth_, ghost_, flash_, line_, backdrop_, outline_;
+  std::unique_ptr<LitPass> lit_;
   GlBuffer frame_block_;
   GlVertexArray no_vertices_;
-  GlTexture white_;
   GpuModel ball_, cone_, tube_, patch_;
-  std::vector<Drawable> base_, moving_, world_, walls_, probes_;
+  std::vector<Drawable> base_, moving_, world_, walls_, probes_, meshes_;
+  std::vector<Drawable> highlighted_;  // some of meshes_
+  // One for each model that is in meshes_, which keeps the model's address its own.
+  std::map<std::shared_ptr<const Model>, std::shared_ptr<const GpuModel>> uploaded_;
   Bounds bounds_;
-  float ground_height_, pixel_scale_ = 1;
-  bool textured_world_;
+  glm::mat4 view_{1.0f};  // world to clip space
+  float ground_height_ = 0, pixel_scale_ = 1;
+  bool textured_world_ = false, coarse_ = false;
 };
 
 }  // namespace limpid

@@ -1,18 +1,34 @@
 // The 3D picture: arm, proxy, scene, hand, contacts and forces, from one frame's plain data.
 //
 // Needs a current OpenGL 3.3 core context from construction to destruction, always the same one.
+//
+//   SceneView view(shaders, arm, scene);
+//   view.set_scene(other_scene);                    // the arm and the shaders stay
+//   auto bunny = std::make_shared<const Model>(load_gltf("bunny.glb"));   // on any thread
+//   view.set_meshes(std::vector<MeshPicture>{{.model = bunny, .pose = pose, .scale = 0.1}});
+//   view.draw(state, camera, 0, 0, width, height);
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "core/dynamics/arm_description.h"
 #include "core/dynamics/scene.h"
 #include "render/camera.h"
+#include "render/model.h"
 #include "render/quality.h"
 #include "render/view_state.h"
 
 namespace limpid {
+
+// A model in the world: a vertex v appears at pose * (scale * v).
+struct MeshPicture {
+  std::shared_ptr<const Model> model;
+  Pose pose = Pose::Identity();
+  double scale = 1;          // above 0
+  bool highlighted = false;  // an outline, for what is selected
+};
 
 class SceneView {
  public:
@@ -24,12 +40,22 @@ class SceneView {
   SceneView(SceneView&&) noexcept;
   SceneView& operator=(SceneView&&) noexcept;
 
+  // Another scene around the same arm: what can be touched, seen and stopped at. The meshes of
+  // set_meshes stay. Throws as the constructor does, and leaves everything as it was then.
+  void set_scene(const Scene& scene);
+
+  // Replaces the meshes drawn besides the scene's own items. A model is uploaded once for as long
+  // as it stays in the list, however often it is in it; a null model is left out. Cheap when only
+  // poses and highlights change, so it may be called every frame.
+  void set_meshes(std::span<const MeshPicture> meshes);
+
   // Draws into a rectangle of the bound framebuffer, in its pixels, y up from the bottom as
   // OpenGL counts. Leaves that framebuffer and its viewport as they were, and no state behind
   // that blends, tests, culls or clips.
   void draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
 
-  // What a camera should frame: the arm, the room it works in and what can be touched there [m].
+  // What a camera should frame: the arm, the room it works in and what can be touched there,
+  // meshes included as far as they are within reach [m].
   const Bounds& bounds() const;
   // Where the floor grid is, a flat box [m]; its lines are at multiples of 5 cm, the stronger ones
   // at multiples of 10 cm.

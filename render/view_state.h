@@ -19,6 +19,7 @@ struct ContactMark {
   Vec3 position = Vec3::Zero();  // [m]
   Vec3 force = Vec3::Zero();     // on the proxy [N]
   double age = 1;                // since it began [s]; the flash lasts a quarter of a second
+  Vec3 normal = Vec3::Zero();    // of the surface, out of what is touched; zero: along the force
 };
 
 struct ViewState {

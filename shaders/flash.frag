@@ -1,4 +1,4 @@
-// A contact: a soft spot, and for a moment a ring that runs outwards.
+// A contact: a soft patch with a clear edge, and for a moment a ring that runs outwards.
 in vec2 from_middle;
 uniform vec4 tint;   // sRGB
 uniform vec2 pulse;  // strength of the ring, its radius 0 to 1
@@ -6,7 +6,10 @@ out vec4 color;
 
 void main() {
   float r = length(from_middle);
-  float spot = 0.75 * smoothstep(0.42, 0.30, r) + 0.20 * smoothstep(1.0, 0.2, r);
+  float soft = fwidth(r) + 0.02;
+  float patch_ = 0.50 * smoothstep(0.62, 0.10, r) + 0.28 * smoothstep(0.62 + soft, 0.62, r);
+  float edge = 0.75 * smoothstep(0.045 + soft, 0.02, abs(r - 0.62));
   float ring = pulse.x * smoothstep(0.10, 0.0, abs(r - pulse.y));
-  color = vec4(tint.rgb, tint.a * min(spot + ring, 1.0));
+  vec3 light = mix(tint.rgb, vec3(1.0), 0.25 * smoothstep(0.3, 0.0, r));
+  color = vec4(light, tint.a * min(max(patch_, edge) + ring, 1.0));
 }

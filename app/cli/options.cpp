@@ -10,6 +10,7 @@
 
 #include "app/assets.h"
 #include "app/run/replay.h"
+#include "app/run/scene_meshes.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene_file.h"
@@ -106,6 +107,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
   }
   if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);
+  if (!options.device.empty() || !options.scene.empty()) build_meshes(plan.scene);
   return plan;
 }
 
@@ -159,6 +161,7 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
 void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene) {
   arm = read_urdf(options.device.empty() ? default_device().string() : options.device);
   scene = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
+  build_meshes(scene);
 }
 
 RunPlan make_plan(const InputOptions& options) {

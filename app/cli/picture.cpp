@@ -15,9 +15,9 @@ void save_picture(const std::filesystem::path& png, const ArmDescription& arm, c
   const RowLayout layout(arm.dof());
   const RowView rows(arm);
   ViewState view = rows.view(layout, row);
-  const ContactForce contact{view.proxy.tip,
-                             rows.tip_force(layout.in(row, Column::proxy_position),
-                                            layout.in(row, Column::contact_torque))};
+  const Vec3 force = rows.tip_force(layout.in(row, Column::proxy_position),
+                                    layout.in(row, Column::contact_torque));
+  const ContactForce contact{view.proxy.tip, force, force.stableNormalized()};
   ViewMemory().update(view, {&contact, 1}, 0);
   Camera camera;
   camera.resize(kWidth, kHeight);

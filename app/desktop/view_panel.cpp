@@ -40,11 +40,12 @@ void ViewPanel::draw(Workbench& bench, const Window& window, const ScreenRect& r
   ViewState view = stage.rows().view(layout, row);
   const Snapshot& snapshot = bench.live.snapshot();
   std::span<const ContactForce> contacts(snapshot.contacts.data(), snapshot.contact_count);
-  ContactForce recorded;
+  ContactForce recorded{};
   if (bench.playing_back()) {
     // A recording keeps the torque of the contacts: shown as one force at the tip.
-    recorded = {view.proxy.tip, stage.rows().tip_force(layout.in(row, Column::proxy_position),
-                                                       layout.in(row, Column::contact_torque))};
+    const Vec3 force = stage.rows().tip_force(layout.in(row, Column::proxy_position),
+                                              layout.in(row, Column::contact_torque));
+    recorded = {view.proxy.tip, force, force.stableNormalized()};
     contacts = {&recorded, 1};
     if (const auto again = bench.playback->rerun_row(); !again.empty()) {
       view.rerun = stage.rows().pose(layout.in(again, Column::proxy_position));

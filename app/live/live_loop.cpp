@@ -31,13 +31,36 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
 
 void LiveLoop::close() {
   thread_.stop();
+  drop_worlds();
   rig_.reset();
+}
+
+LiveLoop::~LiveLoop() { close(); }
+
+void LiveLoop::exchange(std::unique_ptr<TouchWorld> world) {
+  delete old_world_.exchange(nullptr, std::memory_order_acquire);
+  delete wanted_world_.exchange(world.release(), std::memory_order_acq_rel);
+}
+
+void LiveLoop::drop_worlds() {
+  delete old_world_.exchange(nullptr);
+  delete wanted_world_.exchange(nullptr);
+}
+
+// Waits for the window to take the last one away: the loop never deletes.
+void LiveLoop::exchange_world() {
+  if (old_world_.load(std::memory_order_acquire) != nullptr) return;
+  TouchWorld* world = wanted_world_.exchange(nullptr, std::memory_order_acq_rel);
+  if (world == nullptr) return;
+  rig_->exchange(*world);
+  old_world_.store(world, std::memory_order_release);
 }
 
 void LiveLoop::tick(const TickTiming& timing) {
   const auto began = std::chrono::steady_clock::now();
   controls_.update();
   const Controls& controls = controls_.front();
+  exchange_world();
   if (controls.resets != resets_) {
     resets_ = controls.resets;
     home_.armed = controls.force;

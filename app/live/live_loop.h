@@ -37,10 +37,14 @@ struct Snapshot {
 class LiveLoop {
  public:
   explicit LiveLoop(AskForPriority ask);
+  ~LiveLoop();
 
   // A new world; the hand rests with the tip at `home` [m], at rest. Errors: as rest_at().
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
   void close();
+  // Another scene for the same arm, taken in by the running loop at its next tick. Built by the
+  // caller, beside the loop.
+  void exchange(std::unique_ptr<TouchWorld> world);
 
   void set(const Controls& controls) { controls_.write(controls); }
   // The newest snapshot; true if there is one newer than at the last call.
@@ -67,11 +71,16 @@ class LiveLoop {
   void tick(const TickTiming& timing);       // the loop's
   void begin_recording(const Vec3& target);  // the loop's
   void publish(const TickTiming& timing);
+  void exchange_world();  // the loop's
+  void drop_worlds();
 
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
   std::unique_ptr<Recorder> recorder_;
+  // The newest world for the loop, and one that it is done with.
+  std::atomic<TouchWorld*> wanted_world_{nullptr};
+  std::atomic<TouchWorld*> old_world_{nullptr};
   // Where the loop records to: set by the window, taken up by the loop, which answers.
   std::atomic<Recorder*> wanted_recorder_{nullptr};
   std::atomic<Recorder*> present_recorder_{nullptr};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/assets.h"
+#include "app/run/scene_meshes.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene_file.h"
 #include "devices/files/urdf_file.h"
@@ -52,6 +53,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.scene = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
     return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm);
   });
+  build_meshes(plan.scene);
   plan.hand = hand_of(session, where);
   plan.parameters = chosen;
   plan.parameters.tick = session.info.tick;

@@ -9,10 +9,7 @@ namespace limpid {
 
 template <int N>
 Proxy<N>::Proxy(const ArmDescription& arm, const Scene& scene)
-    : arm_(arm),
-      contacts_(arm, scene),
-      forces_(contacts_.capacity()),
-      touching_(std::make_unique<bool[]>(contacts_.capacity())) {
+    : arm_(arm), contacts_(std::make_unique<Contacts<N>>(arm, scene)) {
   place(Vec<N>::Zero(arm.dof()), Vec<N>::Zero(arm.dof()), ratio_);
 }
 
@@ -25,8 +22,14 @@ void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
   nu_ = L_.transpose() * v;
   v_ = v;  // to the last bit: a recording's first row is a starting point
   update_skew();
-  find_contacts();
-  std::fill(forces_.begin(), forces_.end(), 0.0);
+  contacts_->place(arm_, frames_, x_);
+}
+
+template <int N>
+void Proxy<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
+  contacts->place(arm_, frames_, x_);
+  contacts->take_over(*contacts_);
+  contacts_.swap(contacts);
 }
 
 template <int N>
@@ -73,28 +76,14 @@ void Proxy<N>::update_velocity() {
 }
 
 template <int N>
-std::span<const double> Proxy<N>::contact_forces() const {
-  return {forces_.data(), contacts_.list().size()};
-}
-
-template <int N>
 void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
-  find_contacts();
-  const std::span<const Contact<N>> near = contacts_.list();
-  for (std::size_t i = 0; i < near.size(); ++i) touching_[i] = near[i].depth > 0;
+  contacts_->find(arm_, frames_, x_, T);
   // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
   // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
   // none ever pulls.
   constexpr int kRounds = 4;
   for (int round = 0; !solve_step(T, drive); ++round) {
-    bool changed = false;
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      const bool deep = near[i].depth + 0.5 * T * near[i].gradient.dot(vbar_) > 0;
-      if (deep == touching_[i] || (deep && round >= kRounds)) continue;
-      touching_[i] = deep;
-      changed = true;
-    }
-    if (!changed) break;
+    if (!contacts_->reconsider(vbar_, T, round >= kRounds)) break;
   }
   // The torque as it acted, from the momentum it made: the balance then holds to round-off.
   const Vec<N> nu_before = nu_;
@@ -110,33 +99,14 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
 // at the midpoint.
 template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
-  const std::span<const Contact<N>> near = contacts_.list();
-  const Eigen::Index n = x_.size();
   // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
   // f2 - K T/2 vbar the contacts' force.
   Mat<N> A = 2 / T * M_ + S_;
   A.diagonal().array() += drive.damping;
   Vec<N> b = 2 / T * (L_ * nu_) + drive.constant;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!touching_[i]) continue;
-    const Contact<N>& c = near[i];
-    Vec<N> answer = c.stiffness * c.gradient;  // of tau2 + f2 to a deeper contact, negative
-    answer += drive.from_f2 * answer.eval();
-    A.noalias() += (0.5 * T) * answer * c.gradient.transpose();
-    b -= c.depth * answer;
-  }
+  contacts_->add_to(A, b, T, drive.from_f2);
   vbar_ = solve<N>(A, b);
-
-  f_ = Vec<N>::Zero(n);
-  bool settled = true;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    const Contact<N>& c = near[i];
-    const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar_);
-    forces_[i] = touching_[i] ? c.stiffness * depth : 0;
-    f_ -= forces_[i] * c.gradient;
-    settled = settled && (depth > 0) == touching_[i];
-  }
-  return settled;
+  return contacts_->push(vbar_, T, f_);
 }
 
 template class Proxy<3>;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "core/dynamics/arm.h"
 #include "core/dynamics/contacts.h"
@@ -45,21 +43,19 @@ class Proxy {
   const Mat<N>& M() const { return M_; }
   const Mat<N>& C() const { return C_; }
   double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }   // [J]
-  double contact_potential() const { return contacts_.potential(); }  // [J]
+  double contact_potential() const { return contacts_->potential(); }  // [J]
 
   // Of the last tick:
   const Vec<N>& tau() const { return tau_; }    // tau2 as it acted [N m]
   const Vec<N>& f() const { return f_; }        // f2 as it acted [N m]
   const Vec<N>& vbar() const { return vbar_; }  // [rad/s]
-  // Where it touched: contacts before the step, and the force of each over it [N] or [N m].
-  std::span<const Contact<N>> contacts() const { return contacts_.list(); }
-  std::span<const double> contact_forces() const;
+  const Contacts<N>& contacts() const { return *contacts_; }
 
   // At the present position:
   const Arm<N>& arm() const { return arm_; }
   const typename Arm<N>::Frames& frames() const { return frames_; }
-  // Looks for contacts here; `advance` does so itself.
-  void find_contacts() { contacts_.find(arm_, frames_, x_); }
+  // Another scene: takes `contacts` in and gives the old ones out. Nothing is allocated.
+  void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
  private:
   void update_inertia();
@@ -68,9 +64,7 @@ class Proxy {
   bool solve_step(double T, const ProxyDrive<N>& drive);
 
   Arm<N> arm_;
-  Contacts<N> contacts_;
-  std::vector<double> forces_;  // one for each contact
-  std::unique_ptr<bool[]> touching_;
+  std::unique_ptr<Contacts<N>> contacts_;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
   typename Arm<N>::Bodies bodies_;

@@ -2,12 +2,15 @@
 // z up), SI. Contacts are pure stiffness (paper, section 4.1).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/math/sizes.h"
 
 namespace limpid {
+
+class TriangleMesh;
 
 struct Plane {
   std::string name;
@@ -49,6 +52,18 @@ struct Probe {
   double radius = 0;         // [m]
 };
 
+// A model of triangles. Its points are pose * (scale * p).
+struct MeshObstacle {
+  std::string name;
+  std::string file;              // glTF, as the scene's text names it
+  std::string path;              // where that was found; empty: inside a recorded session
+  Pose pose = Pose::Identity();  // [m]
+  double scale = 1;
+  double stiffness = 600;                                    // [N/m]
+  std::shared_ptr<const std::vector<unsigned char>> source;  // the file's bytes
+  std::shared_ptr<const TriangleMesh> shape;                 // built from them before it is touched
+};
+
 // Something to look at only.
 struct SceneVisual {
   std::string file;  // glTF, absolute path
@@ -63,6 +78,7 @@ struct Scene {
   std::vector<Plane> planes;
   std::vector<Sphere> spheres;
   std::vector<Box> boxes;
+  std::vector<MeshObstacle> meshes;
   std::vector<JointContact> joint_contacts;
   std::vector<Probe> probes;  // besides the tip
   std::vector<SceneVisual> visuals;

@@ -48,6 +48,12 @@ void Tick<N>::start(const Parameters& p, const Start<N>& start) {
 }
 
 template <int N>
+void Tick<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
+  proxy_.exchange(contacts);
+  motors_.begin_slew();
+}
+
+template <int N>
 const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force_wanted,
                            std::span<double> row) {
   const NoSubnormals fast_at_rest;
@@ -86,6 +92,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
                             p.b_v + p.b_vc + p.k_vc * T / 2, ff.from_f2_2};
   proxy_.advance(T, drive);
   potential_ = proxy_.contact_potential();
+  if (k_ == 0) first_potential_ = potential_;
   command_ =
       device_torque<N>(p, in.measured, v1, x2_, vbar2_) + ff.tau1 + ff.from_f2_1 * proxy_.f();
   vbar2_ = proxy_.vbar();
@@ -104,6 +111,7 @@ void Tick<N>::close_books(const Reading<N>& in, double T) {
   const Vec<N> dx1 = in.x - x1_before_;
   const Vec<N> dx2 = proxy_.x() - x2_;
   books_.add(tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
+  books_.add_contact(proxy_.f(), dx2);
 }
 
 template <int N>
@@ -133,6 +141,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, bool force_wa
   set(Column::energy_commanded, books_.commanded);
   set(Column::proxy_kinetic, kinetic_);
   set(Column::contact_potential, potential_);
+  set(Column::contact_gain, books_.contact_gain(potential_, first_potential_));
 }
 
 template class Tick<3>;

@@ -1,6 +1,7 @@
 // One tick of the loop: the paper from the reading of a device to the torque of its motors.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "core/coupling/coupling.h"
@@ -48,10 +49,17 @@ class Tick {
   const Vec<N>& run(const Parameters& p, const Reading<N>& in, bool force_wanted,
                     std::span<double> row);
 
+  // Another scene, between two ticks: takes `contacts` in and gives the old ones out. Allocates
+  // nothing; the torque gets to what it now is at a bounded rate.
+  void exchange(std::unique_ptr<Contacts<N>>& contacts);
+
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
-  // No force is fading and no coupling being switched.
-  bool steady(bool force_wanted) const { return motors_.steady(force_wanted); }
+  // No force is fading, no coupling being switched, and the contacts remember nothing that a new
+  // start here would not find.
+  bool steady(bool force_wanted) const {
+    return motors_.steady(force_wanted) && proxy_.contacts().recoverable();
+  }
   // The command was not finite: the loop is unstable, force is off.
   bool diverged() const { return diverged_; }
   const RowLayout& layout() const { return layout_; }
@@ -74,7 +82,7 @@ class Tick {
 
   // At the present tick's start, for the row:
   Vec<N> x2_, v2_, f1_hat_, command_;
-  double kinetic_ = 0, potential_ = 0;
+  double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
   // Of the last tick, for the books and for the delayed terms of (1):
   Vec<N> x1_before_, tau1_, vbar2_, b_d_;
   CouplingKind kind_ = CouplingKind::standard;

@@ -11,6 +11,7 @@ template <int N>
 struct EnergyBooks {
   double commanded = 0;  // [J]
   double total = 0;      // [J]
+  double contact = 0;    // work of the contacts on the proxy [J]
 
   // tau1 the motor torque held over the tick, dx the motion over it, b_d the device's damping.
   void add(const Vec<N>& tau1, const Vec<N>& dx1, const Vec<N>& tau2, const Vec<N>& dx2,
@@ -18,6 +19,13 @@ struct EnergyBooks {
     const double work = tau1.dot(dx1) + tau2.dot(dx2);
     commanded += work;
     total += work - b_d.cwiseProduct(dx1).dot(dx1) / T;
+  }
+
+  // A contact is a spring: what it gave and still stores comes to nothing while it lasts. Making
+  // and breaking it within a tick, and slipping, leave something over.
+  void add_contact(const Vec<N>& f2, const Vec<N>& dx2) { contact += f2.dot(dx2); }
+  double contact_gain(double stored, double stored_at_first) const {
+    return contact + stored - stored_at_first;
   }
 };
 

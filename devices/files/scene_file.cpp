@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "devices/files/file_error.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
@@ -12,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
+constexpr std::size_t kLargestModel = std::size_t{512} << 20;  // [bytes]
 constexpr std::size_t kMostContacts = 64;
 constexpr std::size_t kMostProbes = 64;  // with the tip
 
@@ -108,30 +111,61 @@ Probe probe(const TomlTable& t, const ArmDescription& arm) {
           t.need(t.number("radius", kRadius), "radius")};
 }
 
-// False for one that is left out.
-bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
-  t.allow_only({"file", "position", "rpy", "scale"});
-  const fs::path file = t.need(t.text("file"), "file");
-  out.pose = pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
-  out.scale = t.number("scale", kScale).value_or(1);
-  if (file.extension() != ".glb" && file.extension() != ".gltf") {
-    t.refuse("file", "a glTF file (.glb, .gltf)");
-  }
-  if (base_dir.empty() && file.is_relative()) return false;
+std::string model_file(const TomlTable& t) {
+  const std::string file = t.need(t.text("file"), "file");
+  const fs::path extension = fs::path(file).extension();
+  if (extension != ".glb" && extension != ".gltf") t.refuse("file", "a glTF file (.glb, .gltf)");
+  return file;
+}
+
+fs::path model_path(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
   const fs::path absolute = fs::absolute(base_dir / file).lexically_normal();
   std::error_code error;
   if (!fs::is_regular_file(absolute, error)) {
     t.refuse("file", fmt::format("a file that exists; there is no {}", absolute.string()));
   }
-  out.file = absolute.string();
+  return absolute;
+}
+
+Pose optional_pose(const TomlTable& t) {
+  return pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
+}
+
+MeshObstacle mesh(const TomlTable& t, const fs::path& base_dir, const SceneFiles& files) {
+  t.allow_only({"name", "file", "position", "rpy", "scale", "stiffness"});
+  MeshObstacle out;
+  out.name = name(t);
+  out.file = model_file(t);
+  out.pose = optional_pose(t);
+  out.scale = t.number("scale", kScale).value_or(1);
+  out.stiffness = stiffness(t, kStiffness);
+  if (const auto known = files.find(out.file); known != files.end()) {
+    out.source = known->second;
+    return out;
+  }
+  const fs::path path = model_path(t, out.file, base_dir);
+  const std::string bytes = read_text(path, kLargestModel);
+  out.path = path.string();
+  out.source = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
+  return out;
+}
+
+// False for one that is left out.
+bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
+  t.allow_only({"file", "position", "rpy", "scale"});
+  const fs::path file = model_file(t);
+  out.pose = optional_pose(t);
+  out.scale = t.number("scale", kScale).value_or(1);
+  if (base_dir.empty() && file.is_relative()) return false;
+  out.file = model_path(t, file, base_dir).string();
   return true;
 }
 
 void check_counts(const Scene& scene, const std::string& where) {
-  const std::size_t contacts =
-      scene.planes.size() + scene.spheres.size() + scene.boxes.size() + scene.joint_contacts.size();
+  const std::size_t contacts = scene.planes.size() + scene.spheres.size() + scene.boxes.size() +
+                               scene.meshes.size() + scene.joint_contacts.size();
   if (contacts > kMostContacts) {
-    throw FileError(fmt::format("{}: {} planes, spheres, boxes and joint contacts; at most {}",
+    throw FileError(fmt::format("{}: {} planes, spheres, boxes, meshes and joint contacts; at most {}",
                                 where, contacts, kMostContacts));
   }
   if (scene.probes.size() + 1 > kMostProbes) {
@@ -148,11 +182,11 @@ Scene read_scene(const fs::path& file, const ArmDescription& arm) {
 }
 
 Scene parse_scene(const std::string& text, const std::string& where, const fs::path& base_dir,
-                  const ArmDescription& arm) {
+                  const ArmDescription& arm, const SceneFiles& files) {
   const toml::table table = parse_toml(text, where);
   const TomlTable t(table, where, "");
-  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "joint_contact", "probe",
-                "visual"});
+  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "mesh", "joint_contact",
+                "probe", "visual"});
   Scene scene;
   scene.title = t.text("title").value_or("");
   scene.about = t.text("about").value_or("");
@@ -160,6 +194,9 @@ Scene parse_scene(const std::string& text, const std::string& where, const fs::p
   for (const TomlTable& each : t.tables("plane")) scene.planes.push_back(plane(each));
   for (const TomlTable& each : t.tables("sphere")) scene.spheres.push_back(sphere(each));
   for (const TomlTable& each : t.tables("box")) scene.boxes.push_back(box(each));
+  for (const TomlTable& each : t.tables("mesh")) {
+    scene.meshes.push_back(mesh(each, base_dir, files));
+  }
   for (const TomlTable& each : t.tables("joint_contact")) {
     scene.joint_contacts.push_back(joint_contact(each, arm));
   }

@@ -23,6 +23,14 @@
 //     rpy = [0.0, 0.0, 0.5]        # optional; roll, pitch, yaw as in URDF
 //     stiffness = 600.0
 //
+//     [[mesh]]                     # a model of triangles
+//     name = "gear"
+//     file = "gear.glb"            # glTF, from the scene file's folder
+//     position = [0.2, 0.0, 0.0]   # optional, as rpy and scale
+//     rpy = [0.0, 0.0, 0.5]
+//     scale = 1.0
+//     stiffness = 600.0
+//
 //     [[joint_contact]]
 //     name = "stop"
 //     joint = "shoulder"           # URDF name, or 1 for the first
@@ -45,7 +53,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/dynamics/arm_description.h"
 #include "core/dynamics/scene.h"
@@ -56,9 +67,14 @@ namespace limpid {
 // contact is not (free space). Pairs of a contact and a probe, tip included, are at most 64 x 64.
 Scene read_scene(const std::filesystem::path& file, const ArmDescription& arm);
 
+// Bytes of models by the names that a scene's text has for them.
+using SceneFiles = std::map<std::string, std::shared_ptr<const std::vector<unsigned char>>>;
+
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
-// one inside a session) visuals with relative names are left out.
+// one inside a session) visuals with relative names are left out. Meshes come from `files` if they
+// are there, else from the folder; their shapes are still to be built.
 Scene parse_scene(const std::string& text, const std::string& where,
-                  const std::filesystem::path& base_dir, const ArmDescription& arm);
+                  const std::filesystem::path& base_dir, const ArmDescription& arm,
+                  const SceneFiles& files = {});
 
 }  // namespace limpid

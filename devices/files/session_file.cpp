@@ -19,6 +19,7 @@ using hdf5::check;
 constexpr double kFlushSeconds = 0.5;  // rows reach the disk this often
 constexpr double kMostChunkRows = 16384;
 constexpr hsize_t kEventChunk = 64;
+constexpr hsize_t kPage = 4096;  // bytes
 
 // Past the file size limit of the shell (ulimit -f) the kernel sends a deadly signal with the
 // error. While this lives the thread sees the error alone.
@@ -49,6 +50,16 @@ std::string now() {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text.data();
+}
+
+// A kill can cut a write where one page of the file ends and the next begins. What HDF5 rewrites in
+// place (how long a column is, where its chunks lie) must not be cut: within a page it cannot be.
+// Only from chunk 8176 on (68 minutes) are the lists of chunks longer than a page.
+hdf5::Properties placed_within_pages() {
+  hdf5::Properties creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(creation.get(), kPage);
+  return creation;
 }
 
 hdf5::Datatype setting_type() {
@@ -115,9 +126,10 @@ void SessionFile::guarded(Work work) {
 }
 
 void SessionFile::create(const SessionInfo& info) {
+  const hdf5::Properties creation = placed_within_pages();
   const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+  file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   check(static_cast<bool>(file_), path_, "cannot create");
   write_attributes(info);
   for (const ColumnInfo& column : kColumnInfo) create_column(column);

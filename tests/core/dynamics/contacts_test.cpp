@@ -151,7 +151,7 @@ struct World {
     Contacts<kAnyDof> contacts(description, scene);
     Arm<kAnyDof>::Frames f;
     arm.frames(at, f);
-    contacts.find(arm, f, at);
+    contacts.find(arm, f, at, 0.001);
     return {contacts.list().begin(), contacts.list().end()};
   }
 
@@ -257,7 +257,7 @@ TEST(Contacts, HaveRoomForEveryPairAndKnowTheEnergyInThem) {
   w.scene.joint_contacts.push_back({"", 1, w.x[1] - 0.2, 1, 20});
   Contacts<kAnyDof> contacts(w.description, w.scene);
   EXPECT_EQ(contacts.capacity(), 5u * 2 + 1);
-  contacts.find(w.arm, w.frames, w.x);
+  contacts.find(w.arm, w.frames, w.x, 0.001);
   double wanted = 0.5 * 20 * 0.2 * 0.2;
   for (int i = 0; i < 5; ++i) wanted += 0.5 * 100 * (i + 1) * 0.02 * 0.02;
   ASSERT_EQ(contacts.list().size(), 5u + 1);  // the capsule is out of reach of all

@@ -133,16 +133,13 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
     // The torque is that of the forces, and no force pulls.
     Vector f2 = Vector::Zero(n);
     int pushing = 0;
-    const auto contacts = proxy.contacts();
-    const auto forces = proxy.contact_forces();
-    ASSERT_EQ(contacts.size(), forces.size());
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-      ASSERT_GE(forces[i], 0);
-      f2 -= forces[i] * contacts[i].gradient;
-      pushing += forces[i] > 0 ? 1 : 0;
+    for (const auto& contact : proxy.contacts().list()) {
+      ASSERT_GE(contact.force, 0);
+      f2 -= contact.force * contact.gradient;
+      pushing += contact.force > 0 ? 1 : 0;
       // At the midpoint, the depth there.
-      const double middle = contacts[i].depth + contacts[i].gradient.dot(dx) / 2;
-      ASSERT_NEAR(forces[i], forces[i] > 0 ? contacts[i].stiffness * middle : 0, 1e-8);
+      const double middle = contact.depth + contact.gradient.dot(dx) / 2;
+      ASSERT_NEAR(contact.force, contact.force > 0 ? contact.stiffness * middle : 0, 1e-8);
     }
     ASSERT_LT((f2 - proxy.f()).norm(), 1e-12 * (1 + f2.norm()));
     // What the drive gives, share of the contacts included.

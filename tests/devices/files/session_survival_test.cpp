@@ -2,16 +2,39 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
+#include <optional>
 #include <random>
-#include <thread>
 
 #include "devices/files/session.h"
+#include "endless_recording.h"
 #include "sample_session.h"
 #include "test_files.h"
+
+namespace {
+
+// Pages this process still writes before it is killed; none: for ever.
+std::optional<std::size_t> pages_left;
+
+}  // namespace
+
+// What HDF5 writes with. The kernel copies page by page and looks for a deadly signal in between,
+// so a killed program's last write can end where a page does, and nowhere else.
+extern "C" ssize_t pwrite(int file, const void* data, size_t size, off_t at) {
+  constexpr std::size_t kPage = 4096;
+  const auto begin = static_cast<std::size_t>(at);
+  const std::size_t pages = (begin % kPage + size + kPage - 1) / kPage;
+  const bool dies = pages_left && *pages_left < pages;
+  if (dies) size = *pages_left == 0 ? 0 : *pages_left * kPage - begin % kPage;
+  const ssize_t written = syscall(SYS_pwrite64, file, data, size, at);
+  if (dies) raise(SIGKILL);
+  if (pages_left) *pages_left -= pages;
+  return written;
+}
 
 namespace limpid {
 namespace {
@@ -28,60 +51,11 @@ void expect_sample(const Session& session) {
   EXPECT_EQ(std::memcmp(session.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
 }
 
-// Writes for ever in a process of its own and tells through a pipe how many rows are handed over.
-class Recording {
- public:
-  explicit Recording(const fs::path& out) {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
-    told_ = ends[0];
-    child_ = fork();
-    if (child_ == 0) write_for_ever(out, ends[1]);
-    close(ends[1]);
-  }
-  ~Recording() { close(told_); }
-  Recording(const Recording&) = delete;
-  Recording& operator=(const Recording&) = delete;
-
-  // Rows handed over when it died.
-  std::uint64_t kill_after(std::uint64_t rows, std::chrono::microseconds more) {
-    std::uint64_t handed = 0;
-    while (handed < rows && read(told_, &handed, sizeof handed) == sizeof handed) {
-    }
-    std::this_thread::sleep_for(more);
-    kill(child_, SIGKILL);
-    waitpid(child_, nullptr, 0);
-    while (read(told_, &handed, sizeof handed) == sizeof handed) {
-    }
-    return handed;
-  }
-
- private:
-  [[noreturn]] static void write_for_ever(const fs::path& out, int tell) {
-    try {
-      SessionWriter writer(out, sample_info(), false);
-      const RowLayout layout(3);
-      for (;;) {
-        const std::uint64_t before = writer.rows_written();
-        if (before % 1000 == 0) writer.append(SettingChange{before, "coupling.eta = 1"});
-        writer.append(sample_rows(layout, before, 50));
-        const std::uint64_t now = writer.rows_written();
-        if (write(tell, &now, sizeof now) < 0) break;
-      }
-    } catch (const std::exception&) {
-    }
-    _exit(1);
-  }
-
-  int told_ = -1;
-  pid_t child_ = -1;
-};
-
 TEST(KilledRecording, LacksAtMostTheLastSecondAndIsRecovered) {
   std::mt19937 random(7);
   for (int round = 0; round < 12; ++round) {
     const test::TempDir dir;
-    Recording recording(dir / "a.h5");
+    test::EndlessRecording recording(dir / "a.h5");
     const std::uint64_t handed =
         recording.kill_after(1000 + random() % 4000, std::chrono::microseconds(random() % 20000));
     const Session left = read_session(dir / "a.h5.part");
@@ -97,6 +71,80 @@ TEST(KilledRecording, LacksAtMostTheLastSecondAndIsRecovered) {
     EXPECT_EQ(session.info.created, sample_info().created);
     EXPECT_EQ(session.changes.size(), (left.size() + 999) / 1000);
     expect_sample(session);
+  }
+}
+
+// Whether `work`, in a process of its own, is killed before it has written `pages` pages.
+template <class Work>
+bool is_killed_after(std::size_t pages, Work work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    pages_left = pages;
+    try {
+      work();
+    } catch (const std::exception&) {
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status);
+}
+
+// Every append is half a second of ticks, which is what is written at once.
+constexpr std::size_t kHalfSecond = 50;
+
+void record(const fs::path& out, std::size_t rows, int tell) {
+  SessionInfo info = sample_info();
+  info.tick = 0.01;
+  SessionWriter writer(out, info, false);
+  for (std::size_t k = 0; k < rows; k += kHalfSecond) {
+    writer.append(SettingChange{k, "coupling.eta = 1"});
+    writer.append(sample_rows(RowLayout(3), k, kHalfSecond));
+    const std::uint64_t handed = k + kHalfSecond;
+    if (write(tell, &handed, sizeof handed) < 0) return;
+  }
+  writer.close();
+}
+
+TEST(KilledRecording, KeepsWhatWasWrittenWhereverTheLastWriteIsCut) {
+  constexpr std::size_t kStep = 11;  // of every page boundary one in so many
+  bool killed = true;
+  for (std::size_t pages = 0; killed; pages += kStep) {
+    const test::TempDir dir;
+    int ends[2];
+    ASSERT_EQ(pipe2(ends, O_CLOEXEC | O_NONBLOCK), 0);
+    killed = is_killed_after(pages, [&] { record(dir / "a.h5", 400, ends[1]); });
+    std::uint64_t handed = 0;
+    while (read(ends[0], &handed, sizeof handed) == sizeof handed) {
+    }
+    close(ends[0]);
+    close(ends[1]);
+    if (handed == 0) continue;  // there may be no file yet
+    const fs::path left = dir / (fs::exists(dir / "a.h5") ? "a.h5" : "a.h5.part");
+    std::optional<Session> session;
+    EXPECT_EQ(refusal([&] { session = read_session(left); }), "") << pages;
+    if (!session) continue;
+    EXPECT_GE(session->size(), handed) << pages;
+    EXPECT_EQ(session->changes.size(), session->size() / kHalfSecond) << pages;
+    expect_sample(*session);
+  }
+}
+
+TEST(KilledRecovery, CanBeDoneAgain) {
+  const test::TempDir made;
+  { SessionWriter(made / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 1000)); }
+  bool killed = true;
+  for (std::size_t pages = 0; killed; pages += 29) {
+    const test::TempDir dir;
+    fs::copy(made / "a.h5.part", dir / "a.h5.part");
+    killed = is_killed_after(pages, [&] { recover_session(dir / "a.h5.part", false); });
+    EXPECT_EQ(fs::exists(dir / "a.h5"), !killed) << pages;
+    if (killed) {
+      EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1000u) << pages;
+    }
+    expect_sample(read_session(dir / "a.h5"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1) << pages;
   }
 }
 
@@ -184,6 +232,21 @@ TEST(FullDisk, IsAnErrorWhenClosingToo) {
   EXPECT_EQ(exit_status_with_limit(RLIM_INFINITY, close_late, dir / "a.h5"), 0);
   EXPECT_FALSE(fs::exists(dir / "a.h5"));
   EXPECT_EQ(read_session(dir / "a.h5.part").size(), 500u);
+}
+
+TEST(FullDisk, KeepsTheLeftoverWhenThereIsNoRoomToRecoverIt) {
+  const test::TempDir dir;
+  { SessionWriter(dir / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 1000)); }
+  const std::string left = test::file_bytes(dir / "a.h5.part");
+  const auto recover = [](const fs::path& part) {
+    const std::string said = refusal([&] { recover_session(part, false); });
+    return said.find("File too large") == std::string::npos ? 1 : 0;
+  };
+  for (const rlim_t bytes : {5000, 300'000, 500'000}) {
+    EXPECT_EQ(exit_status_with_limit(bytes, recover, dir / "a.h5.part"), 0) << bytes;
+    EXPECT_EQ(test::file_bytes(dir / "a.h5.part"), left) << bytes;
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1) << bytes;
+  }
 }
 
 TEST(FullDisk, LeavesNothingWhenThereIsNoRoomToBegin) {

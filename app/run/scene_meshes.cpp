@@ -1,0 +1,66 @@
+#include "app/run/scene_meshes.h"
+
+#include <filesystem>
+
+#include "core/geometry/triangle_mesh.h"
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+std::shared_ptr<const TriangleMesh> shape_of(const Model& model, const std::string& where,
+                                             const std::atomic<bool>* cancel) {
+  std::vector<Eigen::Vector3f> corners;
+  corners.reserve(model.vertices.size());
+  for (const Vertex& v : model.vertices) corners.push_back(v.position);
+  try {
+    return std::make_shared<const TriangleMesh>(corners, model.indices, cancel);
+  } catch (const std::exception& e) {
+    if (cancel != nullptr && cancel->load()) throw LoadCancelled(where + ": cancelled");
+    throw FileError(where + ": " + e.what());
+  }
+}
+
+std::string where(const MeshObstacle& mesh) { return mesh.path.empty() ? mesh.file : mesh.path; }
+
+}  // namespace
+
+MeshModels build_meshes(Scene& scene, const LoadProgress& progress) {
+  MeshModels models;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    MeshObstacle& mesh = scene.meshes[i];
+    std::size_t same = 0;
+    while (same < i && where(scene.meshes[same]) != where(mesh)) ++same;
+    if (same < i) {
+      mesh.shape = scene.meshes[same].shape;
+      models.push_back(models[same]);
+      continue;
+    }
+    const std::filesystem::path folder = std::filesystem::path(mesh.path).parent_path();
+    try {
+      models.push_back(
+          std::make_shared<const Model>(parse_gltf(*mesh.source, where(mesh), folder, progress)));
+    } catch (const LoadCancelled&) {
+      throw;
+    } catch (const std::exception& e) {
+      throw FileError(e.what());
+    }
+    if (!mesh.shape) mesh.shape = shape_of(*models.back(), where(mesh), progress.cancel);
+  }
+  return models;
+}
+
+std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& models) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const MeshObstacle& mesh = scene.meshes[i];
+    for (const std::string& warning : models[i]->warnings) {
+      lines.push_back(mesh.name + ": " + warning);
+    }
+    const std::string health = mesh.shape->health().text();
+    if (!health.empty()) lines.push_back(mesh.name + ": " + health);
+  }
+  return lines;
+}
+
+}  // namespace limpid

@@ -1,0 +1,23 @@
+// From the models a scene names to what can be touched and drawn.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/scene.h"
+#include "render/gltf_model.h"
+
+namespace limpid {
+
+// What a scene's meshes look like, in their order.
+using MeshModels = std::vector<std::shared_ptr<const Model>>;
+
+// Reads the source of every mesh and builds its shape, if it has none yet. Equal files share both.
+// Errors: FileError naming the file; LoadCancelled.
+MeshModels build_meshes(Scene& scene, const LoadProgress& progress = {});
+
+// What the loader and the builder mended or left out, a line each for people.
+std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& models);
+
+}  // namespace limpid

@@ -1,0 +1,48 @@
+// The room that a few planes leave, and the force of a spring back into it.
+#pragma once
+
+#include <array>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+// {x : n_i . x >= o_i}. A stiff contact pulls a point c back to the nearest x there: the potential
+// K |x - c|^2 / 2 is convex with a continuous gradient, and x moves no further than c does.
+class FreeSpace {
+ public:
+  static constexpr int kMostPlanes = 6;
+
+  // The planes that hold x, at most three.
+  struct Active {
+    std::array<int, 3> plane{};
+    int count = 0;
+    friend bool operator==(const Active& a, const Active& b);
+  };
+
+  void clear() { count_ = 0; }
+  int count() const { return count_; }
+  // False if there is no room for another one.
+  bool add(const Vec3& normal, double offset);
+  const Vec3& normal(int i) const { return normals_[static_cast<std::size_t>(i)]; }
+  double offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
+
+  // The nearest x to c and what holds it there; false if the planes leave no room near enough to
+  // tell.
+  bool project(const Vec3& c, Vec3& x, Active& active) const;
+  // The same with a set of planes taken for granted: c + what n_i . x = o_i adds to it.
+  Vec3 onto(const Vec3& c, const Active& active) const;
+  // An orthonormal basis of the active normals, one a column; returns how many. The force is
+  // K sum e_j e_j . (x - c).
+  int basis(const Active& active, Mat3& e) const;
+
+ private:
+  bool solve(const Vec3& c, const Active& active, Vec3& x, Vec3& weights) const;
+  bool holds(const Vec3& x, const Active& except) const;
+
+  std::array<Vec3, kMostPlanes> normals_;
+  std::array<double, kMostPlanes> offsets_{};
+  int count_ = 0;
+};
+
+}  // namespace limpid

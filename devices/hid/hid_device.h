@@ -1,0 +1,60 @@
+// A real device on the desk, spoken to by a thread of its own.
+//
+// If this process dies in any way, a guardian process takes the force away; if both die, or the
+// computer does, the device's own watchdog has to (raw protocol: 10 ms, PID: its effects end).
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/loop/realtime.h"
+#include "devices/device.h"
+#include "devices/hid/guardian.h"
+#include "devices/hid/hid_exchange.h"
+
+namespace limpid {
+
+// Where a device is, for people and for the guardian.
+struct HidPlace {
+  std::string name;
+  std::string id;    // vendor:product:serial
+  std::string path;  // of the hidraw node; empty: no guardian
+};
+
+class HidDevice final : public Device {
+ public:
+  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). Make it
+  // before the haptic thread runs: the guardian is a fork of this process.
+  HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
+            const HidPlace& place, const AskForPriority& ask = {});
+  // The device is without force and its motors are off when this returns, if it can be reached.
+  ~HidDevice() override;
+
+  HidDevice(const HidDevice&) = delete;
+  HidDevice& operator=(const HidDevice&) = delete;
+
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override { return exchange_->read(newest); }
+  void write(std::span<const double> torque) noexcept override { exchange_->write(torque); }
+  void stop() noexcept override { exchange_->stop(); }
+
+  bool lost() const noexcept { return exchange_->lost(); }
+  // Reports so far that were damaged or made no sense.
+  std::uint64_t unusable() const noexcept { return exchange_->unusable(); }
+
+ private:
+  void run(const AskForPriority& ask) noexcept;
+
+  std::unique_ptr<HidTransport> transport_;
+  std::unique_ptr<HidProtocol> protocol_;
+  DeviceTraits traits_;
+  std::unique_ptr<Guardian> guardian_;
+  std::unique_ptr<HidExchange> exchange_;
+  std::atomic<bool> quit_{false};
+  bool stopped_ = false;  // the thread's last word
+  std::thread thread_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,134 @@
+#include "devices/hid/hid_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/loop/clock.h"
+
+namespace limpid {
+namespace {
+
+// The kernel keeps 64 reports; a device that floods must not keep the torque from being sent.
+constexpr int kMostReports = 64;
+
+}  // namespace
+
+HidExchange::HidExchange(HidTransport& transport, HidProtocol& protocol, ReadClock clock)
+    : transport_(transport),
+      protocol_(protocol),
+      clock_(std::move(clock)),
+      dof_(static_cast<std::size_t>(protocol.traits().dof)),
+      deliver_([this](std::span<const std::uint8_t> report) { deliver(report); }) {}
+
+bool HidExchange::read(DeviceReading& newest) noexcept {
+  arrivals_.update();
+  const Arrival& arrival = arrivals_.front();
+  newest = arrival.reading;
+  newest.age = newest.count > 0 ? in_seconds(clock_() - arrival.moment)
+                                : std::numeric_limits<double>::infinity();
+  return !lost();
+}
+
+void HidExchange::write(std::span<const double> torque) noexcept {
+  Command& command = commands_.back();
+  command.torque.fill(0);
+  std::copy_n(torque.begin(), std::min(torque.size(), dof_), command.torque.begin());
+  command.moment = clock_();
+  command.any = true;
+  commands_.publish();
+}
+
+void HidExchange::stop() noexcept { write({}); }
+
+bool HidExchange::step() noexcept {
+  receive();
+  ask_if_silent();
+  send();
+  return !lost();
+}
+
+bool HidExchange::finish() noexcept {
+  bool all = true;
+  for (const Report& report : protocol_.stop_reports()) all &= deliver(report);
+  return all;
+}
+
+void HidExchange::receive() noexcept {
+  for (int i = 0; i < kMostReports; ++i) {
+    const int size = transport_.read(buffer_, i == 0 ? 1 : 0);
+    if (size < 0) return lose();
+    if (size == 0) return;
+    const auto bytes = std::min(static_cast<std::size_t>(size), buffer_.size());
+    switch (protocol_.decode(std::span(buffer_).first(bytes), arrival_.reading)) {
+      case Decoded::unusable: unusable_.fetch_add(1, std::memory_order_relaxed); break;
+      case Decoded::status: arrivals_.write(arrival_); break;
+      case Decoded::reading: take_reading(arrival_.reading); break;
+    }
+  }
+}
+
+void HidExchange::take_reading(const DeviceReading& reading) noexcept {
+  arrival_.reading = reading;
+  ++arrival_.reading.count;
+  arrival_.moment = clock_();
+  arrivals_.write(arrival_);
+}
+
+// An answer only counts if it confirms what is known: firmware that never expected the question
+// may answer anything, and a joint that had moved would have said so by itself.
+void HidExchange::ask_if_silent() noexcept {
+  const std::span<const std::uint8_t> question = protocol_.silent_report();
+  if (question.empty() || !answers_ || lost() || arrival_.reading.count == 0) return;
+  const nanoseconds now = clock_();
+  if (now - std::max(arrival_.moment, asked_) < kAskAfter) return;
+  asked_ = now;
+  const auto report = std::span(buffer_).first(std::min(question.size(), buffer_.size()));
+  std::copy_n(question.begin(), report.size(), report.begin());
+  const int size = transport_.get_input(report);
+  answers_ = size > 0;
+  if (!answers_) return;
+  DeviceReading answer = arrival_.reading;
+  const auto bytes = std::min(static_cast<std::size_t>(size), report.size());
+  const Decoded decoded = protocol_.decode(report.first(bytes), answer);
+  if (decoded == Decoded::reading && answer.x == arrival_.reading.x) take_reading(answer);
+}
+
+void HidExchange::send() noexcept {
+  if (!protocol_.traits().pushes) return;
+  const bool news = commands_.update();
+  const nanoseconds now = clock_();
+  if (!news && sent_any_ && now - sent_ < kSendPeriod) return;
+  const Torque torque = torque_now(now);
+  protocol_.encode(std::span(torque).first(dof_), now, deliver_);
+  sent_ = now;
+  sent_any_ = true;
+}
+
+bool HidExchange::may_push(nanoseconds now) const noexcept {
+  const Command& command = commands_.front();
+  const DeviceReading& reading = arrival_.reading;
+  return !lost() && command.any && now - command.moment <= kTorqueLife && reading.count > 0 &&
+         now - arrival_.moment <= protocol_.stale_after() && reading.hand && !reading.fault;
+}
+
+HidExchange::Torque HidExchange::torque_now(nanoseconds now) const noexcept {
+  Torque torque{};
+  if (!may_push(now)) return torque;
+  const std::vector<double>& effort = protocol_.traits().effort;
+  for (std::size_t i = 0; i < dof_; ++i) {
+    const double asked = commands_.front().torque[i];
+    if (!std::isfinite(asked)) return {};
+    torque[i] = std::clamp(asked, -effort[i], effort[i]);
+  }
+  return torque;
+}
+
+bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
+  const bool delivered = transport_.write(report);
+  failures_ = delivered ? 0 : failures_ + 1;
+  if (failures_ >= kMostFailures) lose();
+  return delivered;
+}
+
+}  // namespace limpid

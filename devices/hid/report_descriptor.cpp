@@ -1,0 +1,319 @@
+#include "devices/hid/report_descriptor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kMaxDescriptor = 4096;  // as the kernel
+constexpr std::size_t kMaxFields = 2048;
+constexpr std::size_t kMaxUsages = 1024;  // of an item; more are left out
+constexpr std::size_t kMaxDepth = 16;     // of collections, and of pushes
+constexpr std::uint32_t kMaxReportBits = 8 * HidTransport::kMaxReport;
+
+enum Type : std::uint8_t { kMain = 0, kGlobal = 1, kLocal = 2 };
+
+struct Item {
+  std::size_t offset = 0;  // in the descriptor, for messages
+  std::uint8_t type = 0;
+  std::uint8_t tag = 0;
+  std::uint8_t size = 0;  // of the data [bytes]
+  std::uint32_t value = 0;
+
+  std::int64_t as_signed() const {
+    if (size == 1) return static_cast<std::int8_t>(value);
+    if (size == 2) return static_cast<std::int16_t>(value);
+    return static_cast<std::int32_t>(value);
+  }
+};
+
+// A maximum's sign is known only with its minimum.
+struct Bound {
+  std::int64_t as_signed = 0;
+  std::int64_t as_unsigned = 0;
+};
+
+struct Globals {
+  std::uint16_t usage_page = 0;
+  std::int64_t logical_min = 0;
+  Bound logical_max;
+  std::int64_t physical_min = 0;
+  Bound physical_max;
+  std::uint32_t unit = 0;
+  int unit_exponent = 0;
+  std::uint32_t report_size = 0;
+  std::uint32_t report_count = 0;
+  std::uint8_t report_id = 0;
+};
+
+struct LocalUsage {
+  std::uint32_t value = 0;
+  bool has_page = false;
+};
+
+struct Locals {
+  std::vector<LocalUsage> usages;
+  LocalUsage minimum;
+  bool in_delimiter = false;
+  bool alternative = false;  // to one taken already
+};
+
+[[noreturn]] void refuse(const Item& item, std::string_view what) {
+  throw HidError(fmt::format("report descriptor, byte {}: {}", item.offset, what));
+}
+
+std::int64_t pick(std::int64_t minimum, const Bound& maximum) {
+  return minimum < 0 ? maximum.as_signed : maximum.as_unsigned;
+}
+
+class Parser {
+ public:
+  explicit Parser(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  ReportDescriptor parse() {
+    while (at_ < bytes_.size()) {
+      if (bytes_[at_] == kLongItem) {
+        skip_long_item();
+        continue;
+      }
+      take(next_item());
+    }
+    if (!collections_.empty()) throw HidError("report descriptor: a collection is not closed");
+    return std::move(descriptor_);
+  }
+
+ private:
+  static constexpr std::uint8_t kLongItem = 0xFE;
+
+  Item next_item() {
+    const std::uint8_t prefix = bytes_[at_];
+    Item item;
+    item.offset = at_;
+    item.type = (prefix >> 2) & 3;
+    item.tag = prefix >> 4;
+    item.size = (prefix & 3) == 3 ? 4 : prefix & 3;
+    if (bytes_.size() - at_ - 1 < item.size) refuse(item, "the item is cut off");
+    for (std::size_t i = 0; i < item.size; ++i) {
+      item.value |= static_cast<std::uint32_t>(bytes_[at_ + 1 + i]) << (8 * i);
+    }
+    at_ += 1u + item.size;
+    return item;
+  }
+
+  void skip_long_item() {
+    const std::size_t left = bytes_.size() - at_;
+    const std::size_t size = left > 1 ? 3u + bytes_[at_ + 1] : left + 1;
+    if (size > left) refuse({.offset = at_}, "the item is cut off");
+    at_ += size;
+  }
+
+  void take(const Item& item) {
+    switch (item.type) {
+      case kMain: return take_main(item);
+      case kGlobal: return take_global(item);
+      case kLocal: return take_local(item);
+      default: return;  // reserved
+    }
+  }
+
+  void take_main(const Item& item) {
+    switch (item.tag) {
+      case 0x8: add_fields(item, ReportKind::input); break;
+      case 0x9: add_fields(item, ReportKind::output); break;
+      case 0xB: add_fields(item, ReportKind::feature); break;
+      case 0xA: open_collection(item); break;
+      case 0xC: close_collection(item); break;
+      default: break;
+    }
+    locals_ = {};
+  }
+
+  void open_collection(const Item& item) {
+    if (collections_.size() == kMaxDepth) refuse(item, "too many collections in each other");
+    const Usage usage = locals_.usages.empty() ? 0 : full(locals_.usages.front());
+    if (collections_.empty()) descriptor_.applications.push_back(usage);
+    collections_.push_back(usage);
+  }
+
+  void close_collection(const Item& item) {
+    if (collections_.empty()) refuse(item, "it closes a collection that is not open");
+    collections_.pop_back();
+  }
+
+  void take_global(const Item& item) {
+    switch (item.tag) {
+      case 0x0: globals_.usage_page = static_cast<std::uint16_t>(item.value); break;
+      case 0x1: globals_.logical_min = item.as_signed(); break;
+      case 0x2: globals_.logical_max = {item.as_signed(), item.value}; break;
+      case 0x3: globals_.physical_min = item.as_signed(); break;
+      case 0x4: globals_.physical_max = {item.as_signed(), item.value}; break;
+      case 0x5: globals_.unit_exponent = exponent(item); break;
+      case 0x6: globals_.unit = item.value; break;
+      case 0x7: globals_.report_size = item.value; break;
+      case 0x8: take_report_id(item); break;
+      case 0x9: globals_.report_count = item.value; break;
+      case 0xA:
+        if (pushed_.size() == kMaxDepth) refuse(item, "too many pushes");
+        pushed_.push_back(globals_);
+        break;
+      case 0xB:
+        if (pushed_.empty()) refuse(item, "a pop without a push");
+        globals_ = pushed_.back();
+        pushed_.pop_back();
+        break;
+      default: break;
+    }
+  }
+
+  // Four bits by the letter, a signed number in many devices.
+  static int exponent(const Item& item) {
+    if (item.value <= 0xF)
+      return item.value < 8 ? static_cast<int>(item.value) : static_cast<int>(item.value) - 16;
+    return static_cast<int>(item.as_signed());
+  }
+
+  void take_report_id(const Item& item) {
+    if (item.value == 0 || item.value > 255) refuse(item, "a report's id is 1 to 255");
+    if (!descriptor_.numbered && any_report_) refuse(item, "reports with and without an id");
+    descriptor_.numbered = true;
+    globals_.report_id = static_cast<std::uint8_t>(item.value);
+  }
+
+  void take_local(const Item& item) {
+    const LocalUsage usage{item.value, item.size == 4};
+    switch (item.tag) {
+      case 0x0:
+        if (!locals_.alternative) add_usage(usage);
+        locals_.alternative = locals_.in_delimiter;
+        break;
+      case 0x1: locals_.minimum = usage; break;
+      case 0x2: add_usage_range(usage); break;
+      case 0xA:
+        locals_.in_delimiter = item.value == 1;
+        locals_.alternative = false;
+        break;
+      default: break;
+    }
+  }
+
+  void add_usage(const LocalUsage& usage) {
+    if (locals_.usages.size() < kMaxUsages) locals_.usages.push_back(usage);
+  }
+
+  void add_usage_range(const LocalUsage& maximum) {
+    const bool has_page = locals_.minimum.has_page || maximum.has_page;
+    for (std::uint64_t value = locals_.minimum.value;
+         value <= maximum.value && locals_.usages.size() < kMaxUsages; ++value) {
+      add_usage({static_cast<std::uint32_t>(value), has_page});
+    }
+  }
+
+  Usage full(const LocalUsage& usage) const {
+    return usage.has_page
+               ? usage.value
+               : make_usage(globals_.usage_page, static_cast<std::uint16_t>(usage.value));
+  }
+
+  void add_fields(const Item& item, ReportKind kind) {
+    any_report_ = true;
+    const std::uint32_t size = globals_.report_size;
+    const std::uint32_t count = globals_.report_count;
+    auto& bits = descriptor_.report_bits[static_cast<std::size_t>(kind)][globals_.report_id];
+    const std::uint32_t offset = bits == 0 ? 8 : bits;
+    if (static_cast<std::uint64_t>(size) * count > kMaxReportBits - offset) {
+      refuse(item, "the report is too long");
+    }
+    bits = offset + size * count;
+    const bool padding = item.value & 1;
+    if (padding || size == 0 || size > 32 || count == 0) return;
+
+    const bool array = !(item.value & 2);
+    ReportField field = shared(kind, array);
+    field.bit_offset = offset;
+    if (array) {
+      for (const LocalUsage& usage : locals_.usages) field.usages.push_back(full(usage));
+      field.count = count;
+      add(item, std::move(field));
+      return;
+    }
+    // One field for each usage; the last is that of all values which remain.
+    const std::size_t fields = std::clamp<std::size_t>(locals_.usages.size(), 1, count);
+    for (std::size_t i = 0; i < fields; ++i) {
+      ReportField one = field;
+      one.bit_offset = offset + static_cast<std::uint32_t>(i) * size;
+      one.count = i + 1 == fields ? count - static_cast<std::uint32_t>(i) : 1;
+      if (!locals_.usages.empty()) one.usages = {full(locals_.usages[i])};
+      add(item, std::move(one));
+    }
+  }
+
+  ReportField shared(ReportKind kind, bool array) const {
+    ReportField field;
+    field.kind = kind;
+    field.report_id = globals_.report_id;
+    field.bit_size = globals_.report_size;
+    field.array = array;
+    field.logical_min = globals_.logical_min;
+    field.logical_max = pick(globals_.logical_min, globals_.logical_max);
+    field.physical_min = globals_.physical_min;
+    field.physical_max = pick(globals_.physical_min, globals_.physical_max);
+    if (field.physical_min == 0 && field.physical_max == 0) {
+      field.physical_min = field.logical_min;
+      field.physical_max = field.logical_max;
+    }
+    field.unit = globals_.unit;
+    field.unit_exponent = globals_.unit_exponent;
+    field.collections = collections_;
+    return field;
+  }
+
+  void add(const Item& item, ReportField field) {
+    if (descriptor_.fields.size() == kMaxFields) refuse(item, "too many fields");
+    descriptor_.fields.push_back(std::move(field));
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  ReportDescriptor descriptor_;
+  Globals globals_;
+  Locals locals_;
+  std::vector<Globals> pushed_;
+  std::vector<Usage> collections_;
+  bool any_report_ = false;
+};
+
+}  // namespace
+
+bool ReportField::within(Usage collection) const {
+  return std::find(collections.begin(), collections.end(), collection) != collections.end();
+}
+
+std::size_t ReportDescriptor::report_bytes(ReportKind kind, std::uint8_t id) const {
+  return (report_bits[static_cast<std::size_t>(kind)][id] + 7) / 8;
+}
+
+const ReportField* ReportDescriptor::find(ReportKind kind, Usage usage, Usage within) const {
+  for (const ReportField& field : fields) {
+    if (field.kind != kind || (within != 0 && !field.within(within))) continue;
+    if (std::find(field.usages.begin(), field.usages.end(), usage) != field.usages.end()) {
+      return &field;
+    }
+  }
+  return nullptr;
+}
+
+ReportDescriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > kMaxDescriptor) {
+    throw HidError(
+        fmt::format("report descriptor: {} bytes, {} at most", bytes.size(), kMaxDescriptor));
+  }
+  return Parser(bytes).parse();
+}
+
+}  // namespace limpid

@@ -1,0 +1,30 @@
+// The bytes of a glTF file, checked before and parsed by tinygltf.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limpid {
+
+inline constexpr std::size_t kLargestGltf = std::size_t{512} << 20;  // with all it refers to
+
+// Throws std::runtime_error naming the file if it is no file, larger than `most` or unreadable.
+std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most);
+
+struct GltfFile {
+  tinygltf::Model gltf;
+  // Encoded as they came, one each image of `gltf`; empty: in a buffer view, or missing.
+  std::vector<std::vector<unsigned char>> pictures;
+  std::vector<std::string> warnings;
+};
+
+// Nothing that the file refers to is checked but files, which are read from inside of `folder`
+// only (from nowhere if it is empty). Throws std::runtime_error naming the file.
+GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,
+                         const std::filesystem::path& folder);
+
+}  // namespace limpid

@@ -1,0 +1,122 @@
+#include "devices/hid/guardian.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <memory>
+
+#include "devices/hid/hid_error.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+const std::vector<Report> kStop{{1, 0, 0}, {12, 3}};
+const Report kStopBytes{1, 0, 0, 12, 3};
+
+// The device is the writing end of a pipe.
+struct GuardedPipe : testing::Test {
+  GuardedPipe() { EXPECT_EQ(pipe(ends), 0); }
+  ~GuardedPipe() override { close(ends[0]); }
+
+  // All that was written until nobody could write any more.
+  Report received() {
+    Report bytes;
+    std::uint8_t byte = 0;
+    while (read(ends[0], &byte, 1) == 1) bytes.push_back(byte);
+    return bytes;
+  }
+  // In a process of its own, which this ends as it likes.
+  void in_another_process(const std::function<void(int device)>& life) {
+    const pid_t child = fork();
+    if (child == 0) {
+      life(ends[1]);
+      _exit(0);
+    }
+    close(ends[1]);
+    waitpid(child, nullptr, 0);
+  }
+
+  int ends[2] = {-1, -1};
+};
+
+TEST_F(GuardedPipe, GetsTheStopReportsWhenWeAreKilled) {
+  in_another_process([](int device) {
+    const Guardian guardian(device, kStop);
+    raise(SIGKILL);
+  });
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+TEST_F(GuardedPipe, GetsThemWhenWeEndWithoutAWord) {
+  in_another_process([](int device) {
+    [[maybe_unused]] auto* guardian = new Guardian(device, kStop);
+    _exit(1);
+  });
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+TEST_F(GuardedPipe, GetsThemWhenNobodyDismissedTheGuardian) {
+  { const Guardian guardian(ends[1], kStop); }
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+TEST_F(GuardedPipe, GetsNothingAfterADismissal) {
+  {
+    Guardian guardian(ends[1], kStop);
+    guardian.dismiss();
+  }
+  EXPECT_EQ(received(), Report{});
+}
+
+// Each has the other's socket at birth and must let go of it.
+TEST_F(GuardedPipe, IsGuardedBesideOthers) {
+  int other[2];
+  ASSERT_EQ(pipe(other), 0);
+  in_another_process([&](int device) {
+    const Guardian first(device, kStop);
+    const Guardian second(other[1], kStop);
+    raise(SIGKILL);
+  });
+  close(other[1]);
+  EXPECT_EQ(received(), kStopBytes);
+  close(ends[0]);
+  ends[0] = other[0];
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+TEST_F(GuardedPipe, SurvivesInterruptsSentToTheWholeGroup) {
+  in_another_process([](int device) {
+    setpgid(0, 0);
+    const Guardian guardian(device, kStop);
+    signal(SIGTERM, SIG_DFL);
+    kill(0, SIGTERM);
+    pause();
+  });
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+TEST(Guardian, HoldsADeviceForItself) {
+  const test::TempDir dir;
+  const std::string path = (dir / "device").string();
+  std::ofstream(path).put('\n');
+  Guardian first(path, kStop);
+  EXPECT_THROW(Guardian(path, kStop), HidError);
+  first.dismiss();
+}
+
+TEST(Guardian, SaysWhyItCannotOpenADevice) {
+  try {
+    Guardian("/nonexistent/hidraw0", kStop);
+    FAIL();
+  } catch (const HidError& error) {
+    EXPECT_STREQ(error.what(), "/nonexistent/hidraw0: No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace limpid

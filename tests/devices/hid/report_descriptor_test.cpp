@@ -1,0 +1,145 @@
+#include "devices/hid/report_descriptor.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/hid/hid_error.h"
+#include "devices/hid/pid_usages.h"
+#include "tests/support/hid_descriptors.h"
+
+namespace limpid {
+namespace {
+
+using test::Bytes;
+using test::operator+;
+
+constexpr Usage kX = make_usage(1, 0x30);
+
+std::string complaint(const Bytes& bytes) {
+  try {
+    parse_report_descriptor(bytes);
+  } catch (const HidError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(ReportDescriptor, FindsTheSpaceNavigatorsAxesInTheirTwoReports) {
+  const ReportDescriptor d = parse_report_descriptor(test::space_navigator());
+  EXPECT_TRUE(d.numbered);
+  EXPECT_EQ(d.applications, std::vector<Usage>{make_usage(1, 8)});
+  EXPECT_EQ(d.report_bytes(ReportKind::input, 1), 7u);
+  EXPECT_EQ(d.report_bytes(ReportKind::input, 3), 3u);
+  EXPECT_EQ(d.report_bytes(ReportKind::output, 4), 2u);
+  EXPECT_EQ(d.report_bytes(ReportKind::output, 1), 0u);
+  const ReportField* rz = d.find(ReportKind::input, make_usage(1, 0x35));
+  ASSERT_TRUE(rz);
+  EXPECT_EQ(rz->report_id, 2);
+  EXPECT_EQ(rz->bit_offset, 8u + 32u);
+  EXPECT_EQ(rz->bit_size, 16u);
+  EXPECT_EQ(rz->logical_min, -350);
+  EXPECT_EQ(rz->logical_max, 350);
+  EXPECT_EQ(rz->physical_max, 1400);
+  EXPECT_EQ(rz->unit, 0x11u);
+  EXPECT_EQ(rz->unit_exponent, -4);
+}
+
+TEST(ReportDescriptor, KeepsReportsOfDifferentKindsWithOneIdApart) {
+  const ReportDescriptor d = parse_report_descriptor(test::pid_joystick::whole());
+  EXPECT_EQ(d.report_bytes(ReportKind::output, 5), 4u);
+  EXPECT_EQ(d.report_bytes(ReportKind::feature, 5), 4u);
+  EXPECT_EQ(d.report_bytes(ReportKind::input, 1), 6u);
+  EXPECT_EQ(d.report_bytes(ReportKind::output, 1), 12u);
+}
+
+TEST(ReportDescriptor, ReadsTheFieldsOfAPidEffect) {
+  const ReportDescriptor d = parse_report_descriptor(test::pid_joystick::whole());
+  const ReportField* type = d.find(ReportKind::output, pid::kTypeConstantForce, pid::kSetEffect);
+  ASSERT_TRUE(type);
+  EXPECT_TRUE(type->array);
+  EXPECT_EQ(type->usages.size(), 3u);
+  const ReportField* duration = d.find(ReportKind::output, pid::kDuration, pid::kSetEffect);
+  ASSERT_TRUE(duration);
+  EXPECT_EQ(duration->bit_offset, 24u);
+  EXPECT_EQ(duration->unit, 0x1003u);
+  EXPECT_EQ(duration->unit_exponent, -3);
+  // A minimum from 0 on makes 0x00FF 255, one below makes 0xFF01 -255.
+  const ReportField* force = d.find(ReportKind::output, pid::kMagnitude, pid::kSetConstantForce);
+  ASSERT_TRUE(force);
+  EXPECT_EQ(force->logical_min, -255);
+  EXPECT_EQ(force->logical_max, 255);
+  EXPECT_EQ(force->physical_min, -10000);
+  // X is an axis and, within Axes Enable, a switch.
+  EXPECT_EQ(d.find(ReportKind::output, kX, pid::kAxesEnable)->bit_size, 1u);
+  EXPECT_EQ(d.find(ReportKind::output, make_usage(0x0A, 2), pid::kDirection)->bit_offset,
+            8u + 8u + 8u + 32u + 8u + 8u + 8u + 8u);
+}
+
+TEST(ReportDescriptor, LeavesPlaceForTheIdWhereThereIsNone) {
+  const ReportDescriptor d = parse_report_descriptor(test::raw_device());
+  EXPECT_FALSE(d.numbered);
+  EXPECT_EQ(d.report_bytes(ReportKind::input, 0), 65u);
+  EXPECT_EQ(d.report_bytes(ReportKind::feature, 0), 65u);
+  ASSERT_EQ(d.fields.size(), 3u);
+  EXPECT_EQ(d.fields[0].bit_offset, 8u);
+  EXPECT_EQ(d.fields[0].count, 64u);
+}
+
+TEST(ReportDescriptor, RestoresGlobalsAtAPop) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0x15, 0x81, 0x25, 0x7F, 0xA4,
+                    0x75, 0x10, 0x09, 0x30, 0x81, 0x02, 0xB4, 0x09, 0x31, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 2u);
+  EXPECT_EQ(d.fields[0].bit_size, 16u);
+  EXPECT_EQ(d.fields[1].bit_size, 8u);
+  EXPECT_EQ(d.fields[1].bit_offset, 8u + 16u);
+}
+
+TEST(ReportDescriptor, TakesTheFirstOfAlternativeUsages) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0xA9, 0x01,
+                    0x09, 0x30, 0x09, 0x31, 0xA9, 0x00, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  EXPECT_TRUE(d.find(ReportKind::input, kX));
+  EXPECT_FALSE(d.find(ReportKind::input, make_usage(1, 0x31)));
+}
+
+TEST(ReportDescriptor, SkipsLongItems) {
+  const Bytes bytes = Bytes{0xFE, 0x02, 0x42, 0xAA, 0xBB} + test::space_navigator();
+  EXPECT_TRUE(parse_report_descriptor(bytes).find(ReportKind::input, kX));
+}
+
+TEST(ReportDescriptor, RefusesWhatMakesNoSense) {
+  const auto contains = [](const Bytes& bytes, const char* text) {
+    EXPECT_NE(complaint(bytes).find(text), std::string::npos) << complaint(bytes);
+  };
+  contains({0x05, 0x01, 0x26, 0xFF}, "byte 2: the item is cut off");
+  contains({0xFE}, "cut off");
+  contains({0xFE, 0x20, 0x00, 0x01}, "cut off");
+  contains({0xC0}, "closes a collection");
+  contains({0x09, 0x01, 0xA1, 0x01}, "not closed");
+  contains({0x85, 0x00}, "id is 1 to 255");
+  contains({0x86, 0x00, 0x01}, "id is 1 to 255");
+  contains({0xB4}, "pop");
+  contains({0x75, 0x08, 0x95, 0x01, 0x81, 0x02, 0x85, 0x01}, "with and without");
+  // 2^32 - 1 values of 2^32 - 1 bits.
+  contains({0x77, 0xFF, 0xFF, 0xFF, 0xFF, 0x97, 0xFF, 0xFF, 0xFF, 0xFF, 0x81, 0x02}, "too long");
+  contains({0x75, 0x01, 0x97, 0x00, 0x00, 0x01, 0x00, 0x81, 0x02}, "too long");
+  contains(Bytes(5000, 0xC0), "4096 at most");
+  Bytes deep;
+  for (int i = 0; i < 100; ++i) deep = deep + Bytes{0xA1, 0x01};
+  contains(deep, "in each other");
+  contains(Bytes(100, 0xA4), "too many pushes");
+  Bytes many{0x75, 0x01, 0x95, 0xFF, 0x05, 0x09, 0x09, 0x01};
+  for (int i = 0; i < 10; ++i) many = many + Bytes{0x19, 0x01, 0x29, 0xFF, 0x81, 0x02};
+  contains(many, "too many fields");
+}
+
+TEST(ReportDescriptor, KeepsAHugeRangeOfUsagesSmall) {
+  const Bytes bytes{0x75, 0x08, 0x95, 0x01, 0x1B, 0,    0,    0,
+                    0,    0x2B, 0xFF, 0xFF, 0xFF, 0xFF, 0x81, 0x00};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 1u);
+  EXPECT_LE(d.fields[0].usages.size(), 1024u);
+}
+
+}  // namespace
+}  // namespace limpid

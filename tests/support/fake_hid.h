@@ -1,0 +1,129 @@
+// A HID device inside the test: what it sends and what it got are two queues.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "devices/hid/hid_protocol.h"
+
+namespace limpid::test {
+
+// Shared by the test (or a thread that plays the device) and the transport.
+class FakeHid {
+ public:
+  // The device's side.
+  void send(const Report& report) {
+    const std::lock_guard lock(mutex_);
+    input_.push_back(report);
+    changed_.notify_all();
+  }
+  void unplug() {
+    const std::lock_guard lock(mutex_);
+    gone_ = true;
+    changed_.notify_all();
+  }
+  void refuse_writes(bool refuse) {
+    const std::lock_guard lock(mutex_);
+    refuse_writes_ = refuse;
+  }
+  std::vector<Report> received() const {
+    const std::lock_guard lock(mutex_);
+    return output_;
+  }
+  void forget_received() {
+    const std::lock_guard lock(mutex_);
+    output_.clear();
+  }
+  // The first report it gets, received before or to come, for which this is true.
+  Report wait_for(const std::function<bool(const Report&)>& wanted) {
+    std::unique_lock lock(mutex_);
+    for (std::size_t i = 0;; ++i) {
+      changed_.wait(lock, [&] { return output_.size() > i; });
+      if (wanted(output_[i])) return output_[i];
+    }
+  }
+
+  // Answers to get_feature and get_input by id, and what set_feature was told; not for threads.
+  std::map<std::uint8_t, Report> features, inputs;
+  int questions = 0;  // by get_input
+  std::vector<Report> features_set;
+  std::vector<std::uint8_t> descriptor;  // empty unless the test sets it
+
+ private:
+  friend class FakeTransport;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Report> input_;
+  std::vector<Report> output_;
+  bool gone_ = false;
+  bool refuse_writes_ = false;
+};
+
+// Waits really, if `waits`; else an empty queue is an empty queue.
+class FakeTransport final : public HidTransport {
+ public:
+  explicit FakeTransport(std::shared_ptr<FakeHid> device, bool waits = false)
+      : device_(std::move(device)), waits_(waits) {}
+
+  int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
+    std::unique_lock lock(device_->mutex_);
+    if (waits_) {
+      device_->changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms),
+                                 [&] { return device_->gone_ || !device_->input_.empty(); });
+    }
+    if (device_->gone_) return -1;
+    if (device_->input_.empty()) return 0;
+    const Report next = std::move(device_->input_.front());
+    device_->input_.pop_front();
+    return copy(next, report);
+  }
+
+  bool write(std::span<const std::uint8_t> report) noexcept override {
+    const std::lock_guard lock(device_->mutex_);
+    if (device_->gone_ || device_->refuse_writes_) return false;
+    device_->output_.emplace_back(report.begin(), report.end());
+    device_->changed_.notify_all();
+    return true;
+  }
+
+  int get_feature(std::span<std::uint8_t> report) noexcept override {
+    const auto found = report.empty() ? device_->features.end() : device_->features.find(report[0]);
+    return found == device_->features.end() ? -1 : copy(found->second, report);
+  }
+
+  int get_input(std::span<std::uint8_t> report) noexcept override {
+    ++device_->questions;
+    const auto found = report.empty() ? device_->inputs.end() : device_->inputs.find(report[0]);
+    return found == device_->inputs.end() ? -1 : copy(found->second, report);
+  }
+
+  bool set_feature(std::span<const std::uint8_t> report) noexcept override {
+    device_->features_set.emplace_back(report.begin(), report.end());
+    return true;
+  }
+
+  const std::vector<std::uint8_t>& report_descriptor() const override {
+    return device_->descriptor;
+  }
+
+ private:
+  static int copy(const Report& from, std::span<std::uint8_t> to) {
+    const std::size_t size = std::min(from.size(), to.size());
+    std::copy_n(from.begin(), size, to.begin());
+    return static_cast<int>(size);
+  }
+
+  std::shared_ptr<FakeHid> device_;
+  bool waits_;
+};
+
+}  // namespace limpid::test

@@ -1,0 +1,255 @@
+#include "tests/support/hid/pid_joystick_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limpid::test {
+
+namespace {
+
+using Kind = DescriptorWriter::Kind;
+
+constexpr std::uint8_t kConstant = 0x26;
+constexpr int kBytesAnEffect = 32;
+enum Operation { kStart = 1, kStartSolo, kStop };
+enum Control { kEnable = 1, kDisable, kStopAll, kReset, kPause, kContinue };
+enum LoadStatus { kSuccess = 1, kFull };
+
+double share(std::int64_t value, const Field& field) {
+  return static_cast<double>(value) / static_cast<double>(field.max);
+}
+
+}  // namespace
+
+PidJoystickModel::PidJoystickModel(const PidJoystickOptions& options)
+    : PidJoystickModel(options, pid_reports(options.layout)) {}
+
+PidJoystickModel::PidJoystickModel(const PidJoystickOptions& options, PidReports reports)
+    : ReferenceDevice(options.identity, reports.writer.descriptor(), options.period),
+      options_(options),
+      reports_(std::move(reports)),
+      hand_(std::vector<AxisPhysics>(2, options.physics)) {}
+
+void PidJoystickModel::restart(Time now) {
+  effects_.clear();
+  actuators_ = paused_ = false;
+  device_gain_ = 1;
+  created_ = 0;
+  sent_state_ = state();
+  hand_.begin(now);
+}
+
+Torque PidJoystickModel::acting(Time now) const {
+  Torque torque{};
+  if (!actuators_ || paused_) return torque;
+  for (const auto& [index, effect] : effects_) {
+    const bool pushes = effect.playing && effect.type == kConstant && effect.parameters;
+    const bool waits = effect.delay > Time::zero() && now < effect.start + effect.delay;
+    if (!pushes || waits) continue;
+    const double size = effect.magnitude * effect.gain * device_gain_ * options_.torque_limit;
+    torque[0] += size * effect.x;
+    torque[1] += size * effect.y;
+  }
+  for (double& one : torque) one = std::clamp(one, -options_.torque_limit, options_.torque_limit);
+  return torque;
+}
+
+void PidJoystickModel::end_effects(Time now) {
+  for (auto& [index, effect] : effects_) {
+    const Time length = effect.delay + effect.duration * std::max(effect.loops, 1);
+    const bool over = effect.duration > Time::zero() && now - effect.start >= length;
+    if (over) effect.playing = false;
+  }
+}
+
+void PidJoystickModel::run(Time now) {
+  hand_.run(now, [&](Time step) {
+    if (fault() == Fault::frozen) return forces().newest();
+    end_effects(step);
+    const Torque torque = acting(step);
+    if (torque != forces().newest()) forces().note(step, torque, ForceCause::expired);
+    return torque;
+  });
+}
+
+std::vector<Report> PidJoystickModel::next_input(Time) {
+  Report report = reports_.writer.blank(Kind::input, reports_.x.id);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Field field = reports_.x.at(axis);
+    const double x = std::clamp(hand_.position(axis) / hand_.axis(axis).upper, -1.0, 1.0);
+    const bool broken = fault() == Fault::not_a_number;
+    put(report, field, broken ? field.min - 1 : std::lround(x * field.max));
+  }
+  report.back() = buttons_;
+  std::vector<Report> due{report};
+  if (Report news = state(); news != sent_state_) {
+    due.push_back(news);
+    sent_state_ = news;
+  }
+  return due;
+}
+
+Report PidJoystickModel::state() const {
+  Report report = reports_.writer.blank(Kind::input, reports_.state_playing.id);
+  const unsigned flags =
+      (paused_ ? kPidPaused : 0) | (actuators_ ? kPidActuators : 0) | kPidSafety | kPidPower;
+  for (int i = 0; i < 5; ++i) put(report, reports_.state_flags.at(i), (flags >> i) & 1);
+  for (const auto& [index, effect] : effects_) {
+    if (!effect.playing) continue;
+    put(report, reports_.state_playing, 1);
+    put(report, reports_.state_index, index);
+  }
+  return report;
+}
+
+void PidJoystickModel::on_output(ReportView report, Time now) {
+  const std::uint8_t id = report.empty() ? 0 : report[0];
+  const auto is = [&](const Field& field) {
+    return field.id == id && complete(report, field, Kind::output);
+  };
+  if (is(reports_.effect_index)) {
+    set_effect(report);
+  } else if (is(reports_.constant_index)) {
+    set_constant(report);
+  } else if (is(reports_.operation)) {
+    operate(report, now);
+  } else if (is(reports_.free_index)) {
+    if (effect(get(report, reports_.free_index))) {
+      effects_.erase(static_cast<int>(get(report, reports_.free_index)));
+    }
+  } else if (is(reports_.control)) {
+    control(report);
+  } else if (is(reports_.device_gain)) {
+    device_gain_ = share(get(report, reports_.device_gain), reports_.device_gain);
+  } else if (id != reports_.envelope_id && id != reports_.condition_id &&
+             id != reports_.periodic_id) {
+    violation("an output report that cannot be used, id " + std::to_string(id));
+  }
+  forces().note(now, acting(now), ForceCause::told);
+}
+
+bool PidJoystickModel::complete(ReportView report, const Field& field, Kind kind) {
+  return report.size() == reports_.writer.blank(kind, field.id).size();
+}
+
+std::int64_t PidJoystickModel::allowed(ReportView report, const Field& field, const char* name) {
+  const std::int64_t value = get(report, field);
+  if (!field.allows(value)) violation(std::string(name) + " is " + std::to_string(value));
+  return std::clamp<std::int64_t>(value, field.min, field.max);
+}
+
+PidEffect* PidJoystickModel::effect(std::int64_t index) {
+  if (!reports_.create_type && index >= 1 && index <= options_.capacity) {
+    return &effects_[static_cast<int>(index)];  // the host chooses
+  }
+  const auto found = effects_.find(static_cast<int>(index));
+  if (found != effects_.end()) return &found->second;
+  violation("there is no effect " + std::to_string(index));
+  return nullptr;
+}
+
+void PidJoystickModel::set_effect(ReportView report) {
+  PidEffect* effect = this->effect(get(report, reports_.effect_index));
+  if (!effect) return;
+  const auto choice = allowed(report, reports_.effect_type, "the effect's type");
+  const std::uint8_t type = options_.layout.effect_types[static_cast<std::size_t>(choice - 1)];
+  if (effect->type != 0 && effect->type != type) violation("an effect changes its type");
+  effect->type = type;
+  const auto milliseconds = [&](int field) {
+    const Field where = reports_.duration.at(field);
+    return std::chrono::milliseconds(allowed(report, where, "a duration"));
+  };
+  effect->duration = milliseconds(0);
+  effect->delay = milliseconds(3);
+  effect->gain = share(get(report, reports_.gain), reports_.gain);
+  if (get(report, reports_.trigger_button) != 0) violation("an effect waits for a button");
+  std::tie(effect->x, effect->y) = direction(report);
+  effect->parameters = true;
+}
+
+std::pair<double, double> PidJoystickModel::direction(ReportView report) {
+  if (get(report, reports_.direction_enable) != 0) {
+    const Field& field = reports_.direction;
+    const auto turn = static_cast<double>(allowed(report, field, "a direction")) / field.max;
+    const double angle = 2 * std::numbers::pi * turn;
+    return {-std::sin(angle), std::cos(angle)};
+  }
+  if (!reports_.axes) {
+    violation("an effect without a direction");
+    return {0, 0};
+  }
+  const bool x = get(report, *reports_.axes), y = get(report, reports_.axes->at(1));
+  if (x == y) violation("an effect of both axes or none without a direction");
+  return {x ? 1 : 0, y ? 1 : 0};
+}
+
+void PidJoystickModel::set_constant(ReportView report) {
+  PidEffect* effect = this->effect(get(report, reports_.constant_index));
+  if (!effect) return;
+  if (effect->type != 0 && effect->type != kConstant) violation("not an effect of constant force");
+  effect->magnitude =
+      share(allowed(report, reports_.magnitude, "the magnitude"), reports_.magnitude);
+}
+
+void PidJoystickModel::operate(ReportView report, Time now) {
+  PidEffect* effect = this->effect(get(report, reports_.operation_index));
+  if (!effect) return;
+  const auto what = allowed(report, reports_.operation, "the operation");
+  if (what == kStartSolo) {
+    for (auto& [index, other] : effects_) other.playing = false;
+  }
+  effect->playing = what != kStop;
+  if (!effect->playing) return;
+  if (!effect->parameters) violation("an effect starts before it is set");
+  effect->start = now;
+  effect->loops = static_cast<int>(get(report, reports_.loops));
+}
+
+void PidJoystickModel::control(ReportView report) {
+  const auto what = allowed(report, reports_.control, "the device control");
+  if (what == kEnable) actuators_ = true;
+  if (what == kDisable) actuators_ = false;
+  if (what == kPause) paused_ = true;
+  if (what == kContinue) paused_ = false;
+  if (what == kStopAll) {
+    for (auto& [index, effect] : effects_) effect.playing = false;
+  }
+  if (what != kReset) return;
+  effects_.clear();
+  paused_ = false;
+  actuators_ = true;
+}
+
+bool PidJoystickModel::on_set_feature(ReportView report, Time) {
+  const auto& type = reports_.create_type;
+  if (!type || report.empty() || report[0] != type->id) return false;
+  if (!complete(report, *type, Kind::feature)) return false;
+  const auto choice = allowed(report, *type, "the effect's type");
+  created_ = 0;
+  for (int index = options_.capacity; index >= 1; --index) {
+    if (!effects_.contains(index)) created_ = index;  // the lowest that is free
+  }
+  if (created_ == 0) return true;
+  effects_[created_].type = options_.layout.effect_types[static_cast<std::size_t>(choice - 1)];
+  return true;
+}
+
+std::optional<Report> PidJoystickModel::on_get_feature(std::uint8_t id) {
+  if (reports_.create_type && id == reports_.load_index.id) {
+    Report report = reports_.writer.blank(Kind::feature, id);
+    const int free = options_.capacity - static_cast<int>(effects_.size());
+    put(report, reports_.load_index, created_);
+    put(report, reports_.load_status, created_ ? kSuccess : kFull);
+    put(report, reports_.load_free, free * kBytesAnEffect);
+    return report;
+  }
+  if (id != reports_.pool_size.id) return std::nullopt;
+  Report report = reports_.writer.blank(Kind::feature, id);
+  put(report, reports_.pool_size, options_.capacity * kBytesAnEffect);
+  put(report, reports_.pool_effects, options_.capacity);
+  put(report, reports_.pool_managed, reports_.create_type ? 1 : 0);
+  return report;
+}
+
+}  // namespace limpid::test

@@ -1,0 +1,84 @@
+// A force-feedback joystick after the USB PID standard 1.0: two axes with motors, effects that end
+// by themselves, springy hands. Of the effects only constant forces push.
+//
+// A positive magnitude pushes towards positive X or Y where axes are enabled one by one. With a
+// direction, an angle clockwise from north (the far side, -Y), the force comes from there: 0 pushes
+// towards +Y, 90 degrees towards -X.
+#pragma once
+
+#include <map>
+
+#include "tests/support/hid/pid_layout.h"
+#include "tests/support/hid/reference_device.h"
+#include "tests/support/hid/sprung_hand.h"
+
+namespace limpid::test {
+
+struct PidJoystickOptions {
+  HidIdentity identity{"Limpid PID joystick", 0x1209, 0x4C49, "PID-1"};
+  PidLayout layout{};
+  int capacity = 4;         // effects at a time, at most 40
+  double torque_limit = 1;  // of each axis, at full magnitude and gain [N m]
+  AxisPhysics physics{};    // of both axes
+  Time period = std::chrono::milliseconds(1);
+};
+
+struct PidEffect {
+  std::uint8_t type = 0;     // usage
+  double magnitude = 0;      // -1 to 1
+  double gain = 1;           // 0 to 1
+  double x = 0, y = 0;       // direction of its force
+  Time delay{}, duration{};  // duration 0: for ever
+  bool parameters = false;   // "set effect" has come
+  bool playing = false;
+  Time start{};
+  int loops = 1;
+};
+
+class PidJoystickModel : public ReferenceDevice {
+ public:
+  explicit PidJoystickModel(const PidJoystickOptions& options = {});
+
+  SprungHand& hand() { return hand_; }
+  const SprungHand& hand() const { return hand_; }
+  void press(std::uint8_t buttons) { buttons_ = buttons; }
+  // By their index.
+  const std::map<int, PidEffect>& effects() const { return effects_; }
+  bool actuators() const { return actuators_; }
+  double device_gain() const { return device_gain_; }
+  // What the motors do at this moment [N m]; axes X and Y.
+  Torque acting(Time now) const;
+
+ private:
+  void restart(Time now) override;
+  void run(Time now) override;
+  std::vector<Report> next_input(Time now) override;
+  void on_output(ReportView report, Time now) override;
+  std::optional<Report> on_get_feature(std::uint8_t id) override;
+  bool on_set_feature(ReportView report, Time now) override;
+
+  void set_effect(ReportView report);
+  void set_constant(ReportView report);
+  void operate(ReportView report, Time now);
+  void control(ReportView report);
+  void end_effects(Time now);
+  std::pair<double, double> direction(ReportView report);
+  // The effect of this index; nullptr, and a violation, if there is none.
+  PidEffect* effect(std::int64_t index);
+  bool complete(ReportView report, const Field& field, DescriptorWriter::Kind kind);
+  std::int64_t allowed(ReportView report, const Field& field, const char* name);
+  Report state() const;
+
+  PidJoystickModel(const PidJoystickOptions& options, PidReports reports);
+  PidJoystickOptions options_;
+  PidReports reports_;
+  SprungHand hand_;
+  std::map<int, PidEffect> effects_;
+  bool actuators_ = false, paused_ = false;
+  double device_gain_ = 1;
+  std::uint8_t buttons_ = 0;
+  int created_ = 0;  // index; 0: the pool was full
+  Report sent_state_;
+};
+
+}  // namespace limpid::test

@@ -1,0 +1,88 @@
+// Reports of a device that speaks the raw protocol, as its firmware would make them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "devices/hid/little_endian.h"
+#include "devices/hid/raw_protocol.h"
+
+namespace limpid::test {
+
+using RawReport = std::array<std::uint8_t, RawProtocol::kReportSize>;
+
+// Where byte `at` of the protocol's tables lies.
+constexpr std::size_t byte(std::size_t at) { return 1 + at; }
+
+inline Report sealed(RawReport report) {
+  seal_raw_report(report);
+  return {report.begin(), report.end()};
+}
+
+inline RawReport raw_header(std::uint8_t joints, std::uint8_t flags) {
+  RawReport report{};
+  report[byte(0)] = 0x4C;
+  report[byte(1)] = 1;
+  report[byte(2)] = joints;
+  report[byte(3)] = flags;
+  return report;
+}
+
+inline constexpr std::uint8_t kRawHand = 2, kRawCalibrated = 4, kRawFault = 8;
+
+inline RawReport raw_reading(std::uint32_t sequence, const std::vector<float>& x,
+                             std::uint8_t status = 1 | kRawHand | kRawCalibrated) {
+  RawReport report = raw_header(static_cast<std::uint8_t>(x.size()), status);
+  store_le(report, byte(4), sequence);
+  store_le(report, byte(8), std::uint64_t{1000} * sequence);
+  for (std::size_t i = 0; i < x.size(); ++i) store_float_le(report, byte(16 + 4 * i), x[i]);
+  return report;
+}
+
+// +-1 rad, 0.4 N m and more for each further joint, 1 kHz, watchdog 5 ms.
+inline RawReport raw_feature(std::uint8_t joints, bool pushes = true) {
+  RawReport report = raw_header(joints, pushes ? 1 : 0);
+  store_le<std::uint16_t>(report, byte(4), 1000);
+  store_le<std::uint16_t>(report, byte(6), 5);
+  for (std::size_t i = 0; i < joints; ++i) {
+    store_le(report, byte(8 + 4 * i), static_cast<std::uint16_t>(-1000));
+    store_le<std::uint16_t>(report, byte(10 + 4 * i), 1000);
+    store_le(report, byte(36 + 2 * i), static_cast<std::uint16_t>(400 + 100 * i));
+  }
+  store_float_le(report, byte(32), 1e-4f);
+  report[byte(48)] = 'T';
+  report[byte(49)] = '2';
+  return report;
+}
+
+struct RawCommand {
+  bool right = true;  // size, magic, version, CRC
+  std::uint8_t mode = 0;
+  std::uint32_t sequence = 0;
+  std::uint32_t answered = 0;
+  std::array<float, 6> torque{};
+
+  bool pushes() const {
+    for (const float one : torque) {
+      if (mode != 0 && one != 0) return true;
+    }
+    return false;
+  }
+};
+
+inline RawCommand raw_command(const Report& report) {
+  RawCommand command;
+  if (report.size() != RawProtocol::kReportSize) return {.right = false};
+  RawReport again{};
+  std::copy(report.begin(), report.end(), again.begin());
+  command.right = report == sealed(again) && report[byte(0)] == 0x4C && report[byte(1)] == 1;
+  command.mode = report[byte(3)];
+  command.sequence = load_le<std::uint32_t>(report, byte(4));
+  command.answered = load_le<std::uint32_t>(report, byte(40));
+  for (std::size_t i = 0; i < 6; ++i) command.torque[i] = load_float_le(report, byte(16 + 4 * i));
+  return command;
+}
+
+}  // namespace limpid::test
