@@ -2,10 +2,9 @@
 
 Needs numpy only (Debian: python3-numpy)."""
 
-import json
-import struct
-
 import numpy as np
+
+from glb_file import Part, grid_triangles, write_glb
 
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 
@@ -36,12 +35,7 @@ class Shape:
         """points: rows x columns x 3, closed along the columns; outside is left of the rows'
         direction seen along the columns."""
         rows, columns, _ = points.shape
-        index = np.arange(rows * columns).reshape(rows, columns)
-        a, b = index[:-1], np.roll(index, -1, axis=1)[:-1]
-        c, d = index[1:], np.roll(index, -1, axis=1)[1:]
-        triangles = np.concatenate(
-            [np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]
-        )
+        triangles = grid_triangles(rows, columns, around=True)
         flat = points.reshape(-1, 3)
         face = np.cross(flat[triangles[:, 1]] - flat[triangles[:, 0]],
                         flat[triangles[:, 2]] - flat[triangles[:, 0]])
@@ -95,43 +89,10 @@ class Shape:
 
     def write(self, path, materials):
         """materials: name -> (r, g, b linear, metallic, roughness)."""
-        blob, views, accessors, primitives, used = b"", [], [], [], []
-
-        def accessor(array, kind, component, target, **limits):
-            nonlocal blob
-            views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": array.nbytes,
-                          "target": target})
-            blob += array.tobytes() + b"\0" * (-array.nbytes % 4)
-            accessors.append({"bufferView": len(views) - 1, "componentType": component,
-                              "count": len(array) if kind != "SCALAR" else array.size,
-                              "type": kind, **limits})
-            return len(accessors) - 1
-
+        parts = []
         for name, pieces in self.parts.items():
             first = np.cumsum([0] + [len(p[0]) for p in pieces])
-            points = np.concatenate([p[0] for p in pieces]).astype("<f4")
-            normals = np.concatenate([p[1] for p in pieces]).astype("<f4")
-            triangles = np.concatenate([p[2] + k for p, k in zip(pieces, first)]).astype("<u4")
-            primitives.append({
-                "attributes": {
-                    "POSITION": accessor(points, "VEC3", 5126, 34962,
-                                         min=points.min(0).tolist(), max=points.max(0).tolist()),
-                    "NORMAL": accessor(normals, "VEC3", 5126, 34962)},
-                "indices": accessor(triangles.reshape(-1), "SCALAR", 5125, 34963),
-                "material": len(used)})
-            r, g, b, metallic, roughness = materials[name]
-            used.append({"name": name, "pbrMetallicRoughness": {
-                "baseColorFactor": [r, g, b, 1], "metallicFactor": metallic,
-                "roughnessFactor": roughness}})
-        text = json.dumps({
-            "asset": {"version": "2.0", "generator": "glb_shapes.py"}, "scene": 0,
-            "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-            "meshes": [{"primitives": primitives}], "materials": used, "accessors": accessors,
-            "bufferViews": views, "buffers": [{"byteLength": len(blob)}]},
-            separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        with open(path, "wb") as file:
-            file.write(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(blob)))
-            file.write(struct.pack("<II", len(text), 0x4E4F534A) + text)
-            file.write(struct.pack("<II", len(blob), 0x004E4942) + blob)
-        return sum(len(p[2]) for pieces in self.parts.values() for p in pieces)
+            parts.append(Part(name, np.concatenate([p[0] for p in pieces]),
+                              np.concatenate([p[1] for p in pieces]),
+                              np.concatenate([p[2] + k for p, k in zip(pieces, first)])))
+        return write_glb(path, parts, materials, "glb_shapes.py")

@@ -1,19 +1,61 @@
 #include "devices/rig.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "core/dynamics/inverse_kinematics.h"
 
 namespace limpid {
 
-Rig::Rig(const ArmDescription& arm, const Scene& scene) {
+Rig::Rig(const ArmDescription& arm, const Scene& scene, bool real) {
   if (arm.dof() == 3) {
-    of_ = std::make_unique<Of<3>>(Tick<3>(arm, scene), VirtualArm<3>(arm), RigInput{});
+    of_ = std::make_unique<Of<3>>(arm, scene, real);
   } else {
-    of_ = std::make_unique<Of<kAnyDof>>(Tick<kAnyDof>(arm, scene), VirtualArm<kAnyDof>(arm),
-                                        RigInput{});
+    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, real);
   }
+}
+
+void Rig::plug(Device* device) noexcept {
+  std::visit([&](auto& of) { of->plugged = device; }, of_);
+}
+
+bool Rig::real() const {
+  return std::visit([](const auto& of) { return of->real; }, of_);
+}
+
+bool Rig::device_reading(DeviceReading& newest) const {
+  return std::visit(
+      [&](const auto& of) {
+        newest = of->reading;
+        return of->tick.force_state() != ForceState::lost;
+      },
+      of_);
+}
+
+ForceState Rig::force_state() const {
+  return std::visit([](const auto& of) { return of->tick.force_state(); }, of_);
+}
+
+// What the loop sees. Of a real device that says nothing: where it was when it last did.
+template <int N>
+Reading<N> Rig::Of<N>::read(const Parameters& p, const HandInput& hand) noexcept {
+  if (!real) {
+    virtual_device.expect(p, hand);
+    virtual_device.read(reading);
+    Reading<N> in = virtual_device.arm.read(0);
+    std::copy_n(reading.x.begin(), in.x.size(), in.measured.begin());
+    return in;
+  }
+  const bool here = plugged != nullptr && plugged->read(reading);
+  const Eigen::Index n = x_before.size();
+  Vec<N> x = x_before;
+  if (here && reading.count > 0) x = Eigen::Map<const Vec<N>>(reading.x.data(), n);
+  v_real = (x - x_before) / p.tick;
+  x_before = x;
+  DeviceHealth health{true, reading.hand, reading.fault, !here, reading.age};
+  if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
+  return {x, x, v_real, health};
 }
 
 TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
@@ -40,7 +82,9 @@ void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
         of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, start.armed});
-        of->arm.place(start.x1, start.v1, start.target);
+        of->virtual_device.arm.place(start.x1, start.v1, start.target);
+        of->x_before = start.x1;
+        of->v_real = start.v1;
         of->input = {{start.target, 1}, start.armed};
       },
       of_);
@@ -49,9 +93,9 @@ void Rig::start(const Parameters& p, const RigStart& start) {
 void Rig::present(RigStart& into) const {
   std::visit(
       [&](const auto& of) {
-        const auto device = of->arm.read(0);
-        into.x1 = device.x;
-        into.v1 = device.v;
+        const auto device = of->virtual_device.arm.read(0);
+        into.x1 = of->real ? of->x_before : device.x;
+        into.v1 = of->real ? of->v_real : device.v;
         into.x2 = of->tick.proxy().x();
         into.v2 = of->tick.proxy().v();
         into.f1_hat = of->tick.estimate();
@@ -65,20 +109,32 @@ void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row
   std::visit(
       [&](auto& of) {
         const RowLayout& layout = of->tick.layout();
-        const auto reading = of->arm.read(p.encoder_step);
+        const auto reading = of->read(p, input.hand);
         const auto& torque = of->tick.run(p, reading, input.force, row);
-        of->arm.live(p, torque, input.hand);
+        Device* device = of->real ? of->plugged : &of->virtual_device;
+        if (device != nullptr) {
+          const std::span tau(torque.data(), static_cast<std::size_t>(torque.size()));
+          device->write(tau);
+        }
         of->input = input;
-        const auto& f1 = of->arm.hand_torque();
-        std::copy_n(f1.data(), f1.size(), layout.in(row, Column::hand_torque).begin());
-        std::copy_n(input.hand.target.data(), 3, layout.in(row, Column::hand_target).begin());
+        const std::span<double> f1 = layout.in(row, Column::hand_torque);
+        const std::span<double> target = layout.in(row, Column::hand_target);
+        if (of->real) {  // nobody measures the hand
+          std::ranges::fill(f1, std::numeric_limits<double>::quiet_NaN());
+          const Vec3 tip = of->tick.tip();
+          std::copy_n(tip.data(), 3, target.begin());
+        } else {
+          std::ranges::copy(of->virtual_device.arm.hand_torque(), f1.begin());
+          std::copy_n(input.hand.target.data(), 3, target.begin());
+        }
         layout.in(row, Column::hand_grip)[0] = input.hand.grip;
       },
       of_);
 }
 
 Vec3 Rig::tip() const {
-  return std::visit([](const auto& of) { return of->arm.tip(); }, of_);
+  return std::visit(
+      [](const auto& of) { return of->real ? of->tick.tip() : of->virtual_device.arm.tip(); }, of_);
 }
 
 bool Rig::steady() const {

@@ -1,4 +1,4 @@
-// A device, the loop that drives it and the hand that holds it: one step is one tick of all three.
+// A device, virtual or real, the loop that drives it and the hand that holds it: one step is one tick of all three.
 //
 // Live threads, headless runs, re-runs and tests all call the same step.
 #pragma once
@@ -40,7 +40,14 @@ class TouchWorld {
 
 class Rig {
  public:
-  Rig(const ArmDescription& arm, const Scene& scene);
+  // `real`: the arm is a real device's, to be plugged in; until then it counts as lost.
+  Rig(const ArmDescription& arm, const Scene& scene, bool real = false);
+
+  // From the next step on; null: unplugged. Of a rig for a real device. The caller keeps it.
+  void plug(Device* device) noexcept;
+  bool real() const;
+  // What the real device said at the last step; false if it was lost.
+  bool device_reading(DeviceReading& newest) const;
 
   int dof() const { return layout().dof(); }
   const RowLayout& layout() const;
@@ -59,14 +66,24 @@ class Rig {
   Vec3 tip() const;       // of the device [m]
   bool steady() const;    // nothing fades, no coupling is being switched
   bool diverged() const;  // the loop went unstable; force is off
+  ForceState force_state() const;
   // Copies where the proxy is touched, as many as fit; returns how many.
   std::size_t contacts(std::span<ContactForce> into) const noexcept;
 
  private:
   template <int N>
   struct Of {
+    Of(const ArmDescription& description, const Scene& scene, bool is_real)
+        : tick(description, scene), virtual_device(description), real(is_real) {}
+    Reading<N> read(const Parameters& p, const HandInput& hand) noexcept;
+
     Tick<N> tick;
-    VirtualArm<N> arm;
+    VirtualDevice<N> virtual_device;
+    bool real;
+    Device* plugged = nullptr;
+    DeviceReading reading;
+    Vec<N> x_before, v_real;  // of a real device
+    std::uint64_t count_before = 0;
     RigInput input;
   };
   std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;

@@ -85,6 +85,8 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   const Vec3 target_rate = (hand.target - target_) / p.tick;
   const double grip_damping = h / 2 * b_h + h * h / 4 * k_h;  // of the substep's midpoint
   const Vec<N> x_start = x_;
+  Vec<N> pushed = Vec<N>::Zero(x_.size());
+  if (!hand.torque.empty()) pushed = Eigen::Map<const Vec<N>>(hand.torque.data(), x_.size());
   Vec<N> x_model = x_;
   Vec<N> dv = Vec<N>::Zero(x_.size());
   Vec3 tip_model = Vec3::Zero();
@@ -114,7 +116,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
       for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += J_.col(i).dot(pulled);
       A(j, j) += h / 2 * r.damping[j] + h * h / 4 * r.stiffness[j];
     }
-    Vec<N> b = torque - Cv_ + r.torque - r.damping.cwiseProduct(v_);
+    Vec<N> b = torque + pushed - Cv_ + r.torque - r.damping.cwiseProduct(v_);
     b.noalias() += J_.transpose() * pull;
     b *= h;
     dv = solve_symmetric<N>(A, b);
@@ -125,9 +127,43 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     v_ += dv;
   }
   hand_torque_ /= p.substeps;
+  hand_torque_ += pushed;
   target_ = hand.target;
 }
 
+template <int N>
+VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(description) {
+  traits_.name = description.name;
+  traits_.id = "virtual";
+  traits_.dof = description.dof();
+  traits_.pushes = true;
+  traits_.rate = 1 / p_.tick;
+  for (const Joint& joint : description.joints) {
+    traits_.lower.push_back(joint.lower);
+    traits_.upper.push_back(joint.upper);
+    traits_.resolution.push_back(0);
+    traits_.effort.push_back(joint.effort);
+  }
+}
+
+template <int N>
+bool VirtualDevice<N>::read(DeviceReading& newest) noexcept {
+  const Reading<N> reading = arm.read(p_.encoder_step);
+  std::copy_n(reading.measured.data(), reading.measured.size(), newest.x.begin());
+  newest.count = ++count_;
+  newest.age = 0;
+  return true;
+}
+
+template <int N>
+void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
+  Vec<N> tau = Vec<N>::Zero(traits_.dof);
+  if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
+  arm.live(p_, tau, hand_);
+}
+
+template class VirtualDevice<3>;
+template class VirtualDevice<kAnyDof>;
 template class VirtualArm<3>;
 template class VirtualArm<kAnyDof>;
 

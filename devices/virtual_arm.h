@@ -1,16 +1,20 @@
 // The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
 #pragma once
 
+#include <span>
+
 #include "core/dynamics/arm.h"
 #include "core/loop/parameters.h"
 #include "core/loop/tick.h"
+#include "devices/device.h"
 
 namespace limpid {
 
 // What the hand does over a tick: it goes on from where it wanted the tip a tick ago to `target`.
 struct HandInput {
-  Vec3 target = Vec3::Zero();  // [m]
-  double grip = 1;             // 1 holds, 0 has let go; scales stiffness and damping
+  Vec3 target = Vec3::Zero();       // [m]
+  double grip = 1;                  // 1 holds, 0 has let go; scales stiffness and damping
+  std::span<const double> torque{};  // pushed on the joints besides [N m]; empty: none
 };
 
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring and damper at the
@@ -50,6 +54,33 @@ class VirtualArm {
   Jacobian<N> J_;
 };
 
+// The virtual arm as a device: a write lives through the tick.
+template <int N>
+class VirtualDevice final : public Device {
+ public:
+  explicit VirtualDevice(const ArmDescription& arm);
+
+  // What the next tick will be like.
+  void expect(const Parameters& p, const HandInput& hand) {
+    p_ = p;
+    hand_ = hand;
+  }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override;
+  void write(std::span<const double> torque) noexcept override;
+  void stop() noexcept override { write({}); }
+
+  VirtualArm<N> arm;
+
+ private:
+  DeviceTraits traits_;
+  Parameters p_;
+  HandInput hand_;
+  std::uint64_t count_ = 0;
+};
+
+extern template class VirtualDevice<3>;
+extern template class VirtualDevice<kAnyDof>;
 extern template class VirtualArm<3>;
 extern template class VirtualArm<kAnyDof>;
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
+
+#include "render/gltf_file.h"
 
 namespace limpid {
 namespace {
@@ -32,6 +35,10 @@ float number(const unsigned char* p, bool normalized) {
 
 }  // namespace
 
+void GltfAccessor::refuse(const std::string& why) const {
+  throw std::runtime_error(name_ + ": " + one_line(why));
+}
+
 std::span<const unsigned char> GltfAccessor::view(int buffer_view) const {
   const auto& view = at(gltf_.bufferViews, buffer_view, "buffer view");
   const auto& buffer = at(gltf_.buffers, view.buffer, "buffer");
@@ -51,8 +58,9 @@ Elements GltfAccessor::elements(int index) {
   if (accessor.count == 0 || accessor.count > kMostElements)
     refuse("accessor " + std::to_string(index) + " has " + std::to_string(accessor.count) +
            " elements, allowed are 1 to " + std::to_string(kMostElements));
-  Elements e{nullptr,    accessor.count,         packed, components, accessor.componentType,
-             accessor.normalized, nullptr};
+  Elements e{nullptr,    accessor.count,         packed,
+             components, accessor.componentType, accessor.normalized,
+             nullptr};
   if (accessor.bufferView >= 0) {
     const auto bytes = view(accessor.bufferView);
     const auto stride = gltf_.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;

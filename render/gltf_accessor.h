@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include "core/math/sizes.h"
@@ -40,9 +39,7 @@ class GltfAccessor {
              std::to_string(list.size()));
     return list[static_cast<std::size_t>(index)];
   }
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw std::runtime_error(name_ + ": " + why);
-  }
+  [[noreturn]] void refuse(const std::string& why) const;
 
  private:
   void fill_in(const tinygltf::Accessor& accessor, Elements& e);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
-  throw std::runtime_error(name + ": " + why);
+  throw std::runtime_error(name + ": " + one_line(why));
 }
 
 std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t at) {
@@ -61,10 +61,12 @@ struct Surroundings {
   std::size_t left;  // bytes
 
   std::filesystem::path resolve(const std::string& uri) const {
-    const std::string what = "refers to \"" + uri.substr(0, 200) + "\"";
+    const std::string what = "refers to \"" + uri + "\"";
     const std::filesystem::path relative(uri);
     const bool odd = uri.empty() || relative.is_absolute() || uri.find(':') != uri.npos ||
-                     uri.find('\\') != uri.npos || uri.find('\0') != uri.npos;
+                     uri.find('\\') != uri.npos || std::any_of(uri.begin(), uri.end(), [](char c) {
+                       return static_cast<unsigned char>(c) < 0x20;
+                     });
     if (odd || std::find(relative.begin(), relative.end(), "..") != relative.end())
       refuse(name, what + "; allowed are files in its own folder");
     if (folder.empty()) refuse(name, what + "; it must contain everything itself");
@@ -108,6 +110,14 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
+std::string one_line(std::string text) {
+  constexpr std::size_t kLongest = 300;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  return text;
+}
+
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) refuse(path.string(), "cannot be read");
@@ -115,8 +125,8 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::si
   const auto size = file ? static_cast<std::streamoff>(file.tellg()) : std::streamoff{-1};
   if (size < 0) refuse(path.string(), "cannot be read");
   if (static_cast<std::size_t>(size) > most)
-    refuse(path.string(), "makes the model larger than the " +
-                              std::to_string(kLargestGltf >> 20) + " MiB that are read");
+    refuse(path.string(), "makes the model larger than the " + std::to_string(kLargestGltf >> 20) +
+                              " MiB that are read");
   std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
   file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
   if (!file) refuse(path.string(), "cannot be read");
@@ -126,8 +136,7 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::si
 GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,
                          const std::filesystem::path& folder) {
   if (bytes.size() > kLargestGltf)
-    refuse(name, "is larger than the " + std::to_string(kLargestGltf >> 20) +
-                     " MiB that are read");
+    refuse(name, "is larger than the " + std::to_string(kLargestGltf >> 20) + " MiB that are read");
   const auto text = json_of_text(bytes);
   const bool binary = text.empty();
   guard_gltf_json(binary ? json_of_glb(bytes, name) : text, name);
@@ -153,7 +162,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
     error = "is not valid glTF";
   }
   if (!good) refuse(name, error.empty() ? "is not valid glTF" : first_line(error));
-  if (!error.empty()) out.warnings.push_back(first_line(error));
+  if (!error.empty()) out.warnings.push_back(one_line(first_line(error)));
   out.pictures.resize(out.gltf.images.size());
   return out;
 }

@@ -15,6 +15,9 @@ inline constexpr std::size_t kLargestGltf = std::size_t{512} << 20;  // with all
 // Throws std::runtime_error naming the file if it is no file, larger than `most` or unreadable.
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most);
 
+// Words of a file made fit for a message: no line ends, no control characters, not too long.
+std::string one_line(std::string text);
+
 struct GltfFile {
   tinygltf::Model gltf;
   // Encoded as they came, one each image of `gltf`; empty: in a buffer view, or missing.

@@ -49,8 +49,7 @@ std::optional<Image> GltfImages::decode(std::span<const unsigned char> bytes,
     throw std::runtime_error(name + ": has more than 1 GiB of pictures");
   int width = 0, height = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(bytes.data(), length, &width, &height, &channels, 4),
-      stbi_image_free);
+      stbi_load_from_memory(bytes.data(), length, &width, &height, &channels, 4), stbi_image_free);
   if (!pixels || width != image.width || height != image.height) return std::nullopt;
   image.rgba.assign(pixels.get(), pixels.get() + size);
   return image;

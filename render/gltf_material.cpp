@@ -21,9 +21,8 @@ Eigen::Vector2f pair(const tinygltf::Value& object, const char* key, float other
   Eigen::Vector2f out = Eigen::Vector2f::Constant(otherwise);
   for (int i = 0; value.IsArray() && value.ArrayLen() == 2 && i < 2; ++i)
     out[i] = static_cast<float>(value.Get(i).IsNumber() ? value.Get(i).GetNumberAsDouble() : 0);
-  return out.allFinite() && out.cwiseAbs().maxCoeff() < 1e6f
-             ? out
-             : Eigen::Vector2f::Constant(otherwise);
+  return out.allFinite() && out.cwiseAbs().maxCoeff() < 1e6f ? out
+                                                             : Eigen::Vector2f::Constant(otherwise);
 }
 
 // KHR_texture_transform.
@@ -115,8 +114,7 @@ int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& 
   file_.at(source_.gltf.images, texture.source, "image");
   tinygltf::Sampler sampler;
   if (texture.sampler >= 0) sampler = file_.at(source_.gltf.samplers, texture.sampler, "sampler");
-  const int image =
-      picture(texture.source, srgb, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT));
+  const int image = picture(texture.source, srgb, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT));
   if (image < 0) return -1;
   placed = true;
   to.uv_set = set;
@@ -134,7 +132,7 @@ int GltfMaterials::picture(int source, bool srgb, Image::Wrap wrap_u, Image::Wra
   auto image = images_.decode(bytes, name_);
   if (!image) {
     warn("image " + std::to_string(source) +
-         (from.uri.empty() ? "" : " (\"" + from.uri.substr(0, 100) + "\")") +
+         (from.uri.empty() ? "" : " (\"" + one_line(from.uri) + "\")") +
          (bytes.empty() ? " is missing" : " is no PNG or JPEG that can be read") +
          ", it is left out");
     return -1;

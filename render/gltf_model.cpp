@@ -71,13 +71,13 @@ Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
       const Eigen::Quaterniond q(node.rotation[3], node.rotation[0], node.rotation[1],
                                  node.rotation[2]);
       if (!(q.norm() > 1e-6))
-        file_.refuse("node \"" + node.name.substr(0, 100) + "\" has a rotation of length zero");
+        file_.refuse("node \"" + node.name + "\" has a rotation of length zero");
       out.rotate(q.normalized());
     }
     if (node.scale.size() == 3) out.scale(Vec3(Eigen::Map<const Vec3>(node.scale.data())));
   }
   if (!out.matrix().allFinite())
-    file_.refuse("node \"" + node.name.substr(0, 100) + "\" has a transform that is not finite");
+    file_.refuse("node \"" + node.name + "\" has a transform that is not finite");
   return out;
 }
 
@@ -226,7 +226,7 @@ Model Reader::read() {
   for (const std::string& name : gltf_.extensionsRequired)
     if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end() &&
         !name.starts_with("KHR_materials_"))
-      file_.refuse("requires the extension " + name.substr(0, 100) + ", which is not read");
+      file_.refuse("requires the extension " + name + ", which is not read");
   seen_.assign(gltf_.nodes.size(), false);
   for (const int node : roots()) add_node(node, Eigen::Affine3d::Identity(), 0);
   if (indices_.empty()) file_.refuse("contains no triangles");

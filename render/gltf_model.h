@@ -22,8 +22,8 @@ namespace limpid {
 
 // How far a load has come, and whether it is still wanted; either may be null.
 struct LoadProgress {
-  std::atomic<double>* part = nullptr;          // 0 to 1
-  const std::atomic<bool>* cancel = nullptr;    // asked several times a second
+  std::atomic<double>* part = nullptr;        // 0 to 1
+  const std::atomic<bool>* cancel = nullptr;  // asked several times a second
 };
 
 struct LoadCancelled : std::runtime_error {

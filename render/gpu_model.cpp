@@ -24,7 +24,10 @@ std::uint8_t byte(float unit) {
 }
 
 PackedVertex packed(const Vertex& v) {
-  PackedVertex out{{v.position.x(), v.position.y(), v.position.z()}, {v.uv.x(), v.uv.y()}, {}, {},
+  PackedVertex out{{v.position.x(), v.position.y(), v.position.z()},
+                   {v.uv.x(), v.uv.y()},
+                   {},
+                   {},
                    {byte(v.surface.x()), byte(v.surface.y()), 0, 0}};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -47,8 +50,8 @@ std::vector<GpuModel::Piece> cut(const Model& model, const std::vector<std::uint
   std::vector<GpuModel::Piece> pieces;
   for (const Part& part : parts)
     for (std::uint32_t from = 0; from < part.count; from += kPieceIndices) {
-      GpuModel::Piece piece{base + part.first + from, std::min(kPieceIndices, part.count - from),
-                            part.material, {}};
+      GpuModel::Piece piece{
+          base + part.first + from, std::min(kPieceIndices, part.count - from), part.material, {}};
       for (std::uint32_t i = 0; i < piece.count; ++i)
         piece.box.extend(model.vertices[indices[part.first + from + i]].position);
       pieces.push_back(piece);
@@ -57,8 +60,7 @@ std::vector<GpuModel::Piece> cut(const Model& model, const std::vector<std::uint
 }
 
 // A field of PackedVertex as the shaders' input.
-void attribute(GLuint location, GLint size, GLenum type, GLboolean normalized,
-               std::size_t offset) {
+void attribute(GLuint location, GLint size, GLenum type, GLboolean normalized, std::size_t offset) {
   glVertexAttribPointer(location, size, type, normalized, sizeof(PackedVertex),
                         reinterpret_cast<const void*>(offset));
   glEnableVertexAttribArray(location);
@@ -69,8 +71,8 @@ void attribute(GLuint location, GLint size, GLenum type, GLboolean normalized,
 GlTexture upload(const Image& image) {
   GlTexture texture;
   glBindTexture(GL_TEXTURE_2D, texture);
-  glTexImage2D(GL_TEXTURE_2D, 0, image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width,
-               image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width, image.height,
+               0, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(image.wrap_u));
@@ -81,10 +83,9 @@ GlTexture upload(const Image& image) {
 
 GpuModel::GpuModel(const Model& model)
     : fine_(cut(model, model.indices, model.parts, 0)),
-      coarse_(model.coarse.empty()
-                  ? fine_
-                  : cut(model, model.coarse, model.coarse_parts,
-                        static_cast<std::uint32_t>(model.indices.size()))),
+      coarse_(model.coarse.empty() ? fine_
+                                   : cut(model, model.coarse, model.coarse_parts,
+                                         static_cast<std::uint32_t>(model.indices.size()))),
       has_coarse_(!model.coarse.empty()) {
   for (const Piece& piece : fine_) box_.extend(piece.box);
   std::vector<PackedVertex> vertices;

@@ -26,7 +26,7 @@ class GpuModel {
   GLuint texture(int image) const { return textures_[static_cast<std::size_t>(image)]; }
 
   void bind() const { glBindVertexArray(array_); }
-  void draw(const Piece& piece) const;  // after bind()
+  void draw(const Piece& piece) const;   // after bind()
   void draw(bool coarse = false) const;  // all of it, binds
 
  private:

@@ -31,11 +31,11 @@ struct Image {
 // What the vertices do not say. Images are numbers in Model::images, -1 for none.
 struct Material {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
-  int color = -1;     // times the vertices' colour and opacity
-  int surface = -1;   // green: roughness, blue: metallic, times the vertices'
-  int normal = -1;    // bumps, in the frame of the texture
-  int emission = -1;  // times `glow`
-  float bump = 1;     // of the normal texture
+  int color = -1;               // times the vertices' colour and opacity
+  int surface = -1;             // green: roughness, blue: metallic, times the vertices'
+  int normal = -1;              // bumps, in the frame of the texture
+  int emission = -1;            // times `glow`
+  float bump = 1;               // of the normal texture
   std::array<float, 3> glow{};  // light of its own, linear
   Alpha alpha = Alpha::opaque;
   float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there

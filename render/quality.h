@@ -46,10 +46,10 @@ class AutoQuality {
   void begin_second();
 
   int level_;
-  double elapsed_ = 0;                   // of the second under way [s]
+  double elapsed_ = 0;                    // of the second under way [s]
   int frames_ = 0, slow_ = 0, fast_ = 0;  // in it
-  int good_seconds_ = 0;                 // in a row
-  int wait_;                             // good seconds before a step up
+  int good_seconds_ = 0;                  // in a row
+  int wait_;                              // good seconds before a step up
 };
 
 }  // namespace limpid

@@ -26,8 +26,7 @@ glm::vec4 srgb(const palette::Rgb& c) { return {c[0], c[1], c[2], 1}; }
 std::vector<Drawable> upload_all(const std::vector<Item>& items) {
   std::vector<Drawable> out;
   for (const Item& item : items)
-    out.push_back(
-        {std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link});
+    out.push_back({std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link});
   return out;
 }
 
@@ -84,8 +83,8 @@ void ScenePainter::set_meshes(const std::vector<PlacedMesh>& meshes) {
     auto& model = uploaded[mesh.model];
     if (!model) {
       const auto known = uploaded_.find(mesh.model);
-      model = known != uploaded_.end() ? known->second
-                                       : std::make_shared<const GpuModel>(*mesh.model);
+      model =
+          known != uploaded_.end() ? known->second : std::make_shared<const GpuModel>(*mesh.model);
     }
     meshes_.push_back({model, mesh.pose, -1});
     if (mesh.highlighted) highlighted_.push_back(meshes_.back());
@@ -118,7 +117,7 @@ void ScenePainter::begin_frame(const Mood& mood, const Camera& camera) {
                          mood.ground,
                          mood.top,
                          mood.bottom,
-                         glm::vec4(size, pixel_scale_, 0)};
+                         glm::vec4(size, pixel_scale_ * static_cast<float>(quality_.scale), 0)};
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_);
   glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof block, &block);
 }

@@ -13,6 +13,8 @@ layout(std140) uniform Frame {
   vec4 view;              // viewport: x, y: size; z: pixels a unit of line width
 };
 
+const vec3 kSideLamp = vec3(0.62, 0.54, 0.57);  // unit; a weak lamp that gives shaded sides form
+
 // Filmic curve with the sRGB encoding built in (Hejl and Burgess-Dawson).
 vec3 film(vec3 linear) {
   vec3 c = max(vec3(0.0), linear - 0.004);

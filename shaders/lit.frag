@@ -33,8 +33,6 @@ vec3 bumped(vec3 n) {
 #endif
 
 // A studio: floor and ceiling, a wide lamp overhead and one at the side, blurred by roughness.
-const vec3 kSideLamp = vec3(0.62, 0.54, 0.57);  // unit
-
 vec3 studio(vec3 d, float a) {
   float blur = 0.06 + 0.94 * a;
   vec3 room = mix(0.7 * earth.rgb, sky.rgb, smoothstep(-blur, blur, d.z + 0.1));

@@ -32,7 +32,9 @@ void main() {
   texel = uv;
 #endif
 #ifdef MATTE
-  in_shade = base.rgb * mix(earth.rgb, sky.rgb, 0.5 + 0.5 * facing.z);
+  vec3 around = mix(earth.rgb, sky.rgb, 0.5 + 0.5 * facing.z) +
+                sky.rgb * (0.30 * max(dot(facing, kSideLamp), 0.0));
+  in_shade = base.rgb * around + 0.08 * sky.rgb;  // the last stands for what it mirrors
   from_key = base.rgb * key.rgb * max(dot(facing, to_light.xyz), 0.0);
 #endif
   gl_Position = view_projection * world;

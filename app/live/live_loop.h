@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "app/run/recorder.h"
+#include "core/loop/hand_over.h"
 #include "core/loop/haptic_thread.h"
 #include "core/loop/triple_buffer.h"
+#include "devices/guided_hand.h"
 #include "devices/mouse_hand.h"
 #include "devices/rig.h"
 
@@ -30,6 +32,17 @@ struct Snapshot {
   std::size_t contact_count = 0;
   bool diverged = false;
   bool recording = false;
+  ForceState force_state = ForceState::on;
+  bool connected = false;  // the device that is plugged in answers
+  DeviceReading reading;   // its newest
+};
+
+// A device for the loop; without one: none is plugged in any more.
+struct Plug {
+  std::unique_ptr<Device> device;
+
+  // Leads the virtual arm's hand instead of being the arm.
+  bool guides() const { return device && !device->traits().pushes && device->traits().dof == 6; }
 };
 
 // All but the functions said to be the loop's are the window's. Starting over, another arm or
@@ -41,10 +54,17 @@ class LiveLoop {
 
   // A new world; the hand rests with the tip at `home` [m], at rest. Errors: as rest_at().
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
+  // The same with a real device for the arm, which has as many joints; force is off until it is
+  // armed. Starts where the device is.
+  void open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
+            std::unique_ptr<Device> device);
   void close();
-  // Another scene for the same arm, taken in by the running loop at its next tick. Built by the
-  // caller, beside the loop.
-  void exchange(std::unique_ptr<TouchWorld> world);
+  // Both are taken in by the running loop at its next tick. Another scene for the same arm, built
+  // beside the loop:
+  void exchange(std::unique_ptr<TouchWorld> world) { worlds_.offer(std::move(world)); }
+  // Another device, or none: a hand's guide, or, of a loop for a real device, that one back again.
+  void plug(std::unique_ptr<Device> device);
+  bool real() const { return rig_ && rig_->real(); }
 
   void set(const Controls& controls) { controls_.write(controls); }
   // The newest snapshot; true if there is one newer than at the last call.
@@ -71,23 +91,28 @@ class LiveLoop {
   void tick(const TickTiming& timing);       // the loop's
   void begin_recording(const Vec3& target);  // the loop's
   void publish(const TickTiming& timing);
-  void exchange_world();  // the loop's
-  void drop_worlds();
+  void take_in();  // the loop's
+  HandInput hand_input(const Controls& controls);  // the loop's
+  void begin(RigStart start, const Parameters& p);
 
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
   std::unique_ptr<Recorder> recorder_;
-  // The newest world for the loop, and one that it is done with.
-  std::atomic<TouchWorld*> wanted_world_{nullptr};
-  std::atomic<TouchWorld*> old_world_{nullptr};
+  HandOver<TouchWorld> worlds_;
+  HandOver<Plug> plugs_;
   // Where the loop records to: set by the window, taken up by the loop, which answers.
   std::atomic<Recorder*> wanted_recorder_{nullptr};
   std::atomic<Recorder*> present_recorder_{nullptr};
 
   // The loop's own.
   std::unique_ptr<Rig> rig_;
+  Plug* plug_ = nullptr;
+  DeviceReading guide_;
+  bool connected_ = false;
   MouseHand hand_;
+  GuidedHand guided_;
+  bool led_ = false;  // by the guide, since it was last touched
   Parameters parameters_;
   RigStart home_;
   RigStart rebase_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/assets.h"
 #include "app/run/scene_meshes.h"
 #include "devices/files/config_file.h"
@@ -60,7 +62,11 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.start = start_of(session.layout, session.row(0));
   plan.rows = session.size();
   plan.seed = session.info.seed;
+  // Nobody measured the hand on a real device: what the observer saw of it acts in its place.
+  const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);
   for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto estimate = session.at(k, Column::hand_torque_estimate);
+    if (!measured) plan.hand_torque.insert(plan.hand_torque.end(), estimate.begin(), estimate.end());
     plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
   }
 

@@ -36,8 +36,7 @@ class Run {
     const auto k = static_cast<std::size_t>(end_.rows);
     const bool changed = apply_changes();
     const auto began = std::chrono::steady_clock::now();
-    const HandInput hand{plan_.hand.sample(k, T()), plan_.hand.grip_sample(k, T())};
-    rig_.step(parameters_, {hand, armed(k)}, row_);
+    rig_.step(parameters_, {hand(k), armed(k)}, row_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     rig_.layout().in(std::span(row_), Column::wake_latency)[0] = wake_latency;
     rig_.layout().in(std::span(row_), Column::compute)[0] = took.count();
@@ -51,6 +50,14 @@ class Run {
 
  private:
   double T() const { return parameters_.tick; }
+
+  HandInput hand(std::size_t k) const {
+    const Vec3 target = plan_.hand.sample(k, T());
+    if (plan_.hand_torque.empty()) return {target, plan_.hand.grip_sample(k, T())};
+    const auto n = static_cast<std::size_t>(rig_.dof());
+    const std::size_t last = plan_.hand_torque.size() / n - 1;
+    return {target, 0, std::span(plan_.hand_torque).subspan(n * std::min(k, last), n)};
+  }
 
   bool armed(std::size_t k) const {
     return plan_.force.empty() || plan_.force[std::min(k, plan_.force.size() - 1)];

@@ -21,6 +21,7 @@ struct RunPlan {
   HandPath hand;
   Parameters parameters;               // at the first row
   std::vector<SettingChange> changes;  // later ones, of a recording that is run again
+  std::vector<double> hand_torque;     // N x n [N m], instead of a grip; empty: the hand's path leads
   std::vector<bool> force;             // armed at each row of a recording; empty: always
   std::optional<RigStart> start;       // default: at rest, the tip on the hand's first point
   std::uint64_t rows = 0;              // how many ticks

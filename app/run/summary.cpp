@@ -25,7 +25,7 @@ void Summary::add(std::span<const double> row) {
   if (contact >= largest_contact_) memorable_.assign(row.begin(), row.end());
   largest_contact_ = std::max(largest_contact_, contact);
   in_contact_ += contact > 0 ? 1 : 0;
-  human_square_sum_ += vector(at(Column::hand_torque)).squaredNorm();
+  human_square_sum_ += vector(layout_.human_torque(row)).squaredNorm();
   energy_total_ = at(Column::energy_total)[0];
   energy_commanded_ = at(Column::energy_commanded)[0];
   highest_total_ = std::max(highest_total_, energy_total_);

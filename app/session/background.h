@@ -44,6 +44,9 @@ class Background {
     });
   }
 
+  // Does not wait: take() throws what the work then throws, or gives what it still returns.
+  void ask_to_stop() { progress_.cancel = true; }
+
   void cancel() {
     if (!busy()) return;
     progress_.cancel = true;

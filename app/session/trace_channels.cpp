@@ -29,7 +29,7 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::error, norm(joints.first(x1.size())));
   put(Channel::energy_total, at(Column::energy_total)[0]);
   put(Channel::energy_commanded, at(Column::energy_commanded)[0]);
-  put(Channel::human, norm(at(Column::hand_torque)));
+  put(Channel::human, norm(layout_.human_torque(row)));
   put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
   put(Channel::contact, norm(at(Column::contact_torque)));
 }

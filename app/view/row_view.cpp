@@ -53,7 +53,7 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
   const auto target = at(Column::hand_target);
   view.hand_target = Vec3(target[0], target[1], target[2]);
   view.hand_grips = view.show_hand = at(Column::hand_grip)[0] > 0.5;
-  view.hand_force = tip_force(at(Column::device_position), at(Column::hand_torque));
+  view.hand_force = tip_force(at(Column::device_position), layout.human_torque(row));
   return view;
 }
 

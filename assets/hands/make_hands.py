@@ -1,19 +1,30 @@
 #!/usr/bin/env python3
-"""Writes the hand paths beside it: touch.csv, free.csv, proximal.csv, circle.csv (100 Hz, metres,
-seconds).
+"""Writes the hand paths beside it (100 Hz, metres, seconds): touch, free, proximal and circle for
+the table, and one for each scene of the same name: spheres, relief, gears, leaf.
 
 Each path goes through way points. Between two of them, a and b, it follows the minimum-jerk curve
 that people's reaching movements are known for (Flash and Hogan 1985), at rest at both ends:
 
     p(s) = a + (b - a) (10 s^3 - 15 s^4 + 6 s^5),   s = (t - t_a) / (t_b - t_a)
 
+Those that stroke a surface follow curves on it with the same speeds, pressed in by a few
+millimetres.
+
 Usage: make_hands.py [DIRECTORY]
 """
 
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
+
+SCENES = Path(__file__).resolve().parents[1] / "scenes"
+sys.path.insert(0, str(SCENES))
+import make_balls  # noqa: E402
+import make_gears  # noqa: E402
+import make_island  # noqa: E402
+import make_leaf  # noqa: E402
 
 RATE = 100  # samples a second
 REST = (0.19092, 0.0, 0.0)  # tip of the built-in arm at rest
@@ -82,6 +93,158 @@ def circle():
     return t, np.array(REST) + np.column_stack((radius * np.cos(angle), radius * np.sin(angle), z))
 
 
+def along(strokes):
+    """Times and positions along strokes (seconds, places M x 3), each at rest at both ends."""
+    places = [np.array(REST)[None]]
+    for seconds, stroke in strokes:
+        stroke = np.atleast_2d(stroke)
+        if np.linalg.norm(stroke[0] - places[-1][-1]) > 1e-9:
+            stroke = np.vstack([places[-1][-1], stroke])
+        length = np.append(0, np.cumsum(np.linalg.norm(np.diff(stroke, axis=0), axis=1)))
+        s = np.arange(1, round(seconds * RATE) + 1) / (seconds * RATE)
+        way = length[-1] * s**3 * (10 - 15 * s + 6 * s**2)
+        places.append(np.column_stack([np.interp(way, length, c) for c in stroke.T]))
+    p = np.concatenate(places)
+    return np.arange(len(p)) / RATE, p
+
+
+class Stage:
+    """A scene's tip radius and where it has its meshes."""
+
+    def __init__(self, name):
+        scene = tomllib.loads((SCENES / f"{name}.toml").read_text())
+        self.tip = scene["tip_radius"]
+        self.meshes = scene["mesh"]
+
+    def place(self, mesh, points):
+        """From the frame of a mesh that is turned about z, if at all, to the base frame."""
+        turn = mesh.get("rpy", [0, 0, 0])[2]
+        c, s = np.cos(turn), np.sin(turn)
+        return np.asarray(points) @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + mesh["position"]
+
+
+def straight(*corners):
+    return np.array(corners, dtype=float)
+
+
+def rounded_off(corners, steps=40):
+    """A smooth curve through corners (Catmull and Rom 1974)."""
+    p = np.vstack([2 * np.array(corners[0]) - corners[1], corners,
+                   2 * np.array(corners[-1]) - corners[-2]])
+    t = np.linspace(0, 1, steps, endpoint=False)[:, None]
+    parts = []
+    for a, b, c, d in zip(p, p[1:], p[2:], p[3:]):
+        parts.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 +
+                            (3 * b - a - 3 * c + d) * t**3))
+    return np.vstack(parts + [p[-2]])
+
+
+def spheres():
+    """A press on each ball from the hardest to the softest, then down the middle one's rings."""
+    stage, press = Stage("spheres"), 0.005
+    tops = [stage.place(mesh, [0, 0, 2 * make_balls.RADIUS + stage.tip]) for mesh in stage.meshes]
+    strokes = []
+    for top in tops[::-1]:
+        strokes += [(0.65 if strokes else 1.0, top + [0, 0, 0.012]), (0.35, top - [0, 0, press]),
+                    (0.2, top - [0, 0, press]), (0.3, top + [0, 0, 0.012])]
+    middle = stage.place(stage.meshes[2], [0, 0, make_balls.RADIUS])
+    reach = make_balls.RADIUS + stage.tip - 0.003
+    angle = np.linspace(np.radians(85), np.radians(-5), 60)[:, None]
+    down = middle + reach * (np.cos(angle) * [0.6, -0.8, 0] + np.sin(angle) * [0, 0, 1])
+    strokes += [(0.6, down[0] + [0, 0, 0.012]), (0.3, down[0]), (1.3, down),
+                (0.3, down[-1] + [0.012, -0.016, 0.005])]
+    return along(strokes + [(0.8, REST)])
+
+
+def relief():
+    """Around the crater, down the ridge to the other hill, over the compass rose, along the coast to
+    the islet."""
+    stage = Stage("relief")
+    height = make_island.carve()[0]
+    bell = np.exp(-0.5 * (np.arange(-9, 10) / 3.0) ** 2)
+    for _ in range(2):  # a hand does not follow every groove
+        height = np.array([np.convolve(np.pad(row, 9, "edge"), bell / bell.sum(), "valid")
+                           for row in height]).T
+    x, y = make_island.field()
+
+    def on_land(points, press=0.003):
+        """x, y in millimetres to places on the map, pressed in."""
+        i = np.clip(np.searchsorted(x, points[:, 0]), 0, len(x) - 1)
+        j = np.clip(np.searchsorted(y, points[:, 1]), 0, len(y) - 1)
+        z = 1e-3 * height[j, i] + stage.tip - press
+        return stage.place(stage.meshes[0], np.column_stack([1e-3 * points, z]))
+
+    angle = np.linspace(0, 3.6 * np.pi, 200)
+    radius = 2 + 5.5 * angle / angle[-1]
+    crater = np.column_stack([-13 + radius * np.cos(angle), 5 + radius * np.sin(angle)])
+    ridge = rounded_off([crater[-1], (-1, -1), (14, -6), (24, 8), (29, -4), (33.5, -14)])
+    rose = rounded_off([(33.5, -14), (33.5, -22.5), (39, -28), (34.5, -30), (28, -24), (42, -22)])
+    coast = rounded_off([(42, -22), (30, -28), (8, -22), (-14, -26), (-35, -20), (-43, -14)])
+    routes = [on_land(r) for r in (crater, ridge, rose, coast)]
+    lift = np.array([0, 0, 0.02])
+    return along([(0.7, routes[0][0] + lift), (0.4, routes[0][0]), (2.2, routes[0]),
+                  (2.4, routes[1]), (1.5, routes[2]), (2.2, routes[3]),
+                  (0.4, routes[3][-1] + lift), (0.6, REST)])
+
+
+def gears():
+    """Around in the bore and its keyway, over the teeth from above, across the pinion's teeth."""
+    stage, press = Stage("gears"), 0.003
+    wheel, pinion = stage.meshes
+    upper = 1e-3 * (make_gears.LIFT + make_gears.WIDTH)
+
+    def ring(mesh, radius, z, start, end):
+        a = np.radians(np.linspace(start, end, 120))
+        return stage.place(mesh, np.column_stack([radius * np.cos(a), radius * np.sin(a),
+                                                  np.full(len(a), z)]))
+
+    deep = upper - 0.006
+    centre = stage.place(wheel, [0, 0, deep])
+    over = stage.place(wheel, [0, 0, upper + 0.015])
+    bore = ring(wheel, 0.008 - stage.tip + press, deep, -60, 330)
+    pitch = 0.5e-3 * make_gears.MODULE * make_gears.GEAR
+    teeth = ring(wheel, pitch, upper + stage.tip - 0.004, 100, -55)
+    tip = 0.5e-3 * make_gears.MODULE * (make_gears.PINION + 2)
+    flanks = ring(pinion, tip + stage.tip - 0.004, upper - 0.008, 20, -110)
+    out = stage.place(pinion, [0.036, 0.012, upper - 0.008])
+    return along([(0.7, over), (0.5, centre), (0.3, bore[0]), (2.0, bore), (0.3, centre),
+                  (0.4, over), (0.5, teeth[0] + [0, 0, 0.012]), (0.3, teeth[0]), (2.8, teeth),
+                  (0.3, teeth[-1] + [0.01, 0, 0.012]), (0.5, out), (0.3, flanks[0]),
+                  (2.0, flanks), (0.4, flanks[-1] + [0, -0.012, 0.012]), (0.8, REST)])
+
+
+def leaf():
+    """Up across the veins on the upper side, over the margin, down again on the lower side."""
+    stage, press = Stage("leaf"), 0.003
+    mesh = stage.meshes[0]
+
+    def beside(uv, side, off):
+        """Places (u, v) of the blade, moved out of its upper (+1) or lower (-1) side."""
+        u, v = np.array(uv, dtype=float).T
+        inner = np.clip(v, -1, 1)
+        step = 1e-3
+        at = make_leaf.blade_points(u, inner)[0]
+        du = make_leaf.blade_points(u + step, inner)[0] - make_leaf.blade_points(u - step, inner)[0]
+        dv = (make_leaf.blade_points(u, np.minimum(inner + step, 1))[0] -
+              make_leaf.blade_points(u, np.maximum(inner - step, -1))[0])
+        normal = np.cross(dv, du)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        beyond = (v - inner)[:, None] * 0.02 * dv / np.linalg.norm(dv, axis=1, keepdims=True)
+        return stage.place(mesh, at + beyond + side * off * normal)
+
+    pressed = stage.tip - press
+    up = beside(rounded_off([(0.25, -0.6), (0.34, 0.1), (0.5, -0.5), (0.62, 0.2), (0.5, 0.75)]), 1,
+                pressed)
+    first = beside([(0.25, -0.6)], 1, 0.02)
+    rim = [beside([(0.5, v)], side, off)[0]
+           for v, side, off in ((0.75, 1, pressed), (1.1, 1, 0.002), (1.3, -1, 0.003),
+                                (1.1, -1, 0.006), (0.8, -1, pressed))]
+    down = beside(rounded_off([(0.5, 0.8), (0.62, 0.3), (0.45, -0.2), (0.32, 0.4)]), -1, pressed)
+    away = beside([(0.32, 0.4)], -1, 0.02)
+    return along([(0.9, first), (0.4, up[0]), (2.8, up), (1.2, rounded_off(rim)), (2.2, down),
+                  (0.4, away), (0.9, away + [0, 0.0, 0.05]), (0.8, REST)])
+
+
 def write(path, t, p):
     rows = [f"{ti:.2f},{x:.6f},{y:.6f},{z:.6f}\n" for ti, (x, y, z) in zip(t, p)]
     path.write_text("time_s,x_m,y_m,z_m\n" + "".join(rows))
@@ -89,5 +252,5 @@ def write(path, t, p):
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
-    for make in (touch, free, proximal, circle):
+    for make in (touch, free, proximal, circle, spheres, relief, gears, leaf):
         write(folder / f"{make.__name__}.csv", *make())

@@ -1,12 +1,10 @@
 #include "core/dynamics/free_space.h"
 
-#include <cmath>
-
 namespace limpid {
 namespace {
 
-// Planes closer to parallel than this do not make an edge [-], of a Gram determinant.
-constexpr double kParallel = 1e-10;
+// Planes closer to parallel than this make no edge [rad]: the one further out holds alone.
+constexpr double kParallel = 1e-9;
 
 }  // namespace
 
@@ -26,27 +24,37 @@ bool FreeSpace::add(const Vec3& normal, double offset) {
   return true;
 }
 
-// x = c + sum of w_i n_i on all of the active planes.
-bool FreeSpace::solve(const Vec3& c, const Active& active, Vec3& x, Vec3& weights) const {
-  Vec3 gap = Vec3::Zero();
-  Mat3 gram = Mat3::Identity();
-  for (int i = 0; i < active.count; ++i) {
-    const int p = active.plane[static_cast<std::size_t>(i)];
-    gap[i] = offset(p) - normal(p).dot(c);
-    for (int j = 0; j < active.count; ++j) {
-      gram(i, j) = normal(p).dot(normal(active.plane[static_cast<std::size_t>(j)]));
+// The active normals' part of an orthonormal basis that is new with the i-th one, R of N = E R.
+bool FreeSpace::extend(const Active& active, int i, Mat3& e, Mat3& r) const {
+  Vec3 rest = normal(active.plane[static_cast<std::size_t>(i)]);
+  r.col(i).setZero();
+  for (int pass = 0; pass < (i > 0 ? 2 : 1); ++pass) {  // once more for those nearly parallel
+    for (int j = 0; j < i; ++j) {
+      const double part = e.col(j).dot(rest);
+      r(j, i) += part;
+      rest -= part * e.col(j);
     }
   }
-  if (active.count == 1) {
-    weights = gap;
-  } else {
-    const double determinant = gram.determinant();
-    if (!(determinant > kParallel)) return false;
-    weights = gram.inverse() * gap;
-  }
+  r(i, i) = rest.norm();
+  e.col(i) = rest / r(i, i);
+  return r(i, i) > kParallel;
+}
+
+// x = c + sum of w_i n_i on all of the active planes.
+bool FreeSpace::solve(const Vec3& c, const Active& active, Vec3& x, Vec3& weights) const {
+  Mat3 e, r;
+  Vec3 along;
   x = c;
   for (int i = 0; i < active.count; ++i) {
-    x += weights[i] * normal(active.plane[static_cast<std::size_t>(i)]);
+    if (!extend(active, i, e, r)) return false;
+    const int p = active.plane[static_cast<std::size_t>(i)];
+    along[i] = (offset(p) - normal(p).dot(x)) / r(i, i);
+    x += along[i] * e.col(i);
+  }
+  for (int i = active.count - 1; i >= 0; --i) {
+    weights[i] = along[i];
+    for (int j = i + 1; j < active.count; ++j) weights[i] -= r(i, j) * weights[j];
+    weights[i] /= r(i, i);
   }
   return true;
 }
@@ -56,13 +64,15 @@ Vec3 FreeSpace::onto(const Vec3& c, const Active& active) const {
   return solve(c, active, x, weights) ? x : c;
 }
 
-bool FreeSpace::holds(const Vec3& x, const Active& except) const {
+// Is x in the room, but for rounding and for planes that are taken as parallel?
+bool FreeSpace::holds(const Vec3& c, const Vec3& x, const Active& except) const {
+  const double slack = kParallel * (x - c).norm() + 1e-15 * x.lpNorm<1>();
   for (int i = 0; i < count_; ++i) {
     bool skip = false;
     for (int k = 0; k < except.count; ++k) {
       skip = skip || except.plane[static_cast<std::size_t>(k)] == i;
     }
-    if (!skip && normal(i).dot(x) < offset(i) - 1e-15 * (1 + std::abs(offset(i)))) return false;
+    if (!skip && normal(i).dot(x) < offset(i) - slack) return false;
   }
   return true;
 }
@@ -72,14 +82,14 @@ bool FreeSpace::holds(const Vec3& x, const Active& except) const {
 bool FreeSpace::project(const Vec3& c, Vec3& x, Active& active) const {
   active = {};
   x = c;
-  if (holds(c, active)) return true;
+  if (holds(c, c, active)) return true;
   Vec3 weights;
   const auto fits = [&](const Active& a) {
     if (!solve(c, a, x, weights)) return false;
     for (int i = 0; i < a.count; ++i) {
       if (weights[i] < 0) return false;
     }
-    return holds(x, a);
+    return holds(c, x, a);
   };
   for (int i = 0; i < count_; ++i) {
     active = {{i, 0, 0}, 1};
@@ -105,13 +115,9 @@ bool FreeSpace::project(const Vec3& c, Vec3& x, Active& active) const {
 }
 
 int FreeSpace::basis(const Active& active, Mat3& e) const {
+  Mat3 r;
   int rank = 0;
-  for (int i = 0; i < active.count; ++i) {
-    Vec3 out = normal(active.plane[static_cast<std::size_t>(i)]);
-    for (int j = 0; j < rank; ++j) out -= e.col(j).dot(out) * e.col(j);
-    const double length = out.norm();
-    if (length * length > kParallel) e.col(rank++) = out / length;
-  }
+  while (rank < active.count && extend(active, rank, e, r)) ++rank;
   return rank;
 }
 

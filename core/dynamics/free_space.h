@@ -38,7 +38,8 @@ class FreeSpace {
 
  private:
   bool solve(const Vec3& c, const Active& active, Vec3& x, Vec3& weights) const;
-  bool holds(const Vec3& x, const Active& except) const;
+  bool extend(const Active& active, int i, Mat3& e, Mat3& r) const;
+  bool holds(const Vec3& c, const Vec3& x, const Active& except) const;
 
   std::array<Vec3, kMostPlanes> normals_;
   std::array<double, kMostPlanes> offsets_{};

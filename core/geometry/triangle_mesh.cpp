@@ -87,6 +87,7 @@ std::string MeshHealth::text() const {
   return out;
 }
 
+// Its areas by cross products, not by products of lengths: the thinnest triangles keep their digits.
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -94,19 +95,19 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const Vec3 bp = p - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
   if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vec3 n = ab.cross(ac);
+  const double w = n.dot(ab.cross(ap));
+  if (d1 >= 0 && d3 <= 0 && w <= 0) return a + d1 / (d1 - d3) * ab;
   const Vec3 cp = p - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+  const double v = n.dot(ap.cross(ac));
+  if (d2 >= 0 && d6 <= 0 && v <= 0) return a + d2 / (d2 - d6) * ac;
+  if (d4 - d3 >= 0 && d5 - d6 >= 0 && n.dot(bp.cross(cp)) <= 0) {
     return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   }
-  const double sum = va + vb + vc;
-  return a + vb / sum * ab + vc / sum * ac;
+  const double sum = n.squaredNorm();
+  return a + v / sum * ab + w / sum * ac;
 }
 
 TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -29,6 +30,7 @@ enum class Column : std::uint8_t {
   hand_torque_estimate,
   hand_grip,
   force_wanted,
+  force_state,
   kind,
   eta,
   alpha,
@@ -71,12 +73,16 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::proxy_torque, "/proxy/torque", ColumnWidth::dof, "N m", "tau2 over the tick"},
     {Column::contact_torque, "/proxy/contact_torque", ColumnWidth::dof, "N m", "f2 over the tick"},
     {Column::hand_target, "/hand/target", ColumnWidth::three, "m", "where the hand wants the tip"},
-    {Column::hand_torque, "/hand/torque", ColumnWidth::dof, "N m", "f1, mean over the tick"},
+    {Column::hand_torque, "/hand/torque", ColumnWidth::dof, "N m", "f1, mean over the tick; not a number for a real device"},
     {Column::hand_torque_estimate, "/hand/torque_estimate", ColumnWidth::dof, "N m",
      "f1_hat used at t_k"},
     {Column::hand_grip, "/hand/grip", ColumnWidth::one, "-", "1 the hand holds, 0 it let go"},
     {Column::force_wanted, "/device/force_wanted", ColumnWidth::one, "-",
      "1 force armed, 0 force off", true},
+    {Column::force_state, "/device/force_state", ColumnWidth::one, "-",
+     "0 force on; else why not: 1 not armed, 2 no hand, 3 stale, 4 fault, 5 lost, 6 too fast, "
+     "7 out of range, 8 energy, 9 diverged",
+     true},
     {Column::kind, "/coupling/kind", ColumnWidth::one, "-", "0 standard, 1 proposed", true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "inertia scaling"},
     {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
@@ -122,6 +128,12 @@ class RowLayout {
   template <class T>  // T: double or const double
   std::span<T> in(std::span<T> row, Column c) const {
     return row.subspan(static_cast<std::size_t>(offset(c)), static_cast<std::size_t>(width(c)));
+  }
+
+  // The human's torque as far as it is known: of a real device, the observer's estimate.
+  std::span<const double> human_torque(std::span<const double> row) const {
+    const auto measured = in(row, Column::hand_torque);
+    return std::isnan(measured[0]) ? in(row, Column::hand_torque_estimate) : measured;
   }
 
  private:

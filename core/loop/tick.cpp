@@ -26,7 +26,9 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
       velocity_(arm.dof()),
       observer_(arm.dof()),
       proxy_(arm, scene),
-      motors_(arm.dof()) {
+      motors_(arm.dof()),
+      safety_(arm),
+      J_(Jacobian<N>::Zero(3, arm.dof())) {
   start(Parameters{}, Start<N>::at_rest(Vec<N>::Zero(arm.dof())));
 }
 
@@ -37,6 +39,7 @@ void Tick<N>::start(const Parameters& p, const Start<N>& start) {
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
   motors_.start(start.armed);
+  safety_.start();
   books_ = {};
   x1_before_ = start.x1;
   f1_hat_ = start.f1_hat;
@@ -63,7 +66,6 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   if (p.kind != kind_) motors_.begin_slew();
   kind_ = p.kind;
   b_d_ = resolve<N>(p.damping, arm_damping_);
-  const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
 
   // The device, (5), as the controller believes it to be.
   if (k_ > 0) {
@@ -98,12 +100,24 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   vbar2_ = proxy_.vbar();
 
   diverged_ = diverged_ || !command_.allFinite();
-  tau1_ = motors_.pass(command_, limit, force_wanted && !diverged_, T);
+  pass_on(p, in, force_wanted);
   observer_.applied(p.anti_windup ? tau1_ : command_);
   write_row(p, in, force_wanted, row);
   x1_before_ = in.x;
   ++k_;
   return tau1_;
+}
+
+// The command on its way to the motors.
+template <int N>
+void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, bool force_wanted) {
+  const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
+  const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
+  if (in.health.real) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
+  safety_.judge(in.health, force_wanted, diverged_, in.measured, device_.v, J_, put_out, p.tick);
+  const bool real = in.health.real && !diverged_;
+  tau1_ = motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit, safety_.allowed(), p.tick, safety_.ceiling(),
+                       real ? safety_.limits.slew : 0);
 }
 
 template <int N>
@@ -134,6 +148,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, bool force_wa
   put(Column::contact_torque, proxy_.f());
   put(Column::hand_torque_estimate, f1_hat_);
   set(Column::force_wanted, force_wanted ? 1 : 0);
+  set(Column::force_state, static_cast<double>(safety_.state()));
   set(Column::kind, static_cast<double>(p.kind));
   set(Column::eta, p.eta);
   set(Column::alpha, p.alpha);

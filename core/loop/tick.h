@@ -11,6 +11,7 @@
 #include "core/loop/motor_stage.h"
 #include "core/loop/parameters.h"
 #include "core/loop/row.h"
+#include "core/loop/safety.h"
 #include "core/passivity/energy_books.h"
 
 namespace limpid {
@@ -20,6 +21,7 @@ template <int N>
 struct Reading {
   Vec<N> measured;  // x1_k as the encoders give it [rad]
   Vec<N> x, v;      // true state if it is known, else as measured [rad, rad/s]
+  DeviceHealth health{};
 };
 
 // Where a loop starts.
@@ -55,6 +57,7 @@ class Tick {
 
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
+  Vec3 tip() const { return arm_.tip(frames_); }  // of the device as measured [m]
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.
   bool steady(bool force_wanted) const {
@@ -62,9 +65,11 @@ class Tick {
   }
   // The command was not finite: the loop is unstable, force is off.
   bool diverged() const { return diverged_; }
+  ForceState force_state() const { return safety_.state(); }
   const RowLayout& layout() const { return layout_; }
 
  private:
+  void pass_on(const Parameters& p, const Reading<N>& in, bool force_wanted);
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, bool force_wanted,
                  std::span<double> row) const;
@@ -78,6 +83,8 @@ class Tick {
   ForceObserver<N> observer_;
   Proxy<N> proxy_;
   MotorStage<N> motors_;
+  Safety<N> safety_;
+  Jacobian<N> J_;  // of the device's tip
   EnergyBooks<N> books_;
 
   // At the present tick's start, for the row:

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "devices/files/file_error.h"
+#include "devices/files/rpy.h"
+#include "devices/files/scene_limits.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -14,24 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
-constexpr std::size_t kLargestModel = std::size_t{512} << 20;  // [bytes]
-constexpr std::size_t kMostContacts = 64;
-constexpr std::size_t kMostProbes = 64;  // with the tip
-
-constexpr Range kPosition{-10, 10, false, "m"};
-constexpr Range kAngle{-100, 100, false, "rad"};
-constexpr Range kLength{0, 10, true, "m"};
-constexpr Range kRadius{0, 1, false, "m"};
-constexpr Range kStiffness{0, 1e6, true, "N/m"};
-constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
-constexpr Range kScale{0, 1e4, true, ""};
-constexpr Range kDirection{-1e6, 1e6, false, ""};
-
-Mat3 rotation(const Vec3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-      .toRotationMatrix();
-}
+using namespace scene_limits;
 
 Pose pose(const TomlTable& t, const Vec3& position) {
   Pose p = Pose::Identity();
@@ -50,7 +35,10 @@ Plane plane(const TomlTable& t) {
   t.allow_only({"name", "point", "normal", "stiffness"});
   const Vec3 normal = t.need(t.vector("normal", kDirection), "normal");
   if (!(normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
-  return {name(t), point(t, "point"), normal.normalized(), stiffness(t, kStiffness)};
+  // One that is unit already stays as it is: what was written is read back to the last bit.
+  const bool unit = std::abs(normal.squaredNorm() - 1) < 1e-15;
+  return {name(t), point(t, "point"), unit ? normal : normal.normalized(),
+          stiffness(t, kStiffness)};
 }
 
 Sphere sphere(const TomlTable& t) {

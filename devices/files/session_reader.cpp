@@ -26,6 +26,7 @@ std::optional<double> default_of(Column column) {
   switch (column) {
     case Column::hand_grip: return 1.0;
     case Column::force_wanted: return 1.0;
+    case Column::force_state: return 0.0;
     case Column::contact_potential: return 0.0;
     case Column::contact_gain: return 0.0;
     default: return std::nullopt;

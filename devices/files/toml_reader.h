@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/math/sizes.h"
+#include "devices/files/range.h"
 
 namespace limpid {
 
@@ -22,14 +23,6 @@ std::string found_text(const toml::node& node);
 
 // The candidate nearest to `word` in spelling, or nothing if none resembles it.
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& among);
-
-// Which numbers are allowed.
-struct Range {
-  double minimum;
-  double maximum;
-  bool exclusive_minimum = false;
-  const char* unit = "";
-};
 
 // Every reader returns nothing where the key is missing and throws FileError where its value is
 // not allowed; `need` turns the former into the latter.

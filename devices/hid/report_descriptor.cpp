@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "devices/hid/hid_error.h"
 #include "devices/hid/hid_transport.h"
+#include "devices/hid/report_items.h"
 
 namespace limpid {
 namespace {
@@ -16,22 +16,6 @@ constexpr std::size_t kMaxFields = 2048;
 constexpr std::size_t kMaxUsages = 1024;  // of an item; more are left out
 constexpr std::size_t kMaxDepth = 16;     // of collections, and of pushes
 constexpr std::uint32_t kMaxReportBits = 8 * HidTransport::kMaxReport;
-
-enum Type : std::uint8_t { kMain = 0, kGlobal = 1, kLocal = 2 };
-
-struct Item {
-  std::size_t offset = 0;  // in the descriptor, for messages
-  std::uint8_t type = 0;
-  std::uint8_t tag = 0;
-  std::uint8_t size = 0;  // of the data [bytes]
-  std::uint32_t value = 0;
-
-  std::int64_t as_signed() const {
-    if (size == 1) return static_cast<std::int8_t>(value);
-    if (size == 2) return static_cast<std::int16_t>(value);
-    return static_cast<std::int32_t>(value);
-  }
-};
 
 // A maximum's sign is known only with its minimum.
 struct Bound {
@@ -64,65 +48,31 @@ struct Locals {
   bool alternative = false;  // to one taken already
 };
 
-[[noreturn]] void refuse(const Item& item, std::string_view what) {
-  throw HidError(fmt::format("report descriptor, byte {}: {}", item.offset, what));
-}
-
 std::int64_t pick(std::int64_t minimum, const Bound& maximum) {
   return minimum < 0 ? maximum.as_signed : maximum.as_unsigned;
 }
 
 class Parser {
  public:
-  explicit Parser(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  explicit Parser(std::span<const std::uint8_t> bytes) : items_(bytes) {}
 
   ReportDescriptor parse() {
-    while (at_ < bytes_.size()) {
-      if (bytes_[at_] == kLongItem) {
-        skip_long_item();
-        continue;
-      }
-      take(next_item());
-    }
+    while (const auto item = items_.next()) take(*item);
     if (!collections_.empty()) throw HidError("report descriptor: a collection is not closed");
     return std::move(descriptor_);
   }
 
  private:
-  static constexpr std::uint8_t kLongItem = 0xFE;
-
-  Item next_item() {
-    const std::uint8_t prefix = bytes_[at_];
-    Item item;
-    item.offset = at_;
-    item.type = (prefix >> 2) & 3;
-    item.tag = prefix >> 4;
-    item.size = (prefix & 3) == 3 ? 4 : prefix & 3;
-    if (bytes_.size() - at_ - 1 < item.size) refuse(item, "the item is cut off");
-    for (std::size_t i = 0; i < item.size; ++i) {
-      item.value |= static_cast<std::uint32_t>(bytes_[at_ + 1 + i]) << (8 * i);
-    }
-    at_ += 1u + item.size;
-    return item;
-  }
-
-  void skip_long_item() {
-    const std::size_t left = bytes_.size() - at_;
-    const std::size_t size = left > 1 ? 3u + bytes_[at_ + 1] : left + 1;
-    if (size > left) refuse({.offset = at_}, "the item is cut off");
-    at_ += size;
-  }
-
-  void take(const Item& item) {
+  void take(const ReportItem& item) {
     switch (item.type) {
-      case kMain: return take_main(item);
-      case kGlobal: return take_global(item);
-      case kLocal: return take_local(item);
+      case ReportItem::kMain: return take_main(item);
+      case ReportItem::kGlobal: return take_global(item);
+      case ReportItem::kLocal: return take_local(item);
       default: return;  // reserved
     }
   }
 
-  void take_main(const Item& item) {
+  void take_main(const ReportItem& item) {
     switch (item.tag) {
       case 0x8: add_fields(item, ReportKind::input); break;
       case 0x9: add_fields(item, ReportKind::output); break;
@@ -134,19 +84,19 @@ class Parser {
     locals_ = {};
   }
 
-  void open_collection(const Item& item) {
+  void open_collection(const ReportItem& item) {
     if (collections_.size() == kMaxDepth) refuse(item, "too many collections in each other");
     const Usage usage = locals_.usages.empty() ? 0 : full(locals_.usages.front());
     if (collections_.empty()) descriptor_.applications.push_back(usage);
     collections_.push_back(usage);
   }
 
-  void close_collection(const Item& item) {
+  void close_collection(const ReportItem& item) {
     if (collections_.empty()) refuse(item, "it closes a collection that is not open");
     collections_.pop_back();
   }
 
-  void take_global(const Item& item) {
+  void take_global(const ReportItem& item) {
     switch (item.tag) {
       case 0x0: globals_.usage_page = static_cast<std::uint16_t>(item.value); break;
       case 0x1: globals_.logical_min = item.as_signed(); break;
@@ -172,20 +122,20 @@ class Parser {
   }
 
   // Four bits by the letter, a signed number in many devices.
-  static int exponent(const Item& item) {
+  static int exponent(const ReportItem& item) {
     if (item.value <= 0xF)
       return item.value < 8 ? static_cast<int>(item.value) : static_cast<int>(item.value) - 16;
     return static_cast<int>(item.as_signed());
   }
 
-  void take_report_id(const Item& item) {
+  void take_report_id(const ReportItem& item) {
     if (item.value == 0 || item.value > 255) refuse(item, "a report's id is 1 to 255");
     if (!descriptor_.numbered && any_report_) refuse(item, "reports with and without an id");
     descriptor_.numbered = true;
     globals_.report_id = static_cast<std::uint8_t>(item.value);
   }
 
-  void take_local(const Item& item) {
+  void take_local(const ReportItem& item) {
     const LocalUsage usage{item.value, item.size == 4};
     switch (item.tag) {
       case 0x0:
@@ -220,7 +170,7 @@ class Parser {
                : make_usage(globals_.usage_page, static_cast<std::uint16_t>(usage.value));
   }
 
-  void add_fields(const Item& item, ReportKind kind) {
+  void add_fields(const ReportItem& item, ReportKind kind) {
     any_report_ = true;
     const std::uint32_t size = globals_.report_size;
     const std::uint32_t count = globals_.report_count;
@@ -273,13 +223,12 @@ class Parser {
     return field;
   }
 
-  void add(const Item& item, ReportField field) {
+  void add(const ReportItem& item, ReportField field) {
     if (descriptor_.fields.size() == kMaxFields) refuse(item, "too many fields");
     descriptor_.fields.push_back(std::move(field));
   }
 
-  std::span<const std::uint8_t> bytes_;
-  std::size_t at_ = 0;
+  ReportItems items_;
   ReportDescriptor descriptor_;
   Globals globals_;
   Locals locals_;

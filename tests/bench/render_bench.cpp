@@ -29,8 +29,8 @@ std::shared_ptr<const Model> dimpled_ball(std::size_t triangles) {
       const Vec3 out(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
                      std::cos(theta));
       Vertex v;
-      v.position = (0.06 * (1 + 0.03 * std::sin(14 * theta) * std::sin(14 * phi)) * out)
-                       .cast<float>();
+      v.position =
+          (0.06 * (1 + 0.03 * std::sin(14 * theta) * std::sin(14 * phi)) * out).cast<float>();
       v.normal = out.cast<float>();
       v.color = Eigen::Vector3f(0.75f, 0.62f, 0.45f);
       model->vertices.push_back(v);
@@ -96,7 +96,8 @@ void run(const char* folder) {
     if (triangles > 0) view.set_meshes(std::vector<MeshPicture>{{model, pose, 1, false}});
     camera.reset(view.bounds());
     camera.finish();
-    fmt::print("{:8} triangles ({} coarse), ms a frame (of the processor):", triangles, model->coarse.size() / 3);
+    fmt::print("{:8} triangles ({} coarse), ms a frame (of the processor):", triangles,
+               model->coarse.size() / 3);
     for (int level = 0; level <= Quality::kLowest; ++level) {
       view.set_quality(Quality::level(level));
       const FrameTime time = median_frame(view, state, camera);

@@ -19,8 +19,8 @@ void check(const std::vector<limpid::Part>& parts, const std::vector<std::uint32
   for (const limpid::Part& part : parts) {
     demand(part.first == at && part.count % 3 == 0);
     at += part.count;
-    for (const int image : {part.material.color, part.material.surface, part.material.normal,
-                            part.material.emission})
+    for (const int image :
+         {part.material.color, part.material.surface, part.material.normal, part.material.emission})
       demand(image < static_cast<int>(model.images.size()));
   }
   demand(at == indices.size());

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 
+#include "render/mesh_shapes.h"
 #include "render/offscreen.h"
 
 namespace limpid {
@@ -165,12 +166,131 @@ TEST_F(Picture, NamesTheModelThatIsMissing) {
   EXPECT_THROW(SceneView(kRoot / "shaders", arm_, scene), std::runtime_error);
 }
 
-TEST(Quality, IsLowerWhereAProcessorDraws) {
-  const Quality software = Quality::automatic("llvmpipe (LLVM 15.0.6, 256 bits)");
-  const Quality hardware = Quality::automatic("NVIDIA GeForce RTX 3060/PCIe/SSE2");
-  EXPECT_EQ(software.msaa, 1);
-  EXPECT_EQ(hardware.msaa, 4);
-  EXPECT_LT(software.shadow_size, hardware.shadow_size);
+std::shared_ptr<const Model> patch_of(const Eigen::Vector3f& color) {
+  auto model = std::make_shared<Model>(make_box(Vec3(0.1, 0.1, 0.1), 0.01, {color}));
+  return model;
+}
+
+Pose at(const Vec3& place) {
+  Pose pose = Pose::Identity();
+  pose.translation() = place;
+  return pose;
+}
+
+bool green(const Eigen::Vector3i& c) { return c[1] > c[0] + 25 && c[1] > c[2] + 25; }
+
+TEST_F(Picture, ShowsMeshesWhereTheyAre) {
+  const auto model = patch_of({0.05f, 0.6f, 0.05f});
+  const Vec3 there(0.1, 0, 0.15), elsewhere(0.3, 0, -0.15);
+  view_->set_meshes(std::vector<MeshPicture>{{model, at(there), 1, false}});
+  EXPECT_TRUE(green(seen_at(there)));
+  EXPECT_FALSE(green(seen_at(elsewhere)));
+  view_->set_meshes(std::vector<MeshPicture>{{model, at(elsewhere), 0.5, true}});
+  EXPECT_FALSE(green(seen_at(there)));
+  EXPECT_TRUE(green(seen_at(elsewhere)));
+  EXPECT_FALSE(green(seen_at(elsewhere + Vec3(0.04, 0, 0))));
+  view_->set_meshes({});
+  EXPECT_FALSE(green(seen_at(elsewhere)));
+}
+
+TEST_F(Picture, OutlinesAHighlightedMesh) {
+  const auto model = patch_of({0.05f, 0.6f, 0.05f});
+  const Vec3 there(0.1, 0, 0.15);
+  camera_.look(Camera::View::side);
+  const auto bright_pixels = [&](bool highlighted) {
+    view_->set_meshes(std::vector<MeshPicture>{{model, at(there), 1, highlighted}});
+    view_->draw(state_, camera_, 0, 0, kWidth, kHeight);
+    const auto rgba = read_rgba(kWidth, kHeight);
+    int count = 0;
+    for (std::size_t i = 0; i < rgba.size(); i += 4)
+      count += rgba[i] > 200 && rgba[i + 1] > 200 && rgba[i + 2] > 200;
+    return count;
+  };
+  EXPECT_GT(bright_pixels(true), bright_pixels(false) + 50);
+}
+
+TEST_F(Picture, ShowsTheTextureOfAMesh) {
+  Model model = make_box(Vec3(0.1, 0.1, 0.1), 0.01, {{1, 1, 1}});
+  model.images.push_back({1, 1, {20, 200, 20, 255}});
+  model.parts[0].material.color = 0;
+  const Vec3 there(0.1, 0, 0.15);
+  const auto shared = std::make_shared<const Model>(std::move(model));
+  view_->set_meshes(std::vector<MeshPicture>{{shared, at(there), 1, false}});
+  EXPECT_TRUE(green(seen_at(there)));
+}
+
+TEST_F(Picture, LetsTheBackgroundThroughWhereAMeshIsCutOut) {
+  const Vec3 there(0.1, 0, 0.15);
+  const Eigen::Vector3i empty = seen_at(there);
+  Model model = make_box(Vec3(0.1, 0.1, 0.1), 0.01, {{0.05f, 0.6f, 0.05f}});
+  for (Vertex& v : model.vertices) v.opacity = 0.3f;
+  model.parts[0].material.alpha = Material::Alpha::mask;
+  state_.show_grid = false;
+  view_->set_quality({.msaa = 1, .shadow_size = 0, .soft = false});
+  const auto shared = std::make_shared<const Model>(std::move(model));
+  view_->set_meshes(std::vector<MeshPicture>{{shared, at(there), 1, false}});
+  EXPECT_LE((seen_at(there) - empty).cwiseAbs().maxCoeff(), 2);
+}
+
+TEST_F(Picture, FramesMeshesWithinReachOnly) {
+  const auto model = patch_of({1, 1, 1});
+  const Bounds before = view_->bounds();
+  view_->set_meshes(std::vector<MeshPicture>{{model, at(Vec3(20, 0, 0)), 1, false}});
+  EXPECT_TRUE(view_->bounds().isApprox(before));
+  const Vec3 below(0.2, 0, before.min().z() - 0.04);
+  view_->set_meshes(std::vector<MeshPicture>{{model, at(below), 1, false}});
+  EXPECT_TRUE(view_->bounds().contains(Vec3(below)));
+}
+
+TEST_F(Picture, LeavesOutMeshesThatCannotBeDrawn) {
+  const auto model = patch_of({0.05f, 0.6f, 0.05f});
+  const Eigen::Vector3i empty = seen_at(Vec3(0.1, 0, 0.15));
+  view_->set_meshes(std::vector<MeshPicture>{{nullptr, at(Vec3(0.1, 0, 0.15)), 1, false},
+                                             {model, at(Vec3(std::nan(""), 0, 0)), 1, true},
+                                             {model, at(Vec3(0.1, 0, 0.15)), 0, false},
+                                             {std::make_shared<Model>(), Pose::Identity()}});
+  EXPECT_EQ(seen_at(Vec3(0.1, 0, 0.15)), empty);
+}
+
+TEST_F(Picture, ExchangesTheSceneAndKeepsTheRest) {
+  state_.proxy = pose_of(arm_, 0, 0);
+  const Vec3 there(0.1, 0, 0.15);
+  const Eigen::Vector3i empty = seen_at(there);
+  Scene scene;
+  scene.boxes.emplace_back();
+  scene.boxes[0].pose = at(there);
+  view_->set_scene(scene);
+  EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
+  EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+  scene.visuals.push_back({"/nowhere/table.glb", Pose::Identity(), 1});
+  EXPECT_THROW(view_->set_scene(scene), std::runtime_error);
+  EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
+  view_->set_scene({});
+  EXPECT_LE((seen_at(there) - empty).cwiseAbs().maxCoeff(), 2);
+}
+
+TEST_F(Picture, LaysTheContactPatchOnTheSurface) {
+  camera_.look(Camera::View::top);
+  camera_.frame(Bounds(Vec3(0.25, -0.05, -0.02), Vec3(0.35, 0.05, 0.02)));
+  camera_.finish();
+  state_.show_forces = false;
+  const auto red_pixels = [&](const Vec3& normal, double force) {
+    state_.contacts = {{Vec3(0.3, 0, 0), Vec3(force, 0, 0), 1, normal}};
+    view_->draw(state_, camera_, 0, 0, kWidth, kHeight);
+    const auto rgba = read_rgba(kWidth, kHeight);
+    int count = 0;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) count += rgba[i] > rgba[i + 2] + 30;
+    return count;
+  };
+  EXPECT_GT(red_pixels(Vec3::UnitZ(), 1), 5 * red_pixels(Vec3::UnitX(), 1));
+  EXPECT_GT(red_pixels(Vec3::UnitZ(), 5), 2 * red_pixels(Vec3::UnitZ(), 0.5));
+}
+
+TEST_F(Picture, FillsItsRectangleAtHalfTheResolution) {
+  state_.proxy = pose_of(arm_, 0, 0);
+  view_->set_quality(Quality::level(Quality::kLowest));
+  EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+  EXPECT_TRUE(blue(seen_at(Vec3(0.05, 0, 0))));
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// Scenes and models brought in beside the window, one after the other.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "app/run/scene_meshes.h"
+#include "app/session/background.h"
+#include "core/dynamics/arm_description.h"
+
+namespace limpid {
+
+// What was asked for, ready to be touched and drawn.
+struct LoadedScene {
+  std::filesystem::path file;
+  Scene scene;
+  MeshModels models;
+  std::vector<std::string> warnings;
+};
+struct LoadedModel {
+  MeshObstacle mesh;  // named for its file; without a place
+  std::shared_ptr<const Model> model;
+  std::vector<std::string> warnings;
+};
+using Loaded = std::variant<LoadedScene, LoadedModel>;
+
+// Errors of all of these: FileError; LoadCancelled. Not for the window's thread where files may be
+// large.
+LoadedScene load_scene(const std::filesystem::path& file, const ArmDescription& arm,
+                       const LoadProgress& progress = {});
+LoadedModel load_model(const std::filesystem::path& file, const LoadProgress& progress = {});
+
+class SceneLoader {
+ public:
+  void open_scene(std::filesystem::path file, const ArmDescription& arm);
+  void add_model(std::filesystem::path file);
+
+  bool busy() const { return work_.busy() || !waiting_.empty(); }
+  // For people: "loading gear.glb", and how far it has come, 0 to 1.
+  const std::string& what() const { return work_.what(); }
+  double part() const { return work_.part(); }
+  std::size_t waiting() const { return waiting_.size(); }
+  // Gives up what is under way and what waits; it ends at its own pace.
+  void cancel();
+
+  // Once a frame: what is ready. Throws what loading threw; what was cancelled says nothing.
+  std::optional<Loaded> take();
+
+ private:
+  struct Request {
+    std::string what;
+    Background<Loaded>::Work work;
+  };
+  void start_next();
+
+  std::deque<Request> waiting_;
+  Background<Loaded> work_;
+};
+
+}  // namespace limpid

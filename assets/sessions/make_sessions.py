@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Records a session of every scene in the gallery beside this file, and draws each scene's thumbnail
+(../scenes/thumbnails). Run after the scenes, the hands or the program have changed:
+
+    python3 assets/sessions/make_sessions.py [PROGRAM] [SCENE ...]
+
+PROGRAM is build/release/app/limpid if not given. Needs h5repack (Debian: hdf5-tools)."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+ASSETS = HERE.parent
+sys.path.insert(0, str(ASSETS))
+import png  # noqa: E402
+
+SCENES = {  # scene: hand, seconds recorded (0: a thumbnail only)
+    "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 0),
+    "proximal": ("proximal", 8), "spheres": ("spheres", 8), "relief": ("relief", 8),
+    "gears": ("gears", 8), "leaf": ("leaf", 8),
+}
+SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
+PART = (300, 170)             # of the picture: its left upper corner
+
+
+def limpid(program, *arguments):
+    """Pictures are drawn without a display."""
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    subprocess.run([program, "run", *map(str, arguments)], env=environment, check=True)
+
+
+def thumbnail(picture, out):
+    pixels = png.decode(picture.read_bytes())[..., :3]
+    (width, height), (x, y) = SIZE, PART
+    part = pixels[y:y + TIMES * height, x:x + TIMES * width]
+    small = part.reshape(height, TIMES, width, TIMES, 3).mean(axis=(1, 3))
+    out.parent.mkdir(exist_ok=True)
+    out.write_bytes(png.encode(np.round(small)))
+
+
+def make(program, scene, folder):
+    hand, seconds = SCENES[scene]
+    print(f"-- {scene}", flush=True)
+    world = ["--scene", ASSETS / f"scenes/{scene}.toml", "--hand", ASSETS / f"hands/{hand}.csv",
+             "--eta", "0.6"]
+    picture = folder / f"{scene}.png"
+    limpid(program, *world, "--picture", picture)
+    thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
+    if seconds == 0:
+        return
+    recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
+    limpid(program, *world, "--duration", seconds, "--record", recording)
+    subprocess.run(["h5repack", "-f", "SHUF", "-f", "GZIP=9", recording, session], check=True)
+    print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
+
+
+if __name__ == "__main__":
+    wanted = sys.argv[1:]
+    program = ASSETS.parent / "build/release/app/limpid"
+    if wanted and wanted[0] not in SCENES:
+        program = wanted.pop(0)
+    with tempfile.TemporaryDirectory() as temporary:
+        for name in wanted or SCENES:
+            make(program, name, Path(temporary))

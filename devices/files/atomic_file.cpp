@@ -1,0 +1,75 @@
+#include "devices/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, int code) {
+  throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(code)));
+}
+
+// A new file that is gone again unless it is kept.
+class Draft {
+ public:
+  explicit Draft(const fs::path& file)
+      : path_(file.string() + fmt::format(".{}.new", ::getpid())),
+        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail(file, errno);
+  }
+  ~Draft() {
+    ::close(descriptor_);
+    if (!kept_) ::unlink(path_.c_str());
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  bool write(std::span<const unsigned char> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+    return ::fsync(descriptor_) == 0;
+  }
+  bool keep_as(const fs::path& file) {
+    kept_ = ::rename(path_.c_str(), file.c_str()) == 0;
+    return kept_;
+  }
+
+ private:
+  std::string path_;
+  int descriptor_;
+  bool kept_ = false;
+};
+
+// The name itself survives a power cut only once its folder is on the disk, too.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& file, std::span<const unsigned char> bytes) {
+  std::error_code none;
+  // What a link points to is replaced, not the link.
+  const fs::path target = fs::is_symlink(file, none) ? fs::weakly_canonical(file, none) : file;
+  Draft draft(target);
+  if (!draft.write(bytes) || !draft.keep_as(target)) fail(file, errno);
+  sync_folder(fs::absolute(target).parent_path());
+}
+
+}  // namespace limpid

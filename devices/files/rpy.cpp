@@ -1,0 +1,69 @@
+#include "devices/files/rpy.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace limpid {
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+
+// Near a pitch of 90 degrees only the sum of roll and yaw matters: yaw is what round-off says, and
+// roll what fits to that.
+Vec3 nearby(const Mat3& R) {
+  const double across = std::hypot(R(0, 0), R(1, 0));
+  const double yaw = across < 1e-9 ? 0 : std::atan2(R(1, 0), R(0, 0));
+  const double s = std::sin(yaw), c = std::cos(yaw);
+  return {std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1)),
+          std::atan2(-R(2, 0), across), yaw};
+}
+
+double half_turn_on(double angle) { return angle > 0 ? angle - kHalfTurn : angle + kHalfTurn; }
+
+// The number `steps` further among the doubles.
+double further(double x, int steps) {
+  const double towards = steps < 0 ? -10 : 10;
+  for (int i = 0; i < std::abs(steps); ++i) x = std::nextafter(x, towards);
+  return x;
+}
+
+}  // namespace
+
+Mat3 rotation(const Vec3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+Vec3 rpy_of(const Mat3& R) {
+  const Vec3 about = nearby(R);
+  // Every rotation has a second set of angles, with a pitch beyond 90 degrees.
+  const Vec3 beyond(half_turn_on(about.x()), half_turn_on(-about.y()), half_turn_on(about.z()));
+  for (double scale = 1; scale < 1e16; scale *= 10) {
+    for (const Vec3& exact : {about, beyond}) {
+      const Vec3 rounded = (exact * scale).array().round() / scale;
+      if (rotation(rounded) == R) return rounded + Vec3::Zero();  // no -0
+    }
+  }
+  constexpr int kSteps = 2;  // of the last place
+  for (int far = 0; far <= kSteps; ++far) {
+    for (int x = -far; x <= far; ++x) {
+      for (int y = -far; y <= far; ++y) {
+        for (int z = -far; z <= far; ++z) {
+          const Vec3 tried(further(about.x(), x), further(about.y(), y), further(about.z(), z));
+          if (rotation(tried) == R) return tried;
+        }
+      }
+    }
+  }
+  return about;
+}
+
+Mat3 settled(const Mat3& R) {
+  const Vec3 rpy = rpy_of(R);
+  const Mat3 written = rotation(rpy);
+  if (written == R || rotation(rpy_of(written)) == written) return written;
+  return rotation((rpy * 1e9).array().round() / 1e9);
+}
+
+}  // namespace limpid

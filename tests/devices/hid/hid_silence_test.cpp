@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include "devices/hid/hid_exchange.h"
+#include "devices/hid/pid_joystick.h"
+#include "tests/support/fake_hid.h"
+#include "tests/support/hid_descriptors.h"
+
+namespace limpid {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A PID joystick that says nothing while nothing moves.
+struct SilentJoystick : testing::Test {
+  SilentJoystick() {
+    device->features[6] = {6, 1, 1, 0, 0};
+    protocol.open(transport);
+    exchange = std::make_unique<HidExchange>(transport, protocol, [this] { return now; });
+    device->send(kAtRest);
+  }
+  // Whether the device is pushed in the last of so many turns of 1 ms.
+  bool pushed_after(int turns) {
+    for (int i = 0; i < turns; ++i) {
+      now += milliseconds(1);
+      exchange->write(std::vector<double>{0.5, 0});
+      exchange->step();
+    }
+    const auto received = device->received();
+    for (auto report = received.rbegin(); report != received.rend(); ++report) {
+      if ((*report)[0] == 5 && (*report)[1] == 1) return (*report)[2] != 0 || (*report)[3] != 0;
+    }
+    return false;
+  }
+
+  const Report kAtRest{1, 0x10, 0x00, 0x20, 0x00, 0x00};
+  std::shared_ptr<test::FakeHid> device = std::make_shared<test::FakeHid>();
+  test::FakeTransport transport{device};
+  PidJoystick protocol{parse_report_descriptor(test::pid_joystick::whole())};
+  std::unique_ptr<HidExchange> exchange;
+  nanoseconds now = std::chrono::hours(1);
+};
+
+TEST_F(SilentJoystick, IsAskedWhetherItIsStillThere) {
+  device->inputs[1] = kAtRest;
+  EXPECT_TRUE(pushed_after(1000));
+  EXPECT_EQ(device->questions, 50 - 1) << "every 20 ms, and not before the first 20 ms were over";
+}
+
+TEST_F(SilentJoystick, IsNotPushedIfItDoesNotAnswer) {
+  EXPECT_TRUE(pushed_after(100));
+  EXPECT_FALSE(pushed_after(10));
+  EXPECT_EQ(device->questions, 1) << "asking can take long where nobody answers";
+  device->send(kAtRest);
+  EXPECT_TRUE(pushed_after(10));
+}
+
+TEST_F(SilentJoystick, IsNotBelievedAnAnswerThatSaysSomethingElse) {
+  device->inputs[1] = Report{1, 0, 0, 0, 0, 0};
+  EXPECT_TRUE(pushed_after(100));
+  EXPECT_FALSE(pushed_after(10));
+  DeviceReading newest;
+  exchange->read(newest);
+  EXPECT_NE(newest.x[0], 0);
+  EXPECT_EQ(newest.count, 1u);
+}
+
+}  // namespace
+}  // namespace limpid
