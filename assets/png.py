@@ -17,7 +17,8 @@ def encode(pixels):
     lines = np.column_stack([np.full(rows, 2, np.uint8), pixels - above])  # filter 2: up
 
     def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        check = struct.pack(">I", zlib.crc32(name + data))
+        return struct.pack(">I", len(data)) + name + data + check
 
     return (SIGNATURE + chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, kind, 0, 0, 0)) +
             chunk(b"IDAT", zlib.compress(lines.tobytes(), 9)) + chunk(b"IEND", b""))
@@ -35,24 +36,30 @@ def decode(data):
         at += 12 + size
     step = CHANNELS[kind]
     lines = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(rows, -1)
-    out = np.zeros((rows + 1, columns + 1, step), np.int32)  # a border of zeros before and above
+    out = np.zeros((rows, columns * step), np.uint8)
+    above = np.zeros(columns * step, np.uint8)
     for y in range(rows):
-        wanted = lines[y, 1:].reshape(columns, step).astype(np.int32)
-        row, above = out[y + 1], out[y]
-        filter_kind = lines[y, 0]
-        if filter_kind == 0:
-            row[1:] = wanted
-        elif filter_kind == 1:
-            row[1:] = np.cumsum(wanted, axis=0) & 255
+        filter_kind, row = lines[y, 0], lines[y, 1:]
+        if filter_kind == 1:
+            row = np.cumsum(row.reshape(columns, step), axis=0, dtype=np.uint8).ravel()
         elif filter_kind == 2:
-            row[1:] = (wanted + above[1:]) & 255
+            row = row + above
+        elif filter_kind > 2:
+            row = undo(filter_kind == 3, row.tobytes(), above.tobytes(), step)
+        out[y] = above = row
+    return out.reshape(rows, columns, step)
+
+
+def undo(average, row, above, step):
+    """The filters whose guess needs the pixel before: average, else Paeth's."""
+    out = bytearray(row)
+    for i, b in enumerate(above):
+        a = out[i - step] if i >= step else 0
+        c = above[i - step] if i >= step else 0
+        if average:
+            guess = (a + b) // 2
         else:
-            for x in range(1, columns + 1):
-                a, b, c = row[x - 1], above[x], above[x - 1]
-                if filter_kind == 3:
-                    guess = (a + b) // 2
-                else:
-                    pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
-                    guess = np.where((pa <= pb) & (pa <= pc), a, np.where(pb <= pc, b, c))
-                row[x] = (wanted[x - 1] + guess) & 255
-    return out[1:, 1:].astype(np.uint8)
+            pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+            guess = a if pa <= pb and pa <= pc else b if pb <= pc else c
+        out[i] = (row[i] + guess) & 255
+    return np.frombuffer(out, np.uint8)

@@ -73,14 +73,4 @@ Command declare_recover(CLI::App& app) {
   return [options] { return recover(*options); };
 }
 
-Command declare_devices(CLI::App& app) {
-  app.add_subcommand("devices", "what is connected, what can drive it");
-  return [] {
-    fmt::print(
-        "virtual arm   built in; any URDF chain of 1 to 32 revolute joints (--device), "
-        "driven by the mouse or a recorded hand\n");
-    return 0;
-  };
-}
-
 }  // namespace limpid

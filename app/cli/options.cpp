@@ -102,9 +102,14 @@ RunPlan plan_from_session(const InputOptions& options) {
     plan.arm = read_urdf(options.device);
     if (options.scene.empty()) {  // its joints and links may have other names here
       plan.scene = parse_scene(session.info.scene, options.hand + " (scene)",
-                               data_dir() / "assets/scenes", plan.arm);
+                               data_dir() / "assets/scenes", plan.arm, session.info.models);
     }
     if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
+    if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
+      throw UsageError(fmt::format(
+          "--device: {} has {} joints; {} holds the hand's torque on {} joints", options.device,
+          plan.arm.dof(), options.hand, session.info.dof));
+    }
   }
   if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);
   if (!options.device.empty() || !options.scene.empty()) build_meshes(plan.scene);

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "app/desktop/experiments_panel.h"
 #include "app/desktop/keys.h"
 #include "app/desktop/panels.h"
+#include "app/desktop/scene_dialogs.h"
 #include "app/interrupt.h"
 #include "app/rtkit.h"
 #include "app/style/theme.h"
@@ -43,6 +45,7 @@ void splitter(const char* name, const ScreenRect& rect, bool vertical, double di
 struct Panels {
   ViewPanel view;
   SidePanel side;
+  SceneDialogs scene;
   ExperimentsPanel experiments;
 };
 
@@ -86,6 +89,7 @@ void draw(Workbench& bench, Window& window, Panels& panels) {
              520);
   }
   draw_dialogs(bench);
+  panels.scene.draw(bench, view);
   panels.experiments.draw(bench);
   draw_notices(bench, view);
 }
@@ -97,28 +101,37 @@ void print_state(Workbench& bench) {
   const LoopStatus status = bench.live.status();
   std::vector<double> values(static_cast<std::size_t>(bench.shown().channels().count()));
   bench.shown().channels().values(row, values);
+  const auto& selected = bench.editor.selected();
   const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
   fmt::print(
       "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
       "\"energy_total\": {:.6g}, \"grip\": {:.2f}, \"force\": {}, \"recording\": {}, "
       "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
       "{}, "
-      "\"slipped\": {}, \"dropped\": {}}}\n",
+      "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
+      "\"dirty\": {}, \"scene\": {}, \"quality\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
       layout.in(row, Column::hand_grip)[0], bench.controls.force, bench.live.recording(),
       bench.playing_back(), bench.playing_back() && !bench.playback->rerun.empty(), status.rate,
-      status.ticks, status.late, status.missed, status.slipped, bench.live.trace_dropped());
+      status.ticks, status.late, status.missed, status.slipped, bench.live.trace_dropped(),
+      objects_of(bench.editor.scene()).size(),
+      selected ? nlohmann::json(name_of(bench.editor.scene(), *selected)).dump() : "null",
+      bench.loader.busy(), bench.editor.dirty(), nlohmann::json(bench.scene_file).dump(),
+      bench.quality_level());
   std::fflush(stdout);
 }
 
-void open_dropped(Workbench& bench, const std::vector<std::filesystem::path>& files) {
-  for (const std::filesystem::path& file : files) {
-    if (file.extension() == ".toml") {
-      bench.open_scene(file);
-    } else {
-      bench.open_session(file);
-    }
+// The scene of last time may be gone by now; one given by hand has to be there.
+void open_world(Workbench& bench, const DesktopOptions& options) {
+  const std::string& device = options.device.empty() ? bench.settings.device : options.device;
+  if (!options.scene.empty()) return bench.open_world(device, options.scene);
+  try {
+    bench.open_world(device, bench.settings.scene);
+  } catch (const std::exception& e) {
+    if (bench.settings.scene.empty()) throw;
+    bench.open_world(device, "");
+    bench.say(e.what(), true);
   }
 }
 
@@ -142,9 +155,8 @@ void run_desktop(const DesktopOptions& options) {
   const std::unique_ptr<Workbench, void (*)(Workbench*)> pictures(
       &bench, [](Workbench* b) { b->drop_pictures(); });
   catch_interrupts();
-  const std::string& device = options.device.empty() ? bench.settings.device : options.device;
-  const std::string& scene = options.scene.empty() ? bench.settings.scene : options.scene;
-  bench.open_world(device, scene);
+  bench.automatic_quality = AutoQuality(Quality::automatic_level(window.renderer()));
+  open_world(bench, options);
   if (!complaint.empty()) bench.say(complaint, true);
   bench.recover_leftovers();
   if (!options.session.empty()) bench.open_session(options.session);
@@ -152,17 +164,28 @@ void run_desktop(const DesktopOptions& options) {
   Panels panels;
   double last = glfwGetTime();
   int frame = 0;
-  while (window.begin_frame()) {
+  bool leaving = false;
+  while (!leaving) {
+    if (!window.begin_frame()) {
+      // Unsaved changes are asked about, unless somebody interrupts from outside.
+      bench.leave_scene([&leaving] { leaving = true; });
+      window.keep_open();
+      leaving = leaving || interrupted;
+      continue;
+    }
     if (interrupted) window.close();
     const double now = glfwGetTime();
+    bench.history.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
     handle_keys(bench, window);
-    open_dropped(bench, window.dropped());
+    bench.open_dropped(window.dropped());
     bench.update(now - last);
     last = now;
     draw(bench, window, panels);
     window.end_frame();
+    bench.automatic_quality.frame(window.frame_time());
     if (options.print_state && ++frame % 6 == 0) print_state(bench);
   }
+  panels.scene.drop_pictures();
   if (!window.full_screen()) window.size(bench.settings.width, bench.settings.height);
   if (const std::string error = save_settings(bench.settings); !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);

@@ -29,15 +29,30 @@ constexpr std::array kShortcuts{
     Shortcut{"F2  F3  F4", "coupling panel, device panel, plots"},
     Shortcut{"F5", "the paper's experiments"},
     Shortcut{"F11, F12", "full screen, save a picture"},
-    Shortcut{"Ctrl+O  Ctrl+Z  Ctrl+Y  Ctrl+Q", "open, undo, redo, quit"},
+    Shortcut{"Ctrl+O  Ctrl+Z  Ctrl+Y  Ctrl+Q", "open a recording, undo, redo, quit"},
+    Shortcut{"Ctrl+G  Ctrl+M", "gallery of scenes; add a model (.glb), or drop one here"},
+    Shortcut{"Ctrl+S  Ctrl+Shift+S", "save the scene; under another name"},
+    Shortcut{"Tab, Shift+Tab", "select the next object of the scene, or the one before"},
+    Shortcut{"Delete  Ctrl+D", "remove or copy the selected object"},
     Shortcut{"plots", "drag pans, wheel zooms, double click fits, right click saves"},
     Shortcut{"sliders", "double click to type, right click for the paper's value"},
 };
 
-void handle_control_key(Workbench& bench, Window& window, int key) {
-  switch (key) {
+void handle_control_key(Workbench& bench, Window& window, const KeyPress& press) {
+  const bool shift = (press.modifiers & GLFW_MOD_SHIFT) != 0;
+  switch (press.key) {
+    case GLFW_KEY_D: bench.duplicate_selected(); break;
+    case GLFW_KEY_G: bench.show_gallery = !bench.show_gallery; break;
+    case GLFW_KEY_M: bench.show_add_model = true; break;
+    case GLFW_KEY_S:
+      if (shift) {
+        bench.show_save_as = true;
+      } else {
+        bench.save_scene();
+      }
+      break;
     case GLFW_KEY_O: bench.show_open = true; break;
-    case GLFW_KEY_Z: bench.undo(); break;
+    case GLFW_KEY_Z: shift ? bench.redo() : bench.undo(); break;
     case GLFW_KEY_Y: bench.redo(); break;
     case GLFW_KEY_Q: window.close(); break;
     default: break;
@@ -89,6 +104,10 @@ void handle_key(Workbench& bench, Window& window, const KeyPress& press) {
     case GLFW_KEY_F11: window.toggle_full_screen(); break;
     case GLFW_KEY_F12: bench.save_picture(window); break;
     case GLFW_KEY_BACKSPACE: bench.start_over(); break;
+    case GLFW_KEY_DELETE: bench.remove_selected(); break;
+    case GLFW_KEY_TAB:
+      bench.editor.select_next((press.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1);
+      break;
     default: break;
   }
 }
@@ -103,8 +122,10 @@ void handle_keys(Workbench& bench, Window& window) {
     if (press.key == GLFW_KEY_ESCAPE || press.key == GLFW_KEY_SPACE) {
       bench.cut_force();
       bench.show_help = bench.show_about = bench.show_open = bench.show_experiments = false;
+      bench.show_gallery = bench.show_add_model = bench.show_save_as = false;
+      bench.after_question = nullptr;
     } else if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
-      handle_control_key(bench, window, press.key);
+      handle_control_key(bench, window, press);
     } else if (bench.playback && press.key == GLFW_KEY_BACKSPACE) {
       bench.close_playback();
     } else {

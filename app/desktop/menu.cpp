@@ -26,6 +26,9 @@ std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension
 void file_menu(Workbench& bench, Window& window) {
   if (!ImGui::BeginMenu("File")) return;
   if (ImGui::MenuItem("Open session...", "Ctrl+O")) bench.show_open = true;
+  if (ImGui::MenuItem("Add model...", "Ctrl+M")) bench.show_add_model = true;
+  if (ImGui::MenuItem("Save scene", "Ctrl+S")) bench.save_scene();
+  if (ImGui::MenuItem("Save scene as...", "Ctrl+Shift+S")) bench.show_save_as = true;
   if (ImGui::MenuItem("Save picture", "F12")) bench.save_picture(window);
   ImGui::Separator();
   if (ImGui::MenuItem("Undo", "Ctrl+Z")) bench.undo();
@@ -60,6 +63,12 @@ void view_menu(Workbench& bench, Window& window) {
     s.theme = light ? Theme::light : Theme::dark;
     apply_theme(s.theme, current_scale());
   }
+  if (ImGui::BeginMenu("Picture quality")) {
+    for (const char* choice : {"automatic", "high", "medium", "low"}) {
+      if (ImGui::MenuItem(choice, nullptr, s.picture_quality == choice)) s.picture_quality = choice;
+    }
+    ImGui::EndMenu();
+  }
   if (ImGui::MenuItem("Full screen", "F11", window.full_screen())) window.toggle_full_screen();
   ImGui::EndMenu();
 }
@@ -86,13 +95,19 @@ void session_menu(Workbench& bench) {
 
 void scene_menu(Workbench& bench) {
   if (!ImGui::BeginMenu("Scene")) return;
+  if (ImGui::MenuItem("Gallery...", "Ctrl+G")) bench.show_gallery = true;
+  ImGui::Separator();
   for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
     if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, bench.scene_file == file.string())) {
       bench.open_scene(file);
     }
   }
   ImGui::Separator();
-  ImGui::TextDisabled("Drop a scene's .toml on the window to open it.");
+  const bool any = bench.editor.selected().has_value() && !bench.playing_back();
+  if (ImGui::MenuItem("Copy selected object", "Ctrl+D", false, any)) bench.duplicate_selected();
+  if (ImGui::MenuItem("Remove selected object", "Delete", false, any)) bench.remove_selected();
+  ImGui::Separator();
+  ImGui::TextDisabled("Drop a model (.glb) or a scene (.toml) on the window.");
   ImGui::EndMenu();
 }
 

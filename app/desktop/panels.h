@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "app/desktop/analysis_panel.h"
+#include "app/desktop/scene_panel.h"
 #include "app/desktop/window.h"
 #include "app/desktop/workbench.h"
 #include "app/plot/plot_frame.h"
@@ -26,12 +27,13 @@ void draw_transport(Workbench& bench, const ScreenRect& rect);
 void draw_dialogs(Workbench& bench);
 void draw_notices(Workbench& bench, const ScreenRect& view);
 
-// Hand, device, analysis and timing.
+// Scene, hand, device, analysis and timing.
 class SidePanel {
  public:
   void draw(Workbench& bench, const ScreenRect& rect, double frame_time);
 
  private:
+  ScenePanel scene_;
   AnalysisPanel analysis_;
 };
 

@@ -12,8 +12,8 @@ namespace limpid {
 namespace {
 
 constexpr double kLeast = 0.02, kMost = 0.20, kHandy = 0.08;  // of a model [m]
-constexpr double kClear = 0.012;                             // around a tip [m]
-constexpr double kGap = 0.004;                               // between objects [m]
+constexpr double kClear = 0.012;                              // around a tip [m]
+constexpr double kGap = 0.004;                                // between objects [m]
 
 Bounds around(const Vec3& middle, const Vec3& size, double more) {
   const Vec3 half = size / 2 + Vec3::Constant(more);
@@ -80,15 +80,14 @@ double handy_scale(double extent) {
   return std::round(exact / digit) * digit;
 }
 
-void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene,
-                const Workplace& at) {
+void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at) {
   mesh.scale = handy_scale(model.sizes().maxCoeff());
   mesh.pose = Pose::Identity();
   mesh.pose.linear() = rotation({std::numbers::pi / 2, 0, 0});
   const Bounds upright = moved(model, Eigen::Affine3d(mesh.pose) * Eigen::Scaling(mesh.scale));
   const Vec3 place = find_place(upright.sizes(), table_height(scene, at.rest), at);
   const Vec3 shift = place - upright.center();
-  mesh.pose.translation() = (shift * 1e4).array().round() / 1e4;  // to 0.1 mm
+  mesh.pose.translation() = (shift * 1e4).array().round() / 1e4;              // to 0.1 mm
   if (table_height(scene, at.rest)) mesh.pose.translation().z() = shift.z();  // stands on it
 }
 

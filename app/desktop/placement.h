@@ -12,10 +12,10 @@ namespace limpid {
 
 // What a place depends on.
 struct Workplace {
-  Vec3 base = Vec3::Zero();  // where the arm stands [m]
-  double reach = 0;          // from there [m]
-  Vec3 rest = Vec3::Zero();  // the tip in the middle of its room [m]
-  std::vector<Vec3> tips;    // where tips are now, of device and proxy [m]
+  Vec3 base = Vec3::Zero();   // where the arm stands [m]
+  double reach = 0;           // from there [m]
+  Vec3 rest = Vec3::Zero();   // the tip in the middle of its room [m]
+  std::vector<Vec3> tips;     // where tips are now, of device and proxy [m]
   std::vector<Bounds> taken;  // by other objects [m]
 };
 
@@ -31,7 +31,6 @@ Vec3 find_place(const Vec3& size, std::optional<double> table, const Workplace& 
 double handy_scale(double extent);
 
 // Scales a mesh of these bounds (in its own units, y up), sets it upright and gives it a place.
-void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene,
-                const Workplace& at);
+void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at);
 
 }  // namespace limpid

@@ -19,7 +19,16 @@ void Workbench::open_session(const fs::path& file) {
                 [file](BackgroundProgress&) -> std::optional<Playback> {
                   Session session = read_session(file);
                   if (session.size() == 0) throw FileError(file.string() + ": holds no rows");
-                  return Playback{file, Player(std::move(session)), {}, {}, nullptr};
+                  RunPlan world = replay(session, file.string(), {});
+                  MeshModels models = build_meshes(world.scene);
+                  return Playback{.file = file,
+                                  .player = Player(std::move(session)),
+                                  .arm = std::move(world.arm),
+                                  .scene = std::move(world.scene),
+                                  .models = std::move(models),
+                                  .rerun = {},
+                                  .rerun_parameters = {},
+                                  .stage = nullptr};
                 });
 }
 
@@ -35,33 +44,37 @@ void Workbench::toggle_playing() {
 
 void Workbench::close_playback() {
   rerunning.cancel();
+  exporting.cancel();
   playback.reset();
 }
 
 // The recorded hand under the settings of the panels.
 void Workbench::start_rerun() {
   if (!playback) return;
-  RunPlan plan = replay(playback->player.session(), playback->file.string(), parameters);
   playback->rerun_parameters = parameters;
-  rerunning.start("re-running", [plan = std::move(plan)](BackgroundProgress& progress) {
-    std::vector<double> rows;
-    rows.reserve(plan.rows * static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride()));
-    std::uint64_t count = 0;
-    simulate(plan, {.realtime = false, .stop = &progress.cancel},
-             [&](std::span<const double> row, const Parameters*) {
-               rows.insert(rows.end(), row.begin(), row.end());
-               progress.part = static_cast<double>(++count) / static_cast<double>(plan.rows);
-               return true;
-             });
-    return rows;
-  });
+  // The session stays where it is meanwhile: whoever takes it away ends the re-run first.
+  rerunning.start(
+      "re-running", [&session = playback->player.session(), where = playback->file.string(),
+                     chosen = parameters](BackgroundProgress& progress) {
+        const RunPlan plan = replay(session, where, chosen);
+        std::vector<double> rows;
+        rows.reserve(plan.rows * static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride()));
+        std::uint64_t count = 0;
+        simulate(plan, {.realtime = false, .stop = &progress.cancel},
+                 [&](std::span<const double> row, const Parameters*) {
+                   rows.insert(rows.end(), row.begin(), row.end());
+                   progress.part = static_cast<double>(++count) / static_cast<double>(plan.rows);
+                   return true;
+                 });
+        return rows;
+      });
 }
 
 void Workbench::export_csv() {
   if (!playback) return;
   fs::path out = playback->file;
   out.replace_extension(".csv");
-  // The session stays where it is while the table is written: playback cannot be closed meanwhile.
+  // The session stays where it is meanwhile: whoever takes it away waits for the end.
   exporting.start("writing the table",
                   [&session = playback->player.session(), out](BackgroundProgress&) {
                     write_csv(session, out, false);
@@ -87,6 +100,8 @@ void Workbench::recover_leftovers() {
 void Workbench::take_results() {
   try {
     if (auto loaded = loading.take(); loaded && *loaded) {
+      rerunning.cancel();
+      exporting.cancel();
       playback.emplace(std::move(**loaded));
       last_recording = playback->file;
       rebuild_playback_stage();
@@ -117,9 +132,8 @@ void Workbench::take_results() {
 // The plots hold the whole recording, and the re-run if there is one.
 void Workbench::rebuild_playback_stage() {
   const Session& session = playback->player.session();
-  const RunPlan world = replay(session, playback->file.string(), parameters);
   const double length = playback->player.duration();
-  playback->stage = std::make_unique<Stage>(world.arm, world.scene,
+  playback->stage = std::make_unique<Stage>(playback->arm, playback->scene, playback->models,
                                             StageOptions{.seconds = length + 1,
                                                          .tick = session.info.tick,
                                                          .shown = length,

@@ -99,9 +99,8 @@ SceneObject object_of(const Scene& scene, const ObjectRef& ref) {
 }
 
 const std::string& name_of(const Scene& scene, const ObjectRef& ref) {
-  return with_list(scene, ref.kind, [&](const auto& list) -> const std::string& {
-    return list.at(ref.index).name;
-  });
+  return with_list(scene, ref.kind,
+                   [&](const auto& list) -> const std::string& { return list.at(ref.index).name; });
 }
 
 const char* kind_name(ObjectKind kind) {
@@ -182,10 +181,12 @@ void SceneEditor::add(SceneObject object, std::shared_ptr<const Model> model) {
     throw std::runtime_error(
         fmt::format("A scene holds at most {} objects; remove one first.", kMostContacts));
   }
-  std::visit([&](auto& o) {
-    hold(o);
-    o.name = free_name(o.name, std::nullopt);
-  }, object);
+  std::visit(
+      [&](auto& o) {
+        hold(o);
+        o.name = free_name(o.name, std::nullopt);
+      },
+      object);
   const auto kind = static_cast<ObjectKind>(object.index());
   const std::size_t index = count(scene(), kind);
   change("", [&](World& world) {

@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "core/geometry/triangle_mesh.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene_file.h"
@@ -47,40 +49,56 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
 
 void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {
   const std::string what = fmt::format("opening {}", file.filename().string());
-  waiting_.push_back({what, [file = std::move(file), arm](BackgroundProgress& progress) -> Loaded {
-                        step_back();
-                        return load_scene(file, arm, progress_of(progress));
-                      }});
+  waiting_.push_back(
+      {what, true, [file = std::move(file), arm](BackgroundProgress& progress) -> Loaded {
+         step_back();
+         return load_scene(file, arm, progress_of(progress));
+       }});
   start_next();
 }
 
 void SceneLoader::add_model(fs::path file) {
   const std::string what = fmt::format("loading {}", file.filename().string());
-  waiting_.push_back({what, [file = std::move(file)](BackgroundProgress& progress) -> Loaded {
-                        step_back();
-                        return load_model(file, progress_of(progress));
-                      }});
+  waiting_.push_back(
+      {what, false, [file = std::move(file)](BackgroundProgress& progress) -> Loaded {
+         step_back();
+         return load_model(file, progress_of(progress));
+       }});
   start_next();
+}
+
+bool SceneLoader::opening_scene() const {
+  return (work_.busy() && scene_) || std::ranges::any_of(waiting_, &Request::scene);
 }
 
 void SceneLoader::start_next() {
   if (work_.busy() || waiting_.empty()) return;
+  unwanted_ = false;
+  scene_ = waiting_.front().scene;
   work_.start(std::move(waiting_.front().what), std::move(waiting_.front().work));
   waiting_.pop_front();
 }
 
 void SceneLoader::cancel() {
   waiting_.clear();
+  unwanted_ = true;
   work_.ask_to_stop();
 }
 
 std::optional<Loaded> SceneLoader::take() {
   start_next();
   try {
-    return work_.take();
-  } catch (const LoadCancelled&) {
-    return std::nullopt;
+    std::optional<Loaded> loaded = work_.take();
+    return unwanted_ ? std::nullopt : std::move(loaded);
+  } catch (const std::exception&) {
+    if (unwanted_) return std::nullopt;
+    throw;
   }
+}
+
+double SceneLoader::seconds_left() const {
+  const double part = work_.part();
+  return part > 0.05 ? work_.seconds() * (1 - part) / part : -1;
 }
 
 }  // namespace limpid

@@ -39,9 +39,11 @@ class SceneLoader {
   void add_model(std::filesystem::path file);
 
   bool busy() const { return work_.busy() || !waiting_.empty(); }
+  bool opening_scene() const;
   // For people: "loading gear.glb", and how far it has come, 0 to 1.
   const std::string& what() const { return work_.what(); }
   double part() const { return work_.part(); }
+  double seconds_left() const;  // negative: nobody can tell yet
   std::size_t waiting() const { return waiting_.size(); }
   // Gives up what is under way and what waits; it ends at its own pace.
   void cancel();
@@ -52,12 +54,15 @@ class SceneLoader {
  private:
   struct Request {
     std::string what;
+    bool scene;
     Background<Loaded>::Work work;
   };
   void start_next();
 
   std::deque<Request> waiting_;
   Background<Loaded> work_;
+  bool scene_ = false;     // what is under way is one
+  bool unwanted_ = false;  // what is under way
 };
 
 }  // namespace limpid

@@ -19,6 +19,13 @@ fs::path home_dir(const char* variable, const char* below_home) {
   return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / below_home;
 }
 
+fs::path data_home(const char* folder) {
+  const fs::path dir = home_dir("XDG_DATA_HOME", ".local/share") / "limpid" / folder;
+  std::error_code error;
+  fs::create_directories(dir, error);
+  return dir;
+}
+
 fs::path settings_file() { return home_dir("XDG_CONFIG_HOME", ".config") / "limpid/settings.toml"; }
 
 // Every setting but the parameters, once, for reading and writing.
@@ -39,6 +46,7 @@ void each(S& s, Visit&& visit) {
   visit("show_grid", s.show_grid);
   visit("hold_on_release", s.hold_on_release);
   visit("hint_seen", s.hint_seen);
+  visit("picture_quality", s.picture_quality);
   visit("plot_length", s.plot_length);
   visit("band", s.band);
   visit("device", s.device);
@@ -93,11 +101,7 @@ std::string save_settings(const Settings& settings) {
   return error ? fmt::format("{}: {}", file.string(), error.message()) : std::string();
 }
 
-fs::path sessions_dir() {
-  const fs::path dir = home_dir("XDG_DATA_HOME", ".local/share") / "limpid/sessions";
-  std::error_code error;
-  fs::create_directories(dir, error);
-  return dir;
-}
+fs::path sessions_dir() { return data_home("sessions"); }
+fs::path scenes_dir() { return data_home("scenes"); }
 
 }  // namespace limpid

@@ -18,9 +18,10 @@ struct Settings {
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool hold_on_release = false;
   bool hint_seen = false;
-  double plot_length = 10;    // [s]
-  double band = 5;            // of the human, for the analysis [Hz]
-  std::string device, scene;  // files; empty: the default
+  std::string picture_quality = "automatic";  // or high, medium, low
+  double plot_length = 10;                    // [s]
+  double band = 5;                            // of the human, for the analysis [Hz]
+  std::string device, scene;                  // files; empty: the default
   // A first start shows the standard coupling: its flaw is what C then mends.
   Parameters parameters{.kind = CouplingKind::standard};
 };
@@ -32,7 +33,8 @@ Settings load_settings(std::string& complaint);
 // went wrong, empty if nothing did.
 std::string save_settings(const Settings& settings);
 
-// Where recordings go: $XDG_DATA_HOME/limpid/sessions, made if need be.
+// Where recordings and scenes go: below $XDG_DATA_HOME/limpid, made if need be.
 std::filesystem::path sessions_dir();
+std::filesystem::path scenes_dir();
 
 }  // namespace limpid

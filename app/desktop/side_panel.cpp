@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "app/desktop/device_panel.h"
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"
 #include "app/style/parameter_slider.h"
@@ -102,6 +103,13 @@ void draw_timing(Workbench& bench, double frame_time) {
     read_out("ticks dropped", std::to_string(dropped),
              "Ticks that found no room on their way to the plots or the recording.");
   }
+  const Settings& s = bench.settings;
+  read_out("picture quality",
+           s.picture_quality == "automatic"
+               ? fmt::format("automatic, {} of {}", 1 + Quality::kLowest - bench.quality_level(),
+                             1 + Quality::kLowest)
+               : s.picture_quality,
+           {}, "View > Picture quality. Automatic: as good as this computer draws smoothly");
   read_out("frame", fmt::format("{:.1f} ms", 1e3 * frame_time), {},
            "Work for one picture; the loop does not wait for it");
 }
@@ -118,12 +126,14 @@ bool section(const char* name, bool open) {
 
 void SidePanel::draw(Workbench& bench, const ScreenRect& rect, double frame_time) {
   begin_panel("side", rect);
+  if (section("Scene", true)) scene_.draw(bench);
   if (section("Hand", true)) {
     sliders(bench, {"hand.stiffness", "hand.damping"});
     ImGui::Checkbox("hold where released", &bench.settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
-  if (section("Device", false)) {
+  if (section("Device", !bench.devices.hub.in_use().empty())) {
+    draw_device_panel(bench);
     sliders(bench, {"device.torque_limit", "observer.anti_windup", "device.damping",
                     "device.friction", "device.encoder_step", "observer.velocity",
                     "model.inertia_error", "proxy.inertia_ratio"});

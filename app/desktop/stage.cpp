@@ -1,12 +1,41 @@
 #include "app/desktop/stage.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "app/assets.h"
 
 namespace limpid {
+namespace {
 
-Stage::Stage(ArmDescription arm, Scene scene, const StageOptions& options)
+// Everything SceneView::set_scene() looks at, which reads files and builds shapes.
+bool same_items(const Scene& a, const Scene& b) {
+  const auto same = [](const auto& x, const auto& y, const auto& equal) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
+  };
+  return same(a.planes, b.planes,
+              [](const Plane& p, const Plane& q) {
+                return p.point == q.point && p.normal == q.normal;
+              }) &&
+         same(a.spheres, b.spheres,
+              [](const Sphere& p, const Sphere& q) {
+                return p.center == q.center && p.radius == q.radius;
+              }) &&
+         same(a.boxes, b.boxes,
+              [](const Box& p, const Box& q) {
+                return p.pose.matrix() == q.pose.matrix() && p.size == q.size;
+              }) &&
+         same(a.joint_contacts, b.joint_contacts,
+              [](const JointContact& p, const JointContact& q) {
+                return p.joint == q.joint && p.angle == q.angle && p.direction == q.direction;
+              }) &&
+         same(a.visuals, b.visuals,
+              [](const SceneVisual& p, const SceneVisual& q) { return p.file == q.file; });
+}
+
+}  // namespace
+
+Stage::Stage(ArmDescription arm, Scene scene, MeshModels models, const StageOptions& options)
     : picture(data_dir() / "shaders", arm, scene),
       history({.channels = TraceChannels(RowLayout(arm.dof())).count() * (options.rerun ? 2 : 1),
                .seconds = options.seconds,
@@ -18,6 +47,29 @@ Stage::Stage(ArmDescription arm, Scene scene, const StageOptions& options)
       channels_(RowLayout(arm_.dof())),
       values_(static_cast<std::size_t>(history.channels())) {
   for (PlotSpec& spec : channels_.plots(options.rerun)) plots.emplace_back(std::move(spec));
+  show_meshes(models, std::nullopt);
+}
+
+void Stage::show(const Scene& scene, const MeshModels& models,
+                 std::optional<std::size_t> highlighted) {
+  if (!same_items(scene_, scene)) picture.set_scene(scene);
+  scene_ = scene;
+  show_meshes(models, highlighted);
+}
+
+void Stage::show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted) {
+  std::vector<MeshPicture> pictures;
+  for (std::size_t i = 0; i < scene_.meshes.size() && i < models.size(); ++i) {
+    const MeshObstacle& mesh = scene_.meshes[i];
+    pictures.push_back({models[i], mesh.pose, mesh.scale, highlighted == i});
+  }
+  picture.set_meshes(pictures);
+}
+
+void Stage::draw_at(int quality) {
+  if (quality == quality_) return;
+  quality_ = quality;
+  picture.set_quality(Quality::level(quality));
 }
 
 void Stage::append(std::span<const double> row, std::span<const double> again) {

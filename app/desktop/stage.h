@@ -7,6 +7,7 @@
 #include "app/plot/history.h"
 #include "app/plot/plot.h"
 #include "app/plot/plot_group.h"
+#include "app/run/scene_meshes.h"
 #include "app/session/trace_channels.h"
 #include "app/view/row_view.h"
 #include "render/camera.h"
@@ -23,8 +24,15 @@ struct StageOptions {
 
 class Stage {
  public:
-  // Needs a current OpenGL context. Errors: std::runtime_error naming the file of a picture.
-  Stage(ArmDescription arm, Scene scene, const StageOptions& options);
+  // `models` are what the scene's meshes look like. Needs a current OpenGL context. Errors:
+  // std::runtime_error naming the file of a picture.
+  Stage(ArmDescription arm, Scene scene, MeshModels models, const StageOptions& options);
+
+  // The same arm in another scene; `highlighted` is the number of a mesh. Errors as above; the
+  // picture stays as it was then.
+  void show(const Scene& scene, const MeshModels& models, std::optional<std::size_t> highlighted);
+  // A level of Quality.
+  void draw_at(int quality);
 
   const ArmDescription& arm() const { return arm_; }
   const Scene& scene() const { return scene_; }
@@ -41,8 +49,11 @@ class Stage {
   std::vector<Plot> plots;
 
  private:
+  void show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted);
+
   ArmDescription arm_;
   Scene scene_;
+  int quality_ = -1;
   RowView rows_;
   TraceChannels channels_;
   std::vector<double> values_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/desktop/panels.h"
+#include "app/desktop/selection_outline.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "core/dynamics/inverse_kinematics.h"
@@ -65,8 +66,13 @@ void ViewPanel::draw(Workbench& bench, const Window& window, const ScreenRect& r
   const double scale = points_x > 0 ? static_cast<double>(pixels_x) / points_x : 1;
   const auto pixels = [&](float points) { return static_cast<int>(std::lround(points * scale)); };
   stage.picture.set_pixel_scale(scale * static_cast<double>(current_scale()));
+  stage.draw_at(bench.quality_level());
   stage.picture.draw(view, bench.camera, pixels(rect.min.x), pixels_y - pixels(rect.max.y),
                      pixels(size.x), pixels(size.y));
+  if (const auto ref = bench.editor.selected(); ref && !bench.playing_back()) {
+    draw_outline(object_of(bench.editor.scene(), *ref), bench.camera, rect,
+                 *ImGui::GetBackgroundDrawList());
+  }
   draw_labels(bench, rect);
 }
 

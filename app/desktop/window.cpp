@@ -27,6 +27,7 @@ constexpr auto kFrame = std::chrono::microseconds(16667);
 
 struct Window::Impl {
   GLFWwindow* glfw = nullptr;
+  std::string renderer;
   std::vector<KeyPress> keys;
   std::vector<std::filesystem::path> dropped;
   SteadyClock::time_point due = SteadyClock::now();
@@ -83,6 +84,12 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   glfwMakeContextCurrent(impl_->glfw);
   glfwSetWindowSizeLimits(impl_->glfw, 900, 560, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSwapInterval(0);
+  const auto ask =
+      reinterpret_cast<const unsigned char* (*)(unsigned)>(glfwGetProcAddress("glGetString"));
+  constexpr unsigned kRenderer = 0x1F01;  // GL_RENDERER
+  if (const unsigned char* name = ask != nullptr ? ask(kRenderer) : nullptr) {
+    impl_->renderer = reinterpret_cast<const char*>(name);
+  }
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
     if (action != GLFW_RELEASE) Impl::of(w).keys.push_back({key, modifiers});
@@ -140,6 +147,8 @@ void Window::end_frame() {
 
 void Window::close() { glfwSetWindowShouldClose(impl_->glfw, GLFW_TRUE); }
 
+void Window::keep_open() { glfwSetWindowShouldClose(impl_->glfw, GLFW_FALSE); }
+
 bool Window::full_screen() const { return glfwGetWindowMonitor(impl_->glfw) != nullptr; }
 
 void Window::toggle_full_screen() {
@@ -164,6 +173,7 @@ void Window::size(int& width, int& height) const {
 void Window::framebuffer_size(int& width, int& height) const {
   glfwGetFramebufferSize(impl_->glfw, &width, &height);
 }
+const std::string& Window::renderer() const { return impl_->renderer; }
 double Window::frame_time() const { return impl_->frame_time; }
 
 void Window::save_picture(const std::filesystem::path& png) { save_picture(png, 0, 0, 0, 0); }

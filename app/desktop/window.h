@@ -39,6 +39,7 @@ class Window {
   void end_frame();
 
   void close();
+  void keep_open();  // after begin_frame() returned false
   void toggle_full_screen();
   bool full_screen() const;
   // Keys pressed in this frame that no text field took.
@@ -47,6 +48,7 @@ class Window {
   const std::vector<std::filesystem::path>& dropped() const;
   void size(int& width, int& height) const;              // in ImGui's coordinates
   void framebuffer_size(int& width, int& height) const;  // in pixels
+  const std::string& renderer() const;                   // what OpenGL calls itself
   double frame_time() const;  // work of the last frame, without waiting [s]
   // Saves what is between two corners [ImGui's coordinates] once the frame is drawn; without
   // corners all of it. Errors surface from end_frame().

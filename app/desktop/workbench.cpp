@@ -15,9 +15,9 @@
 namespace limpid {
 namespace {
 
+namespace fs = std::filesystem;
 using SteadyClock = std::chrono::steady_clock;
 constexpr std::size_t kDrainRows = 512;
-constexpr std::size_t kMostUndo = 200;
 
 // Where a new loop rests: the tip as at the middle of the arm's limits.
 Vec3 home(const ArmDescription& arm) {
@@ -28,8 +28,8 @@ Vec3 home(const ArmDescription& arm) {
 }  // namespace
 
 Workbench::Workbench(Settings s, AskForPriority ask)
-    : settings(std::move(s)), parameters(settings.parameters), live(std::move(ask)) {
-  known_ = parameters;
+    : settings(std::move(s)), parameters(settings.parameters), live(ask), devices(ask) {
+  known_.parameters = analysed_ = parameters;
   controls.parameters = parameters;
 }
 
@@ -48,34 +48,35 @@ void Workbench::open_world(const std::string& device, const std::string& scene) 
   device_file = device.empty() ? default_device().string() : device;
   scene_file = scene.empty() ? default_scene().string() : scene;
   ArmDescription arm = read_urdf(device_file);
-  Scene read = read_scene(scene_file, arm);
-  open(std::move(arm), std::move(read));
+  Scene whole = read_scene(scene_file, arm);
+  if (whole.meshes.empty()) return open(std::move(arm), std::move(whole), {});
+  // Models may be large: they come in while the window is there already.
+  Scene first = whole;
+  first.meshes.clear();
+  open(std::move(arm), std::move(first), {});
+  loader.open_scene(scene_file, stage->arm());
 }
 
-void Workbench::open_scene(const std::filesystem::path& file) {
-  if (live.recording()) {
-    say("Stop the recording before changing the scene.", true);
-    return;
-  }
-  try {
-    Scene scene = read_scene(file, stage->arm());
-    scene_file = file.string();
-    settings.scene = scene_file;
-    open(stage->arm(), std::move(scene));
-    say(fmt::format("Scene: {}", stage->scene().title));
-  } catch (const std::exception& e) {
-    say(e.what(), true);
-  }
-}
-
-void Workbench::open(ArmDescription arm, Scene scene) {
+void Workbench::open(ArmDescription arm, Scene scene, MeshModels models,
+                     std::unique_ptr<Device> device) {
   auto fresh =
-      std::make_unique<Stage>(std::move(arm), std::move(scene),
+      std::make_unique<Stage>(std::move(arm), std::move(scene), models,
                               StageOptions{.tick = parameters.tick, .shown = settings.plot_length});
   controls.grab = false;
   controls.goal = home(fresh->arm());
-  live.open(fresh->arm(), fresh->scene(), parameters, controls.goal);
+  if (device) {
+    live.open(fresh->arm(), fresh->scene(), parameters, std::move(device));
+  } else {
+    live.open(fresh->arm(), fresh->scene(), parameters, controls.goal);
+  }
   stage = std::move(fresh);
+  editor.open(stage->scene(), std::move(models));
+  known_.scene = shown_ = editor.version();
+  touched_ = shown_.world;
+  // Steps of other scenes cannot be undone in this one.
+  history.rewrite(
+      [&](EditState& state) { state.scene = shown_; },
+      [](const EditState& a, const EditState& b) { return a.parameters == b.parameters; });
   rows_.assign(kDrainRows * static_cast<std::size_t>(live.layout().stride()), 0.0);
   camera.reset(stage->picture.bounds());
   camera.finish();
@@ -89,12 +90,17 @@ void Workbench::drop_pictures() {
 }
 
 void Workbench::update(double dt) {
+  note_changes();
   follow_parameters();
+  show_scene();
+  hand_scene_over(false);
   controls.parameters = parameters;
   live.set(controls);
   live.update();
   take_rows();
   take_results();
+  take_loaded();
+  devices.update(*this);
   if (playback) playback->player.advance(dt);
   camera.advance(dt);
   if (live.snapshot().diverged && !was_diverged_) {
@@ -122,22 +128,29 @@ void Workbench::take_rows() {
   }
 }
 
-// Notices what a panel, a key or undo changed: marks it in the plots, remembers it for undo. A
-// slider that is being dragged makes one step of undo.
-void Workbench::follow_parameters() {
-  const auto now = SteadyClock::now();
-  if (before_change_ && now - last_change_ > std::chrono::milliseconds(500)) {
-    undo_.push_back(*before_change_);
-    if (undo_.size() > kMostUndo) undo_.erase(undo_.begin());
-    redo_.clear();
-    before_change_.reset();
+// Notices what a panel, a key or a mouse changed, for undo.
+void Workbench::note_changes() {
+  const EditState now{parameters, editor.version()};
+  const bool scene = now.scene.world != known_.scene.world;
+  std::string what = scene ? editor.last_change() : "";
+  if (!(parameters == known_.parameters)) {
+    for (const ParameterInfo& info : parameter_table()) {
+      const bool same = parameter_text(parameters, info) == parameter_text(known_.parameters, info);
+      if (!same) what = scene ? "" : info.key;
+    }
+    history.changed(known_, what, SteadyClock::now());
+  } else if (scene) {
+    history.changed(known_, what, SteadyClock::now());
   }
-  if (parameters == known_) return;
-  if (!before_change_) before_change_ = known_;
-  last_change_ = now;
+  known_ = now;
+}
+
+// Marks in the plots what has changed.
+void Workbench::follow_parameters() {
+  if (parameters == analysed_) return;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string text = parameter_text(parameters, info);
-    if (text == parameter_text(known_, info)) continue;
+    if (text == parameter_text(analysed_, info)) continue;
     const double time = stage->channels().layout().in(row(), Column::time)[0];
     if (!playback) {
       std::string value = text.empty() ? "the arm's" : text;
@@ -145,7 +158,7 @@ void Workbench::follow_parameters() {
       stage->history.mark(time, fmt::format("{} {}", info.label, value), info.key);
     }
   }
-  known_ = parameters;
+  analysed_ = parameters;
   const ArmDescription& arm = shown().arm();
   analysis = analyze(arm, rest_pose(arm), parameters, std::nullopt);
 }
@@ -166,23 +179,27 @@ void Workbench::start_over() {
   say("Started over: at rest, force on.");
 }
 
+void Workbench::go_to(const std::optional<EditState>& state) {
+  if (!state) return;
+  parameters = state->parameters;
+  editor.restore(state->scene);
+  known_ = *state;
+}
+
 void Workbench::undo() {
-  if (before_change_) {
-    redo_.push_back(parameters);
-    parameters = known_ = *before_change_;
-    before_change_.reset();
-  } else if (!undo_.empty()) {
-    redo_.push_back(parameters);
-    parameters = known_ = undo_.back();
-    undo_.pop_back();
-  }
+  note_changes();
+  const EditState* next = history.next_undo();
+  if (next == nullptr) return say("Nothing to undo.");
+  if (next->scene.world != known_.scene.world && !may_edit()) return;
+  go_to(history.undo(known_));
 }
 
 void Workbench::redo() {
-  if (redo_.empty()) return;
-  undo_.push_back(parameters);
-  parameters = known_ = redo_.back();
-  redo_.pop_back();
+  note_changes();
+  const EditState* next = history.next_redo();
+  if (next == nullptr) return say("Nothing to redo.");
+  if (next->scene.world != known_.scene.world && !may_edit()) return;
+  go_to(history.redo(known_));
 }
 
 void Workbench::reset_parameters() {
@@ -202,6 +219,13 @@ void Workbench::save_picture(Window& window) {
   say("Saved " + (sessions_dir() / name).string());
 }
 
+int Workbench::quality_level() const {
+  if (settings.picture_quality == "high") return 0;
+  if (settings.picture_quality == "medium") return 2;
+  if (settings.picture_quality == "low") return Quality::kLowest;
+  return automatic_quality.level();
+}
+
 void Workbench::toggle_recording() {
   try {
     if (live.recording()) {
@@ -218,7 +242,9 @@ void Workbench::toggle_recording() {
         fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
     RunPlan plan;
     plan.arm = stage->arm();
-    plan.scene = stage->scene();
+    plan.scene = editor.scene();
+    plan.scene.toml = scene_toml();
+    hand_scene_over(true);
     plan.hand.source = "mouse";
     plan.parameters = parameters;
     live.record(sessions_dir() / name, session_info(plan), parameters, false);

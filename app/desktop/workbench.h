@@ -5,17 +5,24 @@
 #include <chrono>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "app/desktop/device_desk.h"
+#include "app/desktop/placement.h"
+#include "app/desktop/scene_editor.h"
+#include "app/desktop/scene_loader.h"
 #include "app/desktop/settings.h"
 #include "app/desktop/stage.h"
+#include "app/desktop/undo_history.h"
 #include "app/live/live_loop.h"
 #include "app/run/analysis.h"
 #include "app/session/background.h"
 #include "app/session/player.h"
 #include "render/camera.h"
+#include "render/quality.h"
 
 namespace limpid {
 
@@ -25,6 +32,9 @@ class Window;
 struct Playback {
   std::filesystem::path file;
   Player player;
+  ArmDescription arm;
+  Scene scene;
+  MeshModels models;
   std::vector<double> rerun;  // rows of the second run, as many as the session's; or none
   Parameters rerun_parameters;
   std::unique_ptr<Stage> stage;
@@ -42,6 +52,12 @@ struct Notice {
   std::chrono::steady_clock::time_point until;
 };
 
+// What undo goes back to.
+struct EditState {
+  Parameters parameters;
+  SceneEditor::Version scene;
+};
+
 class Workbench {
  public:
   Workbench(Settings settings, AskForPriority ask);
@@ -49,7 +65,6 @@ class Workbench {
 
   // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
   void open_world(const std::string& device, const std::string& scene);
-  void open_scene(const std::filesystem::path& file);
   // Before the OpenGL context goes.
   void drop_pictures();
   // Once a frame, before anything is drawn.
@@ -64,6 +79,29 @@ class Workbench {
   void redo();
   void reset_parameters();
 
+  // The scene. Loading goes on beside the window; what is there stays until it is done.
+  void open_scene(const std::filesystem::path& file);
+  void add_model(const std::filesystem::path& file);
+  void open_dropped(const std::vector<std::filesystem::path>& files);
+  // False, and says why, while the scene has to stay as it is.
+  bool may_edit();
+  void add_object(SceneObject object);  // it gets a place in reach
+  void remove_selected();
+  void duplicate_selected();
+  void frame_selected();
+  // The text that a recording keeps of the present scene.
+  std::string scene_toml() const;
+  // Where Ctrl+S writes to; empty for scenes that came with Limpid.
+  std::filesystem::path own_scene_file() const;
+  void save_scene();
+  bool save_scene_as(const std::filesystem::path& file);
+  // Does it at once, or after the user has been asked what to do with unsaved changes.
+  void leave_scene(std::function<void()> then);
+
+  // A real device takes the arm's place, or leads the virtual one's hand; and back.
+  void open_device(std::unique_ptr<Device> device);
+  void close_device();
+
   // Recording and playback.
   void toggle_recording();
   void open_session(const std::filesystem::path& file);
@@ -73,6 +111,7 @@ class Workbench {
   void export_csv();
   void recover_leftovers();
   void save_picture(Window& window);
+  int quality_level() const;  // of Quality, as the settings want it
 
   void say(std::string text, bool bad = false);
   bool playing_back() const { return playback.has_value(); }
@@ -89,25 +128,42 @@ class Workbench {
   Camera camera;
   Analysis analysis;
   std::deque<Notice> notices;
+  DeviceDesk devices;
   std::filesystem::path last_recording;
+  SceneEditor editor;
+  SceneLoader loader;
+  UndoHistory<EditState> history;
+  std::function<void()> after_question;  // of what to do with unsaved changes; none: not asked
+  AutoQuality automatic_quality;
   Background<std::optional<Playback>> loading;
   Background<std::vector<double>> rerunning;
   Background<std::string> exporting;
   std::string scene_file, device_file;
   bool show_help = false, show_about = false, show_open = false, show_experiments = false;
+  bool show_gallery = false, show_add_model = false, show_save_as = false;
   std::string typed_path;
 
  private:
-  void open(ArmDescription arm, Scene scene);
+  void open(ArmDescription arm, Scene scene, MeshModels models,
+            std::unique_ptr<Device> device = nullptr);
   void take_rows();
+  void note_changes();
   void follow_parameters();
+  void go_to(const std::optional<EditState>& state);
   void take_results();
   void rebuild_playback_stage();
+  void take_loaded();
+  void accept(LoadedScene& loaded);
+  void accept(LoadedModel& loaded);
+  Workplace workplace() const;
+  void show_scene();
+  void hand_scene_over(bool at_once);
 
-  Parameters known_;  // at the last frame
-  std::vector<Parameters> undo_, redo_;
-  std::optional<Parameters> before_change_;
-  std::chrono::steady_clock::time_point last_change_;
+  EditState known_;      // at the last frame
+  Parameters analysed_;  // that marks and analysis know
+  SceneEditor::Version shown_;
+  std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
+  std::chrono::steady_clock::time_point touched_since_;
   std::vector<double> rows_;
   bool was_diverged_ = false;
 };

@@ -63,12 +63,14 @@ void LiveLoop::close() {
   plugs_.clear();
   if (rig_) rig_->plug(nullptr);
   delete std::exchange(plug_, nullptr);
+  plugged_ = false;
   rig_.reset();
 }
 
 LiveLoop::~LiveLoop() { close(); }
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
+  plugged_ = device != nullptr;
   plugs_.offer(std::make_unique<Plug>(Plug{std::move(device)}));
 }
 

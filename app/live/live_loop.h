@@ -42,7 +42,8 @@ struct Plug {
   std::unique_ptr<Device> device;
 
   // Leads the virtual arm's hand instead of being the arm.
-  bool guides() const { return device && !device->traits().pushes && device->traits().dof == 6; }
+  static bool guides(const DeviceTraits& traits) { return !traits.pushes && traits.dof == 6; }
+  bool guides() const { return device && guides(device->traits()); }
 };
 
 // All but the functions said to be the loop's are the window's. Starting over, another arm or
@@ -65,10 +66,16 @@ class LiveLoop {
   // Another device, or none: a hand's guide, or, of a loop for a real device, that one back again.
   void plug(std::unique_ptr<Device> device);
   bool real() const { return rig_ && rig_->real(); }
+  bool device_plugged() const { return plugged_; }  // by the window; it may be lost
 
   void set(const Controls& controls) { controls_.write(controls); }
-  // The newest snapshot; true if there is one newer than at the last call.
-  bool update() { return snapshots_.update(); }
+  // The newest snapshot; true if there is one newer than at the last call. Also lets go of what the
+  // loop has given back: a device is free for others then.
+  bool update() {
+    worlds_.collect();
+    plugs_.collect();
+    return snapshots_.update();
+  }
   const Snapshot& snapshot() const { return snapshots_.front(); }
   // Every tick since the last call, as far as `into` holds; returns the rows.
   std::size_t drain(std::span<double> into) { return trace_ ? trace_->pop(into) : 0; }
@@ -101,6 +108,7 @@ class LiveLoop {
   std::unique_ptr<Recorder> recorder_;
   HandOver<TouchWorld> worlds_;
   HandOver<Plug> plugs_;
+  bool plugged_ = false;  // the window's
   // Where the loop records to: set by the window, taken up by the loop, which answers.
   std::atomic<Recorder*> wanted_recorder_{nullptr};
   std::atomic<Recorder*> present_recorder_{nullptr};

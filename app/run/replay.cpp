@@ -22,6 +22,7 @@ SessionInfo session_info(const RunPlan& plan) {
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
   info.scene = plan.scene.toml;
+  for (const MeshObstacle& mesh : plan.scene.meshes) info.models[mesh.file] = mesh.source;
   return info;
 }
 
@@ -53,7 +54,8 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     return parse_urdf(session.info.device_urdf, where + " (device_urdf)", folder);
   });
   plan.scene = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
-    return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm);
+    return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm,
+                       session.info.models);
   });
   build_meshes(plan.scene);
   plan.hand = hand_of(session, where);

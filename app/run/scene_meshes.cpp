@@ -4,6 +4,7 @@
 
 #include "core/geometry/triangle_mesh.h"
 #include "devices/files/file_error.h"
+#include "render/glb_writer.h"
 
 namespace limpid {
 namespace {
@@ -32,6 +33,7 @@ MeshModels build_meshes(Scene& scene, const LoadProgress& progress) {
     std::size_t same = 0;
     while (same < i && where(scene.meshes[same]) != where(mesh)) ++same;
     if (same < i) {
+      mesh.source = scene.meshes[same].source;
       mesh.shape = scene.meshes[same].shape;
       models.push_back(models[same]);
       continue;
@@ -44,6 +46,10 @@ MeshModels build_meshes(Scene& scene, const LoadProgress& progress) {
       throw;
     } catch (const std::exception& e) {
       throw FileError(e.what());
+    }
+    // With its companions a .gltf is more than one file; recordings want one.
+    if (std::filesystem::path(mesh.path).extension() == ".gltf") {
+      mesh.source = std::make_shared<const std::vector<unsigned char>>(write_glb(*models.back()));
     }
     if (!mesh.shape) mesh.shape = shape_of(*models.back(), where(mesh), progress.cancel);
   }

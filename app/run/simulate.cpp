@@ -56,7 +56,9 @@ class Run {
     if (plan_.hand_torque.empty()) return {target, plan_.hand.grip_sample(k, T())};
     const auto n = static_cast<std::size_t>(rig_.dof());
     const std::size_t last = plan_.hand_torque.size() / n - 1;
-    return {target, 0, std::span(plan_.hand_torque).subspan(n * std::min(k, last), n)};
+    const double recorded = static_cast<double>(k) * T() / plan_.hand.tick;
+    const auto row = std::min(static_cast<std::size_t>(std::llround(recorded)), last);
+    return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n)};
   }
 
   bool armed(std::size_t k) const {

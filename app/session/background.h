@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -26,6 +27,9 @@ class Background {
   bool busy() const { return thread_.joinable(); }
   const std::string& what() const { return what_; }
   double part() const { return progress_.part.load(); }
+  double seconds() const {  // since it was started
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  }
 
   // Ends what was running.
   void start(std::string what, Work work) {
@@ -34,6 +38,7 @@ class Background {
     progress_.part = 0;
     progress_.cancel = false;
     done_ = false;
+    started_ = std::chrono::steady_clock::now();
     thread_ = std::thread([this, work = std::move(work)] {
       try {
         result_ = work(progress_);
@@ -65,6 +70,7 @@ class Background {
 
  private:
   std::string what_;
+  std::chrono::steady_clock::time_point started_;
   BackgroundProgress progress_;
   std::atomic<bool> done_{false};
   std::optional<Result> result_;

@@ -253,6 +253,14 @@ void set_parameter_number(Parameters& parameters, const ParameterInfo& info, dou
       info.field);
 }
 
+bool value_slider(const ParameterInfo& info, double& value, double usual) {
+  ImGui::PushID(info.key);
+  const bool changed = number_slider(info, value, usual, false);
+  if (changed) value = std::clamp(value, info.minimum, info.maximum);
+  ImGui::PopID();
+  return changed;
+}
+
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double paper_value,
                       const char* broken) {
   ImGui::PushID(info.key);

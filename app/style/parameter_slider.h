@@ -13,6 +13,10 @@ namespace limpid {
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double paper_value,
                       const char* broken = nullptr);
 
+// The same for a number that is no parameter, described as if it were one of type double; `usual`
+// is marked and gone back to. Without a tooltip.
+bool value_slider(const ParameterInfo& info, double& value, double usual);
+
 // Where a value lies on the slider of `info`, 0 to 1, and back; beyond the ends it is held there.
 // A logarithmic slider whose range begins at zero begins at a millionth of its end.
 double slider_place(const ParameterInfo& info, double value);

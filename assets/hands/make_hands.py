@@ -150,15 +150,15 @@ def spheres():
     middle = stage.place(stage.meshes[2], [0, 0, make_balls.RADIUS])
     reach = make_balls.RADIUS + stage.tip - 0.003
     angle = np.linspace(np.radians(85), np.radians(-5), 60)[:, None]
-    down = middle + reach * (np.cos(angle) * [0.6, -0.8, 0] + np.sin(angle) * [0, 0, 1])
+    down = middle + reach * (np.cos(angle) * [0.85, -0.53, 0] + np.sin(angle) * [0, 0, 1])
     strokes += [(0.6, down[0] + [0, 0, 0.012]), (0.3, down[0]), (1.3, down),
-                (0.3, down[-1] + [0.012, -0.016, 0.005])]
+                (0.3, down[-1] + [0.017, -0.011, 0.005])]
     return along(strokes + [(0.8, REST)])
 
 
 def relief():
-    """Around the crater, down the ridge to the other hill, over the compass rose, along the coast to
-    the islet."""
+    """Around the crater, down the ridge to the other hill, over the compass rose, along the coast
+    to the islet."""
     stage = Stage("relief")
     height = make_island.carve()[0]
     bell = np.exp(-0.5 * (np.arange(-9, 10) / 3.0) ** 2)
@@ -188,7 +188,7 @@ def relief():
 
 
 def gears():
-    """Around in the bore and its keyway, over the teeth from above, across the pinion's teeth."""
+    """Over the teeth from above, around in the bore and its keyway, across the pinion's teeth."""
     stage, press = Stage("gears"), 0.003
     wheel, pinion = stage.meshes
     upper = 1e-3 * (make_gears.LIFT + make_gears.WIDTH)
@@ -206,11 +206,12 @@ def gears():
     teeth = ring(wheel, pitch, upper + stage.tip - 0.004, 100, -55)
     tip = 0.5e-3 * make_gears.MODULE * (make_gears.PINION + 2)
     flanks = ring(pinion, tip + stage.tip - 0.004, upper - 0.008, 20, -110)
-    out = stage.place(pinion, [0.036, 0.012, upper - 0.008])
-    return along([(0.7, over), (0.5, centre), (0.3, bore[0]), (2.0, bore), (0.3, centre),
-                  (0.4, over), (0.5, teeth[0] + [0, 0, 0.012]), (0.3, teeth[0]), (2.8, teeth),
-                  (0.3, teeth[-1] + [0.01, 0, 0.012]), (0.5, out), (0.3, flanks[0]),
-                  (2.0, flanks), (0.4, flanks[-1] + [0, -0.012, 0.012]), (0.8, REST)])
+    out = stage.place(pinion, [0.034, 0.012, upper - 0.008])
+    return along([(0.6, teeth[0] + [0, 0, 0.012]), (0.3, teeth[0]), (2.6, teeth),
+                  (0.3, teeth[-1] + [0, 0, 0.012]), (0.5, over), (0.5, centre), (0.3, bore[0]),
+                  (2.0, bore), (0.3, centre), (0.4, over), (0.7, out + [0, 0, 0.015]), (0.3, out),
+                  (0.3, flanks[0]), (2.0, flanks), (0.4, flanks[-1] + [0, -0.012, 0.012]),
+                  (0.8, REST)])
 
 
 def leaf():
@@ -227,7 +228,7 @@ def leaf():
         du = make_leaf.blade_points(u + step, inner)[0] - make_leaf.blade_points(u - step, inner)[0]
         dv = (make_leaf.blade_points(u, np.minimum(inner + step, 1))[0] -
               make_leaf.blade_points(u, np.maximum(inner - step, -1))[0])
-        normal = np.cross(dv, du)
+        normal = np.cross(du, dv)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         beyond = (v - inner)[:, None] * 0.02 * dv / np.linalg.norm(dv, axis=1, keepdims=True)
         return stage.place(mesh, at + beyond + side * off * normal)
@@ -241,8 +242,9 @@ def leaf():
                                 (1.1, -1, 0.006), (0.8, -1, pressed))]
     down = beside(rounded_off([(0.5, 0.8), (0.62, 0.3), (0.45, -0.2), (0.32, 0.4)]), -1, pressed)
     away = beside([(0.32, 0.4)], -1, 0.02)
-    return along([(0.9, first), (0.4, up[0]), (2.8, up), (1.2, rounded_off(rim)), (2.2, down),
-                  (0.4, away), (0.9, away + [0, 0.0, 0.05]), (0.8, REST)])
+    over = [away[0] + [-0.02, -0.005, 0.03], (0.165, 0.0, 0.04)]
+    return along([(0.6, first), (0.4, up[0]), (2.4, up), (1.2, rounded_off(rim)), (2.2, down),
+                  (0.4, away), (1.5, rounded_off([away[0], *over, REST]))])
 
 
 def write(path, t, p):

@@ -9,7 +9,8 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from glb_file import Part, grid_triangles, smooth_normals, write_glb  # noqa: E402
+from glb_file import (Part, grid_triangles, smooth_normals, whole,  # noqa: E402
+                      write_glb)
 
 RADIUS = 0.019
 SEGMENTS, ROWS = 72, 30   # around, and from pole to pole besides the rings
@@ -18,10 +19,10 @@ APART = np.radians(15)    # between rings, seen from the centre
 HIGHEST = np.radians(52)  # of the uppermost ring
 
 BALLS = {  # linear red, green, blue, metallic, roughness; and the rings' colour
-    "foam": ((0.78, 0.66, 0.44, 0.0, 0.95), (0.34, 0.22, 0.10)),
-    "soft rubber": ((0.52, 0.17, 0.15, 0.0, 0.70), (0.16, 0.035, 0.03)),
-    "hard rubber": ((0.085, 0.115, 0.135, 0.0, 0.45), (0.50, 0.53, 0.54)),
-    "wood": ((0.42, 0.22, 0.085, 0.0, 0.42), (0.09, 0.035, 0.012)),
+    "foam": ((0.62, 0.44, 0.13, 0.0, 0.95), (0.22, 0.12, 0.02)),
+    "soft rubber": ((0.36, 0.075, 0.065, 0.0, 0.70), (0.09, 0.015, 0.014)),
+    "hard rubber": ((0.045, 0.065, 0.080, 0.0, 0.45), (0.50, 0.53, 0.54)),
+    "wood": ((0.30, 0.135, 0.045, 0.0, 0.42), (0.09, 0.035, 0.012)),
     "steel": ((0.62, 0.63, 0.65, 1.0, 0.20), (0.10, 0.10, 0.11)),
 }
 
@@ -48,10 +49,10 @@ def ball(material, rings, color, ring_color):
         to_pith += 0.0006 * np.sin(140 * points[..., 2])
         paint *= (0.86 + 0.20 * np.abs(np.sin(np.pi * to_pith / 0.0035)))[..., None]
     if material == "foam":  # pores
-        paint *= 1 - 0.22 * np.random.default_rng(1).random(points.shape[:2])[..., None] ** 3
+        paint *= 1 - 0.45 * np.random.default_rng(1).random(points.shape[:2])[..., None] ** 3
 
     # One point at each pole instead of a whole row.
-    flat = np.concatenate([points[:1, 0], points[1:-1].reshape(-1, 3), points[-1:, 0]])
+    flat = whole(np.concatenate([points[:1, 0], points[1:-1].reshape(-1, 3), points[-1:, 0]]))
     paint = np.concatenate([paint[:1, 0], paint[1:-1].reshape(-1, 3), paint[-1:, 0]])
     count = len(latitude)
     number = np.clip(np.arange(count * SEGMENTS) - SEGMENTS + 1, 0, len(flat) - 1)

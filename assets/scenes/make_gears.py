@@ -11,7 +11,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from glb_file import (Part, grid_triangles, smooth_normals,  # noqa: E402
-                      thinning_triangles, write_glb)
+                      thinning_triangles, whole, write_glb)
 from glb_shapes import Shape, rounded  # noqa: E402
 
 # Millimetres up to the last step.
@@ -26,7 +26,7 @@ GEAR, PINION = 24, 14         # teeth
 DISTANCE = MODULE * (GEAR + PINION) / 2
 THIN = 6                      # one column in so many goes on from the teeth to hub and bore
 
-MATERIALS = {"brass": (0.83, 0.60, 0.27, 1.0, 0.27), "steel": (0.60, 0.61, 0.63, 1.0, 0.25),
+MATERIALS = {"brass": (0.78, 0.47, 0.155, 1.0, 0.27), "steel": (0.50, 0.51, 0.53, 1.0, 0.25),
              "dark steel": (0.20, 0.21, 0.23, 1.0, 0.35)}
 
 
@@ -128,7 +128,7 @@ def body_rows(teeth, hand, profile, bore, key):
 def gear_part(material, teeth, hand, profile, bore, key=0.0):
     fine, coarse = tooth_rows(teeth, hand), body_rows(teeth, hand, profile, bore, key)
     n, m = len(fine[0]), len(coarse[0])
-    points = 1e-3 * (np.concatenate(fine + coarse) + [0, 0, LIFT])
+    points = whole(1e-3 * (np.concatenate(fine + coarse) + [0, 0, LIFT]))
     first = n * len(fine)
 
     def ring(start, count):

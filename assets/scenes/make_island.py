@@ -10,7 +10,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from glb_file import (Part, grid_triangles, smooth_normals,  # noqa: E402
-                      thinning_triangles, write_glb)
+                      thinning_triangles, whole, write_glb)
 
 # Millimetres up to the last step.
 COLUMNS, ROWS, STEP = 273, 205, 0.355   # of the carved field
@@ -18,9 +18,9 @@ SEA = 7.0                               # level of the sea above the table
 CONTOUR = 2.0                           # between contour lines
 BORDER = 2.6                            # width of the scale around the map
 ROSE, ROSE_RADIUS = (34.5, -22.5), 8.6
-GRAIN = 2.0**-20                        # [m] positions are whole numbers of it: files pack better
+SUB = (-1 / 3, 0, 1 / 3)                # places within a step at which the rose is painted
 
-MATERIALS = {"painted stone": (1, 1, 1, 0.0, 0.55), "walnut": (0.105, 0.052, 0.026, 0.0, 0.38)}
+MATERIALS = {"painted stone": (1, 1, 1, 0.0, 0.55), "walnut": (0.060, 0.027, 0.013, 0.0, 0.36)}
 
 
 def field():
@@ -106,12 +106,23 @@ def star(x, y, outer, inner, turn):
     return np.maximum(1 - edge, 0), half
 
 
+def rose_stars(x, y):
+    return star(x, y, ROSE_RADIUS - 0.4, 2.4, 0), star(x, y, 6.2, 2.2, np.pi / 4)
+
+
+def star_paint(under, x, y, ivory):
+    for points, half in rose_stars(x, y)[::-1]:
+        facet = np.where((half == 0)[..., None], ivory, (0.22, 0.040, 0.018))
+        under = np.where((points > 0)[..., None], facet, under)
+    return under
+
+
 def border(x, y):
     """How far inside of the map's edge; 1 where the scale is dark; 1 on its engraved lines."""
     half_x, half_y = (COLUMNS - 1) / 2 * STEP, (ROWS - 1) / 2 * STEP
     inside = np.minimum(half_x - np.abs(x), half_y - np.abs(y))
     along = np.where(half_x - np.abs(x) < half_y - np.abs(y), y, x)
-    bar = half_x / 12 if half_x else 1
+    bar = half_x / 12
     dark = (np.floor((along + 10 * bar) / bar).astype(int) % 2).astype(float)
     on_scale = (inside > 0.6) & (inside < BORDER - 0.6)
     ticks = np.abs((along + bar / 2) % bar - bar / 2)
@@ -119,9 +130,9 @@ def border(x, y):
     return inside, dark * on_scale, lines
 
 
-RAMP = [(0.0, (0.58, 0.47, 0.29)), (0.5, (0.50, 0.43, 0.22)), (1.2, (0.20, 0.24, 0.075)),
-        (4.0, (0.26, 0.27, 0.085)), (7.0, (0.42, 0.30, 0.12)), (10.5, (0.27, 0.155, 0.085)),
-        (13.5, (0.33, 0.26, 0.21)), (16.0, (0.80, 0.77, 0.72))]
+RAMP = [(0.0, (0.50, 0.38, 0.20)), (0.5, (0.40, 0.32, 0.13)), (1.2, (0.115, 0.150, 0.035)),
+        (4.0, (0.155, 0.165, 0.040)), (7.0, (0.29, 0.185, 0.060)), (10.5, (0.155, 0.080, 0.040)),
+        (13.5, (0.19, 0.14, 0.11)), (16.0, (0.72, 0.69, 0.64))]
 
 
 def mixed(color, other, share):
@@ -149,8 +160,7 @@ def carve():
     rhumb = groove(rhumb, 0.26) * smooth_step(ROSE_RADIUS + 1, ROSE_RADIUS + 1.6, far)
     rhumb *= smooth_step(8.5, 10.5, coast)
     rings = np.maximum(groove(far - ROSE_RADIUS, 0.4), groove(far - ROSE_RADIUS + 1.3, 0.3))
-    long_star, long_half = star(rx, ry, ROSE_RADIUS - 0.4, 2.4, 0)
-    short_star, short_half = star(rx, ry, 6.2, 2.2, np.pi / 4)
+    (long_star, _), (short_star, _) = rose_stars(rx, ry)
     lines = contour_lines(h) * dry
 
     sea = (inside > BORDER) & ~dry
@@ -164,22 +174,17 @@ def carve():
     heights, colors = zip(*RAMP)
     paint = np.stack([np.interp(h, heights, channel) for channel in zip(*colors)], -1)
     paint *= (1 + 0.07 * noise(6, 6, 0.8, 0.5))[..., None]
-    paint = mixed(paint, (0.05, 0.035, 0.02), 0.65 * lines)
+    paint = mixed(paint, (0.030, 0.018, 0.010), 0.8 * lines)
     shore = np.exp(-coast / 4.0)
-    wet = mixed(np.full(paint.shape, (0.036, 0.082, 0.098)), (0.15, 0.25, 0.25), shore)
-    wet = mixed(wet, (0.02, 0.045, 0.055), 0.6 * np.maximum(water, np.maximum(rhumb, rings)))
-    ivory, ink = np.array((0.72, 0.65, 0.50)), np.array((0.045, 0.035, 0.03))
-    for points, half in ((short_star, short_half), (long_star, long_half)):
-        facet = np.where((half == 0)[..., None], ivory, (0.30, 0.075, 0.035))
-        wet = np.where((points > 0)[..., None], facet, wet)
+    wet = mixed(np.full(paint.shape, (0.016, 0.044, 0.056)), (0.075, 0.150, 0.150), shore)
+    wet = mixed(wet, (0.007, 0.018, 0.024), 0.7 * np.maximum(water, np.maximum(rhumb, rings)))
+    ivory, ink = np.array((0.58, 0.50, 0.35)), np.array((0.025, 0.018, 0.014))
+    wet = sum(star_paint(wet, rx + STEP * dx, ry + STEP * dy, ivory)
+              for dx in SUB for dy in SUB) / len(SUB) ** 2
     paint = np.where(dry[..., None], paint, wet)
     scale = mixed(np.full(paint.shape, ivory), ink, dark)
     paint = np.where((inside < BORDER)[..., None], scale, paint)
     return SEA + z, mixed(paint, ink, 0.8 * scale_lines * (inside < BORDER + 0.4))
-
-
-def whole(points):
-    return np.round(points / GRAIN) * GRAIN
 
 
 # From the field's edge outward and down: distance and height [mm].

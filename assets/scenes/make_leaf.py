@@ -10,18 +10,19 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from glb_file import Part, grid_triangles, smooth_normals, write_glb  # noqa: E402
+from glb_file import (Part, grid_triangles, smooth_normals, whole,  # noqa: E402
+                      write_glb)
 from glb_shapes import Shape  # noqa: E402
 
 LENGTH, WIDTH = 0.084, 0.027       # of the blade; its greatest half width
-BASE = (-0.010, 0.0, 0.021)        # where stem and blade meet
+BASE = (-0.003, 0.0, 0.021)        # where stem and blade meet
 ALONG, ACROSS = 140, 96            # cells of the blade
 VEINS, VEIN_SLOPE = 8, 0.75        # on each side; they rise by so much of their way outward
 
 MATERIALS = {
     "leaf": dict(color=(1, 1, 1), metallic=0.0, roughness=0.46, two_sided=True),
     "stem": dict(color=(0.20, 0.25, 0.06), metallic=0.0, roughness=0.5),
-    "pebble": dict(color=(0.30, 0.29, 0.27), metallic=0.0, roughness=0.62),
+    "pebble": dict(color=(0.115, 0.112, 0.105), metallic=0.0, roughness=0.55),
 }
 
 
@@ -53,12 +54,15 @@ def blade_points(u, v):
     # Half a step between the veins of both sides, as they grow.
     phase = (u * LENGTH - VEIN_SLOPE * out) / LENGTH * (VEINS + 1) + np.where(v > 0, 0.5, 0)
     from_vein = np.abs((phase + 0.5) % 1 - 0.5) * LENGTH / (VEINS + 1)
-    vein = np.exp(-((from_vein / 0.00055) ** 2)) * (phase > 0.4) * np.clip(1.25 - np.abs(v), 0, 1)
+    vein = np.exp(-((from_vein / 0.00055) ** 2)) * (phase > 0.4)
+    vein *= np.clip(1.25 - np.abs(v), 0, 1)
     vein = np.maximum(vein, np.exp(-((out / 0.0009) ** 2)) * (1.1 - u))
     # Folded along the midrib, arched between the veins, waved at the margin.
     lift = 0.34 * (np.sqrt(out**2 + 0.003**2) - 0.003) - 5.5 * out**2
-    lift += 0.00045 * np.cos(2 * np.pi * (phase + 0.5)) * np.minimum(out / 0.006, 1)
-    lift += 0.0016 * np.abs(v) ** 3 * np.sin(2 * np.pi * 3.2 * u + np.where(v > 0, 0.6, 2.4))
+    arched = np.minimum(w / 0.012, 1) * np.minimum(out / 0.006, 1)
+    lift += 0.00045 * arched * np.cos(2 * np.pi * (phase + 0.5))
+    wave = np.sin(2 * np.pi * 3.2 * u + np.where(v > 0, 0.6, 2.4))
+    lift += 0.0016 * (w / WIDTH) * np.abs(v) ** 3 * wave
     lift -= 0.0004 * vein
     return middle + (w * v)[..., None] * side + lift[..., None] * face, vein
 
@@ -68,12 +72,12 @@ def blade():
     u = 0.5 * t + 0.5 * (1 - np.cos(np.pi * t)) / 2  # closer together at both ends
     u, v = np.meshgrid(u, np.linspace(-1, 1, ACROSS + 1), indexing="ij")
     points, vein = blade_points(u, v)
-    green = np.array((0.075, 0.205, 0.030))
+    green = np.array((0.050, 0.150, 0.020))
     paint = green * (1 + 0.25 * np.cos(5 * u + 2 * v))[..., None]
     rim = np.clip((np.abs(v) - 0.80) / 0.2, 0, 1)[..., None] ** 2
     paint = paint * (1 - 0.6 * rim) + 0.6 * rim * np.array((0.33, 0.31, 0.05))
-    paint += (np.array((0.34, 0.42, 0.13)) - paint) * (0.75 * vein)[..., None]
-    flat = points.reshape(-1, 3)
+    paint += (np.array((0.25, 0.33, 0.09)) - paint) * (0.75 * vein)[..., None]
+    flat = whole(points.reshape(-1, 3))
     triangles = grid_triangles(ALONG + 1, ACROSS + 1)[:, [0, 2, 1]]
     return [Part("leaf", flat, smooth_normals(flat, triangles), triangles, paint.reshape(-1, 3))]
 
@@ -86,10 +90,11 @@ def stand():
     # The stem bends out of the pebble into the blade's base and goes on beneath the midrib.
     base, a_little = midrib(0.0), midrib(0.03)
     forward = (a_little - base) / np.linalg.norm(a_little - base)
-    foot = np.array([-0.0125, 0.0, 0.008])
+    foot = np.array([-0.005, 0.0, 0.009])
     ends = [foot, foot + [0, 0, 0.008], base - 0.006 * forward, base + 0.002 * forward]
-    path = [((1 - k) ** 3 * ends[0] + 3 * (1 - k) ** 2 * k * ends[1] + 3 * (1 - k) * k**2 * ends[2] +
-             k**3 * ends[3]) for k in np.linspace(0, 1, 14)]
+    k = np.linspace(0, 1, 14)[:, None]
+    path = ((1 - k) ** 3 * ends[0] + 3 * (1 - k) ** 2 * k * ends[1] +
+            3 * (1 - k) * k**2 * ends[2] + k**3 * ends[3])
     angle = np.linspace(0, 2 * np.pi, 14, endpoint=False)
     rings = [np.tile(path[0], (14, 1))]
     for k, middle in enumerate(path):

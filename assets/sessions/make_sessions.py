@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Records a session of every scene in the gallery beside this file, and draws each scene's thumbnail
-(../scenes/thumbnails). Run after the scenes, the hands or the program have changed:
+"""Records a session of every scene in the gallery beside this file, and draws each scene's
+thumbnail (../scenes/thumbnails). Run after the scenes, the hands or the program have changed:
 
     python3 assets/sessions/make_sessions.py [PROGRAM] [SCENE ...]
 
@@ -21,17 +21,19 @@ import png  # noqa: E402
 
 SCENES = {  # scene: hand, seconds recorded (0: a thumbnail only)
     "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 0),
-    "proximal": ("proximal", 8), "spheres": ("spheres", 8), "relief": ("relief", 8),
-    "gears": ("gears", 8), "leaf": ("leaf", 8),
+    "proximal": ("proximal", 4.4), "spheres": ("spheres", 4.2), "relief": ("relief", 4.6),
+    "gears": ("gears", 4), "leaf": ("leaf", 5.2),
 }
 SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
-PART = (300, 170)             # of the picture: its left upper corner
+PART = (300, 138)             # of the picture: its left upper corner
 
 
 def limpid(program, *arguments):
-    """Pictures are drawn without a display."""
+    """From the project's folder, so that a session names its hand the same on every computer.
+    Pictures are drawn without a display."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    subprocess.run([program, "run", *map(str, arguments)], env=environment, check=True)
+    subprocess.run([program, "run", *map(str, arguments)], env=environment, check=True,
+                   cwd=ASSETS.parent)
 
 
 def thumbnail(picture, out):
@@ -46,7 +48,7 @@ def thumbnail(picture, out):
 def make(program, scene, folder):
     hand, seconds = SCENES[scene]
     print(f"-- {scene}", flush=True)
-    world = ["--scene", ASSETS / f"scenes/{scene}.toml", "--hand", ASSETS / f"hands/{hand}.csv",
+    world = ["--scene", f"assets/scenes/{scene}.toml", "--hand", f"assets/hands/{hand}.csv",
              "--eta", "0.6"]
     picture = folder / f"{scene}.png"
     limpid(program, *world, "--picture", picture)
@@ -55,7 +57,8 @@ def make(program, scene, folder):
         return
     recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
     limpid(program, *world, "--duration", seconds, "--record", recording)
-    subprocess.run(["h5repack", "-f", "SHUF", "-f", "GZIP=9", recording, session], check=True)
+    subprocess.run(["h5repack", "-S", "FSM_AGGR", "-P", "0", "-f", "SHUF", "-f", "GZIP=9",
+                    recording, session], check=True)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
 
 
@@ -63,7 +66,7 @@ if __name__ == "__main__":
     wanted = sys.argv[1:]
     program = ASSETS.parent / "build/release/app/limpid"
     if wanted and wanted[0] not in SCENES:
-        program = wanted.pop(0)
+        program = Path(wanted.pop(0)).resolve()
     with tempfile.TemporaryDirectory() as temporary:
         for name in wanted or SCENES:
             make(program, name, Path(temporary))

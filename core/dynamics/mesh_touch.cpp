@@ -9,13 +9,13 @@ namespace {
 
 // A point is a ball of this part of the mesh's size: a hundred times what floats round away.
 constexpr double kSkin = 1e-5;
-constexpr double kLook = 0.01;       // how far around is looked for the surface [m]
-constexpr double kAhead = 0.003;     // how near it must be to be touched within a tick [m]
-constexpr double kSlipSpeed = 0.1;   // of the anchor beyond what the centre does [m/s]
-constexpr double kSlipFactor = 2;    // of the anchor, times the centre's motion
-constexpr double kSafe = 0.9;        // of a free ball's radius: nothing lies on the way
+constexpr double kLook = 0.01;      // how far around is looked for the surface [m]
+constexpr double kAhead = 0.003;    // how near it must be to be touched within a tick [m]
+constexpr double kSlipSpeed = 0.1;  // of the anchor beyond what the centre does [m/s]
+constexpr double kSlipFactor = 2;   // of the anchor, times the centre's motion
+constexpr double kSafe = 0.9;       // of a free ball's radius: nothing lies on the way
 constexpr int kRounds = 12;
-constexpr int kMostLooks = 3;        // around a convex surface
+constexpr int kMostLooks = 3;  // around a convex surface
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void MeshTouch::place(const Vec3& c) {
   hint_ = near.triangle;
   distance_ = near.distance;
   clearance_ = (p - g_).norm() > 0 ? 0 : distance_ - r_;
-  lost_ = !advance(p);
+  held_ = lost_ = !advance(p);
   anchor_ = to_world(g_);
   publish();
 }
@@ -124,15 +124,14 @@ bool MeshTouch::keep_also(const MeshPoint& at, const Vec3& out, const Vec3& p, V
   return space_.add(out, out.dot(at.point) + r_) && space_.project(p, t, active);
 }
 
-// Where the last tick's plane would have it: on a flat face that is the answer, on a curved one
-// nearly.
+// Where the last tick's planes would have it: on a flat face that is the answer, elsewhere nearly.
 MeshTouch::Guess MeshTouch::guess(const Vec3& p, Vec3& t) {
   FreeSpace::Active active;
-  if (space_.count() != 1 || !space_.project(p, t, active) || active.count != 1) return Guess::none;
+  if (!space_.project(p, t, active) || active.count == 0) return Guess::none;
   if ((t - g_).norm() > kSafe * distance_) return Guess::none;
   MeshPoint at;
   if (!shape_->nearest(t, r_ + look_, hint_, at) || at.distance < 0.5 * r_) return Guess::none;
-  const bool right = std::abs(at.distance - r_) <= tolerance_ &&
+  const bool right = space_.count() == 1 && std::abs(at.distance - r_) <= tolerance_ &&
                      (out_of(at, t) - space_.normal(0)).squaredNorm() < 1e-12;
   settle_at(t, at);
   clearance_ = 0;

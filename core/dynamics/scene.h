@@ -2,6 +2,7 @@
 // z up), SI. Contacts are pure stiffness (paper, section 4.1).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ struct Probe {
   Vec3 to = Vec3::Zero();    // in the link frame [m]
   double radius = 0;         // [m]
 };
+
+// Bytes of models by the names that a scene's text has for them.
+using SceneFiles = std::map<std::string, std::shared_ptr<const std::vector<unsigned char>>>;
 
 // A model of triangles. Its points are pose * (scale * p).
 struct MeshObstacle {

@@ -57,8 +57,8 @@ struct TriangleMesh::Tree {
     // The corners carry one more at the end, for Embree reads four numbers at a time.
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                corners.data(), 0, sizeof(Eigen::Vector3f), corners.size());
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(),
+                               0, 3 * sizeof(std::uint32_t), indices.size() / 3);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -87,7 +87,8 @@ std::string MeshHealth::text() const {
   return out;
 }
 
-// Its areas by cross products, not by products of lengths: the thinnest triangles keep their digits.
+// Its areas by cross products, not by products of lengths: the thinnest triangles keep their
+// digits.
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -120,8 +121,7 @@ TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
   tree_->cancel = cancel;
   tree_->build(corners_);
   tree_->cancel = nullptr;
-  build_seconds_ =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
 TriangleMesh::~TriangleMesh() = default;
@@ -212,8 +212,12 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
     std::uint32_t triangle = MeshPoint::kNone;
 
     bool consider(std::uint32_t t) {
-      const Vec3 q = nearest_on_triangle(at, mesh.corner(t, 0), mesh.corner(t, 1),
-                                         mesh.corner(t, 2));
+      const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
+      // Most are in a plane that is too far away, rounding granted.
+      const Vec3 n = (b - a).cross(c - a);
+      const double height = n.dot(at - a);
+      if (height * height > (1 + 1e-7) * best2 * n.squaredNorm()) return false;
+      const Vec3 q = nearest_on_triangle(at, a, b, c);
       const double d2 = (q - at).squaredNorm();
       if (!(d2 < best2)) return false;
       best2 = d2;
@@ -244,8 +248,7 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
   if (search.triangle == MeshPoint::kNone) return false;
   const Vec3 a = corner(search.triangle, 0);
   out.point = search.point;
-  out.normal =
-      (corner(search.triangle, 1) - a).cross(corner(search.triangle, 2) - a).normalized();
+  out.normal = (corner(search.triangle, 1) - a).cross(corner(search.triangle, 2) - a).normalized();
   out.distance = std::sqrt(search.best2);
   out.triangle = search.triangle;
   return true;

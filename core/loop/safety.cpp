@@ -41,7 +41,6 @@ template <int N>
 void Safety<N>::start() {
   v_ = Vec<N>::Zero(lower_.size());
   state_ = ForceState::off;
-  tripped_ = ForceState::on;
   ceiling_ = energy_ = 0;
 }
 

@@ -51,6 +51,7 @@ class Safety {
  public:
   explicit Safety(const ArmDescription& arm);
 
+  // What was tripped stays so.
   void start();
 
   // `wanted`: armed by the user. `v` [rad/s]; `J` of the tip. `put_out`: work of the motors over

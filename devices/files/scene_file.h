@@ -53,10 +53,7 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "core/dynamics/arm_description.h"
 #include "core/dynamics/scene.h"
@@ -66,9 +63,6 @@ namespace limpid {
 // Errors: FileError "FILE:LINE: KEY: found; allowed". Unknown keys are errors, a file without any
 // contact is not (free space). Pairs of a contact and a probe, tip included, are at most 64 x 64.
 Scene read_scene(const std::filesystem::path& file, const ArmDescription& arm);
-
-// Bytes of models by the names that a scene's text has for them.
-using SceneFiles = std::map<std::string, std::shared_ptr<const std::vector<unsigned char>>>;
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
 // one inside a session) visuals with relative names are left out. Meshes come from `files` if they

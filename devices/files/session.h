@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dynamics/scene.h"
 #include "core/loop/row.h"
 #include "devices/files/file_error.h"
 
@@ -23,6 +24,7 @@ struct SessionInfo {
   std::string config;       // all parameters at row 0 (TOML)
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
+  SceneFiles models;        // that the scene's text names
 };
 
 // A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.

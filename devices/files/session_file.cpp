@@ -11,6 +11,8 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "devices/files/session_models.h"
+
 namespace limpid {
 namespace {
 
@@ -132,6 +134,7 @@ void SessionFile::create(const SessionInfo& info) {
   file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   check(static_cast<bool>(file_), path_, "cannot create");
   write_attributes(info);
+  write_models(file_.get(), info.models, path_);
   for (const ColumnInfo& column : kColumnInfo) create_column(column);
   create_events();
   check(H5Fstart_swmr_write(file_.get()) >= 0, path_, "cannot write");

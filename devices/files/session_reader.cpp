@@ -9,6 +9,7 @@
 
 #include "devices/files/hdf5_heaps.h"
 #include "devices/files/session_file.h"
+#include "devices/files/session_models.h"
 #include "devices/files/session_place.h"
 #include "devices/files/session_source.h"
 
@@ -82,6 +83,7 @@ SessionInfo read_info(hid_t root, const fs::path& file) {
   info.config = hdf5::read_text(root, "config", file);
   info.device_urdf = hdf5::read_text(root, "device_urdf", file);
   info.scene = hdf5::read_text(root, "scene", file);
+  info.models = read_models(root, file);
   return info;
 }
 

@@ -3,20 +3,40 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <new>
 
 #include "devices/hid/hid_error.h"
 
 namespace limpid {
+
+// In memory that both processes see. Whoever is to be watched holds the lock; its thread's end is
+// the lock's release, marked as such by the kernel.
+struct Guardian::Watch {
+  pthread_mutex_t alive;
+  std::atomic<bool> dismissed{false};
+
+  Watch() {
+    pthread_mutexattr_t kind;
+    pthread_mutexattr_init(&kind);
+    pthread_mutexattr_setpshared(&kind, PTHREAD_PROCESS_SHARED);
+    pthread_mutexattr_setrobust(&kind, PTHREAD_MUTEX_ROBUST);
+    pthread_mutex_init(&alive, &kind);
+    pthread_mutexattr_destroy(&kind);
+    pthread_mutex_lock(&alive);
+  }
+};
+
 namespace {
 
 constexpr int kTries = 3;  // of each report
@@ -44,7 +64,7 @@ pid_t fork_deaf() {
 }
 
 // What follows runs in the child: it is a copy of one thread of a process with many, so it may call
-// nothing but async-signal-safe functions. No allocation, no locks, no exceptions.
+// nothing that allocates or takes a lock of the process.
 
 // It must outlive the end of the terminal.
 void become_independent() {
@@ -52,22 +72,11 @@ void become_independent() {
   prctl(PR_SET_NAME, "limpid-guardian");
 }
 
-// Above all it must not hold our side of this or of another guardian's socket: that would never
-// close.
-void close_all_but(int one, int other) {
-  const auto low = static_cast<unsigned>(std::min(one, other));
-  const auto high = static_cast<unsigned>(std::max(one, other));
-  if (low > 0) close_range(0, low - 1, 0);
-  if (high - low > 1) close_range(low + 1, high - 1, 0);
-  close_range(high + 1, ~0u, 0);
-}
-
-bool dismissed(int socket) {
-  char word = 0;
-  ssize_t size;
-  do size = read(socket, &word, 1);
-  while (size < 0 && errno == EINTR);
-  return size == 1;
+// The window's and other devices' files are none of its business.
+void close_all_but(int file) {
+  const auto kept = static_cast<unsigned>(file);
+  if (kept > 0) close_range(0, kept - 1, 0);
+  close_range(kept + 1, ~0u, 0);
 }
 
 void stop_device(int device, const std::vector<Report>& reports) {
@@ -78,42 +87,42 @@ void stop_device(int device, const std::vector<Report>& reports) {
   }
 }
 
-[[noreturn]] void guard(int socket, int device, const std::vector<Report>& stop_reports) {
-  become_independent();
-  close_all_but(socket, device);
-  if (!dismissed(socket)) stop_device(device, stop_reports);
-  _exit(0);
-}
-
 }  // namespace
 
 Guardian::Guardian(const std::string& path, const std::vector<Report>& stop_reports)
     : Guardian(open_locked(path), stop_reports) {}
 
 Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
-  int sockets[2] = {-1, -1};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) == 0) child_ = fork_deaf();
-  if (child_ == 0) guard(sockets[1], device, stop_reports);
+  void* const page = mmap(nullptr, sizeof(Watch), PROT_READ | PROT_WRITE,
+                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (page != MAP_FAILED) {
+    watch_ = new (page) Watch;
+    child_ = fork_deaf();
+  }
+  if (child_ == 0) {
+    become_independent();
+    close_all_but(device);
+    pthread_mutex_lock(&watch_->alive);
+    if (!watch_->dismissed) stop_device(device, stop_reports);
+    _exit(0);
+  }
   const int error = errno;
   close(device);
-  if (sockets[1] >= 0) close(sockets[1]);
-  socket_ = sockets[0];
   if (child_ > 0) return;
-  if (socket_ >= 0) close(socket_);
+  if (watch_ != nullptr) {
+    pthread_mutex_unlock(&watch_->alive);
+    munmap(watch_, sizeof(Watch));
+  }
   throw HidError(fmt::format("no process to guard the device: {}", std::strerror(error)));
 }
 
 Guardian::~Guardian() {
-  close(socket_);
+  pthread_mutex_unlock(&watch_->alive);
   while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
   }
+  munmap(watch_, sizeof(Watch));
 }
 
-void Guardian::dismiss() noexcept {
-  // A guardian that somebody killed is no reason to die of SIGPIPE.
-  const char word = 'q';
-  while (send(socket_, &word, 1, MSG_NOSIGNAL) < 0 && errno == EINTR) {
-  }
-}
+void Guardian::dismiss() noexcept { watch_->dismissed = true; }
 
 }  // namespace limpid

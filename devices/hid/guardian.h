@@ -1,8 +1,10 @@
 // Takes the force away when this process is killed.
 //
-// A child process that does nothing but wait on a socket to us. However we end, the kernel closes
-// our side of it; the guardian then writes the stop reports to the device and ends too. It cannot
-// help if it is killed with us, or if we hang: that is what the devices' own watchdogs are for.
+// A child process that does nothing but wait for the end of the thread that made it. However that
+// thread ends, the kernel lets go of the lock it holds; the guardian then writes the stop reports to
+// the device and ends too. It learns of it before the kernel takes our memory apart, which can take
+// tens of milliseconds. It cannot help if it is killed with us, if we hang, or while the kernel
+// writes a core dump: that is what the devices' own watchdogs are for.
 #pragma once
 
 #include <sys/types.h>
@@ -21,7 +23,8 @@ class Guardian {
   Guardian(const std::string& path, const std::vector<Report>& stop_reports);
   // For a device that is open already; takes over the descriptor.
   Guardian(int device, const std::vector<Report>& stop_reports);
-  // Without dismiss() before: the guardian stops the device. Returns when it has ended.
+  // In the thread that made it. Without dismiss() before: the guardian stops the device. Returns
+  // when it has ended.
   ~Guardian();
 
   Guardian(const Guardian&) = delete;
@@ -31,7 +34,9 @@ class Guardian {
   void dismiss() noexcept;
 
  private:
-  int socket_ = -1;
+  struct Watch;
+
+  Watch* watch_ = nullptr;  // shared with the child
   pid_t child_ = -1;
 };
 

@@ -1,41 +1,52 @@
 #include "devices/hid/hid_device.h"
 
+#include <optional>
+
 #include "core/loop/clock.h"
+#include "devices/hid/guardian.h"
 
 namespace limpid {
 
 HidDevice::HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
                      const HidPlace& place, const AskForPriority& ask)
-    : transport_(std::move(transport)), protocol_(std::move(protocol)) {
+    : transport_(std::move(transport)), protocol_(std::move(protocol)), path_(place.path) {
   protocol_->open(*transport_);
   traits_ = protocol_->traits();
   if (traits_.name.empty()) traits_.name = place.name;
   traits_.id = place.id;
   exchange_ =
       std::make_unique<HidExchange>(*transport_, *protocol_, [] { return MonotonicTime{}.now(); });
+  std::promise<void> guarded;
+  std::future<void> is_guarded = guarded.get_future();
   try {
-    if (traits_.pushes && !place.path.empty()) {
-      guardian_ = std::make_unique<Guardian>(place.path, protocol_->stop_reports());
-    }
-    thread_ = std::thread([this, ask] { run(ask); });
+    thread_ = std::thread([this, ask, &guarded] { run(ask, std::move(guarded)); });
+    is_guarded.get();
   } catch (...) {
+    if (thread_.joinable()) thread_.join();
     exchange_->finish();  // its motors may be on already
     throw;
   }
 }
 
-// If the stop did not get through, the guardian tries as well.
 HidDevice::~HidDevice() {
   quit_.store(true, std::memory_order_relaxed);
   thread_.join();
-  if (guardian_ && stopped_) guardian_->dismiss();
 }
 
-void HidDevice::run(const AskForPriority& ask) noexcept {
-  become_realtime(ask);
+// The guardian watches over this thread. If the stop at the end does not get through, it tries too.
+void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexcept {
+  std::optional<Guardian> guardian;
+  try {
+    become_realtime(ask);
+    if (traits_.pushes && !path_.empty()) guardian.emplace(path_, protocol_->stop_reports());
+    guarded.set_value();
+  } catch (...) {
+    guarded.set_exception(std::current_exception());
+    return;
+  }
   while (!quit_.load(std::memory_order_relaxed) && exchange_->step()) {
   }
-  stopped_ = exchange_->finish();
+  if (exchange_->finish() && guardian) guardian->dismiss();
 }
 
 }  // namespace limpid

@@ -5,13 +5,13 @@
 #pragma once
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "core/loop/realtime.h"
 #include "devices/device.h"
-#include "devices/hid/guardian.h"
 #include "devices/hid/hid_exchange.h"
 
 namespace limpid {
@@ -25,8 +25,8 @@ struct HidPlace {
 
 class HidDevice final : public Device {
  public:
-  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). Make it
-  // before the haptic thread runs: the guardian is a fork of this process.
+  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). Not
+  // for the haptic thread.
   HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
             const HidPlace& place, const AskForPriority& ask = {});
   // The device is without force and its motors are off when this returns, if it can be reached.
@@ -45,15 +45,14 @@ class HidDevice final : public Device {
   std::uint64_t unusable() const noexcept { return exchange_->unusable(); }
 
  private:
-  void run(const AskForPriority& ask) noexcept;
+  void run(const AskForPriority& ask, std::promise<void> guarded) noexcept;
 
   std::unique_ptr<HidTransport> transport_;
   std::unique_ptr<HidProtocol> protocol_;
   DeviceTraits traits_;
-  std::unique_ptr<Guardian> guardian_;
   std::unique_ptr<HidExchange> exchange_;
+  std::string path_;
   std::atomic<bool> quit_{false};
-  bool stopped_ = false;  // the thread's last word
   std::thread thread_;
 };
 

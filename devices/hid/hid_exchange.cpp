@@ -42,7 +42,7 @@ void HidExchange::write(std::span<const double> torque) noexcept {
 void HidExchange::stop() noexcept { write({}); }
 
 bool HidExchange::step() noexcept {
-  receive();
+  receive(1);
   ask_if_silent();
   send();
   return !lost();
@@ -54,9 +54,9 @@ bool HidExchange::finish() noexcept {
   return all;
 }
 
-void HidExchange::receive() noexcept {
+void HidExchange::receive(int timeout_ms) noexcept {
   for (int i = 0; i < kMostReports; ++i) {
-    const int size = transport_.read(buffer_, i == 0 ? 1 : 0);
+    const int size = transport_.read(buffer_, i == 0 ? timeout_ms : 0);
     if (size < 0) return lose();
     if (size == 0) return;
     const auto bytes = std::min(static_cast<std::size_t>(size), buffer_.size());
@@ -75,23 +75,13 @@ void HidExchange::take_reading(const DeviceReading& reading) noexcept {
   arrivals_.write(arrival_);
 }
 
-// An answer only counts if it confirms what is known: firmware that never expected the question
-// may answer anything, and a joint that had moved would have said so by itself.
+// Many devices say nothing while nothing moves, and that must not pass for a device that hangs.
 void HidExchange::ask_if_silent() noexcept {
   const std::span<const std::uint8_t> question = protocol_.silent_report();
-  if (question.empty() || !answers_ || lost() || arrival_.reading.count == 0) return;
   const nanoseconds now = clock_();
-  if (now - std::max(arrival_.moment, asked_) < kAskAfter) return;
+  if (question.empty() || lost() || now - std::max(arrival_.moment, asked_) < kAskAfter) return;
   asked_ = now;
-  const auto report = std::span(buffer_).first(std::min(question.size(), buffer_.size()));
-  std::copy_n(question.begin(), report.size(), report.begin());
-  const int size = transport_.get_input(report);
-  answers_ = size > 0;
-  if (!answers_) return;
-  DeviceReading answer = arrival_.reading;
-  const auto bytes = std::min(static_cast<std::size_t>(size), report.size());
-  const Decoded decoded = protocol_.decode(report.first(bytes), answer);
-  if (decoded == Decoded::reading && answer.x == arrival_.reading.x) take_reading(answer);
+  transport_.ask(question);
 }
 
 void HidExchange::send() noexcept {
@@ -124,10 +114,12 @@ HidExchange::Torque HidExchange::torque_now(nanoseconds now) const noexcept {
   return torque;
 }
 
+// Some endpoints take milliseconds for a report; what comes meanwhile is not to wait for the next.
 bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   const bool delivered = transport_.write(report);
   failures_ = delivered ? 0 : failures_ + 1;
   if (failures_ >= kMostFailures) lose();
+  receive(0);
   return delivered;
 }
 

@@ -25,9 +25,10 @@ using ReadClock = std::function<nanoseconds()>;
 // read, write and stop belong to the haptic thread; step and finish to the I/O thread.
 class HidExchange {
  public:
-  static constexpr nanoseconds kTorqueLife = std::chrono::milliseconds(10);
+  // With the turn in which it is noticed, less than 10 ms.
+  static constexpr nanoseconds kTorqueLife = std::chrono::microseconds(8500);
   static constexpr nanoseconds kSendPeriod = std::chrono::milliseconds(1);
-  static constexpr nanoseconds kAskAfter = std::chrono::milliseconds(20);
+  static constexpr nanoseconds kAskAfter = std::chrono::milliseconds(2);
   static constexpr int kMostFailures = 10;  // writes in a row; then the device is lost
 
   // The protocol must have been opened. Both must outlive this.
@@ -59,7 +60,7 @@ class HidExchange {
     nanoseconds moment{};
   };
 
-  void receive() noexcept;
+  void receive(int timeout_ms) noexcept;
   void take_reading(const DeviceReading& reading) noexcept;
   void ask_if_silent() noexcept;
   void send() noexcept;
@@ -86,7 +87,6 @@ class HidExchange {
   bool sent_any_ = false;
   int failures_ = 0;
   nanoseconds asked_{};
-  bool answers_ = true;  // when asked
 };
 
 }  // namespace limpid

@@ -37,7 +37,7 @@ class HidProtocol {
   virtual nanoseconds stale_after() const = 0;
 
   // For devices that say nothing while nothing moves: the input report with the joints, empty but
-  // for its id, by which to ask whether all is as it was. Nothing where that is not needed.
+  // for its id, by which to ask where they are. Nothing where that is not needed.
   virtual std::span<const std::uint8_t> silent_report() const { return {}; }
 
   // Takes an input report, any bytes at all, into the reading: x, hand, fault and buttons.

@@ -23,10 +23,13 @@ class HidTransport {
   // Sends an output report; false if it did not get through.
   virtual bool write(std::span<const std::uint8_t> report) noexcept = 0;
 
-  // Asks for the feature or input report whose id is report[0]: its size, or -1.
+  // Asks for the feature report whose id is report[0]: its size, or -1. May take seconds.
   virtual int get_feature(std::span<std::uint8_t> report) noexcept = 0;
-  virtual int get_input(std::span<std::uint8_t> report) noexcept = 0;
   virtual bool set_feature(std::span<const std::uint8_t> report) noexcept = 0;
+
+  // Asks for an input report, given empty but for its id. Does not wait: the answer, if there ever
+  // is one, comes as one of read()'s. Asking again meanwhile changes nothing.
+  virtual void ask(std::span<const std::uint8_t> question) noexcept = 0;
 
   virtual const std::vector<std::uint8_t>& report_descriptor() const = 0;
 };

@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
+#include <thread>
 
 #include "devices/hid/hid_error.h"
 #include "devices/hid/report_descriptor.h"
@@ -42,13 +45,90 @@ std::vector<std::uint8_t> read_descriptor(const std::string& path) {
 struct CloseHid {
   void operator()(hid_device* device) const { hid_close(device); }
 };
+using Handle = std::unique_ptr<hid_device, CloseHid>;
+
+// Asks for input reports. A device that hangs lets a question wait for seconds, so a thread of its
+// own asks, through a handle of its own. Nobody waits for that thread either: it shares what it
+// needs and ends when the kernel has given up.
+class Questions {
+ public:
+  explicit Questions(std::string path) : path_(std::move(path)) {}
+  Questions(const Questions&) = delete;
+  Questions& operator=(const Questions&) = delete;
+  ~Questions() {
+    if (!shared_) return;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->quit = true;
+    shared_->changed.notify_one();
+  }
+
+  void ask(std::span<const std::uint8_t> question) noexcept {
+    if (!shared_ && !start()) return;
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->busy) return;
+    shared_->busy = true;
+    shared_->report.assign(question.begin(), question.end());
+    shared_->changed.notify_one();
+  }
+
+  // The size of the answer if it has come, else 0.
+  int take(std::span<std::uint8_t> report) noexcept {
+    if (!shared_) return 0;
+    const std::lock_guard lock(shared_->mutex);
+    if (!shared_->answered) return 0;
+    const std::size_t size = std::min(shared_->report.size(), report.size());
+    std::copy_n(shared_->report.begin(), size, report.begin());
+    shared_->busy = shared_->answered = false;
+    return static_cast<int>(size);
+  }
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<std::uint8_t> report;  // the question, then its answer
+    bool busy = false, answered = false, quit = false;
+  };
+
+  // In the thread that asks first, whose priority the new one takes over.
+  bool start() noexcept {
+    try {
+      const auto shared = std::make_shared<Shared>();
+      std::thread([shared, path = path_] { answer(*shared, path); }).detach();
+      shared_ = shared;
+    } catch (const std::exception&) {
+      return false;
+    }
+    return true;
+  }
+
+  static void answer(Shared& shared, const std::string& path) {
+    const Handle device(hid_open_path(path.c_str()));
+    std::unique_lock lock(shared.mutex);
+    while (device) {
+      shared.changed.wait(lock, [&] { return shared.quit || (shared.busy && !shared.answered); });
+      if (shared.quit) return;
+      std::vector<std::uint8_t> report = shared.report;
+      lock.unlock();
+      const int size = hid_get_input_report(device.get(), report.data(), report.size());
+      lock.lock();
+      shared.busy = shared.answered = size > 0;
+      report.resize(std::min(static_cast<std::size_t>(std::max(size, 0)), report.size()));
+      shared.report = std::move(report);
+    }
+  }
+
+  std::string path_;
+  std::shared_ptr<Shared> shared_;
+};
 
 class HidapiTransport final : public HidTransport {
  public:
   explicit HidapiTransport(const std::string& path)
       : descriptor_(read_descriptor(path)),
         numbered_(parse_report_descriptor(descriptor_).numbered),
-        device_(hid_open_path(path.c_str())) {
+        device_(hid_open_path(path.c_str())),
+        questions_(path) {
     if (!device_) refuse(path);
   }
 
@@ -56,6 +136,7 @@ class HidapiTransport final : public HidTransport {
     // The kernel gives no id where there are none.
     const std::size_t skipped = numbered_ ? 0 : 1;
     if (report.size() <= skipped) return 0;
+    if (const int answer = questions_.take(report)) return answer;
     if (!numbered_) report[0] = 0;
     const int size = hid_read_timeout(device_.get(), report.data() + skipped,
                                       report.size() - skipped, timeout_ms);
@@ -70,9 +151,7 @@ class HidapiTransport final : public HidTransport {
     return hid_get_feature_report(device_.get(), report.data(), report.size());
   }
 
-  int get_input(std::span<std::uint8_t> report) noexcept override {
-    return hid_get_input_report(device_.get(), report.data(), report.size());
-  }
+  void ask(std::span<const std::uint8_t> question) noexcept override { questions_.ask(question); }
 
   bool set_feature(std::span<const std::uint8_t> report) noexcept override {
     return hid_send_feature_report(device_.get(), report.data(), report.size()) >= 0;
@@ -83,7 +162,8 @@ class HidapiTransport final : public HidTransport {
  private:
   std::vector<std::uint8_t> descriptor_;
   bool numbered_;
-  std::unique_ptr<hid_device, CloseHid> device_;
+  Handle device_;
+  Questions questions_;
 };
 
 }  // namespace

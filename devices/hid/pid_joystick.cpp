@@ -50,6 +50,7 @@ PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& 
   require_within(settings.range, 100, "range [rad]");
   require_within(settings.effort, 100, "effort [N m]");
   require_within(settings.duration, 0.1, "duration [s]");
+  require_within(settings.restart, settings.duration, "restart [s]");
   for (int i = 0; i < kMostAxes; ++i) {
     const ReportField* position = find_position(descriptor, i);
     if (!position || !reports_.drives(i)) continue;
@@ -125,27 +126,34 @@ void PidJoystick::make_stop_reports() {
 
 Decoded PidJoystick::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
   if (report.empty()) return Decoded::unusable;
-  const bool positions = decode_positions(report, reading);
-  const bool buttons = decode_buttons(report, buttons_, reading.buttons);
-  const bool state = decode_state(report, reading);
-  if (positions) return Decoded::reading;
-  return buttons || state ? Decoded::status : Decoded::unusable;
+  DeviceReading read = reading;
+  const Decoded positions = decode_positions(report, read);
+  if (positions == Decoded::unusable) return Decoded::unusable;
+  const bool buttons = decode_buttons(report, buttons_, read.buttons);
+  const bool state = decode_state(report, read);
+  if (positions == Decoded::status && !buttons && !state) return Decoded::unusable;
+  reading = read;
+  return positions;
 }
 
-bool PidJoystick::decode_positions(std::span<const std::uint8_t> report,
-                                   DeviceReading& reading) noexcept {
-  bool any = false;
+// Status: the axes are not in this report. A number outside of its range says that the device does
+// not know where the axis is (USB HID 1.11, null values); then none of its numbers is used.
+Decoded PidJoystick::decode_positions(std::span<const std::uint8_t> report,
+                                      DeviceReading& reading) const noexcept {
+  Decoded decoded = Decoded::status;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const ReportField& field = axes_[i].position;
     if (report[0] != field.report_id) continue;
     const auto value = get_field(report, field);
-    if (!value) continue;
+    if (!value || *value < field.logical_min || *value > field.logical_max) {
+      return Decoded::unusable;
+    }
     const auto span = static_cast<double>(field.logical_max - field.logical_min);
     const double part = static_cast<double>(*value - field.logical_min) / span;
-    reading.x[i] = settings_.range * std::clamp(2 * part - 1, -1.0, 1.0);
-    any = true;
+    reading.x[i] = settings_.range * (2 * part - 1);
+    decoded = Decoded::reading;
   }
-  return any;
+  return decoded;
 }
 
 bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
@@ -169,10 +177,10 @@ bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
 // with their forces, should a report have got lost.
 void PidJoystick::encode(std::span<const double> torque, nanoseconds now,
                          const SendReport& send) noexcept {
-  const auto life =
-      std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(settings_.duration));
+  const auto restart =
+      std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(settings_.restart));
   bool any = false;
-  const bool due = !playing_ || now - started_ >= life / 4;
+  const bool due = !playing_ || now - started_ >= restart;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const double asked = i < torque.size() ? axis.sign * torque[i] / settings_.effort : 0;

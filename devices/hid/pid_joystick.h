@@ -17,7 +17,8 @@ namespace limpid {
 struct PidSettings {
   double range = 0.349;    // an axis goes from -range to range: +-20 degrees [rad]
   double effort = 0.5;     // torque at full force [N m]
-  double duration = 0.04;  // of an effect that is not started again, at most 0.1 [s]
+  double duration = 0.010;  // of an effect that is not started again, at most 0.1 [s]
+  double restart = 0.004;   // after so long it is started again, less than the duration [s]
   std::array<bool, 2>
       reverse{};  // X, Y: the device pushes the wrong way; check it with little force
 };
@@ -34,8 +35,8 @@ class PidJoystick final : public HidProtocol {
   void open(HidTransport& transport) override;
 
   const DeviceTraits& traits() const override { return traits_; }
-  // Joysticks send at 100 Hz or so, and some only what changes.
-  nanoseconds stale_after() const override { return std::chrono::milliseconds(100); }
+  // Joysticks that send more seldom, or only what changes, are asked meanwhile.
+  nanoseconds stale_after() const override { return std::chrono::milliseconds(5); }
   std::span<const std::uint8_t> silent_report() const override { return silent_report_; }
   Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept override;
   void encode(std::span<const double> torque, nanoseconds now,
@@ -55,7 +56,8 @@ class PidJoystick final : public HidProtocol {
 
   int create_effect(HidTransport& transport) const;
   void make_stop_reports();
-  bool decode_positions(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept;
+  Decoded decode_positions(std::span<const std::uint8_t> report,
+                           DeviceReading& reading) const noexcept;
   bool decode_state(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept;
 
   PidSettings settings_;

@@ -21,9 +21,9 @@ constexpr Usage axis_usage(int axis) {
   return make_usage(0x01, static_cast<std::uint16_t>(0x30 + axis));
 }
 
-// Which way an effect pushes is said by the direction from which it comes, clockwise from the far
-// side: from the right a positive force pushes to the left, against X; from the far side it pushes
-// towards the user, along Y.
+// Where effects cannot name their axis, they say by an angle from where they push, clockwise from
+// the far side: from the right a positive force pushes to the left, against X; from the far side it
+// pushes towards the user, along Y.
 constexpr double kTurn[] = {0.25, 0};  // of a full circle
 constexpr double kSign[] = {-1, 1};
 
@@ -162,20 +162,27 @@ Report PidReports::set_effect(int block, int axis, double duration) const {
   return report;
 }
 
-// By angle where the device knows angles, as all games do; else by naming the axis.
+// By naming the axis where the device knows that: angles often have few steps, so that a force
+// along one axis leaks into the other.
 void PidReports::set_direction(Report& report, int axis) const {
-  const ReportField* by_angle = descriptor_.find(kOut, kDirectionEnable, kSetEffect);
+  if (names_axis(axis)) {
+    set(report, *descriptor_.find(kOut, axis_usage(axis), kAxesEnable), 1);
+    return;
+  }
   const auto angle = std::find_if(
       descriptor_.fields.begin(), descriptor_.fields.end(), [](const ReportField& field) {
         return field.kind == kOut && field.within(kSetEffect) && field.within(kDirection);
       });
-  if (by_angle && angle != descriptor_.fields.end()) {
-    set(report, *by_angle, 1);
-    const auto circle = static_cast<double>(angle->logical_max - angle->logical_min);
-    set(report, *angle, angle->logical_min + std::llround(kTurn[axis] * circle));
-    return;
+  if (angle == descriptor_.fields.end()) {
+    throw HidError("the PID device does not describe a direction of effects");
   }
-  set(report, need(kOut, axis_usage(axis), kAxesEnable, "a direction of effects"), 1);
+  set(report, need(kOut, kDirectionEnable, kSetEffect, "Direction Enable"), 1);
+  const auto circle = static_cast<double>(angle->logical_max - angle->logical_min);
+  set(report, *angle, angle->logical_min + std::llround(kTurn[axis] * circle));
+}
+
+bool PidReports::names_axis(int axis) const {
+  return descriptor_.find(kOut, axis_usage(axis), kAxesEnable) != nullptr;
 }
 
 Report PidReports::constant_force(int block) const {
@@ -187,7 +194,8 @@ Report PidReports::constant_force(int block) const {
 }
 
 std::int64_t PidReports::force_level(int axis, double strength) const noexcept {
-  return std::llround(kSign[axis] * std::clamp(strength, -1.0, 1.0) * full_force(magnitude_));
+  const double sign = names_axis(axis) ? 1 : kSign[axis];
+  return std::llround(sign * std::clamp(strength, -1.0, 1.0) * full_force(magnitude_));
 }
 
 void PidReports::set_force(Report& constant_force, std::int64_t level) const noexcept {
@@ -219,7 +227,7 @@ bool PidReports::drives(int axis) const {
   const bool says_which = std::any_of(
       descriptor_.fields.begin(), descriptor_.fields.end(),
       [](const ReportField& field) { return field.kind == kOut && field.within(kAxesEnable); });
-  return !says_which || descriptor_.find(kOut, axis_usage(axis), kAxesEnable);
+  return !says_which || names_axis(axis);
 }
 
 }  // namespace limpid

@@ -48,6 +48,7 @@ class PidReports {
   Report blank(const ReportField& field) const;
   Report operation(int block, bool start) const;
   void set_direction(Report& report, int axis) const;
+  bool names_axis(int axis) const;  // effects can, else by an angle
 
   ReportDescriptor descriptor_;
   ReportField magnitude_;

@@ -15,6 +15,7 @@
 #include "core/loop/triple_buffer.h"
 #include "devices/mouse_hand.h"
 #include "devices/rig.h"
+#include "tests/support/meshes.h"
 #include "tests/support/random_arm.h"
 
 namespace {
@@ -101,7 +102,7 @@ TEST(Watch, SeesAllocationsAndLocks) {
   EXPECT_GE(locked, 1);
 }
 
-// A plane, balls and boxes around the tip, capsules on the arm, a stop: all at once.
+// A plane, balls, boxes and meshes around the tip, a capsule on the arm, a stop: all at once.
 Scene crowd(const ArmDescription& description, const Vec3& tip) {
   Random random(150);
   Scene scene;
@@ -114,6 +115,12 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
     box.pose.translation() = tip + 0.08 * random.direction();
     scene.boxes.push_back(box);
   }
+  scene.meshes.push_back(test::obstacle(test::bumpy_body(4, 0.3)));
+  scene.meshes.back().scale = 0.02;
+  scene.meshes.back().pose.translation() = tip + Vec3(0.01, 0.03, -0.01);
+  scene.meshes.push_back(test::obstacle(test::sheet(20, 0.3)));
+  scene.meshes.back().pose.linear() = random.rotation();
+  scene.meshes.back().pose.translation() = tip + 0.01 * random.direction();
   scene.joint_contacts.push_back({"", 0, 0.02, 1, 20});
   scene.probes.push_back(
       {"", description.dof() - 1, Vec3::Zero(), description.tip.translation(), 0.01});

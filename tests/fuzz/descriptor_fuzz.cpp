@@ -44,7 +44,7 @@ class AnyDevice final : public HidTransport {
     for (std::size_t i = 1; i < report.size(); ++i) report[i] = 1;
     return static_cast<int>(report.size());
   }
-  int get_input(std::span<std::uint8_t>) noexcept override { return -1; }
+  void ask(std::span<const std::uint8_t>) noexcept override {}
   bool set_feature(std::span<const std::uint8_t>) noexcept override { return true; }
   const std::vector<std::uint8_t>& report_descriptor() const override { return none_; }
 

@@ -51,9 +51,9 @@ class FakeHid {
     }
   }
 
-  // Answers to get_feature and get_input by id, and what set_feature was told; not for threads.
+  // Answers to get_feature and ask by id, and what set_feature was told; not for threads.
   std::map<std::uint8_t, Report> features, inputs;
-  int questions = 0;  // by get_input
+  int questions = 0;  // by ask
   std::vector<Report> features_set;
   std::vector<std::uint8_t> descriptor;  // empty unless the test sets it
 
@@ -100,10 +100,10 @@ class FakeTransport final : public HidTransport {
     return found == device_->features.end() ? -1 : copy(found->second, report);
   }
 
-  int get_input(std::span<std::uint8_t> report) noexcept override {
+  void ask(std::span<const std::uint8_t> question) noexcept override {
     ++device_->questions;
-    const auto found = report.empty() ? device_->inputs.end() : device_->inputs.find(report[0]);
-    return found == device_->inputs.end() ? -1 : copy(found->second, report);
+    const auto found = device_->inputs.find(question[0]);
+    if (found != device_->inputs.end()) device_->send(found->second);
   }
 
   bool set_feature(std::span<const std::uint8_t> report) noexcept override {

@@ -59,7 +59,9 @@ inline Triangles grid(int rows, int columns, bool wrap_rows = false, bool wrap_c
                                 static_cast<float>(j) / static_cast<float>(columns), 0.0f);
     }
   }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i % high * wide + j % wide); };
+  const auto at = [&](int i, int j) {
+    return static_cast<std::uint32_t>(i % high * wide + j % wide);
+  };
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       out.add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
@@ -71,31 +73,33 @@ inline Triangles grid(int rows, int columns, bool wrap_rows = false, bool wrap_c
 
 // A flat sheet size x size around the origin, facing +z.
 inline Triangles sheet(int cells, double size) {
-  return grid(cells, cells).mapped(
-      [&](const Vec3& p) { return Vec3(size * (p.x() - 0.5), size * (p.y() - 0.5), 0); });
+  return grid(cells, cells).mapped([&](const Vec3& p) {
+    return Vec3(size * (p.x() - 0.5), size * (p.y() - 0.5), 0);
+  });
 }
 
 // z = height(x, y) over size x size.
 template <class Height>
 Triangles height_field(int cells, double size, Height&& height) {
-  return sheet(cells, size).mapped(
-      [&](const Vec3& p) { return Vec3(p.x(), p.y(), height(p.x(), p.y())); });
+  return sheet(cells, size).mapped([&](const Vec3& p) {
+    return Vec3(p.x(), p.y(), height(p.x(), p.y()));
+  });
 }
 
 // Twenty triangles divided `times` times; a unit sphere seen from outside.
 inline Triangles icosphere(int times) {
   const float g = static_cast<float>(std::numbers::phi);
   Triangles out;
-  out.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  out.indices = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2,
-                 10, 7, 6, 7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5,
-                 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1};
+  out.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  out.indices = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                 4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                 6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
   for (int round = 0; round < times; ++round) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, fresh] = middles.try_emplace(std::minmax(a, b),
-                                                   static_cast<std::uint32_t>(out.vertices.size()));
+      const auto [at, fresh] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(out.vertices.size()));
       if (fresh) out.vertices.push_back((out.vertices[a] + out.vertices[b]) / 2);
       return at->second;
     };
@@ -116,8 +120,7 @@ inline double bumpy_radius(const Vec3& direction, double bump) {
                  std::sin(7 * direction.z() + 3);
 }
 inline Triangles bumpy_body(int times, double bump) {
-  return icosphere(times).mapped(
-      [&](const Vec3& p) { return Vec3(bumpy_radius(p, bump) * p); });
+  return icosphere(times).mapped([&](const Vec3& p) { return Vec3(bumpy_radius(p, bump) * p); });
 }
 
 inline Triangles torus(int rows, int columns, double large, double small) {

@@ -57,7 +57,7 @@ TEST(FreeSpace, GivesThePointThatAlternatingProjectionsConvergeTo) {
     const int count = 1 + round % FreeSpace::kMostPlanes;
     const auto planes = some_planes(count, random, 1);
     const Vec3 c = random.point(3);
-    Vec3 x;
+    Vec3 x = c;
     FreeSpace::Active active;
     ASSERT_TRUE(room(planes).project(c, x, active));
     const Vec3 wanted = dykstra(planes, c, 2000);
@@ -75,7 +75,7 @@ TEST(FreeSpace, PushesOnlyOutwardsAndOnlyWithPlanesThatHold) {
     const auto planes = some_planes(1 + round % FreeSpace::kMostPlanes, random, size);
     const FreeSpace space = room(planes);
     const Vec3 c = random.point(3 * size);
-    Vec3 x;
+    Vec3 x = c;
     FreeSpace::Active active;
     ASSERT_TRUE(space.project(c, x, active));
     for (const HalfSpace& p : planes) ASSERT_GE(p.normal.dot(x) - p.offset, -1e-8 * size);
@@ -110,7 +110,7 @@ TEST(FreeSpace, MovesThePointNoFurtherThanTheCentre) {
   Random random(313);
   for (int round = 0; round < 5000; ++round) {
     const FreeSpace space = room(some_planes(1 + round % FreeSpace::kMostPlanes, random, 1));
-    Vec3 c = random.point(2), x;
+    Vec3 c = random.point(2), x = c;
     FreeSpace::Active active;
     ASSERT_TRUE(space.project(c, x, active));
     for (int step = 0; step < 10; ++step) {
@@ -135,7 +135,7 @@ TEST(FreeSpace, TakesParallelPlanesAsTheOneThatIsFurtherOut) {
                                   {n, offset},
                                   {almost, almost.dot(c + (offset - n.dot(c)) * n)},
                                   {n, offset}});
-    Vec3 x;
+    Vec3 x = c;
     FreeSpace::Active active;
     ASSERT_TRUE(space.project(c, x, active)) << askew;
     ASSERT_LT((x - (c + (offset - n.dot(c)) * n)).norm(), 2 * askew * size + 1e-13 * size);
@@ -152,7 +152,7 @@ TEST(FreeSpace, HoldsBetweenNearlyParallelPlanes) {
     const Vec3 at = random.point(1);
     const FreeSpace space = room({{n, n.dot(at)}, {other, other.dot(at)}});
     const Vec3 c = at - random.between(0, 1) * n + random.between(-1, 1) * side;
-    Vec3 x;
+    Vec3 x = c;
     FreeSpace::Active active;
     ASSERT_TRUE(space.project(c, x, active)) << askew;
     ASSERT_GE(n.dot(x - at), -1e-8);

@@ -56,8 +56,10 @@ TEST(Ball, OnAFlatSheetIsAsDeepAsItOverlaps) {
           touch.place(c);
           for (int round = 0; round < 20; ++round) {
             const double height = random.between(-2, 1) * radius;
-            go(touch, c, Vec3(random.between(-0.3, 0.3) * size, random.between(-0.3, 0.3) * size,
-                              side * height), 0.05 * radius);
+            go(touch, c,
+               Vec3(random.between(-0.3, 0.3) * size, random.between(-0.3, 0.3) * size,
+                    side * height),
+               0.05 * radius);
             const Vec3 wanted = std::max(0.0, radius - height) * side * Vec3::UnitZ();
             ASSERT_LT((pull(touch, c) - wanted).norm(), 1e-12 * size);
             ASSERT_FALSE(touch.held());
@@ -115,6 +117,7 @@ TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
   touch.place(cube.pose * local);
   int edges = 0, corners = 0;
   for (int k = 0; k < 30000; ++k) {
+    const Vec3 before = local;
     if (k % 500 == 0) direction = random.direction();
     local += 1e-4 * direction;
     const Vec3 foot = nearest_of(local);
@@ -130,8 +133,15 @@ TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
     touch.follow(cube.pose * local, T);
     const Vec3 wanted = std::max(0.0, kRadius - height) * out;
     const Vec3 found = cube.pose.linear().transpose() * pull(touch, cube.pose * local);
-    // What is counted as on the surface: a hundred thousandth of the ball, and of the cube a tenth.
-    ASSERT_LT((found - wanted).norm(), 1e-5 * kRadius + 1e-6 * 0.1) << k;
+    // In motion it is one step nearer to the answer each tick, by how deep it is in radii.
+    const double step = (local - before).norm();
+    const double askew = 1.3 * step / (0.8 * kRadius) * 0.2;
+    ASSERT_LT((found - wanted).norm(), 1e-7 + askew * wanted.norm()) << k;
+    if (k % 20 == 0) {
+      for (int rest = 0; rest < 10; ++rest) touch.follow(cube.pose * local, T);
+      const Vec3 rested = cube.pose.linear().transpose() * pull(touch, cube.pose * local);
+      ASSERT_LT((rested - wanted).norm(), 1e-7) << k;
+    }
     const auto beyond = (local.cwiseAbs().array() > 0.05).count();
     edges += beyond == 2 ? 1 : 0;
     corners += beyond == 3 ? 1 : 0;
@@ -204,12 +214,13 @@ Triangles divided_square(int points, double size, Random& random) {
   out.vertices = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
   out.indices = {0, 1, 2, 0, 2, 3};
   while (points-- > 0) {  // a point of a triangle makes three of it
-    const auto t = 3 * static_cast<std::size_t>(random.between(0, static_cast<double>(out.count()) - 0.01));
+    const auto t =
+        3 * static_cast<std::size_t>(random.between(0, static_cast<double>(out.count()) - 0.01));
     const std::uint32_t a = out.indices[t], b = out.indices[t + 1], c = out.indices[t + 2];
     const double u = random.between(0.1, 0.8), v = random.between(0.1, 0.9 - u);
     const auto next = static_cast<std::uint32_t>(out.vertices.size());
-    const Vec3 p = (1 - u - v) * out.corner(t / 3, 0) + u * out.corner(t / 3, 1) +
-                   v * out.corner(t / 3, 2);
+    const Vec3 p =
+        (1 - u - v) * out.corner(t / 3, 0) + u * out.corner(t / 3, 1) + v * out.corner(t / 3, 2);
     out.vertices.push_back(p.cast<float>());
     out.indices[t + 2] = next;
     out.add(b, c, next);
@@ -249,23 +260,25 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
     for (const double radius : {0.0, 0.02}) {
       MeshTouch here(still, radius), there(turned, scale * radius);
       const auto map = [&](const Vec3& p) { return Vec3(turned.pose * Vec3(scale * p)); };
-      Vec3 c = 1.5 * random.direction(), velocity = Vec3::Zero();
-      here.place(c), there.place(map(c));
+      // Over hills and through valleys, in by half its radius at most.
+      const auto at = [&](double t) {
+        const Vec3 d = Vec3(std::sin(t), std::cos(1.3 * t), std::sin(0.7 * t + 1)).normalized();
+        return Vec3((test::bumpy_radius(d, 0.3) + radius + 0.01 * std::sin(9 * t)) * d);
+      };
+      here.place(at(0)), there.place(map(at(0)));
       double difference = 0;
       int touching = 0;
-      for (int k = 0; k < 3000; ++k) {
-        velocity = 0.99 * velocity + random.point(2e-4) - 5e-5 * c;
-        c += velocity;
-        // Slipping and looking around are in metres: within those everything is alike.
-        here.follow(c, T), there.follow(map(c), T);
-        if (here.held() || there.held()) continue;
+      for (int k = 0; k < 6000; ++k) {
+        const Vec3 c = at(1e-3 * k);
+        here.follow(c, T), there.follow(map(c), scale * T);  // slipping alike in its size
         const Vec3 mine = pull(here, c);
         const Vec3 theirs = turned.pose.linear().transpose() * pull(there, map(c)) / scale;
         touching += mine.norm() > 0 ? 1 : 0;
         difference = std::max(difference, (mine - theirs).norm());
       }
-      EXPECT_LT(difference, 1e-6) << scale << ' ' << radius;
-      EXPECT_GT(touching, 100);
+      // As far as it counts as on the surface.
+      EXPECT_LT(difference, 1e-5) << scale << ' ' << radius;
+      EXPECT_GT(touching, 1000);
     }
   }
 }

@@ -90,7 +90,8 @@ void expect_within_reach(const ArmDescription& arm, const HandPath& path) {
 
 TEST(Omni, ReachesEveryHand) {
   const ArmDescription arm = omni();
-  for (const char* name : {"touch.csv", "free.csv", "proximal.csv"}) {
+  for (const char* name : {"touch.csv", "free.csv", "proximal.csv", "circle.csv", "spheres.csv",
+                           "relief.csv", "gears.csv", "leaf.csv"}) {
     expect_within_reach(arm, read_hand(test::assets() / "hands" / name));
   }
 }
@@ -118,7 +119,7 @@ TEST(Scenes, AllReadWithTheOmni) {
     EXPECT_FALSE(read_scene(entry.path(), arm).title.empty()) << entry.path();
     ++scenes;
   }
-  EXPECT_GE(scenes, 4);
+  EXPECT_GE(scenes, 8);
 }
 
 int times_entered(const HandPath& path, const std::function<bool(const Vec3&)>& inside) {

@@ -19,6 +19,8 @@ inline SessionInfo sample_info(int dof = 3) {
   info.config = "coupling.eta = 0.6\n";
   info.device_urdf = std::string(200000, 'u') + "end";
   info.scene = "title = \"T\"\n";
+  const std::vector<unsigned char> model{'g', 'l', 'T', 'F', 0, 255};
+  info.models["a \xCE\xB7.glb"] = std::make_shared<const std::vector<unsigned char>>(model);
   return info;
 }
 
@@ -37,6 +39,7 @@ inline std::vector<double> sample_rows(const RowLayout& layout, std::size_t from
     layout.in(row, Column::time)[0] = static_cast<double>(k) * 0.001;
     layout.in(row, Column::kind)[0] = static_cast<double>(k % 2);
     layout.in(row, Column::force_wanted)[0] = static_cast<double>(k / 2 % 2);
+    layout.in(row, Column::force_state)[0] = static_cast<double>(k % 10);
     layout.in(row, Column::hand_grip)[0] = static_cast<double>(k / 3 % 2);
   }
   return rows;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "devices/hid/hid_error.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/hid_descriptors.h"
@@ -37,7 +39,7 @@ class PidDevice final : public HidTransport {
     report[2] = load_status;
     return 5;
   }
-  int get_input(std::span<std::uint8_t>) noexcept override { return -1; }
+  void ask(std::span<const std::uint8_t>) noexcept override {}
   const std::vector<std::uint8_t>& report_descriptor() const override { return descriptor_; }
 
   std::vector<Report> received, created;
@@ -64,9 +66,9 @@ struct OpenPidJoystick : testing::Test {
 const Report kReset{12, 4}, kStopAll{12, 3}, kEnable{12, 1}, kDisable{12, 2}, kGain{13, 255};
 const Report kForce1Zero{5, 1, 0, 0}, kForce2Zero{5, 2, 0, 0};
 const Report kStart1{10, 1, 1, 1}, kStart2{10, 2, 1, 1}, kStop1{10, 1, 3, 0}, kStop2{10, 2, 3, 0};
-// Constant force is the third type here; 40 ms; full gain; by angle: from the right, from afar.
-const Report kEffect1{1, 1, 3, 40, 0, 0, 0, 255, 0, 4, 64, 0};
-const Report kEffect2{1, 2, 3, 40, 0, 0, 0, 255, 0, 4, 0, 0};
+// Constant force is the third type here; 10 ms; full gain; along X, along Y.
+const Report kEffect1{1, 1, 3, 10, 0, 0, 0, 255, 0, 1, 0, 0};
+const Report kEffect2{1, 2, 3, 10, 0, 0, 0, 255, 0, 2, 0, 0};
 
 TEST_F(OpenPidJoystick, MakesItsEffectsBeforeItsMotorsAreOn) {
   EXPECT_THAT(device.created, ElementsAre(Report{5, 3, 0, 0}, Report{5, 3, 0, 0}));
@@ -94,6 +96,24 @@ TEST_F(OpenPidJoystick, ReadsItsAxes) {
   EXPECT_NEAR(reading.x[0], 0, 0.001);
 }
 
+// Its 10-bit numbers go from -256 to 255 here; all else says that it does not know.
+TEST(PidJoystick, UsesNoNumberOutsideOfItsRange) {
+  Bytes narrow = parts::whole();
+  const Bytes range{0x16, 0x00, 0xFE, 0x26, 0xFF, 0x01};
+  const auto at = std::search(narrow.begin(), narrow.end(), range.begin(), range.end());
+  ASSERT_NE(at, narrow.end());
+  at[2] = 0xFF;
+  at[5] = 0x00;
+  PidJoystick joystick(parse_report_descriptor(narrow));
+  DeviceReading reading;
+  EXPECT_EQ(joystick.decode(Report{1, 0x80, 0, 0x80, 0, 1}, reading), Decoded::reading);
+  const DeviceReading before = reading;
+  EXPECT_EQ(joystick.decode(Report{1, 0x00, 0x01, 0x80, 0, 2}, reading), Decoded::unusable);
+  EXPECT_EQ(joystick.decode(Report{1, 0x80, 0, 0xFF, 0x02, 2}, reading), Decoded::unusable);
+  EXPECT_EQ(reading.x, before.x);
+  EXPECT_EQ(reading.buttons, 1u);
+}
+
 TEST_F(OpenPidJoystick, HearsOfItsSafetySwitchAndItsPower) {
   const std::uint8_t safe = 1 << 2, power = 1 << 4, paused = 1 << 0;
   EXPECT_EQ(joystick.decode(Report{2, safe | power, 0}, reading), Decoded::status);
@@ -113,10 +133,29 @@ TEST_F(OpenPidJoystick, TakesNothingFromGarbage) {
   }
 }
 
-// From the right and positive pushes to the left: X needs the opposite sign.
 TEST_F(OpenPidJoystick, PushesAlongItsAxes) {
-  EXPECT_THAT(encode({0.5, 0.25}, milliseconds(1)),
-              ElementsAre(Report{5, 1, 0x01, 0xFF}, Report{5, 2, 128, 0}, kStart1, kStart2));
+  EXPECT_THAT(encode({0.5, -0.25}, milliseconds(1)),
+              ElementsAre(Report{5, 1, 255, 0}, Report{5, 2, 0x80, 0xFF}, kStart1, kStart2));
+}
+
+// From the right, a quarter of a circle, and positive pushes to the left: X needs the opposite sign.
+TEST(PidJoystick, PushesByAnAngleWhereEffectsCannotNameTheirAxis) {
+  PidDevice device;
+  const Bytes known = parts::whole();
+  Bytes unnamed = known;
+  const Bytes enable{0x09, 0x55, 0xA1, 0x02, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31};
+  const auto at = std::search(unnamed.begin(), unnamed.end(), enable.begin(), enable.end());
+  ASSERT_NE(at, unnamed.end());
+  at[1] = 0x5A;  // any other collection
+  PidJoystick joystick(parse_report_descriptor(unnamed));
+  joystick.open(device);
+  EXPECT_THAT(device.received, testing::IsSupersetOf({Report{1, 1, 3, 10, 0, 0, 0, 255, 0, 4, 64, 0},
+                                                      Report{1, 2, 3, 10, 0, 0, 0, 255, 0, 4, 0, 0}}));
+  std::vector<Report> sent;
+  joystick.encode(std::vector<double>{0.5, 0.25}, {},
+                  [&](auto report) { sent.emplace_back(report.begin(), report.end()); });
+  EXPECT_EQ(sent.at(0), (Report{5, 1, 0x01, 0xFF}));
+  EXPECT_EQ(sent.at(1), (Report{5, 2, 128, 0}));
 }
 
 TEST_F(OpenPidJoystick, SendsOnlyWhatChanges) {
@@ -130,15 +169,15 @@ TEST_F(OpenPidJoystick, SendsOnlyWhatChanges) {
 // Else the device would drop the force; and if we die, it does.
 TEST_F(OpenPidJoystick, StartsItsEffectsAgainBeforeTheyEnd) {
   encode({0.5, 0}, milliseconds(0));
-  EXPECT_THAT(encode({0.5, 0}, milliseconds(9)), ElementsAre());
-  EXPECT_THAT(encode({0.5, 0}, milliseconds(10)),
-              ElementsAre(Report{5, 1, 0x01, 0xFF}, kStart1, kStart2));
-  EXPECT_THAT(encode({0.5, 0}, milliseconds(11)), ElementsAre());
+  EXPECT_THAT(encode({0.5, 0}, milliseconds(3)), ElementsAre());
+  EXPECT_THAT(encode({0.5, 0}, milliseconds(4)),
+              ElementsAre(Report{5, 1, 255, 0}, kStart1, kStart2));
+  EXPECT_THAT(encode({0.5, 0}, milliseconds(5)), ElementsAre());
 }
 
 TEST_F(OpenPidJoystick, NeverPushesHarderThanFull) {
   EXPECT_THAT(encode({-7, 7}, {}),
-              ElementsAre(Report{5, 1, 255, 0}, Report{5, 2, 255, 0}, kStart1, kStart2));
+              ElementsAre(Report{5, 1, 0x01, 0xFF}, Report{5, 2, 255, 0}, kStart1, kStart2));
 }
 
 TEST_F(OpenPidJoystick, StopsInEveryWayItKnows) {
@@ -160,7 +199,7 @@ TEST(PidJoystick, CanBeTurnedRound) {
   joystick.encode(std::vector<double>{1.0, 0.0}, {}, [&](auto report) {
     if (first.empty()) first.assign(report.begin(), report.end());
   });
-  EXPECT_EQ(first, (Report{5, 1, 255, 0}));
+  EXPECT_EQ(first, (Report{5, 1, 0x01, 0xFF}));
 }
 
 TEST(PidJoystick, SaysWhenThereIsNoRoomForAnEffect) {
@@ -205,6 +244,7 @@ TEST(PidJoystick, RefusesSettingsThatMakeNoSense) {
   EXPECT_THROW(PidJoystick(descriptor, {.range = 0}), HidError);
   EXPECT_THROW(PidJoystick(descriptor, {.effort = -1}), HidError);
   EXPECT_THROW(PidJoystick(descriptor, {.duration = 5}), HidError);
+  EXPECT_THROW(PidJoystick(descriptor, {.duration = 0.01, .restart = 0.02}), HidError);
   EXPECT_THROW(PidJoystick(descriptor, {.range = std::nan("")}), HidError);
 }
 

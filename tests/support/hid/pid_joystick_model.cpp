@@ -36,6 +36,7 @@ void PidJoystickModel::restart(Time now) {
   actuators_ = paused_ = false;
   device_gain_ = 1;
   created_ = 0;
+  sent_stick_ = {};
   sent_state_ = state();
   hand_.begin(now);
 }
@@ -73,7 +74,7 @@ void PidJoystickModel::run(Time now) {
   });
 }
 
-std::vector<Report> PidJoystickModel::next_input(Time) {
+Report PidJoystickModel::stick() const {
   Report report = reports_.writer.blank(Kind::input, reports_.x.id);
   for (int axis = 0; axis < 2; ++axis) {
     const Field field = reports_.x.at(axis);
@@ -82,7 +83,15 @@ std::vector<Report> PidJoystickModel::next_input(Time) {
     put(report, field, broken ? field.min - 1 : std::lround(x * field.max));
   }
   report.back() = buttons_;
-  std::vector<Report> due{report};
+  return report;
+}
+
+std::vector<Report> PidJoystickModel::next_input(Time) {
+  std::vector<Report> due;
+  if (Report news = stick(); !options_.only_changes || news != sent_stick_) {
+    due.push_back(news);
+    sent_stick_ = news;
+  }
   if (Report news = state(); news != sent_state_) {
     due.push_back(news);
     sent_state_ = news;
@@ -233,6 +242,11 @@ bool PidJoystickModel::on_set_feature(ReportView report, Time) {
   if (created_ == 0) return true;
   effects_[created_].type = options_.layout.effect_types[static_cast<std::size_t>(choice - 1)];
   return true;
+}
+
+std::optional<Report> PidJoystickModel::on_ask(std::uint8_t id) {
+  if (id != reports_.x.id) return std::nullopt;
+  return stick();
 }
 
 std::optional<Report> PidJoystickModel::on_get_feature(std::uint8_t id) {

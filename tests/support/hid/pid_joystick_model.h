@@ -20,6 +20,7 @@ struct PidJoystickOptions {
   int capacity = 4;         // effects at a time, at most 40
   double torque_limit = 1;  // of each axis, at full magnitude and gain [N m]
   AxisPhysics physics{};    // of both axes
+  bool only_changes = false;  // it says nothing while nothing moves
   Time period = std::chrono::milliseconds(1);
 };
 
@@ -56,6 +57,7 @@ class PidJoystickModel : public ReferenceDevice {
   void on_output(ReportView report, Time now) override;
   std::optional<Report> on_get_feature(std::uint8_t id) override;
   bool on_set_feature(ReportView report, Time now) override;
+  std::optional<Report> on_ask(std::uint8_t id) override;
 
   void set_effect(ReportView report);
   void set_constant(ReportView report);
@@ -67,6 +69,7 @@ class PidJoystickModel : public ReferenceDevice {
   PidEffect* effect(std::int64_t index);
   bool complete(ReportView report, const Field& field, DescriptorWriter::Kind kind);
   std::int64_t allowed(ReportView report, const Field& field, const char* name);
+  Report stick() const;
   Report state() const;
 
   PidJoystickModel(const PidJoystickOptions& options, PidReports reports);
@@ -78,7 +81,7 @@ class PidJoystickModel : public ReferenceDevice {
   double device_gain_ = 1;
   std::uint8_t buttons_ = 0;
   int created_ = 0;  // index; 0: the pool was full
-  Report sent_state_;
+  Report sent_stick_, sent_state_;
 };
 
 }  // namespace limpid::test

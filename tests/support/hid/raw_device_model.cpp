@@ -52,7 +52,7 @@ RawDeviceModel::RawDeviceModel(const RawDeviceLayout& layout)
 void RawDeviceModel::restart(Time now) {
   start_ = fed_ = now;
   torque_ = {};
-  cut_ = false;
+  cut_ = addressed_ = false;
   sequence_ = command_ = 0;
   hand_.begin(now);
 }
@@ -99,13 +99,15 @@ std::vector<Report> RawDeviceModel::next_input(Time now) {
 
 void RawDeviceModel::on_output(ReportView report, Time now) {
   const ReportView message = report.empty() ? report : report.subspan(1);  // after the id, 0
-  if (report.empty() || report[0] != 0 || !well_formed(message)) {
+  if (report.empty() || report[0] != 0 || !well_formed(message) || !follows(message)) {
     ++rejected_;
     return;
   }
   check_manners(message);
   const auto number = read_at<std::uint32_t>(message, 4);
-  if (command_ != 0 && number != command_ + 1) ++gaps_;
+  const bool session_edge = message[3] == 0 && number <= 1;
+  if (addressed_ && !session_edge && number != command_ + 1) ++gaps_;
+  addressed_ = true;
   ++commands_;
   command_ = number;
   fed_ = now;
@@ -126,6 +128,12 @@ bool RawDeviceModel::well_formed(ReportView message) const {
     if (!std::isfinite(torque_at(message, i))) return false;
   }
   return true;
+}
+
+// In mode 1 the sequence has to go up; mode 0 is always obeyed.
+bool RawDeviceModel::follows(ReportView message) const {
+  const auto number = read_at<std::uint32_t>(message, 4);
+  return message[3] == 0 || !addressed_ || static_cast<std::int32_t>(number - command_) > 0;
 }
 
 // What a device has to bear but a good host does not do.

@@ -29,7 +29,7 @@ class RawDeviceModel : public ReferenceDevice {
   void set_calibrated(bool calibrated) { calibrated_ = calibrated; }
   int commands() const { return commands_; }  // good ones received
   int rejected() const { return rejected_; }  // bad ones received
-  int gaps() const { return gaps_; }          // commands whose sequence does not follow the last
+  int gaps() const { return gaps_; }          // commands that were lost on the way
   // Its own watchdog has cut the torque; the next good command ends that.
   bool cut() const { return cut_; }
 
@@ -43,11 +43,12 @@ class RawDeviceModel : public ReferenceDevice {
 
   bool well_formed(ReportView message) const;
   void check_manners(ReportView message);
+  bool follows(ReportView message) const;
   void act(const Torque& torque, Time now, ForceCause cause);
 
   RawDeviceLayout layout_;
   SprungHand hand_;
-  bool motors_ = true, unwell_ = false, calibrated_ = true, cut_ = false;
+  bool motors_ = true, unwell_ = false, calibrated_ = true, cut_ = false, addressed_ = false;
   int commands_ = 0, rejected_ = 0, gaps_ = 0;
   Torque torque_{};
   Time start_{}, fed_{};

@@ -30,16 +30,26 @@ void ReferenceDevice::output(ReportView report, Time now) {
 }
 
 std::optional<Report> ReferenceDevice::feature(std::uint8_t id, Time now) {
-  if (!powered_ || fault_ == Fault::frozen) return std::nullopt;
+  if (!answers()) return std::nullopt;
   run(forward(now));
   return on_get_feature(id);
 }
 
 bool ReferenceDevice::set_feature(ReportView report, Time now) {
-  if (!powered_ || fault_ == Fault::frozen) return false;
+  if (!answers()) return false;
   now = forward(now);
   run(now);
   return on_set_feature(report, now);
+}
+
+std::optional<Report> ReferenceDevice::ask(std::uint8_t id, Time now) {
+  if (!answers()) return std::nullopt;
+  run(forward(now));
+  const std::optional<Report> answer = on_ask(id);
+  if (!answer) return std::nullopt;
+  std::vector<Report> one{*answer};
+  spoil(one);
+  return one[0];
 }
 
 void ReferenceDevice::spoil(std::vector<Report>& reports) {

@@ -25,7 +25,7 @@ struct HidIdentity {
 // What can go wrong with a device that stays plugged in.
 enum class Fault {
   none,
-  silent,        // sends nothing, but hears
+  silent,        // sends nothing, answers no question, but hears
   frozen,        // the firmware hangs: sends nothing, hears nothing, the motors keep their torque
   stuck,         // sends its newest report again and again
   garbage,       // random bytes
@@ -61,6 +61,10 @@ class ReferenceDevice {
   std::optional<Report> feature(std::uint8_t id, Time now);
   // The host sets a feature; false if there is no such.
   bool set_feature(ReportView report, Time now);
+  // The host asks for an input report; nothing if there is no such.
+  std::optional<Report> ask(std::uint8_t id, Time now);
+  // Else the host waits for an answer in vain.
+  bool answers() const { return powered_ && fault_ != Fault::silent && fault_ != Fault::frozen; }
 
  protected:
   ReferenceDevice(HidIdentity identity, Report descriptor, Time period)
@@ -72,6 +76,7 @@ class ReferenceDevice {
   virtual void on_output(ReportView report, Time now) = 0;
   virtual std::optional<Report> on_get_feature(std::uint8_t id) = 0;
   virtual bool on_set_feature(ReportView report, Time now) = 0;
+  virtual std::optional<Report> on_ask(std::uint8_t) { return std::nullopt; }
 
   void violation(std::string what) {
     if (violations_.size() < 100) violations_.push_back(std::move(what));

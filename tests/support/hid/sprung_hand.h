@@ -34,6 +34,7 @@ class SprungHand {
   double position(int axis) const { return states_[static_cast<std::size_t>(axis)].x; }  // [rad]
   double velocity(int axis) const { return states_[static_cast<std::size_t>(axis)].v; }  // [rad/s]
   AxisPhysics& axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
+  const AxisPhysics& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   void hold(bool held) { held_ = held; }  // or let go
   bool held() const { return held_; }
 

@@ -44,15 +44,15 @@ uhid_event creation(const ReferenceDevice& model) {
   return event;
 }
 
-uhid_event answer_to(const uhid_get_report_req& request, const std::optional<Report>& feature) {
+uhid_event answer_to(const uhid_get_report_req& request, const std::optional<Report>& report) {
   uhid_event event{};
   event.type = UHID_GET_REPORT_REPLY;
   uhid_get_report_reply_req& reply = event.u.get_report_reply;
   reply.id = request.id;
-  reply.err = feature ? 0 : EIO;
-  if (!feature) return event;
-  reply.size = static_cast<std::uint16_t>(feature->size());
-  std::copy(feature->begin(), feature->end(), reply.data);
+  reply.err = report ? 0 : EIO;
+  if (!report) return event;
+  reply.size = static_cast<std::uint16_t>(report->size());
+  std::copy(report->begin(), report->end(), reply.data);
   return event;
 }
 
@@ -140,9 +140,11 @@ void UhidDevice::handle_event() {
   }
   if (event.type == UHID_GET_REPORT) {
     const uhid_get_report_req& request = event.u.get_report;
-    write_event(file_, answer_to(request, model_.feature(request.rnum, now)));
+    const bool input = request.rtype == UHID_INPUT_REPORT;
+    const auto answer = input ? model_.ask(request.rnum, now) : model_.feature(request.rnum, now);
+    if (model_.answers()) write_event(file_, answer_to(request, answer));
   }
-  if (event.type == UHID_SET_REPORT) {
+  if (event.type == UHID_SET_REPORT && model_.answers()) {
     const uhid_set_report_req& request = event.u.set_report;
     const bool good = model_.set_feature({request.data, request.size}, now);
     uhid_event answer{};

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.h"
+#include "app/device/device_hub.h"
+
+namespace limpid {
+namespace {
+
+const char* use(HidKind kind) {
+  switch (kind) {
+    case HidKind::space_mouse: return "leads the hand of the virtual arm; no force";
+    case HidKind::pid_joystick: return "two joints, pushes";
+    case HidKind::raw: return "its own joints, pushes if it says so";
+  }
+  return "";
+}
+
+int devices() {
+  fmt::print(
+      "virtual arm\n  built in; any URDF chain of 1 to 32 revolute joints (--device), driven by "
+      "the mouse or a recorded hand\n");
+  DeviceHub hub(device_book_file(), {});
+  hub.look();
+  for (const FoundDevice& found : hub.found()) {
+    fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, name(found.kind), found.place.id,
+               found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
+               found.missing.empty() ? use(found.kind) : found.missing);
+  }
+  if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
+  return 0;
+}
+
+}  // namespace
+
+Command declare_devices(CLI::App& app) {
+  auto* command = app.add_subcommand("devices", "what is connected, what can drive it");
+  command->footer(
+      "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
+      "feedback,\nand devices that speak Limpid's open raw-HID protocol "
+      "(devices/hid/raw_protocol.h).");
+  return devices;
+}
+
+}  // namespace limpid

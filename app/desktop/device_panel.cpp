@@ -1,0 +1,143 @@
+#include "app/desktop/device_panel.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/desktop/panels.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+void choice(Workbench& bench, const char* label, const std::string& id, const char* help) {
+  DeviceDesk& desk = bench.devices;
+  if (ImGui::RadioButton(label, desk.hub.in_use() == id)) desk.use(bench, id);
+  tooltip(help);
+}
+
+void choices(Workbench& bench) {
+  choice(bench, "virtual arm, by the mouse", "", "A simulated arm; the mouse is the hand on it.");
+  bool known = bench.devices.hub.in_use().empty();
+  for (const FoundDevice& found : bench.devices.hub.found()) {
+    const std::string help =
+        found.missing.empty() ? fmt::format("{}, {}", name(found.kind), found.place.id)
+                              : found.missing;
+    ImGui::PushID(found.place.path.c_str());
+    choice(bench, found.place.name.c_str(), found.place.id, help.c_str());
+    ImGui::PopID();
+    known = known || found.place.id == bench.devices.hub.in_use();
+  }
+  if (!known) choice(bench, "the one used before", bench.devices.hub.in_use(), "Not plugged in.");
+}
+
+void status(Workbench& bench) {
+  const DeviceDesk& desk = bench.devices;
+  if (desk.hub.in_use().empty()) return;
+  if (!desk.problem().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
+    ImGui::TextWrapped("%s", desk.problem().c_str());
+    ImGui::PopStyleColor();
+    const FoundDevice* found = desk.hub.present();
+    if (found != nullptr && !found->missing.empty() && ImGui::SmallButton("copy the command")) {
+      const std::size_t from = found->missing.find('\''), to = found->missing.rfind('\'');
+      if (to > from) {
+        ImGui::SetClipboardText(found->missing.substr(from + 1, to - from - 1).c_str());
+      }
+    }
+    return;
+  }
+  if (!bench.live.real()) return;
+  const ForceState state = bench.live.snapshot().force_state;
+  read_out("force", explain(state), {},
+           "Force is off until the hand has the device and F arms it; it then fades in.");
+}
+
+// A joint: where it is, which way round, how far, and its zero.
+bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
+  bool changed = false;
+  ImGui::PushID(static_cast<int>(i));
+  if (!joint) {  // of a cap: part of its full deflection
+    ImGui::Text("axis %zu  %+5.2f", i + 1, angle);
+    ImGui::SameLine(8.5f * ImGui::GetFontSize());
+    changed = ImGui::Checkbox("invert", &axis.inverted);
+    ImGui::PopID();
+    return changed;
+  }
+  ImGui::AlignTextToFramePadding();
+  ImGui::Text("axis %zu  %+7.2f\xC2\xB0", i + 1, angle * kDegrees);
+  ImGui::SameLine(8.5f * ImGui::GetFontSize());
+  changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
+  tooltip("Turns the axis round, its torque with it.");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("zero here")) {
+    axis.zero += angle / axis.factor();
+    changed = true;
+  }
+  tooltip("Where it is now becomes zero.");
+  auto scale = static_cast<float>(axis.scale);
+  ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
+  ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
+  axis.scale = static_cast<double>(scale);
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip("Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
+          "the hand stays the power in the loop.");
+  ImGui::PopID();
+  return changed;
+}
+
+bool joystick_settings(PidSettings& pid) {
+  bool changed = false;
+  auto effort = static_cast<float>(pid.effort);
+  auto range = static_cast<float>(pid.range * kDegrees);
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m", ImGuiSliderFlags_Logarithmic);
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip("The joystick's own torque at full force, measured or from its data sheet: USB gives "
+          "forces without a unit. Too low a value here makes it push too hard.");
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0");
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip("How far the stick tilts to each side.");
+  pid.effort = static_cast<double>(effort);
+  pid.range = static_cast<double>(range) / kDegrees;
+  for (std::size_t i = 0; i < 2; ++i) {
+    changed = ImGui::Checkbox(i == 0 ? "reverse force X" : "reverse force Y", &pid.reverse[i]) ||
+              changed;
+    tooltip("For a device that pushes the wrong way. Try with little force: with the wrong sign "
+            "the loop is unstable.");
+    if (i == 0) ImGui::SameLine();
+  }
+  return changed;
+}
+
+void adjustments(Workbench& bench) {
+  DeviceDesk& desk = bench.devices;
+  const FoundDevice* found = desk.hub.present();
+  if (found == nullptr || !bench.live.device_plugged()) return;
+  DeviceNotes& notes = desk.hub.notes(desk.hub.in_use());
+  const DeviceReading& reading = bench.live.snapshot().reading;
+  const auto joints =
+      static_cast<std::size_t>(bench.live.real() ? bench.stage->arm().dof() : 6);
+  notes.axes.resize(std::max(notes.axes.size(), joints));
+  bool changed = false;
+  for (std::size_t i = 0; i < joints; ++i) {
+    changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.real()) || changed;
+  }
+  if (found->kind == HidKind::pid_joystick) changed = joystick_settings(notes.pid) || changed;
+  if (changed) desk.connect_anew(bench);
+}
+
+}  // namespace
+
+void draw_device_panel(Workbench& bench) {
+  choices(bench);
+  status(bench);
+  if (!bench.devices.hub.in_use().empty()) adjustments(bench);
+  ImGui::Separator();
+}
+
+}  // namespace limpid

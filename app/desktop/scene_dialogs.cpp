@@ -1,0 +1,95 @@
+#include "app/desktop/scene_dialogs.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <utility>
+
+#include "app/assets.h"
+#include "app/desktop/panels.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+void draw_question(Workbench& bench) {
+  if (!bench.after_question) return;
+  const float em = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+  bool open = true;
+  ImGui::Begin("Save changes?", &open,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushTextWrapPos(28 * em);
+  ImGui::TextUnformatted("The scene has changes that are not saved.");
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  const fs::path own = bench.own_scene_file();
+  if (ImGui::Button(own.empty() ? "Save as..." : "Save")) {
+    if (own.empty()) {
+      bench.show_save_as = true;  // and then leave by oneself: the dialog may be given up
+      bench.after_question = nullptr;
+    } else if (bench.save_scene_as(own)) {
+      std::exchange(bench.after_question, nullptr)();
+    }
+  }
+  ImGui::SameLine();
+  if (bench.after_question && ImGui::Button("Discard")) {
+    bench.editor.saved(bench.editor.scene());
+    std::exchange(bench.after_question, nullptr)();
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel") || !open) bench.after_question = nullptr;
+  ImGui::End();
+}
+
+void draw_progress(Workbench& bench, const ScreenRect& view) {
+  SceneLoader& loader = bench.loader;
+  if (!loader.busy()) return;
+  const float em = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, view.max.y - em}, ImGuiCond_Always,
+                          {0.5f, 1});
+  ImGui::Begin("loading", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  std::string text = loader.what();
+  const double left = loader.seconds_left();
+  if (loader.part() >= 1) {
+    text += ", making it touchable";
+  } else if (left >= 1) {
+    text += fmt::format(", {:.0f} s left", left);
+  }
+  if (loader.waiting() > 0) text += fmt::format(", {} more after it", loader.waiting());
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::ProgressBar(static_cast<float>(loader.part()), {22 * em, 0});
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel")) loader.cancel();
+  ImGui::End();
+}
+
+}  // namespace
+
+void SceneDialogs::draw(Workbench& bench, const ScreenRect& view) {
+  gallery_.draw(bench);
+  draw_paths(bench);
+  draw_question(bench);
+  draw_progress(bench, view);
+}
+
+void SceneDialogs::draw_paths(Workbench& bench) {
+  if (last_folder_.empty()) last_folder_ = data_dir() / "assets/scenes";
+  if (const fs::path model = add_.draw(bench.show_add_model, last_folder_ / ""); !model.empty()) {
+    last_folder_ = model.parent_path();
+    bench.add_model(model);
+  }
+  fs::path first = bench.own_scene_file();
+  if (first.empty()) first = scenes_dir() / fs::path(bench.scene_file).filename();
+  if (const fs::path file = save_.draw(bench.show_save_as, first); !file.empty()) {
+    bench.save_scene_as(file);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,98 @@
+#include "app/device/device_book.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A finite number within its range, else what it was.
+void take(const toml::table& t, const char* key, double least, double most, double& value) {
+  const auto found = t[key].value<double>();
+  if (found && *found >= least && *found <= most) value = *found;
+}
+
+DeviceNotes read_notes(const toml::table& t) {
+  DeviceNotes notes;
+  take(t, "range", 0.01, 3.2, notes.pid.range);
+  take(t, "effort", 0.01, 50, notes.pid.effort);
+  for (std::size_t i = 0; i < 2; ++i) {
+    notes.pid.reverse[i] = t["reverse"][i].value_or(false);
+  }
+  if (const toml::array* axes = t["axis"].as_array()) {
+    for (const toml::node& node : *axes) {
+      AxisAdjustment& axis = notes.axes.emplace_back();
+      if (const toml::table* each = node.as_table()) {
+        take(*each, "zero", -100, 100, axis.zero);
+        take(*each, "scale", 0.1, 10, axis.scale);
+        axis.inverted = (*each)["inverted"].value_or(false);
+      }
+    }
+  }
+  return notes;
+}
+
+toml::table write_notes(const DeviceNotes& notes) {
+  toml::array axes;
+  for (const AxisAdjustment& axis : notes.axes) {
+    axes.push_back(
+        toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
+  }
+  return toml::table{{"range", notes.pid.range},
+                     {"effort", notes.pid.effort},
+                     {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
+                     {"axis", axes}};
+}
+
+}  // namespace
+
+fs::path device_book_file() {
+  if (const char* dir = std::getenv("XDG_CONFIG_HOME"); dir != nullptr && *dir != '\0') {
+    return fs::path(dir) / "limpid/devices.toml";
+  }
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / ".config/limpid/devices.toml";
+}
+
+DeviceBook load_device_book(const fs::path& file, std::string& complaint) {
+  DeviceBook book;
+  std::error_code none;
+  if (!fs::exists(file, none)) return book;
+  try {
+    const toml::table table = toml::parse_file(file.string());
+    book.in_use = table["in_use"].value_or(std::string());
+    if (const toml::table* devices = table["device"].as_table()) {
+      for (const auto& [id, node] : *devices) {
+        if (const toml::table* t = node.as_table()) book.notes[std::string(id)] = read_notes(*t);
+      }
+    }
+  } catch (const std::exception& e) {
+    complaint = fmt::format("{}: not read: {}", file.string(), e.what());
+  }
+  return book;
+}
+
+std::string save_device_book(const DeviceBook& book, const fs::path& file) {
+  toml::table devices;
+  for (const auto& [id, notes] : book.notes) devices.insert(id, write_notes(notes));
+  const toml::table all{{"in_use", book.in_use}, {"device", devices}};
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  // Written beside and moved over, so that a full disk cannot spoil the old one.
+  const fs::path fresh = file.string() + ".new";
+  {
+    std::ofstream out(fresh);
+    out << all << '\n';
+    if (!out.flush()) return fmt::format("{}: could not be written", fresh.string());
+  }
+  fs::rename(fresh, file, error);
+  return error ? fmt::format("{}: {}", file.string(), error.message()) : std::string();
+}
+
+}  // namespace limpid

@@ -1,0 +1,33 @@
+// What is remembered of each device between two starts: which one is in use, and how its axes are
+// to be taken.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "devices/adjusted_device.h"
+#include "devices/hid/pid_joystick.h"
+
+namespace limpid {
+
+struct DeviceNotes {
+  std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
+  PidSettings pid;                   // of a joystick
+};
+
+struct DeviceBook {
+  std::string in_use;  // id of the device; empty: the virtual arm
+  std::map<std::string, DeviceNotes> notes;
+};
+
+// $XDG_CONFIG_HOME/limpid/devices.toml.
+std::filesystem::path device_book_file();
+
+// An absent file is an empty book. What cannot be read is left out; `complaint` then says why.
+DeviceBook load_device_book(const std::filesystem::path& file, std::string& complaint);
+// Returns what went wrong, empty if nothing did.
+std::string save_device_book(const DeviceBook& book, const std::filesystem::path& file);
+
+}  // namespace limpid

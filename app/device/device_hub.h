@@ -1,0 +1,52 @@
+// Which device drives the loop: what is plugged in, the one in use, and getting it back.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/device/device_book.h"
+#include "core/dynamics/arm_description.h"
+#include "devices/hid/device_list.h"
+
+namespace limpid {
+
+const char* name(HidKind kind);  // for people
+
+// The arm for a device: `present` if it has as many joints, else a built-in one. Its torque limits
+// are no higher than the device's. Errors: FileError if there is none with so many joints.
+ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present);
+
+class DeviceHub {
+ public:
+  // `file`: of the book. `ask`: for the devices' own threads.
+  DeviceHub(std::filesystem::path file, AskForPriority ask);
+
+  // Looks again what is plugged in. A few files of the kernel's are read: not for every frame.
+  void look();
+  const std::vector<FoundDevice>& found() const { return found_; }
+
+  const std::string& in_use() const { return book_.in_use; }  // id; empty: the virtual arm
+  // What is plugged in of it; null: nothing.
+  const FoundDevice* present() const;
+  // From now on this one; empty: the virtual arm.
+  void use(const std::string& id);
+  DeviceNotes& notes(const std::string& id) { return book_.notes[id]; }
+
+  // Connects to the device in use, its axes adjusted. Errors: HidError.
+  std::unique_ptr<Device> open();
+  // Returns what went wrong, empty if nothing did.
+  std::string save() const { return save_device_book(book_, file_); }
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  std::filesystem::path file_;
+  AskForPriority ask_;
+  std::string complaint_;
+  DeviceBook book_;
+  std::vector<FoundDevice> found_;
+};
+
+}  // namespace limpid

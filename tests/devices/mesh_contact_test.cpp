@@ -1,0 +1,200 @@
+// The whole loop against meshes: as against planes, boxes and balls; repetition and exchange.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tests/support/mesh_runs.h"
+
+namespace limpid {
+namespace {
+
+using test::kHome;
+using test::kTip;
+using test::kTop;
+using test::landscape;
+using test::largest;
+using test::Path;
+using test::Rows;
+using test::run;
+using test::stroke;
+using test::Triangles;
+using test::with_mesh;
+
+double largest_difference(const Rows& a, const Rows& b, Column c) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    largest = std::max(largest, (a.vec(k, c) - b.vec(k, c)).norm());
+  }
+  return largest;
+}
+
+class MeshInBothCouplings : public testing::TestWithParam<CouplingKind> {
+ protected:
+  static Parameters parameters() {
+    Parameters p;
+    p.kind = GetParam();
+    return p;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Couplings, MeshInBothCouplings,
+                         testing::Values(CouplingKind::standard, CouplingKind::proposed));
+
+TEST_P(MeshInBothCouplings, ThatIsFlatIsFeltAsAPlane) {
+  Scene plane;
+  plane.tip_radius = kTip;
+  plane.planes.push_back({"", Vec3(0, 0, kTop), Vec3::UnitZ(), 600});
+  for (const int cells : {1, 37}) {
+    const Scene mesh = with_mesh(test::sheet(cells, 0.5), Vec3(0.2, 0.01, kTop));
+    const Path path = stroke(kTop - 0.003, 0.02);
+    const Rows a = run(plane, parameters(), path, 3), b = run(mesh, parameters(), path, 3);
+    EXPECT_GT(largest(a, Column::contact_torque), 0.1);
+    for (const Column c : {Column::contact_torque, Column::proxy_position, Column::motor_torque,
+                           Column::contact_potential, Column::contact_gain}) {
+      EXPECT_LT(largest_difference(a, b, c), 1e-10) << static_cast<int>(c);
+    }
+  }
+}
+
+TEST_P(MeshInBothCouplings, OfABoxIsFeltAsThatBox) {
+  Scene box;
+  box.tip_radius = kTip;
+  Box one;
+  one.size = Vec3(0.05, 0.04, 0.06);
+  one.pose.translation() = Vec3(kHome.x(), 0, kTop - 0.03);
+  box.boxes.push_back(one);
+  const Scene mesh = with_mesh(test::box(one.size, 3), one.pose.translation());
+  const Path path = stroke(kTop + 0.0025, 0.035);  // over the edges, in by less than the tip
+  const Rows a = run(box, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
+  const double most = largest(a, Column::contact_torque);
+  EXPECT_GT(most, 0.04);
+  EXPECT_LT(largest_difference(a, b, Column::contact_torque), 0.03 * most);
+  EXPECT_LT(largest_difference(a, b, Column::proxy_position), 1e-3);
+}
+
+TEST_P(MeshInBothCouplings, OfABallIsFeltAsThatBall) {
+  constexpr double kRadius = 0.03;
+  Scene ball;
+  ball.tip_radius = kTip;
+  ball.spheres.push_back({"", Vec3(kHome.x(), 0, kTop - kRadius), kRadius, 600});
+  const Triangles fine =
+      test::icosphere(6).mapped([&](const Vec3& p) { return Vec3(kRadius * p); });
+  const Scene mesh = with_mesh(fine, ball.spheres[0].center);
+  const Path path = stroke(kTop + 0.002, 0.01);
+  const Rows a = run(ball, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
+  const double most = largest(a, Column::contact_torque);
+  EXPECT_GT(most, 0.04);
+  // Facets of half a millimetre, askew by up to a hundredth.
+  EXPECT_LT(largest_difference(a, b, Column::contact_torque), 0.03 * most);
+}
+
+const Vec3 kBody(0.18, 0, -0.1);  // its middle
+
+Scene link_over_a_body() {
+  Scene scene = with_mesh(
+      test::bumpy_body(5, 0.1).mapped([](const Vec3& p) { return Vec3(0.05 * p); }), kBody);
+  const ArmDescription arm = test::omni();
+  scene.probes.push_back({"link", 2, Vec3::Zero(), arm.tip.translation(), 0.006});
+  return scene;
+}
+
+TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
+  const ArmDescription arm = test::omni();
+  Rig rig(arm, link_over_a_body());
+  const Parameters p;
+  const Path path = stroke(-0.07, 0.01);
+  rig.start(p, rest_at(arm, path(0)));
+  Rows rows(rig.layout());
+  std::size_t most = 0;
+  std::array<ContactForce, 32> forces;
+  for (int k = 0; k < 3000; ++k) {
+    rig.step(p, {{path(1e-3 * k), 1}, true}, rows.add());
+    const std::size_t count = rig.contacts(forces);
+    most = std::max(most, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_TRUE(forces[i].force.allFinite());
+      EXPECT_NEAR(forces[i].force.normalized().dot(forces[i].normal), 1, 1e-12);
+      // Out of the body, which has its middle here; its slopes are less than 45 degrees.
+      EXPECT_GT(forces[i].force.dot(forces[i].point - kBody), 0);
+    }
+  }
+  EXPECT_GE(most, 2u);
+  EXPECT_FALSE(rig.diverged());
+}
+
+TEST_P(MeshInBothCouplings, IsRepeatedToTheLastBit) {
+  const ArmDescription arm = test::omni();
+  const Scene scene = link_over_a_body();
+  const Path path = stroke(-0.06, 0.02);
+  const Parameters p = parameters();
+  Rig first(arm, scene);
+  first.start(p, rest_at(arm, path(0)));
+  Rows before(first.layout());
+  int k = 0;
+  for (; k < 900 || !first.steady(); ++k) {
+    first.step(p, {{path(1e-3 * k), 1}, true}, before.add());
+  }
+  // A recording begins in the middle of the contact, and is run again from its first row.
+  RigStart present = rest_at(arm, path(0));
+  first.present(present);
+  present.target = path(1e-3 * k);
+  first.start(p, present);
+  Rig second(arm, scene);
+  Rows recorded(first.layout()), again(first.layout());
+  for (int i = 0; i < 1500; ++i) {
+    const RigInput input{{path(1e-3 * (k + i)), 1}, true};
+    first.step(p, input, recorded.add());
+    if (i == 0) second.start(p, start_of(first.layout(), recorded.row(0)));
+    second.step(p, input, again.add());
+  }
+  EXPECT_GT(recorded.vec(0, Column::contact_torque).norm(), 0.01);
+  EXPECT_EQ(test::first_difference(recorded, again), -1);
+}
+
+TEST_P(MeshInBothCouplings, GoesOnWhenTheWorldIsExchangedForTheSame) {
+  const ArmDescription arm = test::omni();
+  const Scene scene = with_mesh(landscape(), Vec3(kHome.x(), 0, kTop));  // open: a side to forget
+  const Path path = stroke(kTop - 0.01, 0.02);
+  const Parameters p = parameters();
+  Rig left(arm, scene), right(arm, scene);
+  TouchWorld same(arm, scene);
+  left.start(p, rest_at(arm, path(0)));
+  right.start(p, rest_at(arm, path(0)));
+  Rows a(left.layout()), b(left.layout());
+  for (int k = 0; k < 2500; ++k) {
+    if (k == 1200) right.exchange(same);
+    const RigInput input{{path(1e-3 * k), 1}, true};
+    left.step(p, input, a.add());
+    right.step(p, input, b.add());
+  }
+  EXPECT_GT(a.vec(1200, Column::contact_torque).norm(), 0.1);
+  EXPECT_EQ(test::first_difference(a, b), -1);
+}
+
+TEST_P(MeshInBothCouplings, GetsToAnotherStiffnessWithoutAJump) {
+  const ArmDescription arm = test::omni();
+  const Path path = stroke(kTop - 0.004, 0);
+  const Parameters p = parameters();
+  Scene scene = with_mesh(test::sheet(5, 0.2), Vec3(kHome.x(), 0, kTop), 600);
+  Rig rig(arm, scene);
+  scene.meshes[0].stiffness = 1200;
+  TouchWorld stiffer(arm, scene);
+  rig.start(p, rest_at(arm, path(0)));
+  Rows rows(rig.layout());
+  for (int k = 0; k < 2000; ++k) {
+    if (k == 1200) rig.exchange(stiffer);
+    rig.step(p, {{path(1e-3 * k), 1}, true}, rows.add());
+  }
+  // From no torque to the limit in a tenth of a second.
+  for (int joint = 0; joint < 3; ++joint) {
+    const double limit = arm.joints[static_cast<std::size_t>(joint)].effort;
+    const double jump =
+        rows.vec(1200, Column::motor_torque)[joint] - rows.vec(1199, Column::motor_torque)[joint];
+    EXPECT_LE(std::abs(jump), limit * p.tick / 0.1 * (1 + 1e-12));
+  }
+  EXPECT_GT(rows.vec(1999, Column::contact_torque).norm(),
+            1.05 * rows.vec(1199, Column::contact_torque).norm());
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,143 @@
+// A reference device on the desk and the running loop that holds it, as the program has them.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "app/live/live_loop.h"
+#include "devices/files/scene_file.h"
+#include "devices/files/urdf_file.h"
+#include "devices/hid/device_list.h"
+#include "tests/support/hid/pid_joystick_model.h"
+#include "tests/support/hid/raw_device_model.h"
+#include "tests/support/hid/space_mouse_model.h"
+#include "tests/support/hid/uhid_device.h"
+
+namespace limpid::test {
+
+using namespace std::chrono_literals;
+
+inline constexpr double kRange = 0.35;   // of the stick [rad]
+inline constexpr double kEffort = 0.5;   // of its motors [N m]
+inline constexpr Time kReport = 1ms;     // of the reference devices
+inline constexpr Time kReadingLife = 5ms + kReport;
+inline constexpr Time kTickLife = 10ms;
+
+inline double in_ms(Time time) { return std::chrono::duration<double, std::milli>(time).count(); }
+inline void wait(Time time) { std::this_thread::sleep_for(time); }
+
+template <class Done>
+bool wait_until(Done done, Time longest = 3s) {
+  for (const Time end = steady_now() + longest; steady_now() < end; wait(1ms)) {
+    if (done()) return true;
+  }
+  return done();
+}
+
+inline ArmDescription joystick_arm() { return read_urdf("joystick.urdf"); }
+inline Scene joystick_gate() { return read_scene("joystick.toml", joystick_arm()); }
+
+// The arm's physics, axis by axis; the hand rests for half a second and then leans the stick to the
+// right, through the gate's side.
+inline AxisPhysics stick_axis(int axis) {
+  AxisPhysics physics;
+  physics.inertia = axis == 0 ? 3.2e-4 : 3.0e-4;
+  physics.friction = 0.015;
+  physics.lower = -kRange;
+  physics.upper = kRange;
+  if (axis == 0) physics.path = [](double t) { return 0.3 * std::clamp(2 * t - 1, 0.0, 1.0); };
+  return physics;
+}
+
+template <class Model>
+std::unique_ptr<Model> make_model() {
+  if constexpr (std::is_same_v<Model, PidJoystickModel>) {
+    return std::make_unique<Model>(
+        PidJoystickOptions{.torque_limit = kEffort, .physics = stick_axis(1)});
+  } else {
+    return std::make_unique<Model>(
+        RawDeviceLayout{.joints = 2, .torque_limit = kEffort, .physics = stick_axis(1)});
+  }
+}
+
+// The one device of this kind; replugged ones may take a moment.
+inline FoundDevice find_device(HidKind kind) {
+  std::vector<FoundDevice> found;
+  wait_until([&] {
+    found = list_hid_devices("rules");
+    std::erase_if(found, [&](const FoundDevice& one) { return one.kind != kind; });
+    return !found.empty();
+  });
+  if (found.empty()) throw std::runtime_error("the device is not listed");
+  return found.front();
+}
+
+template <class Model>
+class Desk {
+ public:
+  static constexpr HidKind kKind =
+      std::is_same_v<Model, PidJoystickModel> ? HidKind::pid_joystick : HidKind::raw;
+
+  Desk() : Desk(make_model<Model>()) {}
+  explicit Desk(std::unique_ptr<Model> one) : model(std::move(one)) {
+    model->hand().axis(0) = stick_axis(0);
+    device = std::make_unique<UhidDevice>(*model);
+  }
+
+  static std::unique_ptr<Device> connect() {
+    return open_hid_device(find_device(kKind), {.range = kRange, .effort = kEffort});
+  }
+  void open() { open(connect()); }
+  void open(std::unique_ptr<Device> one) {
+    loop.open(arm, scene, controls.parameters, std::move(one));
+    arm_force(false);
+  }
+  void arm_force(bool on) {
+    controls.force = on;
+    loop.set(controls);
+  }
+  // Until the stick leans on the gate's side and is pushed back.
+  bool push() {
+    arm_force(true);
+    return wait_until([&] { return torque() < -0.1; });
+  }
+  // What its motors do to the first axis [N m].
+  double torque() {
+    return device->with([&](Time) { return model->forces().newest()[0]; });
+  }
+  ForceState force_state() {
+    loop.update();
+    return loop.snapshot().force_state;
+  }
+  // Lets this happen to the device; how long after that it was without force, within 100 ms.
+  std::optional<Time> time_to_zero(const std::function<void(Time)>& failure) {
+    const Time moment = device->with([&](Time now) {
+      failure(now);
+      return now;
+    });
+    wait(100ms);
+    return zero_after(moment);
+  }
+  std::optional<Time> zero_after(Time moment) {
+    return device->with([&](Time) { return model->forces().zero_after(moment); });
+  }
+
+  ArmDescription arm = joystick_arm();
+  Scene scene = joystick_gate();
+  std::unique_ptr<Model> model;
+  std::unique_ptr<UhidDevice> device;
+  Controls controls;
+  LiveLoop loop{{}};
+};
+
+// One line of the table of measured times.
+inline void print_time(const std::string& what, std::optional<Time> zero, Time limit) {
+  std::printf("| %-48s | %7.2f ms | %5.1f ms |\n", what.c_str(), zero ? in_ms(*zero) : NAN,
+              in_ms(limit));
+}
+
+}  // namespace limpid::test

@@ -1,0 +1,203 @@
+// Whatever fails while the stick is pushed, the reference device itself measures when its force
+// ended.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/vm/desk.h"
+
+namespace limpid::test {
+namespace {
+
+template <class Model>
+struct FailingLoop : testing::Test {
+  static std::string name() {
+    return Desk<Model>::kKind == HidKind::raw ? "raw" : "PID";
+  }
+  void expect_zero(const std::string& what, std::optional<Time> zero, Time limit) {
+    print_time(name() + ": " + what, zero, limit);
+    ASSERT_TRUE(zero) << "it still pushes";
+    EXPECT_LE(*zero, limit);
+  }
+  // A fault of the device while it pushes; force must not come back by itself.
+  void expect_end(const std::string& what, Fault fault, ForceState state) {
+    desk.open();
+    ASSERT_TRUE(desk.push());
+    const auto zero = desk.time_to_zero([&](Time) { desk.model->set_fault(fault); });
+    expect_zero(what, zero, kReadingLife);
+    EXPECT_EQ(desk.force_state(), state);
+    desk.device->with([&](Time) { desk.model->set_fault(Fault::none); });
+    wait(700ms);
+    EXPECT_EQ(desk.torque(), 0) << "it pushes again without having been armed";
+    EXPECT_EQ(desk.force_state(), state);
+    desk.arm_force(false);
+    wait(20ms);
+    EXPECT_TRUE(desk.push());
+  }
+
+  Desk<Model> desk;
+};
+using Models = testing::Types<PidJoystickModel, RawDeviceModel>;
+TYPED_TEST_SUITE(FailingLoop, Models);
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceFallsSilent) {
+  this->expect_end("no readings, no answers", Fault::silent, ForceState::stale);
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsNaN) {
+  this->expect_end("NaN (PID: null values)", Fault::not_a_number, ForceState::stale);
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsHalfReports) {
+  this->expect_end("half reports", Fault::cut_short, ForceState::stale);
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsGarbage) {
+  this->desk.open();
+  ASSERT_TRUE(this->desk.push());
+  const auto zero =
+      this->desk.time_to_zero([&](Time) { this->desk.model->set_fault(Fault::garbage); });
+  this->expect_zero("garbage", zero, kReadingLife);
+}
+
+// The motors keep what they were told last: nobody outside can help, but nothing more is told.
+TYPED_TEST(FailingLoop, GivesUpADeviceWhoseFirmwareHangs) {
+  this->desk.open();
+  ASSERT_TRUE(this->desk.push());
+  const auto unheard =
+      this->desk.time_to_zero([&](Time) { this->desk.model->set_fault(Fault::frozen); });
+  EXPECT_FALSE(unheard);
+  EXPECT_EQ(this->desk.force_state(), ForceState::stale);
+  const Time back = this->desk.device->with([&](Time now) {
+    this->desk.model->set_fault(Fault::none);
+    return now;
+  });
+  wait(100ms);
+  this->expect_zero("firmware hung, from when it hears again", this->desk.zero_after(back),
+                    kReadingLife);
+}
+
+TYPED_TEST(FailingLoop, IsWithoutForceWhenUnplugged) {
+  this->desk.open();
+  ASSERT_TRUE(this->desk.push());
+  this->desk.device->unplug();
+  EXPECT_TRUE(wait_until([&] { return this->desk.force_state() == ForceState::lost; }, 10ms));
+  EXPECT_TRUE(this->desk.loop.status().running);
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheLoopIsClosed) {
+  this->desk.open();
+  ASSERT_TRUE(this->desk.push());
+  const Time moment = steady_now();
+  this->desk.loop.close();
+  this->expect_zero("closed", this->desk.zero_after(moment), kTickLife);
+}
+
+// Says where the stick is as usual, but keeps the loop waiting when told to.
+class Stalling final : public Device {
+ public:
+  Stalling(std::unique_ptr<Device> device, const std::atomic<bool>& stalled)
+      : device_(std::move(device)), stalled_(stalled) {}
+  const DeviceTraits& traits() const override { return device_->traits(); }
+  bool read(DeviceReading& newest) noexcept override {
+    while (stalled_) wait(1ms);
+    return device_->read(newest);
+  }
+  void write(std::span<const double> torque) noexcept override { device_->write(torque); }
+  void stop() noexcept override { device_->stop(); }
+
+ private:
+  std::unique_ptr<Device> device_;
+  const std::atomic<bool>& stalled_;
+};
+
+TYPED_TEST(FailingLoop, EndsForceWhenNoTickComes) {
+  std::atomic<bool> stalled = false;
+  this->desk.open(std::make_unique<Stalling>(this->desk.connect(), stalled));
+  ASSERT_TRUE(this->desk.push());
+  const Time moment = steady_now();
+  stalled = true;
+  wait(100ms);
+  this->expect_zero("no tick", this->desk.zero_after(moment), kTickLife);
+  stalled = false;
+  this->desk.loop.close();
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheTickThrows) {
+  Rig rig(this->desk.arm, this->desk.scene, true);
+  const auto device = this->desk.connect();
+  rig.start({}, rest_at(this->desk.arm, Vec3(0, 0, 0.12)));
+  rig.plug(device.get());
+  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+  std::atomic<bool> fail = false;
+  HapticThread thread;
+  thread.start(1ms, [&](const TickTiming&) {
+    if (fail) throw std::runtime_error("a tick that fails");
+    rig.step({}, {{rig.tip(), 1}, true}, row);
+  });
+  ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
+  const Time moment = steady_now();
+  fail = true;
+  wait(100ms);
+  this->expect_zero("exception in the tick", this->desk.zero_after(moment), kTickLife);
+  EXPECT_EQ(thread.status().failure, "a tick that fails");
+}
+
+// The driver is another process: this program with the device's kind as its argument.
+pid_t start_driver(HidKind kind) {
+  std::string program = "/proc/self/exe";
+  std::string word = kind == HidKind::raw ? "drive-raw" : "drive-pid";
+  char* arguments[] = {program.data(), word.data(), nullptr};
+  pid_t child = 0;
+  return posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0 ? child
+                                                                                          : -1;
+}
+
+TYPED_TEST(FailingLoop, EndsForceWhenTheProcessDies) {
+  for (const int signal : {SIGKILL, SIGSEGV, SIGTERM}) {
+    const pid_t driver = start_driver(this->desk.kKind);
+    ASSERT_GT(driver, 0);
+    ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
+    wait(50ms);
+    const Time moment = steady_now();
+    kill(driver, signal);
+    wait(100ms);
+    this->expect_zero(std::string("killed, SIG") + sigabbrev_np(signal),
+                      this->desk.zero_after(moment), 10ms);
+    waitpid(driver, nullptr, 0);
+    // The guardian's hold on the device ends with it; the hand begins anew.
+    this->desk.device->unplug();
+    wait(50ms);
+    this->desk.device->replug();
+  }
+}
+
+struct FailingRawLoop : FailingLoop<RawDeviceModel> {};
+
+TEST_F(FailingRawLoop, EndsForceWhenReadingsRepeatThemselves) {
+  expect_end("the same reading again and again", Fault::stuck, ForceState::stale);
+}
+
+TEST_F(FailingRawLoop, EndsForceWhenTheDeviceReportsAFault) {
+  desk.open();
+  ASSERT_TRUE(desk.push());
+  const auto zero = desk.time_to_zero([&](Time) { desk.model->set_unwell(true); });
+  expect_zero("fault bit", zero, 3 * kReport);
+  EXPECT_EQ(desk.force_state(), ForceState::fault);
+}
+
+// The dead-man switch: force comes back with the hand, slowly.
+TEST_F(FailingRawLoop, EndsForceWhileNoHandIsThere) {
+  desk.open();
+  ASSERT_TRUE(desk.push());
+  const auto zero = desk.time_to_zero([&](Time) { desk.model->hand().hold(false); });
+  expect_zero("dead-man switch let go", zero, 3 * kReport);
+  EXPECT_EQ(desk.force_state(), ForceState::no_hand);
+  desk.device->with([&](Time) { desk.model->hand().hold(true); });
+  EXPECT_TRUE(wait_until([&] { return desk.force_state() == ForceState::on; }));
+}
+
+}  // namespace
+}  // namespace limpid::test
