@@ -28,7 +28,7 @@ bool Rig::device_reading(DeviceReading& newest) const {
   return std::visit(
       [&](const auto& of) {
         newest = of->reading;
-        return of->tick.force_state() != ForceState::lost;
+        return of->here;
       },
       of_);
 }
@@ -37,7 +37,8 @@ ForceState Rig::force_state() const {
   return std::visit([](const auto& of) { return of->tick.force_state(); }, of_);
 }
 
-// What the loop sees. Of a real device that says nothing: where it was when it last did.
+// What the loop sees. Of a real device that says nothing, or nonsense: where it was when it last
+// did.
 template <int N>
 Reading<N> Rig::Of<N>::read(const Parameters& p, const HandInput& hand) noexcept {
   if (!real) {
@@ -47,13 +48,15 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const HandInput& hand) noexcept
     std::copy_n(reading.x.begin(), in.x.size(), in.measured.begin());
     return in;
   }
-  const bool here = plugged != nullptr && plugged->read(reading);
+  here = plugged != nullptr && plugged->read(reading);
   const Eigen::Index n = x_before.size();
   Vec<N> x = x_before;
   if (here && reading.count > 0) x = Eigen::Map<const Vec<N>>(reading.x.data(), n);
+  const bool nonsense = !x.allFinite();
+  if (nonsense) x = x_before;
   v_real = (x - x_before) / p.tick;
   x_before = x;
-  DeviceHealth health{true, reading.hand, reading.fault, !here, reading.age};
+  DeviceHealth health{true, reading.hand, reading.fault || nonsense, !here, reading.age};
   if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
   return {x, x, v_real, health};
 }

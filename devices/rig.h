@@ -46,7 +46,7 @@ class Rig {
   // From the next step on; null: unplugged. Of a rig for a real device. The caller keeps it.
   void plug(Device* device) noexcept;
   bool real() const;
-  // What the real device said at the last step; false if it was lost.
+  // What the real device said at the last step; false if it was not there.
   bool device_reading(DeviceReading& newest) const;
 
   int dof() const { return layout().dof(); }
@@ -81,6 +81,7 @@ class Rig {
     VirtualDevice<N> virtual_device;
     bool real;
     Device* plugged = nullptr;
+    bool here = false;  // it answered
     DeviceReading reading;
     Vec<N> x_before, v_real;  // of a real device
     std::uint64_t count_before = 0;

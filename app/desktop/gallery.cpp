@@ -104,7 +104,7 @@ void Gallery::draw(Workbench& bench) {
       int column = 0;
       for (const GalleryCard& card : list) {
         if (column++ % columns != 0) ImGui::SameLine();
-        draw_card(bench, card, width);
+        draw_card(bench, card, &list == &own_, width);
       }
     };
     cards("Yours", own_);
@@ -113,7 +113,7 @@ void Gallery::draw(Workbench& bench) {
   ImGui::End();
 }
 
-void Gallery::draw_card(Workbench& bench, const GalleryCard& card, float width) {
+void Gallery::draw_card(Workbench& bench, const GalleryCard& card, bool own, float width) {
   const float em = ImGui::GetFontSize();
   const float pad = 0.5f * em;
   const ImVec2 shot(width - 2 * pad, 0.5625f * (width - 2 * pad));
@@ -132,6 +132,10 @@ void Gallery::draw_card(Workbench& bench, const GalleryCard& card, float width) 
   ImGui::PushFont(font(Face::semibold));
   ImGui::TextUnformatted(card.title.c_str());
   ImGui::PopFont();
+  if (own) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", card.scene.filename().c_str());
+  }
   const ImVec2 text = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(text, {text.x + shot.x, text.y + 3.6f * em}, true);
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));

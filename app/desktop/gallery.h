@@ -28,7 +28,7 @@ class Gallery {
 
  private:
   void read();
-  void draw_card(Workbench& bench, const GalleryCard& card, float width);
+  void draw_card(Workbench& bench, const GalleryCard& card, bool own, float width);
   const PictureTexture* picture(const std::filesystem::path& file);
 
   bool was_shown_ = false;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string_view>
 
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"
@@ -163,10 +164,10 @@ void ScenePanel::draw(Workbench& bench) {
 
 void ScenePanel::draw_list(Workbench& bench, const Scene& scene) {
   const std::vector<ObjectRef> all = objects_of(scene);
-  const float line = ImGui::GetFrameHeight();
+  const float line = ImGui::GetTextLineHeightWithSpacing();
   const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
-  ImGui::BeginChild("objects", {0, lines * line + ImGui::GetStyle().ItemSpacing.y}, true,
-                    ImGuiWindowFlags_NoNav);
+  const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
   if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a .glb here.");
   for (const ObjectRef& ref : all) {
     ImGui::PushID(static_cast<int>(ref.kind) * 1000 + static_cast<int>(ref.index));
@@ -236,7 +237,7 @@ void ScenePanel::draw_name(Workbench& bench, const ObjectRef& ref) {
 bool ScenePanel::draw_rotation(Pose& pose) {
   if (pose.linear() != turned_) {
     turned_ = pose.linear();
-    degrees_ = rpy_of(turned_) / kDegree;
+    degrees_ = (rpy_of(turned_) / kDegree * 1e6).array().round() / 1e6 + 0.0;  // no -0
   }
   if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
              "About the fixed axes x, y and z, one after the other.")) {
@@ -249,7 +250,7 @@ bool ScenePanel::draw_rotation(Pose& pose) {
 
 void ScenePanel::draw_object(Workbench& bench, const ObjectRef& ref) {
   SceneObject object = object_of(bench.editor.scene(), ref);
-  const char* what = nullptr;
+  std::string_view what;  // that was changed
   const auto changed = [&](bool yes, const char* name) {
     if (yes) what = name;
   };
@@ -267,7 +268,7 @@ void ScenePanel::draw_object(Workbench& bench, const ObjectRef& ref) {
     double radius = 1e3 * sphere->radius;
     changed(drag1("Radius", radius, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", "Of the ball"),
             "radius");
-    if (what == std::string_view("radius")) sphere->radius = 1e-3 * radius;
+    if (what == "radius") sphere->radius = 1e-3 * radius;
   } else if (auto* box = std::get_if<Box>(&object)) {
     changed(stiffness(box->stiffness), "stiffness");
     changed(position(box->pose), "place");
@@ -295,7 +296,7 @@ void ScenePanel::draw_object(Workbench& bench, const ObjectRef& ref) {
       scale = millimetres / extent;
       what = "scale";
     }
-    if (what == std::string_view("scale")) mesh->scale = scale;
+    if (what == "scale") mesh->scale = scale;
     read_out("triangles", fmt::format("{}", mesh->shape->triangles()), {}, mesh->file.c_str());
     const std::string health = mesh->shape->health().text();
     ImGui::PushTextWrapPos(0);
@@ -326,7 +327,9 @@ void ScenePanel::draw_object(Workbench& bench, const ObjectRef& ref) {
     }
     tooltip("Otherwise it stops what goes below the angle.");
   }
-  if (what != nullptr && bench.may_edit()) bench.editor.set(ref, std::move(object), what);
+  if (!what.empty() && bench.may_edit()) {
+    bench.editor.set(ref, std::move(object), std::string(what));
+  }
 }
 
 }  // namespace limpid

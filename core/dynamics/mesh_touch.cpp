@@ -77,9 +77,10 @@ void MeshTouch::follow(const Vec3& c, double T) {
   p_ = p;
   if (!near_ && clearance_ - moved > kAhead / scale_) {
     let_go(p, clearance_ - moved);
-  } else {
-    lost_ = !advance(p);
+    anchor_ = c;
+    return;
   }
+  lost_ = !advance(p);
   const Vec3 goal = to_world(g_);
   const double allowed = kSlipFactor * scale_ * moved + kSlipSpeed * T;
   const double way = (goal - anchor_).norm();

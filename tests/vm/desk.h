@@ -16,13 +16,12 @@
 #include "tests/support/hid/raw_device_model.h"
 #include "tests/support/hid/space_mouse_model.h"
 #include "tests/support/hid/uhid_device.h"
+#include "tests/vm/leaning_hand.h"
 
 namespace limpid::test {
 
 using namespace std::chrono_literals;
 
-inline constexpr double kRange = 0.35;   // of the stick [rad]
-inline constexpr double kEffort = 0.5;   // of its motors [N m]
 inline constexpr Time kReport = 1ms;     // of the reference devices
 inline constexpr Time kReadingLife = 5ms + kReport;
 inline constexpr Time kTickLife = 10ms;
@@ -40,18 +39,6 @@ bool wait_until(Done done, Time longest = 3s) {
 
 inline ArmDescription joystick_arm() { return read_urdf("joystick.urdf"); }
 inline Scene joystick_gate() { return read_scene("joystick.toml", joystick_arm()); }
-
-// The arm's physics, axis by axis; the hand rests for half a second and then leans the stick to the
-// right, through the gate's side.
-inline AxisPhysics stick_axis(int axis) {
-  AxisPhysics physics;
-  physics.inertia = axis == 0 ? 3.2e-4 : 3.0e-4;
-  physics.friction = 0.015;
-  physics.lower = -kRange;
-  physics.upper = kRange;
-  if (axis == 0) physics.path = [](double t) { return 0.3 * std::clamp(2 * t - 1, 0.0, 1.0); };
-  return physics;
-}
 
 template <class Model>
 std::unique_ptr<Model> make_model() {
@@ -85,6 +72,7 @@ class Desk {
   Desk() : Desk(make_model<Model>()) {}
   explicit Desk(std::unique_ptr<Model> one) : model(std::move(one)) {
     model->hand().axis(0) = stick_axis(0);
+    model->hand().axis(0).path = lean_right;
     device = std::make_unique<UhidDevice>(*model);
   }
 

@@ -1,7 +1,11 @@
 // What was recorded comes again, bit for bit.
 #include "app/run/replay.h"
 
+#include <cmath>
+
+#include "app/run/analysis.h"
 #include "app/run/recorder.h"
+#include "core/dynamics/inverse_kinematics.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/test_session.h"
 
@@ -84,6 +88,43 @@ TEST(Replay, RefusesASessionWhoseTextsAreBroken) {
   broken.info.config = "coupling.eta = true\n";
   EXPECT_THAT(test::refusal([&] { session_parameters(broken, "a.h5"); }),
               testing::HasSubstr("coupling.eta"));
+}
+
+// A real device's hand is not measured: what the observer saw of it acts instead. That lags behind
+// by the observer's time, m / alpha, so that the integral of the torque is short by as much of the
+// present torque, and the arm, which has its damping for it, is behind by that over b_d.
+TEST(Replay, LetsTheEstimateActWhereNobodyMeasuredTheHand) {
+  const test::TempDir dir;
+  const RunPlan plan = test::plan("free.toml", "touch.csv", 3);
+  const Session measured = recorded(plan, dir / "a.h5");
+  Recorder recorder(dir / "b.h5", session_info(plan), plan.parameters, false);
+  const RowLayout& layout = measured.layout;
+  double strongest = 0;  // [N m]
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    std::vector<double> row(measured.row(k).begin(), measured.row(k).end());
+    for (double& value : layout.in(std::span(row), Column::hand_torque)) {
+      strongest = std::max(strongest, std::abs(value));
+      value = std::nan("");
+    }
+    ASSERT_TRUE(recorder.push_waiting(row));
+  }
+  recorder.finish();
+  const Session blind = read_session(dir / "b.h5");
+  const auto again = rows_of(replay(blind, "b.h5", session_parameters(blind, "b.h5")));
+  ASSERT_EQ(again.size(), measured.size());
+  const auto before = rows_of(measured);
+  const Analysis analysis = analyze(plan.arm, rest_pose(plan.arm), plan.parameters, {});
+  const double lag = 1 / *std::ranges::min_element(analysis.w_f);
+  const double allowed = lag * strongest / plan.arm.joints[0].damping;
+  double error = 0, way = 0;
+  for (std::size_t k = 0; k < again.size(); ++k) {
+    const Eigen::VectorXd x = before.vec(k, Column::device_position);
+    error = std::max(error, (again.vec(k, Column::device_position) - x).cwiseAbs().maxCoeff());
+    way = std::max(way, (x - before.vec(0, Column::device_position)).cwiseAbs().maxCoeff());
+  }
+  std::printf("error %g way %g allowed %g strongest %g lag %g\n", error, way, allowed, strongest, lag);
+  EXPECT_LT(error, allowed);
+  EXPECT_LT(error, way / 2);
 }
 
 }  // namespace

@@ -100,9 +100,11 @@ TEST(FreeSpace, PushesOnlyOutwardsAndOnlyWithPlanesThatHold) {
     Mat3 e;
     const int rank = space.basis(active, e);
     ASSERT_EQ(rank, active.count);
-    const auto basis = e.leftCols(rank);
-    ASSERT_LT((basis.transpose() * basis - Eigen::MatrixXd::Identity(rank, rank)).norm(), 1e-9);
-    ASSERT_LT((basis * (basis.transpose() * (x - c)) - (x - c)).norm(), 1e-9 * size);
+    const Eigen::MatrixXd basis = e.leftCols(rank);
+    const Eigen::MatrixXd gram = basis.transpose() * basis;
+    ASSERT_TRUE(gram.isIdentity(1e-9));
+    const Vec3 along = basis * (basis.transpose() * (x - c));
+    ASSERT_LT((along - (x - c)).norm(), 1e-9 * size);
   }
 }
 

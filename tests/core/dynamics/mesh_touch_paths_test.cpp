@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/dynamics/mesh_touch.h"
 #include "tests/support/meshes.h"
@@ -246,6 +247,36 @@ TEST(AnOpenSheet, PushesToTheSideItWasTouchedFromWhenWavy) {
       test::height_field(
           50, 1, [](double x, double y) { return 0.03 * std::sin(20 * x) * std::sin(20 * y); }),
       0.03, 0.1, 335);
+}
+
+TEST(ABall, PlacedInsideOfAClosedBodyComesOutAtTheNearestPlace) {
+  const MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
+  MeshTouch touch(cube, 0.002);
+  const Vec3 c(0.01, -0.02, 0.045);
+  touch.place(c);
+  EXPECT_LT((touch.anchor() - c - Vec3(0, 0, 0.007)).norm(), 1e-7);
+  EXPECT_TRUE(touch.recoverable());
+}
+
+TEST(ABall, PlacedBehindASheetStaysThere) {
+  const MeshObstacle sheet = test::obstacle(test::sheet(5, 0.1));
+  MeshTouch touch(sheet, 0.002);
+  const Vec3 c(0.01, -0.02, -0.0015);
+  touch.place(c);
+  EXPECT_LT((touch.anchor() - c - Vec3(0, 0, -0.0005)).norm(), 1e-7);
+}
+
+TEST(ABall, PlacedAnewForgetsWhatWasNoPlace) {
+  const MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
+  MeshTouch touch(cube, 0.002);
+  const Vec3 c(0.01, -0.02, 0.051), nowhere = Vec3::Constant(std::nan(""));
+  touch.place(c);
+  for (int k = 0; k < 3; ++k) touch.follow(nowhere, T);
+  touch.place(nowhere);
+  touch.follow(nowhere, T);
+  touch.place(c);
+  EXPECT_LT((touch.anchor() - c - Vec3(0, 0, 0.001)).norm(), 1e-7);
+  EXPECT_FALSE(touch.held());
 }
 
 }  // namespace

@@ -283,22 +283,5 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
   }
 }
 
-TEST(Ball, PlacedInsideOfAClosedBodyComesOutAtTheNearestPlace) {
-  const MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
-  MeshTouch touch(cube, 0.002);
-  const Vec3 c(0.01, -0.02, 0.045);
-  touch.place(c);
-  EXPECT_LT((pull(touch, c) - Vec3(0, 0, 0.007)).norm(), 1e-7);
-  EXPECT_TRUE(touch.recoverable());
-}
-
-TEST(Ball, PlacedBehindASheetStaysThere) {
-  const MeshObstacle sheet = test::obstacle(test::sheet(5, 0.1));
-  MeshTouch touch(sheet, 0.002);
-  const Vec3 c(0.01, -0.02, -0.0015);
-  touch.place(c);
-  EXPECT_LT((pull(touch, c) - Vec3(0, 0, -0.0005)).norm(), 1e-7);
-}
-
 }  // namespace
 }  // namespace limpid

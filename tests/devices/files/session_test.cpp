@@ -67,6 +67,8 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
   EXPECT_EQ(session.info.config, info.config);
   EXPECT_EQ(session.info.device_urdf, info.device_urdf);
   EXPECT_EQ(session.info.scene, info.scene);
+  ASSERT_EQ(session.info.models.size(), info.models.size());
+  for (const auto& [name, bytes] : info.models) EXPECT_EQ(*session.info.models.at(name), *bytes);
   ASSERT_EQ(session.changes.size(), 2u);
   EXPECT_EQ(session.changes[0].setting, "coupling.eta = 2.0");
   EXPECT_EQ(session.changes[1].row, 1234u);

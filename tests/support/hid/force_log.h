@@ -32,6 +32,8 @@ class ForceLog {
     samples_.push_back({time, torque, cause});
   }
   void clear() { samples_.clear(); }
+  // For long runs: while it grows the device would fall behind.
+  void expect(std::size_t samples) { samples_.reserve(samples); }
   std::span<const ForceSample> samples() const { return samples_; }
   Torque newest() const { return samples_.empty() ? Torque{} : samples_.back().torque; }
 

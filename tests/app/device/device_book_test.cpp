@@ -1,0 +1,92 @@
+#include "app/device/device_book.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/device/device_hub.h"
+#include "devices/files/file_error.h"
+#include "devices/files/urdf_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+DeviceBook written_and_read(const DeviceBook& book, const std::filesystem::path& file) {
+  EXPECT_EQ(save_device_book(book, file), "");
+  std::string complaint;
+  DeviceBook read = load_device_book(file, complaint);
+  EXPECT_EQ(complaint, "");
+  return read;
+}
+
+TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
+  const test::TempDir dir;
+  DeviceBook book;
+  book.in_use = "1209:4c50:a \"serial\" number";
+  DeviceNotes& notes = book.notes[book.in_use];
+  notes.axes = {{0.25, 1, true}, {-1.5, 0.4, false}};
+  notes.pid.effort = 1.75;
+  notes.pid.range = 0.6;
+  notes.pid.reverse = {false, true};
+  const DeviceBook read = written_and_read(book, dir / "below/devices.toml");
+  EXPECT_EQ(read.in_use, book.in_use);
+  ASSERT_EQ(read.notes.count(book.in_use), 1U);
+  const DeviceNotes& again = read.notes.at(book.in_use);
+  ASSERT_EQ(again.axes.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(again.axes[i].zero, notes.axes[i].zero);
+    EXPECT_EQ(again.axes[i].scale, notes.axes[i].scale);
+    EXPECT_EQ(again.axes[i].inverted, notes.axes[i].inverted);
+  }
+  EXPECT_EQ(again.pid.effort, 1.75);
+  EXPECT_EQ(again.pid.range, 0.6);
+  EXPECT_EQ(again.pid.reverse, notes.pid.reverse);
+}
+
+TEST(DeviceBook, LeavesOutWhatMakesNoSense) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "in_use = \"a\"\n[device.a]\neffort = -3.0\nrange = nan\n"
+                         "axis = [{scale = 0.0, zero = 1.0}, 7]\n";
+  std::string complaint;
+  const DeviceBook book = load_device_book(file, complaint);
+  EXPECT_EQ(complaint, "");
+  const DeviceNotes& notes = book.notes.at("a");
+  EXPECT_EQ(notes.pid.effort, PidSettings{}.effort);
+  EXPECT_EQ(notes.pid.range, PidSettings{}.range);
+  ASSERT_EQ(notes.axes.size(), 2U);
+  EXPECT_EQ(notes.axes[0].scale, 1);
+  EXPECT_EQ(notes.axes[0].zero, 1);
+}
+
+TEST(DeviceBook, SaysWhyAFileIsNotRead) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "in_use = \n";
+  std::string complaint;
+  EXPECT_TRUE(load_device_book(file, complaint).notes.empty());
+  EXPECT_NE(complaint.find(file.string()), std::string::npos);
+}
+
+DeviceTraits joints(int count, double effort) {
+  DeviceTraits traits;
+  traits.name = "a device";
+  traits.dof = count;
+  traits.effort.assign(static_cast<std::size_t>(count), effort);
+  return traits;
+}
+
+TEST(ArmForADevice, HasAsManyJointsAndPushesNoHarder) {
+  const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
+  const ArmDescription same = arm_for(joints(3, 0.01), omni);
+  EXPECT_EQ(same.urdf, omni.urdf);
+  for (const Joint& joint : same.joints) EXPECT_EQ(joint.effort, 0.01);
+  const ArmDescription strong = arm_for(joints(3, 100), omni);
+  EXPECT_EQ(strong.joints[1].effort, omni.joints[1].effort);
+  EXPECT_EQ(arm_for(joints(2, 0.2), omni).dof(), 2);
+  EXPECT_THROW(arm_for(joints(5, 1), omni), FileError);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,45 @@
+// A device that says what the test tells it to, and keeps what it was told.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "devices/device.h"
+
+namespace limpid::test {
+
+class FakeDevice final : public Device {
+ public:
+  explicit FakeDevice(int dof) {
+    const auto joints = static_cast<std::size_t>(dof);
+    traits_.dof = dof;
+    traits_.pushes = true;
+    traits_.lower.assign(joints, -1);
+    traits_.upper.assign(joints, 1);
+    traits_.resolution.assign(joints, 1e-4);
+    traits_.effort.assign(joints, 0.5);
+    reading.count = 1;
+  }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    newest = reading;
+    return here;
+  }
+  void write(std::span<const double> torque) noexcept override {
+    told.fill(0);
+    std::copy_n(torque.begin(), std::min(torque.size(), told.size()), told.begin());
+  }
+  void stop() noexcept override {
+    told.fill(0);
+    stopped = true;
+  }
+
+  DeviceReading reading;
+  bool here = true, stopped = false;
+  std::array<double, kMaxDof> told{};  // torque [N m]
+
+ private:
+  DeviceTraits traits_;
+};
+
+}  // namespace limpid::test

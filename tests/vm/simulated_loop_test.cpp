@@ -1,0 +1,165 @@
+// The suite of the virtual machine in simulated time, for places without one. Not shown here: that
+// the kernel's HID stack and hidapi carry the reports, that threads keep their times, that a
+// guardian stops the device of a killed process, and recordings across an unplugging.
+#include <gtest/gtest.h>
+
+#include "tests/support/built_in.h"
+#include "tests/vm/simulated_desk.h"
+
+namespace limpid::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kReadingLife = 5ms + 1ms;  // and one report
+constexpr Time kTickLife = 10ms;
+
+ArmDescription joystick() { return read_urdf(assets_dir() / "devices/joystick.urdf"); }
+// Without the bump: around its edge the torque changes faster than the hand moves.
+Scene gate() {
+  Scene scene = read_scene(assets_dir() / "scenes/joystick.toml", joystick());
+  scene.spheres.clear();
+  return scene;
+}
+
+template <class Model>
+struct SimulatedLoop : testing::Test {
+  std::optional<Time> time_to_zero(const std::function<void()>& failure) {
+    const Time moment = desk.now;
+    failure();
+    desk.run(100);
+    return desk.model->forces().zero_after(moment);
+  }
+  // A fault of the device while it pushes; force must not come back by itself.
+  void expect_end(const std::function<void(Model&, bool)>& fault, ForceState state,
+                  Time limit = kReadingLife) {
+    ASSERT_TRUE(desk.push());
+    const auto zero = time_to_zero([&] { fault(*desk.model, true); });
+    ASSERT_TRUE(zero);
+    EXPECT_LE(*zero, limit);
+    EXPECT_EQ(desk.rig.force_state(), state);
+    fault(*desk.model, false);
+    desk.run(700);
+    EXPECT_EQ(desk.torque(), 0) << "it pushes again without having been armed";
+    desk.armed = false;
+    desk.run(5);
+    EXPECT_EQ(desk.rig.force_state(), ForceState::off);
+    EXPECT_TRUE(desk.push());
+  }
+  void expect_end(Fault fault) {
+    expect_end([&](Model& model, bool on) { model.set_fault(on ? fault : Fault::none); },
+               ForceState::stale);
+  }
+
+  SimulatedDesk<Model> desk{joystick(), gate()};
+};
+using Models = testing::Types<PidJoystickModel, RawDeviceModel>;
+TYPED_TEST_SUITE(SimulatedLoop, Models);
+
+TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceFallsSilent) { this->expect_end(Fault::silent); }
+
+TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsNaN) {
+  this->expect_end(Fault::not_a_number);
+}
+
+TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsHalfReports) {
+  this->expect_end(Fault::cut_short);
+}
+
+TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsGarbage) {
+  ASSERT_TRUE(this->desk.push());
+  const auto zero = this->time_to_zero([&] { this->desk.model->set_fault(Fault::garbage); });
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, kReadingLife);
+}
+
+TYPED_TEST(SimulatedLoop, EndsForceWhenNoTickComes) {
+  ASSERT_TRUE(this->desk.push());
+  const auto zero = this->time_to_zero([&] { this->desk.ticking = false; });
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, kTickLife);
+}
+
+// The device itself: a raw one by its watchdog, a PID one because its effects end.
+TYPED_TEST(SimulatedLoop, EndsForceWhenNobodySpeaksAnyMore) {
+  ASSERT_TRUE(this->desk.push());
+  const Time silence = this->desk.now;
+  for (; this->desk.now < silence + 50ms; this->desk.now += 1ms) {
+    this->desk.model->input(this->desk.now);
+  }
+  const auto zero = this->desk.model->forces().zero_after(silence);
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, 10ms + 1ms);
+}
+
+TYPED_TEST(SimulatedLoop, ComesBackWithoutForceWhenPulledOutAndIn) {
+  auto& here = this->desk;
+  ASSERT_TRUE(here.push());
+  here.replug();
+  const Time back = here.now;
+  here.run(1500);
+  EXPECT_EQ(here.rig.force_state(), ForceState::lost);
+  DeviceReading reading;
+  EXPECT_TRUE(here.rig.device_reading(reading));
+  EXPECT_EQ(here.model->forces().largest(back), 0);
+  here.armed = false;
+  here.run(5);
+  EXPECT_TRUE(here.push());
+  for (std::size_t k = 0; k < here.row.size(); ++k) {
+    ASSERT_NEAR(here.row.at(k, Column::time), 1e-3 * static_cast<double>(k), 1e-9);
+  }
+}
+
+TYPED_TEST(SimulatedLoop, AgreesWithTheVirtualArm) {
+  constexpr int kTicks = 10'000;
+  auto& here = this->desk;
+  for (int axis = 0; axis < 2; ++axis) {
+    here.model->hand().axis(axis).path = [axis](double t) { return Circling::path(axis, t); };
+  }
+  here.model->hand().begin(here.now);
+  std::vector<double> times;  // of the ticks, from the hand's beginning
+  for (int k = 0; k < kTicks; ++k) times.push_back(1e-3 * (k + 0.5));
+  here.armed = true;
+  here.run(kTicks);
+  EXPECT_TRUE(here.model->violations().empty()) << here.model->violations()[0];
+  const Difference d = difference(here.row, circle_virtually(joystick(), gate(), times));
+  const Allowed allowed = allowed_difference(1.1e-3);
+  EXPECT_GT(d.largest_torque, 0.15);
+  EXPECT_LT(d.rms, allowed.usual);
+  EXPECT_LT(d.worst, allowed.touching);
+}
+
+using SimulatedRawLoop = SimulatedLoop<RawDeviceModel>;
+
+TEST_F(SimulatedRawLoop, EndsForceWhenReadingsRepeatThemselves) { expect_end(Fault::stuck); }
+
+TEST_F(SimulatedRawLoop, EndsForceWhenTheDeviceReportsAFault) {
+  expect_end([](RawDeviceModel& model, bool on) { model.set_unwell(on); }, ForceState::fault, 3ms);
+}
+
+TEST_F(SimulatedRawLoop, EndsForceWhileNoHandIsThere) {
+  ASSERT_TRUE(desk.push());
+  const auto zero = time_to_zero([&] { desk.model->hand().hold(false); });
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, 3ms);
+  EXPECT_EQ(desk.rig.force_state(), ForceState::no_hand);
+  desk.model->hand().hold(true);
+  desk.run(10);
+  EXPECT_EQ(desk.rig.force_state(), ForceState::on);
+  EXPECT_LT(std::abs(desk.torque()), 0.05) << "it fades in";
+  EXPECT_TRUE(desk.push());
+}
+
+TEST_F(SimulatedRawLoop, HearsEveryReportAndIsHeard) {
+  ASSERT_TRUE(desk.push());
+  DeviceReading reading;
+  desk.rig.device_reading(reading);
+  EXPECT_EQ(reading.count, 1500u);
+  EXPECT_EQ(desk.model->gaps(), 0);
+  EXPECT_EQ(desk.model->rejected(), 0);
+  EXPECT_GE(desk.model->commands(), 1500);
+  EXPECT_TRUE(desk.model->violations().empty()) << desk.model->violations()[0];
+}
+
+}  // namespace
+}  // namespace limpid::test
