@@ -5,8 +5,7 @@
 
 namespace limpid {
 
-AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device,
-                               std::span<const AxisAdjustment> axes)
+AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes)
     : device_(std::move(device)), traits_(device_->traits()) {
   factor_.fill(1);
   for (std::size_t i = 0; i < axes.size() && i < factor_.size(); ++i) {

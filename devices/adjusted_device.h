@@ -8,8 +8,8 @@
 namespace limpid {
 
 struct AxisAdjustment {
-  double zero = 0;      // the device's reading where the joint is at zero [rad]
-  double scale = 1;     // joint angle a device angle, above 0 [-]
+  double zero = 0;   // the device's reading where the joint is at zero [rad]
+  double scale = 1;  // joint angle a device angle, above 0 [-]
   bool inverted = false;
 
   double factor() const { return inverted ? -scale : scale; }

@@ -1,4 +1,5 @@
-// A device, virtual or real, the loop that drives it and the hand that holds it: one step is one tick of all three.
+// A device, virtual or real, the loop that drives it and the hand that holds it: one step is one
+// tick of all three.
 //
 // Live threads, headless runs, re-runs and tests all call the same step.
 #pragma once

@@ -65,22 +65,21 @@ std::vector<unsigned char> write_glb(const Model& model) {
 
   const Eigen::Vector2f surface =
       model.vertices.empty() ? Eigen::Vector2f(0, 0.5f) : model.vertices.front().surface;
-  const json gltf = {
-      {"asset", {{"version", "2.0"}}},
-      {"scene", 0},
-      {"scenes", {{{"nodes", {0}}}}},
-      {"nodes", {{{"mesh", 0}}}},
-      {"meshes",
-       {{{"primitives",
-          {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"COLOR_0", 2}}},
-            {"indices", 3},
-            {"material", 0}}}}}}},
-      {"materials",
-       {{{"pbrMetallicRoughness",
-          {{"metallicFactor", surface[0]}, {"roughnessFactor", surface[1]}}}}}},
-      {"buffers", {{{"byteLength", data.size()}}}},
-      {"bufferViews", views},
-      {"accessors", accessors}};
+  const json gltf = {{"asset", {{"version", "2.0"}}},
+                     {"scene", 0},
+                     {"scenes", {{{"nodes", {0}}}}},
+                     {"nodes", {{{"mesh", 0}}}},
+                     {"meshes",
+                      {{{"primitives",
+                         {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"COLOR_0", 2}}},
+                           {"indices", 3},
+                           {"material", 0}}}}}}},
+                     {"materials",
+                      {{{"pbrMetallicRoughness",
+                         {{"metallicFactor", surface[0]}, {"roughnessFactor", surface[1]}}}}}},
+                     {"buffers", {{{"byteLength", data.size()}}}},
+                     {"bufferViews", views},
+                     {"accessors", accessors}};
   const std::string text = gltf.dump();
   std::vector<unsigned char> out;
   const std::size_t json_length = (text.size() + 3) / 4 * 4;

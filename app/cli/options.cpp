@@ -106,9 +106,9 @@ RunPlan plan_from_session(const InputOptions& options) {
     }
     if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
     if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
-      throw UsageError(fmt::format(
-          "--device: {} has {} joints; {} holds the hand's torque on {} joints", options.device,
-          plan.arm.dof(), options.hand, session.info.dof));
+      throw UsageError(
+          fmt::format("--device: {} has {} joints; {} holds the hand's torque on {} joints",
+                      options.device, plan.arm.dof(), options.hand, session.info.dof));
     }
   }
   if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);

@@ -109,7 +109,7 @@ void print_state(Workbench& bench) {
       "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
       "{}, "
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
-      "\"dirty\": {}, \"scene\": {}, \"quality\": {}}}\n",
+      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
       layout.in(row, Column::hand_grip)[0], bench.controls.force, bench.live.recording(),
@@ -118,6 +118,7 @@ void print_state(Workbench& bench) {
       objects_of(bench.editor.scene()).size(),
       selected ? nlohmann::json(name_of(bench.editor.scene(), *selected)).dump() : "null",
       bench.loader.busy(), bench.editor.dirty(), nlohmann::json(bench.scene_file).dump(),
+      bench.show_add_model || bench.show_save_as || bench.after_question != nullptr,
       bench.quality_level());
   std::fflush(stdout);
 }

@@ -9,9 +9,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};    // between two looks at what is plugged in
-constexpr milliseconds kRetry{3000};   // after a device could not be opened
-constexpr milliseconds kSettle{500};   // until the loop shows whether a new device answers
+constexpr milliseconds kLook{1000};   // between two looks at what is plugged in
+constexpr milliseconds kRetry{3000};  // after a device could not be opened
+constexpr milliseconds kSettle{500};  // until the loop shows whether a new device answers
 
 // What stays off until the user arms it again.
 bool tripped(ForceState state) {

@@ -23,9 +23,9 @@ void choices(Workbench& bench) {
   choice(bench, "virtual arm, by the mouse", "", "A simulated arm; the mouse is the hand on it.");
   bool known = bench.devices.hub.in_use().empty();
   for (const FoundDevice& found : bench.devices.hub.found()) {
-    const std::string help =
-        found.missing.empty() ? fmt::format("{}, {}", name(found.kind), found.place.id)
-                              : found.missing;
+    const std::string help = found.missing.empty()
+                                 ? fmt::format("{}, {}", name(found.kind), found.place.id)
+                                 : found.missing;
     ImGui::PushID(found.place.path.c_str());
     choice(bench, found.place.name.c_str(), found.place.id, help.c_str());
     ImGui::PopID();
@@ -83,8 +83,9 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
   ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
   axis.scale = static_cast<double>(scale);
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  tooltip("Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
-          "the hand stays the power in the loop.");
+  tooltip(
+      "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
+      "the hand stays the power in the loop.");
   ImGui::PopID();
   return changed;
 }
@@ -96,8 +97,9 @@ bool joystick_settings(PidSettings& pid) {
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
   ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m", ImGuiSliderFlags_Logarithmic);
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  tooltip("The joystick's own torque at full force, measured or from its data sheet: USB gives "
-          "forces without a unit. Too low a value here makes it push too hard.");
+  tooltip(
+      "The joystick's own torque at full force, measured or from its data sheet: USB gives "
+      "forces without a unit. Too low a value here makes it push too hard.");
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
   ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0");
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
@@ -105,10 +107,11 @@ bool joystick_settings(PidSettings& pid) {
   pid.effort = static_cast<double>(effort);
   pid.range = static_cast<double>(range) / kDegrees;
   for (std::size_t i = 0; i < 2; ++i) {
-    changed = ImGui::Checkbox(i == 0 ? "reverse force X" : "reverse force Y", &pid.reverse[i]) ||
-              changed;
-    tooltip("For a device that pushes the wrong way. Try with little force: with the wrong sign "
-            "the loop is unstable.");
+    changed =
+        ImGui::Checkbox(i == 0 ? "reverse force X" : "reverse force Y", &pid.reverse[i]) || changed;
+    tooltip(
+        "For a device that pushes the wrong way. Try with little force: with the wrong sign "
+        "the loop is unstable.");
     if (i == 0) ImGui::SameLine();
   }
   return changed;
@@ -120,8 +123,7 @@ void adjustments(Workbench& bench) {
   if (found == nullptr || !bench.live.device_plugged()) return;
   DeviceNotes& notes = desk.hub.notes(desk.hub.in_use());
   const DeviceReading& reading = bench.live.snapshot().reading;
-  const auto joints =
-      static_cast<std::size_t>(bench.live.real() ? bench.stage->arm().dof() : 6);
+  const auto joints = static_cast<std::size_t>(bench.live.real() ? bench.stage->arm().dof() : 6);
   notes.axes.resize(std::max(notes.axes.size(), joints));
   bool changed = false;
   for (std::size_t i = 0; i < joints; ++i) {

@@ -124,6 +124,12 @@ void handle_keys(Workbench& bench, Window& window) {
       bench.show_help = bench.show_about = bench.show_open = bench.show_experiments = false;
       bench.show_gallery = bench.show_add_model = bench.show_save_as = false;
       bench.after_question = nullptr;
+    } else if (bench.after_question) {
+      if (press.key == GLFW_KEY_ENTER) {
+        bench.save_and_leave();
+      } else if (press.key == GLFW_KEY_D) {
+        bench.discard_and_leave();
+      }
     } else if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
       handle_control_key(bench, window, press);
     } else if (bench.playback && press.key == GLFW_KEY_BACKSPACE) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/assets.h"
 #include "app/desktop/workbench.h"
@@ -52,7 +53,7 @@ void Workbench::open_scene(const fs::path& file) {
     say("Stop the recording (R) before opening another scene.", true);
     return;
   }
-  leave_scene([this, file] {
+  leave_scene([this, file = fs::absolute(file).lexically_normal()] {
     close_playback();
     loader.cancel();
     loader.open_scene(file, stage->arm());
@@ -94,7 +95,10 @@ void Workbench::take_loaded() {
 
 void Workbench::accept(LoadedScene& loaded) {
   open(stage->arm(), std::move(loaded.scene), std::move(loaded.models));
-  scene_file = settings.scene = loaded.file.string();
+  // At the start it is the one that was named already.
+  if (const std::string file = loaded.file.string(); file != scene_file) {
+    scene_file = settings.scene = file;
+  }
   const std::string& title = stage->scene().title;
   say(fmt::format("Scene: {}", title.empty() ? loaded.file.filename().string() : title));
   for (const std::string& warning : loaded.warnings) say(warning);
@@ -219,6 +223,22 @@ bool Workbench::save_scene_as(const fs::path& file) {
 void Workbench::leave_scene(std::function<void()> then) {
   if (!editor.dirty()) return then();
   after_question = std::move(then);
+}
+
+void Workbench::save_and_leave() {
+  const fs::path own = own_scene_file();
+  if (own.empty()) {
+    // Leaving is up to the user then: the dialog may be given up.
+    after_question = nullptr;
+    show_save_as = true;
+  } else if (save_scene_as(own)) {
+    std::exchange(after_question, nullptr)();
+  }
+}
+
+void Workbench::discard_and_leave() {
+  editor.saved(editor.scene());
+  std::exchange(after_question, nullptr)();
 }
 
 void Workbench::show_scene() {

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <utility>
-
 #include "app/assets.h"
 #include "app/desktop/panels.h"
 #include "app/style/theme.h"
@@ -26,22 +24,12 @@ void draw_question(Workbench& bench) {
   ImGui::TextUnformatted("The scene has changes that are not saved.");
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
-  const fs::path own = bench.own_scene_file();
-  if (ImGui::Button(own.empty() ? "Save as..." : "Save")) {
-    if (own.empty()) {
-      bench.show_save_as = true;  // and then leave by oneself: the dialog may be given up
-      bench.after_question = nullptr;
-    } else if (bench.save_scene_as(own)) {
-      std::exchange(bench.after_question, nullptr)();
-    }
-  }
+  const bool own = !bench.own_scene_file().empty();
+  if (ImGui::Button(own ? "Save (Enter)" : "Save as... (Enter)")) bench.save_and_leave();
   ImGui::SameLine();
-  if (bench.after_question && ImGui::Button("Discard")) {
-    bench.editor.saved(bench.editor.scene());
-    std::exchange(bench.after_question, nullptr)();
-  }
+  if (ImGui::Button("Discard (D)")) bench.discard_and_leave();
   ImGui::SameLine();
-  if (ImGui::Button("Cancel") || !open) bench.after_question = nullptr;
+  if (ImGui::Button("Cancel (Esc)") || !open) bench.after_question = nullptr;
   ImGui::End();
 }
 

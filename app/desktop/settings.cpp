@@ -4,8 +4,9 @@
 #include <toml++/toml.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
 
+#include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
@@ -81,24 +82,15 @@ Settings load_settings(std::string& complaint) {
 }
 
 std::string save_settings(const Settings& settings) {
-  const fs::path file = settings_file();
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
   toml::table window;
   each(settings, [&](const char* key, const auto& value) { window.insert(key, value); });
   window.insert("theme", settings.theme == Theme::light ? "light" : "dark");
   toml::table all;
   all.insert("window", window);
   all.insert("parameters", toml::parse(config_text(settings.parameters)));
-  // Written beside and moved over, so that a full disk cannot spoil the old one.
-  const fs::path fresh = file.string() + ".new";
-  {
-    std::ofstream out(fresh);
-    out << all << '\n';
-    if (!out.flush()) return fmt::format("{}: could not be written", fresh.string());
-  }
-  fs::rename(fresh, file, error);
-  return error ? fmt::format("{}: {}", file.string(), error.message()) : std::string();
+  std::ostringstream text;
+  text << all << '\n';
+  return try_write_atomically(settings_file(), text.str());
 }
 
 fs::path sessions_dir() { return data_home("sessions"); }

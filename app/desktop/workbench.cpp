@@ -46,7 +46,7 @@ Workbench::~Workbench() {
 
 void Workbench::open_world(const std::string& device, const std::string& scene) {
   device_file = device.empty() ? default_device().string() : device;
-  scene_file = scene.empty() ? default_scene().string() : scene;
+  scene_file = scene.empty() ? default_scene().string() : fs::absolute(scene).string();
   ArmDescription arm = read_urdf(device_file);
   Scene whole = read_scene(scene_file, arm);
   if (whole.meshes.empty()) return open(std::move(arm), std::move(whole), {});

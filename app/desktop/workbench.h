@@ -97,6 +97,8 @@ class Workbench {
   bool save_scene_as(const std::filesystem::path& file);
   // Does it at once, or after the user has been asked what to do with unsaved changes.
   void leave_scene(std::function<void()> then);
+  void save_and_leave();  // the answers
+  void discard_and_leave();
 
   // A real device takes the arm's place, or leads the virtual one's hand; and back.
   void open_device(std::unique_ptr<Device> device);

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
+
+#include "devices/files/atomic_file.h"
 
 namespace limpid {
 namespace {
@@ -82,17 +84,9 @@ std::string save_device_book(const DeviceBook& book, const fs::path& file) {
   toml::table devices;
   for (const auto& [id, notes] : book.notes) devices.insert(id, write_notes(notes));
   const toml::table all{{"in_use", book.in_use}, {"device", devices}};
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  // Written beside and moved over, so that a full disk cannot spoil the old one.
-  const fs::path fresh = file.string() + ".new";
-  {
-    std::ofstream out(fresh);
-    out << all << '\n';
-    if (!out.flush()) return fmt::format("{}: could not be written", fresh.string());
-  }
-  fs::rename(fresh, file, error);
-  return error ? fmt::format("{}: {}", file.string(), error.message()) : std::string();
+  std::ostringstream text;
+  text << all << '\n';
+  return try_write_atomically(file, text.str());
 }
 
 }  // namespace limpid

@@ -25,9 +25,9 @@ ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present
   if (present.dof() != traits.dof) {
     const char* file = traits.dof == 2 ? "joystick.urdf" : traits.dof == 3 ? "omni.urdf" : nullptr;
     if (file == nullptr) {
-      throw FileError(fmt::format(
-          "{} has {} joints; start Limpid with --device FILE.urdf, an arm of as many", traits.name,
-          traits.dof));
+      throw FileError(
+          fmt::format("{} has {} joints; start Limpid with --device FILE.urdf, an arm of as many",
+                      traits.name, traits.dof));
     }
     arm = read_urdf(data_dir() / "assets/devices" / file);
   }

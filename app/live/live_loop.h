@@ -98,7 +98,7 @@ class LiveLoop {
   void tick(const TickTiming& timing);       // the loop's
   void begin_recording(const Vec3& target);  // the loop's
   void publish(const TickTiming& timing);
-  void take_in();  // the loop's
+  void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
   void begin(RigStart start, const Parameters& p);
 

@@ -68,7 +68,8 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);
   for (std::size_t k = 0; k < session.size(); ++k) {
     const auto estimate = session.at(k, Column::hand_torque_estimate);
-    if (!measured) plan.hand_torque.insert(plan.hand_torque.end(), estimate.begin(), estimate.end());
+    if (!measured)
+      plan.hand_torque.insert(plan.hand_torque.end(), estimate.begin(), estimate.end());
     plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
   }
 

@@ -21,11 +21,11 @@ struct RunPlan {
   HandPath hand;
   Parameters parameters;               // at the first row
   std::vector<SettingChange> changes;  // later ones, of a recording that is run again
-  std::vector<double> hand_torque;     // N x n [N m], instead of a grip; empty: the hand's path leads
-  std::vector<bool> force;             // armed at each row of a recording; empty: always
-  std::optional<RigStart> start;       // default: at rest, the tip on the hand's first point
-  std::uint64_t rows = 0;              // how many ticks
-  std::uint64_t seed = 0;              // for whatever is random
+  std::vector<double> hand_torque;  // N x n [N m], instead of a grip; empty: the hand's path leads
+  std::vector<bool> force;          // armed at each row of a recording; empty: always
+  std::optional<RigStart> start;    // default: at rest, the tip on the hand's first point
+  std::uint64_t rows = 0;           // how many ticks
+  std::uint64_t seed = 0;           // for whatever is random
 };
 
 // Called with each row in turn, and with the parameters if they have just changed. False ends the

@@ -78,8 +78,7 @@ void ViewMemory::update(ViewState& view, std::span<const ContactForce> contacts,
     if (touch == touches_.end()) touch = touches_.insert(touch, {contact.point, time, time});
     touch->point = contact.point;
     touch->seen = time;
-    view.contacts.push_back(
-        {contact.point, contact.force, time - touch->began, contact.normal});
+    view.contacts.push_back({contact.point, contact.force, time - touch->began, contact.normal});
   }
   std::erase_if(touches_, [&](const Touch& t) { return t.seen < time - kPause; });
 }

@@ -30,7 +30,7 @@ class MeshTouch {
   // A spring to one point, anchor(), instead of to the room.
   bool held() const { return held_; }
   const FreeSpace& space() const { return world_; }
-  const Vec3& anchor() const { return anchor_; }        // [m]
+  const Vec3& anchor() const { return anchor_; }  // [m]
   // Starting anew here would find the same side again.
   bool recoverable() const;
   double radius() const { return radius_; }

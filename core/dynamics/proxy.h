@@ -42,7 +42,7 @@ class Proxy {
   const Vec<N>& v() const { return v_; }
   const Mat<N>& M() const { return M_; }
   const Mat<N>& C() const { return C_; }
-  double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }   // [J]
+  double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }    // [J]
   double contact_potential() const { return contacts_->potential(); }  // [J]
 
   // Of the last tick:

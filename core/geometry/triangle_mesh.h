@@ -15,9 +15,9 @@ namespace limpid {
 
 // A place on a mesh.
 struct MeshPoint {
-  Vec3 point = Vec3::Zero();      // [mesh units]
-  Vec3 normal = Vec3::Zero();     // of its triangle, unit, to the side of counter-clockwise corners
-  double distance = 0;            // from where the question was asked
+  Vec3 point = Vec3::Zero();   // [mesh units]
+  Vec3 normal = Vec3::Zero();  // of its triangle, unit, to the side of counter-clockwise corners
+  double distance = 0;         // from where the question was asked
   std::uint32_t triangle = kNone;  // a hint for the next question; says nothing else
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -25,11 +25,11 @@ struct MeshPoint {
 
 // What was found wrong with a mesh and mended, or lived with.
 struct MeshHealth {
-  std::size_t degenerate = 0;    // triangles without an area, left out
-  std::size_t open_edges = 0;    // of one triangle only
-  std::size_t odd_edges = 0;     // of more than two triangles, or of two that disagree
+  std::size_t degenerate = 0;  // triangles without an area, left out
+  std::size_t open_edges = 0;  // of one triangle only
+  std::size_t odd_edges = 0;   // of more than two triangles, or of two that disagree
   bool closed() const { return open_edges == 0 && odd_edges == 0; }
-  std::string text() const;      // one line for people; empty: nothing to say
+  std::string text() const;  // one line for people; empty: nothing to say
 };
 
 // Does not change once built; questions come from any thread, allocate nothing and never throw.
@@ -58,7 +58,7 @@ class TriangleMesh {
   const Vec3& middle() const { return middle_; }
   double radius() const { return radius_; }  // of a ball around the middle that holds it
   const MeshHealth& health() const { return health_; }
-  std::size_t bytes() const;                  // of memory, the search tree included
+  std::size_t bytes() const;  // of memory, the search tree included
   double build_seconds() const { return build_seconds_; }
 
  private:

@@ -7,8 +7,9 @@
 
 namespace limpid {
 
-// At rest it only clamps; where motors are real it bounds the rate as well. While a coupling is being switched the torque moves at a bounded rate
-// until it meets the new command; when force is armed it fades in; when cut it is zero at once.
+// At rest it only clamps; where motors are real it bounds the rate as well. While a coupling is
+// being switched the torque moves at a bounded rate until it meets the new command; when force is
+// armed it fades in; when cut it is zero at once.
 template <int N>
 class MotorStage {
  public:

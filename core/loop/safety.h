@@ -11,15 +11,15 @@ namespace limpid {
 // /device/force_state.
 enum class ForceState : std::uint8_t {
   on,
-  off,        // not armed
-  no_hand,    // the dead-man switch is open
-  stale,      // no reading for kStaleReading
-  fault,      // the device says that it is not well
-  lost,       // unplugged
-  too_fast,   // fades with the speed
-  too_far,    // fades outside of the range of a joint
-  energy,     // the motors have put more energy out than they should
-  diverged,   // the command was not finite
+  off,       // not armed
+  no_hand,   // the dead-man switch is open
+  stale,     // no reading for kStaleReading
+  fault,     // the device says that it is not well
+  lost,      // unplugged
+  too_fast,  // fades with the speed
+  too_far,   // fades outside of the range of a joint
+  energy,    // the motors have put more energy out than they should
+  diverged,  // the command was not finite
 };
 const char* explain(ForceState state);  // for people, a short clause
 
@@ -36,12 +36,12 @@ struct SafetyLimits {
   static constexpr double kStaleReading = 0.005;  // [s]
   static constexpr double kFade = 1.5;            // force is gone at so many times a limit
 
-  double joint_speed = 15;    // [rad/s]
-  double tip_speed = 2;       // [m/s]
-  double tip_force = 10;      // [N]
-  double overrun = 0.1;       // beyond a joint's range, where force is gone [rad]
-  double energy = 1.5;        // put out by the motors, forgotten within a second [J]
-  double slew = 0.02;         // from no torque to the limit [s]
+  double joint_speed = 15;  // [rad/s]
+  double tip_speed = 2;     // [m/s]
+  double tip_force = 10;    // [N]
+  double overrun = 0.1;     // beyond a joint's range, where force is gone [rad]
+  double energy = 1.5;      // put out by the motors, forgotten within a second [J]
+  double slew = 0.02;       // from no torque to the limit [s]
 };
 
 // Judges once a tick. What is dangerous to come back from by itself, an unplugged device or one

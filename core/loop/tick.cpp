@@ -116,8 +116,9 @@ void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, bool force_want
   if (in.health.real) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   safety_.judge(in.health, force_wanted, diverged_, in.measured, device_.v, J_, put_out, p.tick);
   const bool real = in.health.real && !diverged_;
-  tau1_ = motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit, safety_.allowed(), p.tick, safety_.ceiling(),
-                       real ? safety_.limits.slew : 0);
+  tau1_ =
+      motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit,
+                   safety_.allowed(), p.tick, safety_.ceiling(), real ? safety_.limits.slew : 0);
 }
 
 template <int N>

@@ -57,7 +57,7 @@ class Tick {
 
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
-  Vec3 tip() const { return arm_.tip(frames_); }  // of the device as measured [m]
+  Vec3 tip() const { return arm_.tip(frames_); }      // of the device as measured [m]
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.
   bool steady(bool force_wanted) const {

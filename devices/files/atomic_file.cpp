@@ -72,4 +72,14 @@ void write_atomically(const fs::path& file, std::span<const unsigned char> bytes
   sync_folder(fs::absolute(target).parent_path());
 }
 
+std::string try_write_atomically(const std::filesystem::path& file, std::string_view text) {
+  try {
+    std::filesystem::create_directories(file.parent_path());
+    write_atomically(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    return {};
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
+
 }  // namespace limpid

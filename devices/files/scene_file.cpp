@@ -153,8 +153,9 @@ void check_counts(const Scene& scene, const std::string& where) {
   const std::size_t contacts = scene.planes.size() + scene.spheres.size() + scene.boxes.size() +
                                scene.meshes.size() + scene.joint_contacts.size();
   if (contacts > kMostContacts) {
-    throw FileError(fmt::format("{}: {} planes, spheres, boxes, meshes and joint contacts; at most {}",
-                                where, contacts, kMostContacts));
+    throw FileError(
+        fmt::format("{}: {} planes, spheres, boxes, meshes and joint contacts; at most {}", where,
+                    contacts, kMostContacts));
   }
   if (scene.probes.size() + 1 > kMostProbes) {
     throw FileError(fmt::format("{}: {} probes; at most {} besides the tip", where,

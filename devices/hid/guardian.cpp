@@ -24,7 +24,7 @@ namespace limpid {
 // the lock's release, marked as such by the kernel.
 struct Guardian::Watch {
   pthread_mutex_t alive;
-  std::atomic<bool> dismissed{false};
+  std::atomic<bool> held{false}, dismissed{false};
 
   Watch() {
     pthread_mutexattr_t kind;
@@ -33,6 +33,14 @@ struct Guardian::Watch {
     pthread_mutexattr_setrobust(&kind, PTHREAD_MUTEX_ROBUST);
     pthread_mutex_init(&alive, &kind);
     pthread_mutexattr_destroy(&kind);
+  }
+  void hold() {
+    pthread_mutex_lock(&alive);
+    held = true;
+  }
+  // Until whoever holds it lets go or ends; in its child process.
+  void wait_for_end(pid_t parent) {
+    while (!held && getppid() == parent) poll(nullptr, 0, 1);
     pthread_mutex_lock(&alive);
   }
 };
@@ -93,8 +101,9 @@ Guardian::Guardian(const std::string& path, const std::vector<Report>& stop_repo
     : Guardian(open_locked(path), stop_reports) {}
 
 Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
-  void* const page = mmap(nullptr, sizeof(Watch), PROT_READ | PROT_WRITE,
-                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* const page =
+      mmap(nullptr, sizeof(Watch), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  const pid_t parent = getpid();
   if (page != MAP_FAILED) {
     watch_ = new (page) Watch;
     child_ = fork_deaf();
@@ -102,17 +111,17 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   if (child_ == 0) {
     become_independent();
     close_all_but(device);
-    pthread_mutex_lock(&watch_->alive);
+    watch_->wait_for_end(parent);
     if (!watch_->dismissed) stop_device(device, stop_reports);
     _exit(0);
   }
   const int error = errno;
   close(device);
-  if (child_ > 0) return;
-  if (watch_ != nullptr) {
-    pthread_mutex_unlock(&watch_->alive);
-    munmap(watch_, sizeof(Watch));
+  if (child_ > 0) {
+    watch_->hold();
+    return;
   }
+  if (watch_ != nullptr) munmap(watch_, sizeof(Watch));
   throw HidError(fmt::format("no process to guard the device: {}", std::strerror(error)));
 }
 

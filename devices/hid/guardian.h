@@ -1,10 +1,10 @@
 // Takes the force away when this process is killed.
 //
 // A child process that does nothing but wait for the end of the thread that made it. However that
-// thread ends, the kernel lets go of the lock it holds; the guardian then writes the stop reports to
-// the device and ends too. It learns of it before the kernel takes our memory apart, which can take
-// tens of milliseconds. It cannot help if it is killed with us, if we hang, or while the kernel
-// writes a core dump: that is what the devices' own watchdogs are for.
+// thread ends, the kernel lets go of the lock it holds; the guardian then writes the stop reports
+// to the device and ends too. It learns of it before the kernel takes our memory apart, which can
+// take tens of milliseconds. It cannot help if it is killed with us, if we hang, or while the
+// kernel writes a core dump: that is what the devices' own watchdogs are for.
 #pragma once
 
 #include <sys/types.h>

@@ -16,8 +16,13 @@ namespace {
 struct RealRig : testing::Test {
   RealRig() : rig(arm, stop_at(x0[0]), true), rows(rig.layout()) {
     for (Eigen::Index i = 0; i < 3; ++i) device.reading.x[static_cast<std::size_t>(i)] = x0[i];
-    RigStart start{x0,        Eigen::Vector3d::Zero(), x0, Eigen::Vector3d::Zero(),
-                   Eigen::Vector3d::Zero(), Vec3::Zero(), false};
+    RigStart start{x0,
+                   Eigen::Vector3d::Zero(),
+                   x0,
+                   Eigen::Vector3d::Zero(),
+                   Eigen::Vector3d::Zero(),
+                   Vec3::Zero(),
+                   false};
     rig.start({}, start);
     rig.plug(&device);
   }

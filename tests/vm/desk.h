@@ -22,7 +22,7 @@ namespace limpid::test {
 
 using namespace std::chrono_literals;
 
-inline constexpr Time kReport = 1ms;     // of the reference devices
+inline constexpr Time kReport = 1ms;  // of the reference devices
 inline constexpr Time kReadingLife = 5ms + kReport;
 inline constexpr Time kTickLife = 10ms;
 

@@ -11,8 +11,8 @@
 
 namespace limpid::test {
 
-inline constexpr double kRange = 0.35;       // of the stick [rad]
-inline constexpr double kEffort = 0.5;       // of its motors [N m]
+inline constexpr double kRange = 0.35;        // of the stick [rad]
+inline constexpr double kEffort = 0.5;        // of its motors [N m]
 inline constexpr double kStickLength = 0.12;  // [m]
 
 // The physics of the arm in assets/devices/joystick.urdf, axis by axis.
@@ -84,8 +84,8 @@ inline Difference difference(const Rows& device, const Rows& ideal) {
 }
 
 // What the two may differ by [N m]. The virtual arm sees its angle and pushes at once; here the
-// newest reading is up to 1 ms old when a tick takes it, and the torque waits up to 1 ms for the I/O
-// thread's next turn, so that it comes up to `delay` [s] later.
+// newest reading is up to 1 ms old when a tick takes it, and the torque waits up to 1 ms for the
+// I/O thread's next turn, so that it comes up to `delay` [s] later.
 struct Allowed {
   double usual, touching;
 };

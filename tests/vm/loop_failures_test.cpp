@@ -13,9 +13,7 @@ namespace {
 
 template <class Model>
 struct FailingLoop : testing::Test {
-  static std::string name() {
-    return Desk<Model>::kKind == HidKind::raw ? "raw" : "PID";
-  }
+  static std::string name() { return Desk<Model>::kKind == HidKind::raw ? "raw" : "PID"; }
   void expect_zero(const std::string& what, std::optional<Time> zero, Time limit) {
     print_time(name() + ": " + what, zero, limit);
     ASSERT_TRUE(zero) << "it still pushes";
@@ -152,7 +150,7 @@ pid_t start_driver(HidKind kind) {
   char* arguments[] = {program.data(), word.data(), nullptr};
   pid_t child = 0;
   return posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0 ? child
-                                                                                          : -1;
+                                                                                         : -1;
 }
 
 TYPED_TEST(FailingLoop, EndsForceWhenTheProcessDies) {

@@ -86,17 +86,17 @@ TEST(PidLoop, AgreesWithTheVirtualArmForAMinute) {
   desk.scene.spheres.clear();  // around its edge the torque changes faster than the hand moves
   const Minute minute = run_on_device(desk);
   ASSERT_GE(minute.session.size(), 60'000u);
-  desk.device->with([&](Time) {
-    EXPECT_TRUE(desk.model->violations().empty()) << desk.model->violations()[0];
-  });
+  desk.device->with(
+      [&](Time) { EXPECT_TRUE(desk.model->violations().empty()) << desk.model->violations()[0]; });
   Rows rows(minute.session.layout);
   for (std::size_t k = 0; k < minute.session.size(); ++k) rows.add(minute.session.row(k));
   const Difference d = difference(rows, circle_virtually(desk.arm, desk.scene, minute.times));
   const Allowed allowed = allowed_difference(2e-3);
-  std::printf("| %zu ticks, torque up to %.3f N m; difference rms %.3f (allowed %.2f), at most "
-              "%.2f (allowed %.2f) mN m\n",
-              rows.size(), d.largest_torque, 1e3 * d.rms, 1e3 * allowed.usual, 1e3 * d.worst,
-              1e3 * allowed.touching);
+  std::printf(
+      "| %zu ticks, torque up to %.3f N m; difference rms %.3f (allowed %.2f), at most "
+      "%.2f (allowed %.2f) mN m\n",
+      rows.size(), d.largest_torque, 1e3 * d.rms, 1e3 * allowed.usual, 1e3 * d.worst,
+      1e3 * allowed.touching);
   EXPECT_GT(d.largest_torque, 0.15);
   EXPECT_LT(d.rms, allowed.usual);
   EXPECT_LT(d.worst, allowed.touching);

@@ -1,4 +1,5 @@
-// The loop's tests in the virtual machine, or, with an argument, the program that some of them kill.
+// The loop's tests in the virtual machine, or, with an argument, the program that some of them
+// kill.
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <unistd.h>

@@ -118,8 +118,8 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   EXPECT_EQ(dropped, 0u);
 
   const Session session = read_session(dir / "a.h5");
-  EXPECT_NEAR(static_cast<double>(session.size()),
-              static_cast<double>(ticks_after - ticks_before), 10);
+  EXPECT_NEAR(static_cast<double>(session.size()), static_cast<double>(ticks_after - ticks_before),
+              10);
   std::vector<int> states;  // one after the other
   for (std::size_t k = 0; k < session.size(); ++k) {
     ASSERT_NEAR(session.at(k, Column::time)[0], 1e-3 * static_cast<double>(k), 1e-9);
@@ -133,9 +133,9 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   // A stale tick may come before the loss is noticed.
   std::erase(states, static_cast<int>(ForceState::stale));
   const auto number = [](ForceState state) { return static_cast<int>(state); };
-  EXPECT_EQ(states, (std::vector{number(ForceState::off), number(ForceState::on),
-                                 number(ForceState::lost), number(ForceState::off),
-                                 number(ForceState::on)}));
+  EXPECT_EQ(states,
+            (std::vector{number(ForceState::off), number(ForceState::on), number(ForceState::lost),
+                         number(ForceState::off), number(ForceState::on)}));
 }
 
 TEST(SpaceMouse, LeadsTheHandOfAVirtualArm) {
@@ -148,8 +148,8 @@ TEST(SpaceMouse, LeadsTheHandOfAVirtualArm) {
   loop.plug(open_hid_device(find_device(HidKind::space_mouse)));
   const auto tip = [&] {
     loop.update();
-    const auto target = loop.layout().in(std::span<const double>(loop.snapshot().row),
-                                         Column::hand_target);
+    const auto target =
+        loop.layout().in(std::span<const double>(loop.snapshot().row), Column::hand_target);
     return Vec3(target[0], target[1], target[2]);
   };
   EXPECT_TRUE(wait_until([&] { return loop.update() && loop.snapshot().connected; }));

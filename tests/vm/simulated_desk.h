@@ -69,7 +69,8 @@ class ModelTransport final : public HidTransport {
 class SimulatedLink final : public Device {
  public:
   SimulatedLink(ReferenceDevice& model, std::unique_ptr<HidProtocol> protocol, const Time& now)
-      : transport(model, now), protocol_(opened(std::move(protocol), transport)),
+      : transport(model, now),
+        protocol_(opened(std::move(protocol), transport)),
         exchange(transport, *protocol_, [&now] { return now; }) {}
 
   const DeviceTraits& traits() const override { return protocol_->traits(); }
@@ -110,9 +111,8 @@ class SimulatedDesk {
   void connect() {
     std::unique_ptr<HidProtocol> protocol;
     if constexpr (kPid) {
-      protocol = std::make_unique<PidJoystick>(
-          parse_report_descriptor(model->report_descriptor()),
-          PidSettings{.range = kRange, .effort = kEffort});
+      protocol = std::make_unique<PidJoystick>(parse_report_descriptor(model->report_descriptor()),
+                                               PidSettings{.range = kRange, .effort = kEffort});
     } else {
       protocol = std::make_unique<RawProtocol>();
     }

@@ -58,9 +58,7 @@ TYPED_TEST_SUITE(SimulatedLoop, Models);
 
 TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceFallsSilent) { this->expect_end(Fault::silent); }
 
-TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsNaN) {
-  this->expect_end(Fault::not_a_number);
-}
+TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsNaN) { this->expect_end(Fault::not_a_number); }
 
 TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsHalfReports) {
   this->expect_end(Fault::cut_short);

@@ -138,7 +138,8 @@ TEST_F(OpenPidJoystick, PushesAlongItsAxes) {
               ElementsAre(Report{5, 1, 255, 0}, Report{5, 2, 0x80, 0xFF}, kStart1, kStart2));
 }
 
-// From the right, a quarter of a circle, and positive pushes to the left: X needs the opposite sign.
+// From the right, a quarter of a circle, and positive pushes to the left: X needs the opposite
+// sign.
 TEST(PidJoystick, PushesByAnAngleWhereEffectsCannotNameTheirAxis) {
   PidDevice device;
   const Bytes known = parts::whole();
@@ -149,8 +150,9 @@ TEST(PidJoystick, PushesByAnAngleWhereEffectsCannotNameTheirAxis) {
   at[1] = 0x5A;  // any other collection
   PidJoystick joystick(parse_report_descriptor(unnamed));
   joystick.open(device);
-  EXPECT_THAT(device.received, testing::IsSupersetOf({Report{1, 1, 3, 10, 0, 0, 0, 255, 0, 4, 64, 0},
-                                                      Report{1, 2, 3, 10, 0, 0, 0, 255, 0, 4, 0, 0}}));
+  EXPECT_THAT(device.received,
+              testing::IsSupersetOf({Report{1, 1, 3, 10, 0, 0, 0, 255, 0, 4, 64, 0},
+                                     Report{1, 2, 3, 10, 0, 0, 0, 255, 0, 4, 0, 0}}));
   std::vector<Report> sent;
   joystick.encode(std::vector<double>{0.5, 0.25}, {},
                   [&](auto report) { sent.emplace_back(report.begin(), report.end()); });

@@ -17,9 +17,9 @@ namespace limpid::test {
 struct PidJoystickOptions {
   HidIdentity identity{"Limpid PID joystick", 0x1209, 0x4C49, "PID-1"};
   PidLayout layout{};
-  int capacity = 4;         // effects at a time, at most 40
-  double torque_limit = 1;  // of each axis, at full magnitude and gain [N m]
-  AxisPhysics physics{};    // of both axes
+  int capacity = 4;           // effects at a time, at most 40
+  double torque_limit = 1;    // of each axis, at full magnitude and gain [N m]
+  AxisPhysics physics{};      // of both axes
   bool only_changes = false;  // it says nothing while nothing moves
   Time period = std::chrono::milliseconds(1);
 };

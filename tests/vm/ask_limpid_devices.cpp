@@ -37,9 +37,9 @@ int main() {
   const Answer answer = ask_program();
   std::printf("%s", answer.text.c_str());
   bool all = answer.status == 0;
-  for (const ReferenceDevice* device : {static_cast<const ReferenceDevice*>(&mouse),
-                                        static_cast<const ReferenceDevice*>(&joystick),
-                                        static_cast<const ReferenceDevice*>(&raw)}) {
+  for (const ReferenceDevice* device :
+       {static_cast<const ReferenceDevice*>(&mouse), static_cast<const ReferenceDevice*>(&joystick),
+        static_cast<const ReferenceDevice*>(&raw)}) {
     const HidIdentity& identity = device->identity();
     for (const std::string& wanted : {identity.name, ":" + identity.serial}) {
       if (answer.text.find(wanted) != std::string::npos) continue;
