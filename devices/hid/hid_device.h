@@ -29,7 +29,8 @@ class HidDevice final : public Device {
   // for the haptic thread.
   HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
             const HidPlace& place, const AskForPriority& ask = {});
-  // The device is without force and its motors are off when this returns, if it can be reached.
+  // The device is without force and its motors are off when this returns, if it can be reached. Of
+  // one that hangs the kernel lets go after seconds only; its force was taken away before.
   ~HidDevice() override;
 
   HidDevice(const HidDevice&) = delete;
