@@ -7,17 +7,19 @@
 namespace limpid {
 namespace {
 
-// The present scene for another arm; where its text names joints or links that this one does not
-// have, the joystick's own.
+// The present scene for another arm, free space where its text names joints or links that this one
+// does not have. Of what stands before an Omni a joystick reaches nothing: it has a scene of its
+// own.
 Scene scene_for(const Scene& present, const std::filesystem::path& file,
                 const ArmDescription& arm) {
+  const std::filesystem::path assets = data_dir() / "assets";
+  if (arm.dof() == 2) return read_scene(assets / "devices/joystick.toml", arm);
   SceneFiles models;
   for (const MeshObstacle& mesh : present.meshes) models[mesh.file] = mesh.source;
   try {
     return parse_scene(present.toml, file.string(), file.parent_path(), arm, models);
   } catch (const FileError&) {
-    const char* own = arm.dof() == 2 ? "joystick.toml" : "free.toml";
-    return read_scene(data_dir() / "assets/scenes" / own, arm);
+    return read_scene(assets / "scenes/free.toml", arm);
   }
 }
 
