@@ -50,7 +50,7 @@ TEST(RawLoop, LosesNoReportEitherWay) {
     EXPECT_EQ(desk.model->rejected(), 0);
     EXPECT_TRUE(desk.model->violations().empty()) << desk.model->violations()[0];
   });
-  EXPECT_EQ(desk.loop.status().missed, 0);
+  EXPECT_EQ(desk.loop.status().slipped, 0);
 }
 
 // One that only says what changes is at rest, and pushed all the same.
