@@ -112,7 +112,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     }
   }
   if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);
-  if (!options.device.empty() || !options.scene.empty()) build_meshes(plan.scene);
+  if (!options.device.empty() || !options.scene.empty()) plan.models = build_meshes(plan.scene);
   return plan;
 }
 
@@ -163,10 +163,10 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
   return base;
 }
 
-void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene) {
+MeshModels read_world(const InputOptions& options, ArmDescription& arm, Scene& scene) {
   arm = read_urdf(options.device.empty() ? default_device().string() : options.device);
   scene = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
-  build_meshes(scene);
+  return build_meshes(scene);
 }
 
 RunPlan make_plan(const InputOptions& options) {
@@ -174,7 +174,7 @@ RunPlan make_plan(const InputOptions& options) {
   if (is_session(options.hand)) {
     plan = plan_from_session(options);
   } else {
-    read_world(options, plan.arm, plan.scene);
+    plan.models = read_world(options, plan.arm, plan.scene);
     plan.parameters = make_parameters(options);
     plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
   }

@@ -42,7 +42,7 @@ RunPlan make_plan(const InputOptions& options);
 // Parameters alone, over `base`.
 Parameters make_parameters(const InputOptions& options, Parameters base = {});
 // Device and scene alone.
-void read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
+MeshModels read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();

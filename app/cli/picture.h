@@ -4,14 +4,13 @@
 #include <filesystem>
 #include <span>
 
-#include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "app/run/simulate.h"
 
 namespace limpid {
 
-// Draws the arm in its scene as `row` has it, 1280 x 800. Errors: std::runtime_error where OpenGL
-// cannot be had or the file cannot be written.
-void save_picture(const std::filesystem::path& png, const ArmDescription& arm, const Scene& scene,
+// Draws the plan's arm in its scene as `row` has it, 1280 x 800. Errors: std::runtime_error where
+// OpenGL cannot be had or the file cannot be written.
+void save_picture(const std::filesystem::path& png, const RunPlan& plan,
                   std::span<const double> row);
 
 }  // namespace limpid

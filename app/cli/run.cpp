@@ -104,7 +104,7 @@ int run(const RunOptions& options) {
   const double took = Seconds(std::chrono::steady_clock::now() - began).count();
   if (recorder) finish(*recorder);
   if (!options.picture.empty()) {
-    save_picture(options.picture, plan.arm, plan.scene, summary.memorable());
+    save_picture(options.picture, plan, summary.memorable());
   }
 
   fmt::print("{}", summary.text());

@@ -20,12 +20,11 @@ void Workbench::open_session(const fs::path& file) {
                   Session session = read_session(file);
                   if (session.size() == 0) throw FileError(file.string() + ": holds no rows");
                   RunPlan world = replay(session, file.string(), {});
-                  MeshModels models = build_meshes(world.scene);
                   return Playback{.file = file,
                                   .player = Player(std::move(session)),
                                   .arm = std::move(world.arm),
                                   .scene = std::move(world.scene),
-                                  .models = std::move(models),
+                                  .models = std::move(world.models),
                                   .rerun = {},
                                   .rerun_parameters = {},
                                   .stage = nullptr};

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <cstdlib>
 #include <sstream>
 
+#include "app/user_dirs.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 
@@ -14,20 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path home_dir(const char* variable, const char* below_home) {
-  if (const char* dir = std::getenv(variable); dir != nullptr && *dir != '\0') return dir;
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / below_home;
-}
-
-fs::path data_home(const char* folder) {
-  const fs::path dir = home_dir("XDG_DATA_HOME", ".local/share") / "limpid" / folder;
+fs::path made(const fs::path& dir) {
   std::error_code error;
   fs::create_directories(dir, error);
   return dir;
 }
 
-fs::path settings_file() { return home_dir("XDG_CONFIG_HOME", ".config") / "limpid/settings.toml"; }
+fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 
 // Every setting but the parameters, once, for reading and writing.
 template <class S, class Visit>
@@ -93,7 +86,7 @@ std::string save_settings(const Settings& settings) {
   return try_write_atomically(settings_file(), text.str());
 }
 
-fs::path sessions_dir() { return data_home("sessions"); }
-fs::path scenes_dir() { return data_home("scenes"); }
+fs::path sessions_dir() { return made(user_data_dir() / "sessions"); }
+fs::path scenes_dir() { return made(user_data_dir() / "scenes"); }
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/assets.h"
+#include "app/view/mesh_pictures.h"
 
 namespace limpid {
 namespace {
@@ -58,12 +59,7 @@ void Stage::show(const Scene& scene, const MeshModels& models,
 }
 
 void Stage::show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted) {
-  std::vector<MeshPicture> pictures;
-  for (std::size_t i = 0; i < scene_.meshes.size() && i < models.size(); ++i) {
-    const MeshObstacle& mesh = scene_.meshes[i];
-    pictures.push_back({models[i], mesh.pose, mesh.scale, highlighted == i});
-  }
-  picture.set_meshes(pictures);
+  picture.set_meshes(mesh_pictures(scene_, models, highlighted));
 }
 
 void Stage::draw_at(int quality) {

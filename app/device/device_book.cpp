@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <sstream>
 
+#include "app/user_dirs.h"
 #include "devices/files/atomic_file.h"
 
 namespace limpid {
@@ -54,13 +53,7 @@ toml::table write_notes(const DeviceNotes& notes) {
 
 }  // namespace
 
-fs::path device_book_file() {
-  if (const char* dir = std::getenv("XDG_CONFIG_HOME"); dir != nullptr && *dir != '\0') {
-    return fs::path(dir) / "limpid/devices.toml";
-  }
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / ".config/limpid/devices.toml";
-}
+fs::path device_book_file() { return user_config_dir() / "devices.toml"; }
 
 DeviceBook load_device_book(const fs::path& file, std::string& complaint) {
   DeviceBook book;

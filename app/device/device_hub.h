@@ -1,9 +1,7 @@
 // Which device drives the loop: what is plugged in, the one in use, and getting it back.
 #pragma once
 
-#include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

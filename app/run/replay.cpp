@@ -57,7 +57,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm,
                        session.info.models);
   });
-  build_meshes(plan.scene);
+  plan.models = build_meshes(plan.scene);
   plan.hand = hand_of(session, where);
   plan.parameters = chosen;
   plan.parameters.tick = session.info.tick;

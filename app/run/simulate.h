@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "app/run/scene_meshes.h"
 #include "core/loop/parameters.h"
 #include "devices/files/hand_file.h"
 #include "devices/files/session.h"
@@ -18,6 +19,7 @@ namespace limpid {
 struct RunPlan {
   ArmDescription arm;
   Scene scene;
+  MeshModels models;  // what the scene's meshes look like
   HandPath hand;
   Parameters parameters;               // at the first row
   std::vector<SettingChange> changes;  // later ones, of a recording that is run again

@@ -1,0 +1,11 @@
+// Where the user's own files of Limpid are.
+#pragma once
+
+#include <filesystem>
+
+namespace limpid {
+
+std::filesystem::path user_config_dir();  // $XDG_CONFIG_HOME/limpid, or ~/.config/limpid
+std::filesystem::path user_data_dir();    // $XDG_DATA_HOME/limpid, or ~/.local/share/limpid
+
+}  // namespace limpid

@@ -1,0 +1,24 @@
+// A scene's meshes as the 3D view wants them.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "app/run/scene_meshes.h"
+#include "render/scene_view.h"
+
+namespace limpid {
+
+// `models` in the order of the scene's meshes.
+inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshModels& models,
+                                              std::optional<std::size_t> highlighted = {}) {
+  std::vector<MeshPicture> pictures;
+  for (std::size_t i = 0; i < std::min(scene.meshes.size(), models.size()); ++i) {
+    const MeshObstacle& mesh = scene.meshes[i];
+    pictures.push_back({models[i], mesh.pose, mesh.scale, highlighted == i});
+  }
+  return pictures;
+}
+
+}  // namespace limpid
