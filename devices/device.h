@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/math/sizes.h"
@@ -30,6 +32,7 @@ struct DeviceReading {
   bool hand = true;                 // dead-man switch closed; true where there is none
   bool fault = false;               // the device says that it is not well
   std::uint32_t buttons = 0;        // one bit each
+  std::uint32_t lapses = 0;  // how often its torque ran out, as nobody gave a new one in time
 };
 
 // Read, write and stop belong to the haptic thread: they never allocate, lock, throw, or wait.
@@ -44,5 +47,16 @@ class Device {
   // No torque, now.
   virtual void stop() noexcept = 0;
 };
+
+// Before the haptic thread has the device: waits until it has said where it is; false if it has not
+// within that time.
+inline bool await_reading(Device& device, std::chrono::milliseconds longest) {
+  DeviceReading reading;
+  const auto end = std::chrono::steady_clock::now() + longest;
+  while (device.read(reading) && reading.count == 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return reading.count > 0;
+}
 
 }  // namespace limpid

@@ -17,7 +17,12 @@ Rig::Rig(const ArmDescription& arm, const Scene& scene, bool real) {
 }
 
 void Rig::plug(Device* device) noexcept {
-  std::visit([&](auto& of) { of->plugged = device; }, of_);
+  std::visit(
+      [&](auto& of) {
+        of->plugged = device;
+        of->lapses.reset();
+      },
+      of_);
 }
 
 bool Rig::real() const {
@@ -33,32 +38,41 @@ bool Rig::device_reading(DeviceReading& newest) const {
       of_);
 }
 
-ForceState Rig::force_state() const {
-  return std::visit([](const auto& of) { return of->tick.force_state(); }, of_);
+const ForceGate& Rig::force() const {
+  return std::visit([](const auto& of) -> const ForceGate& { return of->tick.force(); }, of_);
 }
 
-// What the loop sees. Of a real device that says nothing, or nonsense: where it was when it last
-// did.
+void Rig::limit(const SafetyLimits& limits) {
+  std::visit([&](auto& of) { of->tick.limit(limits); }, of_);
+}
+
 template <int N>
-Reading<N> Rig::Of<N>::read(const Parameters& p, const HandInput& hand) noexcept {
-  if (!real) {
-    virtual_device.expect(p, hand);
-    virtual_device.read(reading);
-    Reading<N> in = virtual_device.arm.read(0);
-    std::copy_n(reading.x.begin(), in.x.size(), in.measured.begin());
-    return in;
-  }
+Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
+  if (real) return read_real(p, now);
+  virtual_device.expect(p, now.hand);
+  virtual_device.read(reading);
+  Reading<N> in = virtual_device.arm.read(0);
+  std::copy_n(reading.x.begin(), in.x.size(), in.measured.begin());
+  return in;
+}
+
+// What the loop sees. Of a device that says nothing, or nonsense: where it was when it last did.
+template <int N>
+Reading<N> Rig::Of<N>::read_real(const Parameters& p, const RigInput& now) noexcept {
   here = plugged != nullptr && plugged->read(reading);
   const Eigen::Index n = x_before.size();
   Vec<N> x = x_before;
   if (here && reading.count > 0) x = Eigen::Map<const Vec<N>>(reading.x.data(), n);
   const bool nonsense = !x.allFinite();
   if (nonsense) x = x_before;
-  v_real = (x - x_before) / p.tick;
-  x_before = x;
-  DeviceHealth health{true, reading.hand, reading.fault || nonsense, !here, reading.age};
+  DeviceHealth health{true,  reading.hand, reading.fault || nonsense, !here, reading.age,
+                      false, now.silence};
   if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
-  return {x, x, v_real, health};
+  health.gap = now.dt > SafetyLimits::kGap || (here && lapses != reading.lapses);
+  if (here) lapses = reading.lapses;
+  v_real = health.gap ? Vec<N>::Zero(n) : Vec<N>((x - x_before) / (now.periods * p.tick));
+  x_before = x;
+  return {x, x, v_real, health, now.periods, now.dt};
 }
 
 TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
@@ -84,11 +98,25 @@ const RowLayout& Rig::layout() const {
 void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
-        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, start.armed});
+        const bool armed = start.armed && !of->real;
+        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed});
         of->virtual_device.arm.place(start.x1, start.v1, start.target);
         of->x_before = start.x1;
         of->v_real = start.v1;
-        of->input = {{start.target, 1}, start.armed};
+        of->input = {{start.target, 1}};
+      },
+      of_);
+}
+
+void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
+  present(scratch);
+  std::visit(
+      [&](auto& of) {
+        of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat});
+        of->virtual_device.arm.place(scratch.x1, scratch.v1, target);
+        of->x_before = scratch.x1;
+        of->v_real = scratch.v1;
+        of->input = {{target, 1}};
       },
       of_);
 }
@@ -103,7 +131,7 @@ void Rig::present(RigStart& into) const {
         into.v2 = of->tick.proxy().v();
         into.f1_hat = of->tick.estimate();
         into.target = of->input.hand.target;
-        into.armed = of->input.force;
+        into.armed = of->tick.force().armed();
       },
       of_);
 }
@@ -112,7 +140,7 @@ void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row
   std::visit(
       [&](auto& of) {
         const RowLayout& layout = of->tick.layout();
-        const auto reading = of->read(p, input.hand);
+        const auto reading = of->read(p, input);
         const auto& torque = of->tick.run(p, reading, input.force, row);
         Device* device = of->real ? of->plugged : &of->virtual_device;
         if (device != nullptr) {
@@ -141,7 +169,7 @@ Vec3 Rig::tip() const {
 }
 
 bool Rig::steady() const {
-  return std::visit([](const auto& of) { return of->tick.steady(of->input.force); }, of_);
+  return std::visit([](const auto& of) { return of->tick.steady(); }, of_);
 }
 
 bool Rig::diverged() const {

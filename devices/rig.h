@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -17,7 +18,10 @@ namespace limpid {
 // What reaches the loop from outside in one tick.
 struct RigInput {
   HandInput hand;
-  bool force = true;  // armed
+  ForceWish force = ForceWish::as_it_is;
+  int periods = 1;     // since the step before, in ticks
+  double dt = 0;       // the same as it really passed [s]; 0: as long as it should be
+  double silence = 0;  // since the window last answered [s]
 };
 
 // A starting point of any size, e.g. the first row of a recording.
@@ -25,7 +29,7 @@ struct RigStart {
   Eigen::VectorXd x1, v1, x2, v2;  // [rad, rad/s]
   Eigen::VectorXd f1_hat;          // [N m]
   Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
-  bool armed = true;
+  bool armed = true;               // at full force at once; a real device never is
 };
 
 // What a rig's arm can touch, ready to be taken in by a running loop.
@@ -53,10 +57,15 @@ class Rig {
   int dof() const { return layout().dof(); }
   const RowLayout& layout() const;
 
+  // Force of a real device is off then, until it is armed.
   void start(const Parameters& p, const RigStart& start);
-  // Where it stands now, as a starting point; a recording of a running loop begins so. `into` has
-  // vectors of this size already: nothing is allocated.
+  // Where it stands now, as a starting point. `into` has vectors of this size already: nothing is
+  // allocated.
   void present(RigStart& into) const;
+  // Begins anew from where it stands, the force as it is: so does a recording of a running loop.
+  // `scratch` as in present(); `target` is the hand's [m].
+  void rebase(const Parameters& p, RigStart& scratch, const Vec3& target);
+  void limit(const SafetyLimits& limits);
   // Between two steps: takes in what can be touched from now on, made for the same arm, and gives
   // out what could be until now. Contacts with meshes that stay remember their sides.
   void exchange(TouchWorld& world) noexcept;
@@ -67,7 +76,8 @@ class Rig {
   Vec3 tip() const;       // of the device [m]
   bool steady() const;    // nothing fades, no coupling is being switched
   bool diverged() const;  // the loop went unstable; force is off
-  ForceState force_state() const;
+  const ForceGate& force() const;
+  ForceState force_state() const { return force().why(); }
   // Copies where the proxy is touched, as many as fit; returns how many.
   std::size_t contacts(std::span<ContactForce> into) const noexcept;
 
@@ -76,7 +86,8 @@ class Rig {
   struct Of {
     Of(const ArmDescription& description, const Scene& scene, bool is_real)
         : tick(description, scene), virtual_device(description), real(is_real) {}
-    Reading<N> read(const Parameters& p, const HandInput& hand) noexcept;
+    Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
+    Reading<N> read_real(const Parameters& p, const RigInput& now) noexcept;
 
     Tick<N> tick;
     VirtualDevice<N> virtual_device;
@@ -84,8 +95,8 @@ class Rig {
     Device* plugged = nullptr;
     bool here = false;  // it answered
     DeviceReading reading;
-    Vec<N> x_before, v_real;  // of a real device
-    std::uint64_t count_before = 0;
+    Vec<N> x_before, v_real;              // of a real device
+    std::optional<std::uint32_t> lapses;  // that are known of
     RigInput input;
   };
   std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;

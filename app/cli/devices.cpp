@@ -22,7 +22,7 @@ int devices() {
       "virtual arm\n  built in; any URDF chain of 1 to 32 revolute joints (--device), driven by "
       "the mouse or a recorded hand\n");
   DeviceHub hub(device_book_file(), {});
-  hub.look();
+  hub.take(DeviceHub::look());
   for (const FoundDevice& found : hub.found()) {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, name(found.kind), found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",

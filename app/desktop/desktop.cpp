@@ -112,7 +112,7 @@ void print_state(Workbench& bench) {
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
-      layout.in(row, Column::hand_grip)[0], bench.controls.force, bench.live.recording(),
+      layout.in(row, Column::hand_grip)[0], bench.force_armed(), bench.live.recording(),
       bench.playing_back(), bench.playing_back() && !bench.playback->rerun.empty(), status.rate,
       status.ticks, status.late, status.missed, status.slipped, bench.live.trace_dropped(),
       objects_of(bench.editor.scene()).size(),

@@ -13,65 +13,78 @@ constexpr milliseconds kLook{1000};   // between two looks at what is plugged in
 constexpr milliseconds kRetry{3000};  // after a device could not be opened
 constexpr milliseconds kSettle{500};  // until the loop shows whether a new device answers
 
-// What stays off until the user arms it again.
-bool tripped(ForceState state) {
-  return state == ForceState::lost || state == ForceState::stale || state == ForceState::fault ||
-         state == ForceState::energy;
-}
-
 }  // namespace
 
 DeviceDesk::DeviceDesk(AskForPriority ask) : hub(device_book_file(), std::move(ask)) {}
 
 void DeviceDesk::update(Workbench& bench) {
-  const auto now = Clock::now();
-  if (now >= look_at_) {
-    hub.look();
-    look_at_ = now + kLook;
-  }
-  if (bench.live.device_plugged()) {
-    watch(bench);
-    return;
-  }
-  if (hub.in_use().empty() || now < retry_at_) return;
+  look(bench);
+  take_connected(bench);
+  if (bench.live.real()) bench.controls.limits = hub.notes(hub.in_use()).limits;
+  if (bench.live.device_plugged()) return watch(bench);
+  if (hub.in_use().empty() || connecting_.valid() || Clock::now() < retry_at_) return;
   const FoundDevice* found = hub.present();
   if (found == nullptr) {
     problem_ = "not connected";
   } else if (!found->missing.empty()) {
     problem_ = found->missing;
+  } else if (must_wait(bench)) {
+    problem_ = "waits for the end of the recording";
   } else {
     connect(bench);
   }
 }
 
+bool DeviceDesk::must_wait(const Workbench& bench) const {
+  const FoundDevice* found = hub.present();
+  return bench.recording() && !bench.live.real() && found != nullptr &&
+         found->kind != HidKind::space_mouse;
+}
+
+void DeviceDesk::look(Workbench& bench) {
+  if (auto found = take_ready(looking_)) hub.take(std::move(*found));
+  if (looking_.valid() || Clock::now() < look_at_) return;
+  looking_ = bench.device_errands.run([] { return DeviceHub::look(); });
+  look_at_ = Clock::now() + kLook;
+}
+
 void DeviceDesk::watch(Workbench& bench) {
   const Snapshot& snapshot = bench.live.snapshot();
   if (Clock::now() < plugged_at_ + kSettle) return;
-  if (bench.live.real() && bench.controls.force && tripped(snapshot.force_state)) {
-    bench.cut_force();
+  const Arming before = std::exchange(arming_, snapshot.arming);
+  if (bench.live.real() && arming_ == Arming::tripped && before != Arming::tripped) {
     bench.say(fmt::format("Force is off: {}. F arms it again.", explain(snapshot.force_state)),
               true);
   }
   if (!snapshot.connected) {
     problem_ = "not connected";
-    bench.cut_force();
     bench.say("The device is gone. It is taken up again when it comes back, without force.", true);
     bench.live.plug(nullptr);
     return;
   }
-  const std::uint32_t pressed = snapshot.reading.buttons & ~buttons_;
-  buttons_ = snapshot.reading.buttons;
+  const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
   if ((pressed & 1) != 0) bench.toggle_coupling();
   if ((pressed & 2) != 0) bench.toggle_force();
 }
 
 void DeviceDesk::connect(Workbench& bench) {
+  problem_ = "connecting";
+  connecting_id_ = hub.in_use();
+  connecting_ = bench.device_errands.run(hub.opening());
+}
+
+void DeviceDesk::take_connected(Workbench& bench) {
   try {
-    std::unique_ptr<Device> device = hub.open();
-    const DeviceTraits traits = device->traits();
-    bench.open_device(std::move(device));
+    auto ready = take_ready(connecting_);
+    if (!ready) return;
+    if (connecting_id_ != hub.in_use() || must_wait(bench)) {  // meanwhile it is not wanted
+      return bench.let_go(std::move(*ready));
+    }
+    const DeviceTraits traits = (*ready)->traits();
+    bench.open_device(std::move(*ready));
     problem_.clear();
-    buttons_ = 0;
+    buttons_.forget();
+    arming_ = Arming::off;
     plugged_at_ = Clock::now();
     bench.say(traits.pushes
                   ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
@@ -84,7 +97,7 @@ void DeviceDesk::connect(Workbench& bench) {
 }
 
 void DeviceDesk::use(Workbench& bench, const std::string& id) {
-  if (bench.live.recording()) {
+  if (bench.recording()) {
     bench.say("Stop the recording before changing the device.", true);
     return;
   }

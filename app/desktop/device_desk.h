@@ -1,11 +1,16 @@
 // Keeps the chosen device in the loop: connects it when it is there, notices when it goes, takes it
-// up again when it comes back, always without force until the user arms it.
+// up again when it comes back, always without force until the user arms it. What takes time is done
+// beside the window.
 #pragma once
 
 #include <chrono>
+#include <future>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "app/device/device_hub.h"
+#include "devices/buttons.h"
 
 namespace limpid {
 
@@ -29,12 +34,20 @@ class DeviceDesk {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void look(Workbench& bench);
   void connect(Workbench& bench);
+  void take_connected(Workbench& bench);
   void watch(Workbench& bench);
+  // A recording goes on with the device that it began with only.
+  bool must_wait(const Workbench& bench) const;
 
   std::string problem_;
   Clock::time_point look_at_{}, retry_at_{}, plugged_at_{};
-  std::uint32_t buttons_ = 0;
+  ButtonPresses buttons_;
+  Arming arming_ = Arming::off;  // at the last frame
+  std::future<std::vector<FoundDevice>> looking_;
+  std::future<std::unique_ptr<Device>> connecting_;
+  std::string connecting_id_;
 };
 
 }  // namespace limpid

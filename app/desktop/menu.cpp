@@ -75,7 +75,7 @@ void view_menu(Workbench& bench, Window& window) {
 
 void session_menu(Workbench& bench) {
   if (!ImGui::BeginMenu("Session")) return;
-  const bool recording = bench.live.recording();
+  const bool recording = bench.recording();
   if (ImGui::MenuItem(recording ? "Stop recording" : "Record", "R")) bench.toggle_recording();
   if (ImGui::MenuItem("Play or pause", "P")) bench.toggle_playing();
   if (ImGui::MenuItem("Re-run under present settings", "E", false, bench.playing_back())) {
@@ -115,8 +115,8 @@ void device_menu(Workbench& bench) {
   if (!ImGui::BeginMenu("Device")) return;
   ImGui::TextDisabled("%s, virtual, %d joints", bench.stage->arm().name.c_str(),
                       bench.stage->arm().dof());
-  if (ImGui::MenuItem(bench.controls.force ? "Force off" : "Force on",
-                      bench.controls.force ? "Esc" : "F")) {
+  if (ImGui::MenuItem(bench.force_armed() ? "Force off" : "Force on",
+                      bench.force_armed() ? "Esc" : "F")) {
     bench.toggle_force();
   }
   if (ImGui::MenuItem("Start over", "Backspace", false, !bench.playing_back())) bench.start_over();
@@ -150,9 +150,9 @@ void status(Workbench& bench) {
                    "Ticks that began after the next one was due"});
   parts.push_back({proposed ? fmt::format("PROPOSED \xCE\xB7 {:.2f}", eta) : "STANDARD",
                    colours.text, "C switches"});
-  parts.push_back({bench.controls.force ? "force on [Esc]" : "force off [F]",
-                   bench.controls.force ? colours.text : colours.muted,
-                   bench.controls.force ? "Esc or space cut it at once" : "F arms it"});
+  parts.push_back({bench.force_armed() ? "force on [Esc]" : "force off [F]",
+                   bench.force_armed() ? colours.text : colours.muted,
+                   bench.force_armed() ? "Esc or space cut it at once" : "F arms it"});
   float width = 0;
   const float gap = 1.4f * ImGui::GetFontSize();
   for (const Part& part : parts) width += ImGui::CalcTextSize(part.text.c_str()).x + gap;

@@ -14,21 +14,70 @@ namespace limpid {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// The plots hold the whole recording, and the re-run if there is one.
+History history_of(const Session& session, std::span<const double> again) {
+  const TraceChannels channels(session.layout);
+  const double length = static_cast<double>(session.size()) * session.info.tick;
+  History history({.channels = channels.count() * (again.empty() ? 1 : 2),
+                   .seconds = length + 1,
+                   .tick = session.info.tick});
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto second = again.empty() ? again : again.subspan(k * stride, stride);
+    channels.append(history, session.row(k), second);
+  }
+  for (const SettingChange& change : session.changes) {
+    std::string label = change.setting;
+    std::erase(label, '"');
+    history.mark(static_cast<double>(change.row) * session.info.tick, label);
+  }
+  return history;
+}
+
+Playback load_playback(const fs::path& file) {
+  auto session = std::make_shared<const Session>(read_session(file));
+  if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
+  RunPlan world = replay(*session, file.string(), {});
+  return Playback{.file = file,
+                  .player = Player(session),
+                  .arm = std::move(world.arm),
+                  .scene = std::move(world.scene),
+                  .models = std::move(world.models),
+                  .history = history_of(*session, {}),
+                  .rerun = {},
+                  .rerun_parameters = {},
+                  .stage = nullptr};
+}
+
+Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
+                BackgroundProgress& progress) {
+  const RunPlan plan = replay(session, where, chosen);
+  std::vector<double> rows;
+  rows.reserve(session.rows.size());
+  std::uint64_t count = 0;
+  simulate(plan, {.realtime = false, .stop = &progress.cancel},
+           [&](std::span<const double> row, const Parameters*) {
+             rows.insert(rows.end(), row.begin(), row.end());
+             progress.part = static_cast<double>(++count) / static_cast<double>(plan.rows);
+             return true;
+           });
+  const bool unstable = !rows.empty() && rows.size() < session.rows.size();
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  while (unstable && rows.size() < session.rows.size()) {
+    rows.insert(rows.end(), rows.end() - static_cast<std::ptrdiff_t>(stride), rows.end());
+  }
+  History history = history_of(session, rows);
+  return {std::move(rows), unstable, std::move(history)};
+}
+
+}  // namespace
+
 void Workbench::open_session(const fs::path& file) {
-  loading.start(fmt::format("loading {}", file.filename().string()),
-                [file](BackgroundProgress&) -> std::optional<Playback> {
-                  Session session = read_session(file);
-                  if (session.size() == 0) throw FileError(file.string() + ": holds no rows");
-                  RunPlan world = replay(session, file.string(), {});
-                  return Playback{.file = file,
-                                  .player = Player(std::move(session)),
-                                  .arm = std::move(world.arm),
-                                  .scene = std::move(world.scene),
-                                  .models = std::move(world.models),
-                                  .rerun = {},
-                                  .rerun_parameters = {},
-                                  .stage = nullptr};
-                });
+  loading.start(
+      fmt::format("loading {}", file.filename().string()),
+      [file](BackgroundProgress&) -> std::optional<Playback> { return load_playback(file); });
 }
 
 void Workbench::toggle_playing() {
@@ -43,7 +92,6 @@ void Workbench::toggle_playing() {
 
 void Workbench::close_playback() {
   rerunning.cancel();
-  exporting.cancel();
   playback.reset();
 }
 
@@ -51,32 +99,19 @@ void Workbench::close_playback() {
 void Workbench::start_rerun() {
   if (!playback) return;
   playback->rerun_parameters = parameters;
-  // The session stays where it is meanwhile: whoever takes it away ends the re-run first.
   rerunning.start(
-      "re-running", [&session = playback->player.session(), where = playback->file.string(),
-                     chosen = parameters](BackgroundProgress& progress) {
-        const RunPlan plan = replay(session, where, chosen);
-        std::vector<double> rows;
-        rows.reserve(plan.rows * static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride()));
-        std::uint64_t count = 0;
-        simulate(plan, {.realtime = false, .stop = &progress.cancel},
-                 [&](std::span<const double> row, const Parameters*) {
-                   rows.insert(rows.end(), row.begin(), row.end());
-                   progress.part = static_cast<double>(++count) / static_cast<double>(plan.rows);
-                   return true;
-                 });
-        return rows;
-      });
+      "re-running",
+      [session = playback->player.shared(), where = playback->file.string(), chosen = parameters](
+          BackgroundProgress& progress) { return run_again(*session, where, chosen, progress); });
 }
 
 void Workbench::export_csv() {
-  if (!playback) return;
+  if (!playback || exporting.busy()) return;
   fs::path out = playback->file;
   out.replace_extension(".csv");
-  // The session stays where it is meanwhile: whoever takes it away waits for the end.
   exporting.start("writing the table",
-                  [&session = playback->player.session(), out](BackgroundProgress&) {
-                    write_csv(session, out, false);
+                  [session = playback->player.shared(), out](BackgroundProgress&) {
+                    write_csv(*session, out, false);
                     return fmt::format("Wrote {}", out.string());
                   });
 }
@@ -100,27 +135,16 @@ void Workbench::take_results() {
   try {
     if (auto loaded = loading.take(); loaded && *loaded) {
       rerunning.cancel();
-      exporting.cancel();
       playback.emplace(std::move(**loaded));
       last_recording = playback->file;
-      rebuild_playback_stage();
+      const double length = playback->player.duration();
+      playback->stage = std::make_unique<Stage>(playback->arm, playback->scene, playback->models,
+                                                std::move(playback->history), length);
       camera.frame(playback->stage->picture.bounds());
       playback->player.play();
     }
-    if (auto rows = rerunning.take(); rows && playback) {
-      playback->rerun = std::move(*rows);
-      const std::size_t wanted = playback->player.session().rows.size();
-      if (playback->rerun.size() < wanted) {
-        say("The re-run became unstable; it is shown up to there.", true);
-        const auto stride = static_cast<std::size_t>(playback->player.session().layout.stride());
-        while (!playback->rerun.empty() && playback->rerun.size() < wanted) {
-          const std::size_t last = playback->rerun.size() - stride;
-          playback->rerun.resize(playback->rerun.size() + stride);
-          std::copy_n(playback->rerun.begin() + static_cast<std::ptrdiff_t>(last), stride,
-                      playback->rerun.end() - static_cast<std::ptrdiff_t>(stride));
-        }
-      }
-      rebuild_playback_stage();
+    if (auto again = rerunning.take(); again && playback && !again->rows.empty()) {
+      show_rerun(std::move(*again));
     }
     if (auto text = exporting.take()) say(*text);
   } catch (const std::exception& e) {
@@ -128,27 +152,11 @@ void Workbench::take_results() {
   }
 }
 
-// The plots hold the whole recording, and the re-run if there is one.
-void Workbench::rebuild_playback_stage() {
-  const Session& session = playback->player.session();
-  const double length = playback->player.duration();
+void Workbench::show_rerun(Rerun again) {
+  if (again.unstable) say("The re-run became unstable; it is shown up to there.", true);
+  playback->rerun = std::move(again.rows);
   playback->stage = std::make_unique<Stage>(playback->arm, playback->scene, playback->models,
-                                            StageOptions{.seconds = length + 1,
-                                                         .tick = session.info.tick,
-                                                         .shown = length,
-                                                         .rerun = !playback->rerun.empty()});
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    playback->stage->append(
-        session.row(k), playback->rerun.empty()
-                            ? std::span<const double>()
-                            : std::span<const double>(playback->rerun).subspan(k * stride, stride));
-  }
-  for (const SettingChange& change : session.changes) {
-    std::string label = change.setting;
-    std::erase(label, '"');
-    playback->stage->history.mark(static_cast<double>(change.row) * session.info.tick, label);
-  }
+                                            std::move(again.history), playback->player.duration());
 }
 
 }  // namespace limpid

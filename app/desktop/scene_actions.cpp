@@ -36,7 +36,7 @@ std::string with_commas(std::size_t number) {
 }  // namespace
 
 bool Workbench::may_edit() {
-  if (live.recording()) {
+  if (recording()) {
     say("Stop the recording (R) before changing the scene: it is part of what is recorded.", true);
   } else if (playback) {
     say("This is a recording's scene. Go back to live (Backspace) to change yours.", true);
@@ -49,7 +49,7 @@ bool Workbench::may_edit() {
 }
 
 void Workbench::open_scene(const fs::path& file) {
-  if (live.recording()) {
+  if (recording()) {
     say("Stop the recording (R) before opening another scene.", true);
     return;
   }
@@ -83,7 +83,7 @@ void Workbench::open_dropped(const std::vector<fs::path>& files) {
 }
 
 void Workbench::take_loaded() {
-  if (live.recording() || playback) return;  // it waits
+  if (recording() || playback) return;  // it waits
   try {
     if (auto loaded = loader.take()) {
       std::visit([this](auto& what) { accept(what); }, *loaded);
@@ -94,7 +94,11 @@ void Workbench::take_loaded() {
 }
 
 void Workbench::accept(LoadedScene& loaded) {
-  open(stage->arm(), std::move(loaded.scene), std::move(loaded.models));
+  if (live.real()) {
+    open_beside(std::move(loaded.scene), std::move(loaded.models));
+  } else {
+    open(stage->arm(), std::move(loaded.scene), std::move(loaded.models));
+  }
   // At the start it is the one that was named already.
   if (const std::string file = loaded.file.string(); file != scene_file) {
     scene_file = settings.scene = file;
@@ -257,7 +261,7 @@ void Workbench::show_scene() {
 // The loop takes in what can be touched now, seldom enough not to be kept busy by a drag.
 void Workbench::hand_scene_over(bool at_once) {
   const auto now = std::chrono::steady_clock::now();
-  if (editor.version().world == touched_ || live.recording()) return;
+  if (editor.version().world == touched_ || recording()) return;
   if (!at_once && now - touched_since_ < kBetweenWorlds) return;
   live.exchange(std::make_unique<TouchWorld>(stage->arm(), editor.scene()));
   touched_ = editor.version().world;

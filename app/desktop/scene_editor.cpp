@@ -122,9 +122,9 @@ Eigen::AlignedBox3d bounds_of(const SceneObject& object, const Model* model) {
   return box;
 }
 
-void SceneEditor::open(Scene scene, MeshModels models) {
+void SceneEditor::open(Scene scene, MeshModels models, bool saved) {
   now_ = {std::make_shared<const World>(World{std::move(scene), std::move(models)}), std::nullopt};
-  saved_ = now_.world;
+  saved_ = saved ? now_.world : nullptr;
   last_change_.clear();
 }
 

@@ -44,8 +44,8 @@ class SceneEditor {
     std::optional<ObjectRef> selected;
   };
 
-  // Another scene, as its file has it.
-  void open(Scene scene, MeshModels models);
+  // Another scene, as its file has it; not `saved`: no file has it yet.
+  void open(Scene scene, MeshModels models, bool saved = true);
 
   const Scene& scene() const { return now_.world->scene; }
   const MeshModels& models() const { return now_.world->models; }

@@ -38,7 +38,7 @@ void draw_icon(ObjectKind kind, const ImVec2& middle, float r, ImU32 ink) {
 }  // namespace
 
 void ScenePanel::draw(Workbench& bench) {
-  const bool fixed = bench.playing_back() || bench.live.recording();
+  const bool fixed = bench.playing_back() || bench.recording();
   const Scene& scene = bench.playing_back() ? bench.playback->scene : bench.editor.scene();
   const std::string title = scene.title.empty() ? "untitled" : scene.title;
   ImGui::TextUnformatted(title.c_str());

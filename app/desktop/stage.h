@@ -15,18 +15,12 @@
 
 namespace limpid {
 
-struct StageOptions {
-  double seconds = 60;  // of history to keep
-  double tick = 0.001;
-  double shown = 10;   // of it at first
-  bool rerun = false;  // room for a second run beside the first
-};
-
 class Stage {
  public:
-  // `models` are what the scene's meshes look like. Needs a current OpenGL context. Errors:
-  // std::runtime_error naming the file of a picture.
-  Stage(ArmDescription arm, Scene scene, MeshModels models, const StageOptions& options);
+  // `models` are what the scene's meshes look like; `history`: of the arm's channels, or twice as
+  // many, for a second run beside the first; `shown`: how much of it at first [s]. Needs a current
+  // OpenGL context. Errors: std::runtime_error naming the file of a picture.
+  Stage(ArmDescription arm, Scene scene, MeshModels models, History history, double shown);
 
   // The same arm in another scene; `highlighted` is the number of a mesh. Errors as above; the
   // picture stays as it was then.
@@ -39,8 +33,8 @@ class Stage {
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
-  // Adds a row, and the same row of a second run if there is one, to the plots.
-  void append(std::span<const double> row, std::span<const double> again = {});
+  // Adds a row to the plots.
+  void append(std::span<const double> row) { channels_.append(history, row); }
 
   SceneView picture;
   ViewMemory memory;
@@ -56,7 +50,6 @@ class Stage {
   int quality_ = -1;
   RowView rows_;
   TraceChannels channels_;
-  std::vector<double> values_;
 };
 
 }  // namespace limpid

@@ -119,7 +119,9 @@ void live_controls(Workbench& bench) {
   }
   tooltip("How much time the plots show, 1 to 60 s");
   ImGui::SameLine();
-  if (button("Start over", "Device and proxy at rest in the middle, force on (Backspace).")) {
+  if (button(
+          "Start over",
+          "Device and proxy at rest in the middle; a real device's force goes off (Backspace).")) {
     bench.start_over();
   }
 }

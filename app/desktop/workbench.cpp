@@ -28,19 +28,27 @@ Vec3 home(const ArmDescription& arm) {
 }  // namespace
 
 Workbench::Workbench(Settings s, AskForPriority ask)
-    : settings(std::move(s)), parameters(settings.parameters), live(ask), devices(ask) {
+    : settings(std::move(s)),
+      parameters(settings.parameters),
+      live(ask, [this](std::unique_ptr<Device> device) { let_go(std::move(device)); }),
+      devices(ask) {
   known_.parameters = analysed_ = parameters;
   controls.parameters = parameters;
 }
 
+// What is recorded is complete before the program ends.
 Workbench::~Workbench() {
   live.close();
-  if (live.recording()) {
-    try {
-      live.stop_recording();
-    } catch (const std::exception& e) {
-      fmt::print(stderr, "limpid: {}\n", e.what());
+  try {
+    if (opening_recording_.valid()) {  // it never began
+      const std::unique_ptr<Recorder> empty = opening_recording_.get();
+      empty->finish();
+      fs::remove(empty->out());
     }
+    live.finish_recording();
+    if (closing_recording_.valid()) closing_recording_.get();
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "limpid: {}\n", e.what());
   }
 }
 
@@ -58,29 +66,53 @@ void Workbench::open_world(const std::string& device, const std::string& scene) 
 }
 
 void Workbench::open(ArmDescription arm, Scene scene, MeshModels models,
-                     std::unique_ptr<Device> device) {
-  auto fresh =
-      std::make_unique<Stage>(std::move(arm), std::move(scene), models,
-                              StageOptions{.tick = parameters.tick, .shown = settings.plot_length});
-  controls.grab = false;
-  controls.goal = home(fresh->arm());
+                     std::unique_ptr<Device> device, bool saved) {
+  auto fresh = make_stage(std::move(arm), std::move(scene), models);
+  const Vec3 rest = home(fresh->arm());
   if (device) {
     live.open(fresh->arm(), fresh->scene(), parameters, std::move(device));
   } else {
-    live.open(fresh->arm(), fresh->scene(), parameters, controls.goal);
+    live.open(fresh->arm(), fresh->scene(), parameters, rest);
   }
+  controls.grab = false;
+  controls.goal = rest;
+  take_stage(std::move(fresh));
+  take_scene(std::move(models), saved);
+}
+
+void Workbench::open_beside(Scene scene, MeshModels models) {
+  cut_force();
+  auto fresh = make_stage(stage->arm(), std::move(scene), models);
+  live.exchange(std::make_unique<TouchWorld>(fresh->arm(), fresh->scene()));
+  take_stage(std::move(fresh));
+  take_scene(std::move(models));
+}
+
+std::unique_ptr<Stage> Workbench::make_stage(ArmDescription arm, Scene scene,
+                                             const MeshModels& models) const {
+  const int channels = TraceChannels(RowLayout(arm.dof())).count();
+  return std::make_unique<Stage>(std::move(arm), std::move(scene), models,
+                                 History({.channels = channels, .tick = parameters.tick}),
+                                 settings.plot_length);
+}
+
+void Workbench::take_stage(std::unique_ptr<Stage> fresh) {
   stage = std::move(fresh);
-  editor.open(stage->scene(), std::move(models));
+  rows_.assign(kDrainRows * static_cast<std::size_t>(live.layout().stride()), 0.0);
+  camera.reset(stage->picture.bounds());
+  camera.finish();
+  analysis = analyze(stage->arm(), rest_pose(stage->arm()), parameters, std::nullopt);
+}
+
+// The stage's scene is the one that is edited from now on, as its file has it.
+void Workbench::take_scene(MeshModels models, bool saved) {
+  editor.open(stage->scene(), std::move(models), saved);
   known_.scene = shown_ = editor.version();
   touched_ = shown_.world;
   // Steps of other scenes cannot be undone in this one.
   history.rewrite(
       [&](EditState& state) { state.scene = shown_; },
       [](const EditState& a, const EditState& b) { return a.parameters == b.parameters; });
-  rows_.assign(kDrainRows * static_cast<std::size_t>(live.layout().stride()), 0.0);
-  camera.reset(stage->picture.bounds());
-  camera.finish();
-  analysis = analyze(stage->arm(), rest_pose(stage->arm()), parameters, std::nullopt);
 }
 
 void Workbench::drop_pictures() {
@@ -97,6 +129,7 @@ void Workbench::update(double dt) {
   controls.parameters = parameters;
   live.set(controls);
   live.update();
+  follow_recording();
   take_rows();
   take_results();
   take_loaded();
@@ -105,12 +138,17 @@ void Workbench::update(double dt) {
   camera.advance(dt);
   if (live.snapshot().diverged && !was_diverged_) {
     cut_force();
-    say("The loop became unstable; force is off. Choose a larger eta or a smaller alpha, then "
-        "start over (Backspace).",
+    say("The loop became unstable; force is off. Choose a larger eta or a smaller alpha, start "
+        "over (Backspace), then F.",
         true);
   }
   was_diverged_ = live.snapshot().diverged;
-  if (live.recording() && live.recorder()->failed()) toggle_recording();
+  const LoopStatus loop = live.status();
+  if (was_running_ && !loop.running) {
+    say(fmt::format("The loop has stopped, without force: {}. Start Limpid again.", loop.failure),
+        true);
+  }
+  was_running_ = loop.running;
   while (!notices.empty() && notices.front().until < SteadyClock::now()) notices.pop_front();
 }
 
@@ -168,15 +206,20 @@ void Workbench::toggle_coupling() {
       parameters.kind == CouplingKind::standard ? CouplingKind::proposed : CouplingKind::standard;
 }
 
+bool Workbench::force_armed() const {
+  const Arming now = live.snapshot().arming;
+  return now != Arming::off && now != Arming::tripped;
+}
+
 void Workbench::start_over() {
-  if (live.recording()) {
+  if (recording()) {
     say("Stop the recording before starting over.", true);
     return;
   }
   controls.grab = false;
   ++controls.resets;
-  controls.force = true;
-  say("Started over: at rest, force on.");
+  const bool off = live.real() || !force_armed();
+  say(off ? "Started over, at rest and without force; F arms it." : "Started over, at rest.");
 }
 
 void Workbench::go_to(const std::optional<EditState>& state) {
@@ -227,28 +270,54 @@ int Workbench::quality_level() const {
 }
 
 void Workbench::toggle_recording() {
+  if (live.recording()) return live.stop_recording();
+  if (opening_recording_.valid()) return;
+  if (closing_recording_.valid()) return say("The last recording is still being closed.");
   try {
-    if (live.recording()) {
-      last_recording = live.recorder()->out();
-      const std::uint64_t dropped = live.recorder()->dropped();
-      live.stop_recording();
-      say(fmt::format("Recorded {}{}. Play it with P.", last_recording.filename().string(),
-                      dropped > 0 ? fmt::format(", {} ticks missing", dropped) : ""),
-          dropped > 0);
-      return;
+    start_recording();
+  } catch (const std::exception& e) {
+    say(e.what(), true);
+  }
+}
+
+void Workbench::start_recording() {
+  close_playback();
+  const std::string name =
+      fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+  RunPlan plan;
+  plan.arm = stage->arm();
+  plan.scene = editor.scene();
+  plan.scene.toml = scene_toml();
+  hand_scene_over(true);
+  plan.hand.source = live.real() ? "device" : "mouse";
+  plan.parameters = parameters;
+  opening_recording_ = file_errands.run(
+      [file = sessions_dir() / name, info = session_info(plan), initial = parameters] {
+        return std::make_unique<Recorder>(file, info, initial, false);
+      });
+}
+
+void Workbench::follow_recording() {
+  try {
+    if (auto recorder = take_ready(opening_recording_)) {
+      live.record(std::move(*recorder));
+      stage->history.mark(stage->channels().layout().in(row(), Column::time)[0], "recording",
+                          "rec");
     }
-    close_playback();
-    const std::string name =
-        fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
-    RunPlan plan;
-    plan.arm = stage->arm();
-    plan.scene = editor.scene();
-    plan.scene.toml = scene_toml();
-    hand_scene_over(true);
-    plan.hand.source = "mouse";
-    plan.parameters = parameters;
-    live.record(sessions_dir() / name, session_info(plan), parameters, false);
-    stage->history.mark(stage->channels().layout().in(row(), Column::time)[0], "recording", "rec");
+    if (live.recording() && live.recorder()->failed()) live.stop_recording();
+    if (std::shared_ptr<Recorder> done = live.take_recorded()) {
+      last_recording = done->out();
+      closing_recording_ = file_errands.run([done] {
+        done->finish();
+        const std::uint64_t dropped = done->dropped();
+        const std::string missing = dropped > 0 ? fmt::format(", {} ticks missing", dropped) : "";
+        return Notice{
+            fmt::format("Recorded {}{}. Play it with P.", done->out().filename().string(), missing),
+            dropped > 0,
+            {}};
+      });
+    }
+    if (auto notice = take_ready(closing_recording_)) say(notice->text, notice->bad);
   } catch (const std::exception& e) {
     say(e.what(), true);
   }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@
 #include "app/live/live_loop.h"
 #include "app/run/analysis.h"
 #include "app/session/background.h"
+#include "app/session/errands.h"
 #include "app/session/player.h"
 #include "render/camera.h"
 #include "render/quality.h"
@@ -28,6 +30,13 @@ namespace limpid {
 
 class Window;
 
+// A second run of a recording's hand.
+struct Rerun {
+  std::vector<double> rows;  // as many as the session's
+  bool unstable = false;     // then the last good one stands for those that are missing
+  History history;           // of both
+};
+
 // A session that is being looked at, with a second run of its hand beside it if one was made.
 struct Playback {
   std::filesystem::path file;
@@ -35,7 +44,8 @@ struct Playback {
   ArmDescription arm;
   Scene scene;
   MeshModels models;
-  std::vector<double> rerun;  // rows of the second run, as many as the session's; or none
+  History history;            // until the stage has it
+  std::vector<double> rerun;  // rows of the second run; or none
   Parameters rerun_parameters;
   std::unique_ptr<Stage> stage;
 
@@ -58,6 +68,13 @@ struct EditState {
   SceneEditor::Version scene;
 };
 
+// A scene that waits until the device which brought its own is gone.
+struct SetAside {
+  std::string file;
+  std::shared_ptr<const SceneEditor::World> world;
+  bool unsaved = false;
+};
+
 class Workbench {
  public:
   Workbench(Settings settings, AskForPriority ask);
@@ -72,8 +89,10 @@ class Workbench {
 
   // Coupling and force.
   void toggle_coupling();
-  void cut_force() { controls.force = false; }
-  void toggle_force() { controls.force = !controls.force; }
+  void cut_force() { live.cut(); }
+  void toggle_force() { force_armed() ? live.cut() : live.arm(); }
+  // Whether force is on, or will be as soon as nothing keeps it off.
+  bool force_armed() const;
   void start_over();
   void undo();
   void redo();
@@ -100,12 +119,17 @@ class Workbench {
   void save_and_leave();  // the answers
   void discard_and_leave();
 
-  // A real device takes the arm's place, or leads the virtual one's hand; and back.
+  // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
+  // along with all its changes, or, if it cannot, the user is asked first.
   void open_device(std::unique_ptr<Device> device);
   void close_device();
+  // Closes a device beside the window.
+  void let_go(std::unique_ptr<Device> device);
 
   // Recording and playback.
   void toggle_recording();
+  // From when it was asked for: what is recorded has to stay as it is.
+  bool recording() const { return live.recording() || opening_recording_.valid(); }
   void open_session(const std::filesystem::path& file);
   void toggle_playing();
   void close_playback();
@@ -124,6 +148,7 @@ class Workbench {
   Settings settings;
   Parameters& parameters;  // of settings
   Controls controls;
+  Errands device_errands, file_errands;
   LiveLoop live;
   std::unique_ptr<Stage> stage;
   std::optional<Playback> playback;
@@ -138,7 +163,7 @@ class Workbench {
   std::function<void()> after_question;  // of what to do with unsaved changes; none: not asked
   AutoQuality automatic_quality;
   Background<std::optional<Playback>> loading;
-  Background<std::vector<double>> rerunning;
+  Background<Rerun> rerunning;
   Background<std::string> exporting;
   std::string scene_file, device_file;
   bool show_help = false, show_about = false, show_open = false, show_experiments = false;
@@ -146,14 +171,26 @@ class Workbench {
   std::string typed_path;
 
  private:
+  // A world, and its loop.
   void open(ArmDescription arm, Scene scene, MeshModels models,
-            std::unique_ptr<Device> device = nullptr);
+            std::unique_ptr<Device> device = nullptr, bool saved = true);
+  // The same arm, in another scene.
+  void open_beside(Scene scene, MeshModels models);
+  std::unique_ptr<Stage> make_stage(ArmDescription arm, Scene scene,
+                                    const MeshModels& models) const;
+  void take_stage(std::unique_ptr<Stage> fresh);
+  void take_scene(MeshModels models, bool saved = true);
+  std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
+  void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
+  void take_up_set_aside(const ArmDescription& arm);
+  void start_recording();
+  void follow_recording();
   void take_rows();
   void note_changes();
   void follow_parameters();
   void go_to(const std::optional<EditState>& state);
   void take_results();
-  void rebuild_playback_stage();
+  void show_rerun(Rerun again);
   void take_loaded();
   void accept(LoadedScene& loaded);
   void accept(LoadedModel& loaded);
@@ -167,7 +204,10 @@ class Workbench {
   std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
   std::chrono::steady_clock::time_point touched_since_;
   std::vector<double> rows_;
-  bool was_diverged_ = false;
+  bool was_diverged_ = false, was_running_ = false;
+  std::optional<SetAside> set_aside_;
+  std::future<std::unique_ptr<Recorder>> opening_recording_;
+  std::future<Notice> closing_recording_;
 };
 
 }  // namespace limpid

@@ -26,6 +26,12 @@ DeviceNotes read_notes(const toml::table& t) {
   for (std::size_t i = 0; i < 2; ++i) {
     notes.pid.reverse[i] = t["reverse"][i].value_or(false);
   }
+  if (const toml::table* limits = t["limits"].as_table()) {
+    for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+      double& value = notes.limits.*info.field;
+      take(*limits, info.key, info.least, value, value);
+    }
+  }
   if (const toml::array* axes = t["axis"].as_array()) {
     for (const toml::node& node : *axes) {
       AxisAdjustment& axis = notes.axes.emplace_back();
@@ -45,9 +51,14 @@ toml::table write_notes(const DeviceNotes& notes) {
     axes.push_back(
         toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
   }
+  toml::table limits;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    limits.insert(info.key, notes.limits.*info.field);
+  }
   return toml::table{{"range", notes.pid.range},
                      {"effort", notes.pid.effort},
                      {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
+                     {"limits", limits},
                      {"axis", axes}};
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/loop/safety.h"
 #include "devices/adjusted_device.h"
 #include "devices/hid/pid_joystick.h"
 
@@ -15,6 +16,7 @@ namespace limpid {
 struct DeviceNotes {
   std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
   PidSettings pid;                   // of a joystick
+  SafetyLimits limits;               // of its force; lower than usual
 };
 
 struct DeviceBook {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 
 #include "app/assets.h"
 #include "devices/files/file_error.h"
@@ -10,6 +12,11 @@
 #include "devices/hid/hid_error.h"
 
 namespace limpid {
+namespace {
+
+constexpr std::chrono::milliseconds kFirstReading{200};
+
+}  // namespace
 
 const char* name(HidKind kind) {
   switch (kind) {
@@ -40,7 +47,9 @@ ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present
 DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
     : file_(std::move(file)), ask_(std::move(ask)), book_(load_device_book(file_, complaint_)) {}
 
-void DeviceHub::look() { found_ = list_hid_devices(data_dir() / "assets/udev/70-limpid.rules"); }
+std::vector<FoundDevice> DeviceHub::look() {
+  return list_hid_devices(data_dir() / "assets/udev/70-limpid.rules");
+}
 
 const FoundDevice* DeviceHub::present() const {
   const auto same = [&](const FoundDevice& each) { return each.place.id == book_.in_use; };
@@ -50,14 +59,20 @@ const FoundDevice* DeviceHub::present() const {
 
 void DeviceHub::use(const std::string& id) { book_.in_use = id; }
 
-std::unique_ptr<Device> DeviceHub::open() {
+std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   const FoundDevice* device = present();
-  if (device == nullptr) throw HidError(fmt::format("{} is not connected", book_.in_use));
-  if (!device->missing.empty()) {
-    throw HidError(fmt::format("{}: {}", device->place.name, device->missing));
-  }
-  const DeviceNotes& known = notes(book_.in_use);
-  return std::make_unique<AdjustedDevice>(open_hid_device(*device, known.pid, ask_), known.axes);
+  const auto known = book_.notes.find(book_.in_use);
+  return [id = book_.in_use, found = device == nullptr ? std::nullopt : std::optional(*device),
+          notes = known == book_.notes.end() ? DeviceNotes{} : known->second, ask = ask_] {
+    if (!found) throw HidError(fmt::format("{} is not connected", id));
+    if (!found->missing.empty()) {
+      throw HidError(fmt::format("{}: {}", found->place.name, found->missing));
+    }
+    std::unique_ptr<Device> opened =
+        std::make_unique<AdjustedDevice>(open_hid_device(*found, notes.pid, ask), notes.axes);
+    await_reading(*opened, kFirstReading);
+    return opened;
+  };
 }
 
 }  // namespace limpid

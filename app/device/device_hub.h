@@ -1,6 +1,7 @@
 // Which device drives the loop: what is plugged in, the one in use, and getting it back.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,8 +23,9 @@ class DeviceHub {
   // `file`: of the book. `ask`: for the devices' own threads.
   DeviceHub(std::filesystem::path file, AskForPriority ask);
 
-  // Looks again what is plugged in. A few files of the kernel's are read: not for every frame.
-  void look();
+  // What is plugged in. Reads a few files of the kernel's: not for every frame.
+  static std::vector<FoundDevice> look();
+  void take(std::vector<FoundDevice> found) { found_ = std::move(found); }
   const std::vector<FoundDevice>& found() const { return found_; }
 
   const std::string& in_use() const { return book_.in_use; }  // id; empty: the virtual arm
@@ -33,8 +35,9 @@ class DeviceHub {
   void use(const std::string& id);
   DeviceNotes& notes(const std::string& id) { return book_.notes[id]; }
 
-  // Connects to the device in use, its axes adjusted. Errors: HidError.
-  std::unique_ptr<Device> open();
+  // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
+  // be called from anywhere, later. Errors: HidError.
+  std::function<std::unique_ptr<Device>()> opening() const;
   // Returns what went wrong, empty if nothing did.
   std::string save() const { return save_device_book(book_, file_); }
   const std::string& complaint() const { return complaint_; }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -11,18 +12,19 @@ namespace limpid {
 namespace {
 
 constexpr std::size_t kTraceRows = 1 << 13;  // eight seconds of a window that does not come
-constexpr int kFirstReading = 200;           // how long a device may take to say where it is [ms]
 constexpr double kGuideReach = 0.03;         // a guided hand stays this near to the tip [m]
 
 }  // namespace
 
-LiveLoop::LiveLoop(AskForPriority ask) : thread_(std::move(ask)) {}
+LiveLoop::LiveLoop(AskForPriority ask, Dispose dispose)
+    : dispose_(std::move(dispose)), thread_(std::move(ask)) {}
 
 void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
                     const Vec3& home) {
   RigStart start = rest_at(arm, home);
   close();
   rig_ = std::make_unique<Rig>(arm, scene);
+  start.armed = virtual_armed_;
   begin(std::move(start), p);
 }
 
@@ -32,11 +34,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   rig_ = std::make_unique<Rig>(arm, scene, true);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   RigStart start{rest_pose(arm), zero, rest_pose(arm), zero, zero, Vec3::Zero(), false};
-  DeviceReading first;
-  for (int i = 0; i < kFirstReading && device && device->read(first) && first.count == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  if (first.count > 0) {
+  if (DeviceReading first; device && device->read(first) && first.count > 0) {
     start.x1 = start.x2 = Eigen::Map<const Eigen::VectorXd>(first.x.data(), arm.dof());
   }
   plug(std::move(device));
@@ -53,12 +51,20 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   hand_.reset(home_.target);
   guided_.reset(home_.target);
   led_ = false;
-  thread_.start(nanoseconds(std::llround(p.tick * 1e9)),
-                [this](const TickTiming& timing) { tick(timing); });
+  known_arms_ = arms_.load();
+  known_cuts_ = cuts_.load();
+  beat_.store(MonotonicTime{}.now());
+  thread_.start(
+      nanoseconds(std::llround(p.tick * 1e9)), [this](const TickTiming& timing) { tick(timing); },
+      rig_->real() ? Overdue::given_up : Overdue::run);
 }
 
 void LiveLoop::close() {
   thread_.stop();
+  if (rig_ && !rig_->real()) virtual_armed_ = rig_->force().armed();
+  stop_recording();
+  recording_to_ = nullptr;  // the next loop's rows are not its
+  has_let_go_.store(true, std::memory_order_relaxed);
   worlds_.clear();
   plugs_.clear();
   if (rig_) rig_->plug(nullptr);
@@ -71,7 +77,7 @@ LiveLoop::~LiveLoop() { close(); }
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
-  plugs_.offer(std::make_unique<Plug>(Plug{std::move(device)}));
+  plugs_.offer(std::make_unique<Plug>(std::move(device), dispose_));
 }
 
 // What the window has offered.
@@ -112,6 +118,35 @@ HandInput LiveLoop::hand_input(const Controls& controls) {
   return hand_.step(grab, goal, tip, parameters_.hand_stiffness, T);
 }
 
+ForceWish LiveLoop::wish() {
+  const std::uint32_t arms = arms_.load(std::memory_order_relaxed);
+  const std::uint32_t cuts = cuts_.load(std::memory_order_relaxed);
+  const bool arm = std::exchange(known_arms_, arms) != arms;
+  const bool cut = std::exchange(known_cuts_, cuts) != cuts;
+  return cut ? ForceWish::cut : arm ? ForceWish::arm : ForceWish::as_it_is;
+}
+
+RigInput LiveLoop::rig_input(const TickTiming& timing, const HandInput& hand) {
+  RigInput input{hand, wish()};
+  if (!rig_->real()) return input;
+  input.periods = timing.periods;
+  input.dt = timing.dt;
+  input.silence = in_seconds(MonotonicTime{}.now() - beat_.load(std::memory_order_relaxed));
+  return input;
+}
+
+// A real device is where it is, and off; a virtual arm keeps its force, unless that had gone.
+void LiveLoop::start_over(const Parameters& p) {
+  if (rig_->real()) {
+    rig_->present(home_);
+    home_.x2 = home_.x1;
+    home_.v2 = home_.v1;
+  }
+  home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
+  rig_->start(p, home_);
+  hand_.reset(home_.target);
+}
+
 void LiveLoop::tick(const TickTiming& timing) {
   const auto began = std::chrono::steady_clock::now();
   controls_.update();
@@ -119,24 +154,19 @@ void LiveLoop::tick(const TickTiming& timing) {
   take_in();
   if (controls.resets != resets_) {
     resets_ = controls.resets;
-    if (rig_->real()) {  // it is where it is
-      rig_->present(home_);
-      home_.x2 = home_.x1;
-      home_.v2 = home_.v1;
-    }
-    home_.armed = controls.force;
-    rig_->start(controls.parameters, home_);
-    hand_.reset(home_.target);
+    start_over(controls.parameters);
+  }
+  if (!(controls.limits == limits_)) {
+    limits_ = controls.limits;
+    rig_->limit(limits_);
   }
   if (!(controls.parameters == parameters_)) {
     parameters_ = controls.parameters;
-    if (Recorder* recorder = present_recorder_.load(std::memory_order_relaxed)) {
-      recorder->changed(parameters_);
-    }
+    if (recording_to_ != nullptr) recording_to_->changed(parameters_);
   }
   const HandInput hand = hand_input(controls);
-  begin_recording(hand.target);
-  rig_->step(parameters_, {hand, controls.force}, row_);
+  follow_recorder(hand.target);
+  rig_->step(parameters_, rig_input(timing, hand), row_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   compute_ = took.count();
   publish(timing);
@@ -144,17 +174,18 @@ void LiveLoop::tick(const TickTiming& timing) {
 
 // Takes up or lets go of the recorder. A recording starts the rig anew from where it stands, so
 // that its first row says all that the later ones depend on.
-void LiveLoop::begin_recording(const Vec3& target) {
-  Recorder* wanted = wanted_recorder_.load(std::memory_order_acquire);
-  if (wanted == present_recorder_.load(std::memory_order_relaxed)) return;
-  if (wanted != nullptr) {
-    if (!rig_->steady()) return;
-    rig_->present(rebase_);
-    rebase_.target = target;
-    rig_->start(parameters_, rebase_);
-    wanted->changed(parameters_);
+void LiveLoop::follow_recorder(const Vec3& target) {
+  if (recording_to_ != nullptr && let_go_.load(std::memory_order_relaxed)) {
+    recording_to_ = nullptr;
+    has_let_go_.store(true, std::memory_order_release);
   }
-  present_recorder_.store(wanted, std::memory_order_release);
+  if (offered_recorder_.load(std::memory_order_relaxed) == nullptr || !rig_->steady()) return;
+  // Taken back meanwhile: then it is not ours.
+  Recorder* offered = offered_recorder_.exchange(nullptr, std::memory_order_acq_rel);
+  if (offered == nullptr) return;
+  recording_to_ = offered;
+  rig_->rebase(parameters_, rebase_, target);
+  offered->changed(parameters_);
 }
 
 void LiveLoop::publish(const TickTiming& timing) {
@@ -162,34 +193,60 @@ void LiveLoop::publish(const TickTiming& timing) {
   layout.in(std::span(row_), Column::wake_latency)[0] = timing.wake_latency;
   layout.in(std::span(row_), Column::compute)[0] = compute_;
   trace_->push(row_);
-  Recorder* recorder = present_recorder_.load(std::memory_order_relaxed);
-  if (recorder != nullptr) recorder->push(row_);
+  if (recording_to_ != nullptr) recording_to_->push(row_);
   Snapshot& snapshot = snapshots_.back();
   std::ranges::copy(row_, snapshot.row.begin());
   snapshot.contact_count = rig_->contacts(snapshot.contacts);
   snapshot.diverged = rig_->diverged();
-  snapshot.recording = recorder != nullptr;
-  snapshot.force_state = rig_->force_state();
+  snapshot.recording = recording_to_ != nullptr;
+  snapshot.arming = rig_->force().state();
+  snapshot.force_state = rig_->force().why();
   snapshot.connected = connected_;
   snapshot.reading = guide_;
   snapshots_.publish();
 }
 
-void LiveLoop::record(const std::filesystem::path& out, const SessionInfo& info,
-                      const Parameters& now, bool force) {
-  recorder_ = std::make_unique<Recorder>(out, info, now, force);
-  wanted_recorder_.store(recorder_.get(), std::memory_order_release);
+void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
+  if (recorder->stride() != trace_->stride()) {
+    throw std::invalid_argument("the recording was begun for an arm of other joints");
+  }
+  recorder_ = std::move(recorder);
+  stopping_ = false;
+  let_go_.store(false, std::memory_order_relaxed);
+  has_let_go_.store(false, std::memory_order_relaxed);
+  offered_recorder_.store(recorder_.get(), std::memory_order_release);
 }
 
 void LiveLoop::stop_recording() {
-  wanted_recorder_.store(nullptr, std::memory_order_release);
-  // The loop answers within a tick; one that has stopped never does, and does not write either.
-  while (present_recorder_.load(std::memory_order_acquire) != nullptr && thread_.status().running) {
+  if (!recording()) return;
+  stopping_ = true;
+  // Still offered: then the loop never had it, and will not.
+  const bool never_taken =
+      offered_recorder_.exchange(nullptr, std::memory_order_acq_rel) != nullptr;
+  if (never_taken) has_let_go_.store(true, std::memory_order_relaxed);
+  let_go_.store(true, std::memory_order_relaxed);
+}
+
+// A loop that has stopped does not say so, and does not write either.
+bool LiveLoop::recorder_is_free() {
+  if (has_let_go_.load(std::memory_order_acquire)) return true;
+  if (thread_.status().running) return false;
+  recording_to_ = nullptr;
+  return true;
+}
+
+std::unique_ptr<Recorder> LiveLoop::take_recorded() {
+  if (!stopping_ || !recorder_is_free()) return nullptr;
+  stopping_ = false;
+  return std::move(recorder_);
+}
+
+void LiveLoop::finish_recording() {
+  stop_recording();
+  while (recorder_) {
+    if (const std::unique_ptr<Recorder> done = take_recorded()) return done->finish();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  present_recorder_.store(nullptr);
-  const std::unique_ptr<Recorder> recorder = std::move(recorder_);
-  recorder->finish();
 }
 
 }  // namespace limpid

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -19,7 +20,7 @@ namespace limpid {
 // From the window to the loop; the newest wins.
 struct Controls {
   Parameters parameters;
-  bool force = true;         // armed
+  SafetyLimits limits;       // of the real device
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   std::uint32_t resets = 0;  // start over whenever this counts on
@@ -32,14 +33,24 @@ struct Snapshot {
   std::size_t contact_count = 0;
   bool diverged = false;
   bool recording = false;
-  ForceState force_state = ForceState::on;
+  Arming arming = Arming::off;
+  ForceState force_state = ForceState::off;
   bool connected = false;  // the device that is plugged in answers
   DeviceReading reading;   // its newest
 };
 
+// Lets go of a device, which may take seconds if it hangs.
+using Dispose = std::function<void(std::unique_ptr<Device>)>;
+
 // A device for the loop; without one: none is plugged in any more.
 struct Plug {
   std::unique_ptr<Device> device;
+  const Dispose* dispose = nullptr;
+
+  Plug(std::unique_ptr<Device> d, const Dispose& by) : device(std::move(d)), dispose(&by) {}
+  ~Plug() {
+    if (device && *dispose) (*dispose)(std::move(device));
+  }
 
   // Leads the virtual arm's hand instead of being the arm.
   static bool guides(const DeviceTraits& traits) { return !traits.pushes && traits.dof == 6; }
@@ -50,15 +61,18 @@ struct Plug {
 // another scene stop the thread for a moment; nothing else does.
 class LiveLoop {
  public:
-  explicit LiveLoop(AskForPriority ask);
+  // `dispose`: where devices go that are done with; none: they are closed at once.
+  explicit LiveLoop(AskForPriority ask, Dispose dispose = {});
   ~LiveLoop();
 
-  // A new world; the hand rests with the tip at `home` [m], at rest. Errors: as rest_at().
+  // A new world; the hand rests with the tip at `home` [m], at rest. The force is as it was on the
+  // last virtual arm, at first on. Errors: as rest_at().
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
   // The same with a real device for the arm, which has as many joints; force is off until it is
-  // armed. Starts where the device is.
+  // armed. Starts where the device is, if it has said so already.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
             std::unique_ptr<Device> device);
+  // Also ends a recording: take_recorded() has it then.
   void close();
   // Both are taken in by the running loop at its next tick. Another scene for the same arm, built
   // beside the loop:
@@ -68,7 +82,17 @@ class LiveLoop {
   bool real() const { return rig_ && rig_->real(); }
   bool device_plugged() const { return plugged_; }  // by the window; it may be lost
 
-  void set(const Controls& controls) { controls_.write(controls); }
+  // Asks for force; nothing else does. What was asked before open() is forgotten.
+  void arm() { arms_.fetch_add(1, std::memory_order_relaxed); }
+  // No force, from the next tick on; wins where both are asked within one.
+  void cut() { cuts_.fetch_add(1, std::memory_order_relaxed); }
+
+  // Also says that somebody is there: where motors are real the force fades when this is not heard
+  // for SafetyLimits::kSilence.
+  void set(const Controls& controls) {
+    controls_.write(controls);
+    beat_.store(MonotonicTime{}.now(), std::memory_order_relaxed);
+  }
   // The newest snapshot; true if there is one newer than at the last call. Also lets go of what the
   // loop has given back: a device is free for others then.
   bool update() {
@@ -83,37 +107,54 @@ class LiveLoop {
   const RowLayout& layout() const { return rig_->layout(); }
 
   // Recording begins at the next tick at which nothing fades; its first row is time zero of the
-  // loop. Errors: FileError.
-  void record(const std::filesystem::path& out, const SessionInfo& info, const Parameters& now,
-              bool force);
-  bool recording() const { return recorder_ != nullptr; }
+  // loop. Precondition: the loop runs, as wide as the recorder's rows; none is recording.
+  void record(std::unique_ptr<Recorder> recorder);
+  bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
-  // Ends it; the file is complete when this returns. Errors: FileError.
+  // Asks the loop to let go of the recorder.
   void stop_recording();
+  // What was stopped, once the loop has let go of it; null before. To be finished by the caller.
+  std::unique_ptr<Recorder> take_recorded();
+  // Both, and waits: the file is complete when this returns. Errors: FileError.
+  void finish_recording();
 
   LoopStatus status() const { return thread_.status(); }
   const HapticThread& thread() const { return thread_; }
 
  private:
-  void tick(const TickTiming& timing);       // the loop's
-  void begin_recording(const Vec3& target);  // the loop's
+  void tick(const TickTiming& timing);                                  // the loop's
+  void start_over(const Parameters& p);                                 // the loop's
+  void follow_recorder(const Vec3& target);                             // the loop's
+  RigInput rig_input(const TickTiming& timing, const HandInput& hand);  // the loop's
+  ForceWish wish();                                                     // the loop's
   void publish(const TickTiming& timing);
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
   void begin(RigStart start, const Parameters& p);
+  bool recorder_is_free();
 
+  Dispose dispose_;
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
-  std::unique_ptr<Recorder> recorder_;
   HandOver<TouchWorld> worlds_;
   HandOver<Plug> plugs_;
   bool plugged_ = false;  // the window's
-  // Where the loop records to: set by the window, taken up by the loop, which answers.
-  std::atomic<Recorder*> wanted_recorder_{nullptr};
-  std::atomic<Recorder*> present_recorder_{nullptr};
+  bool virtual_armed_ = true;
+
+  // Counted by the window, followed by the loop.
+  std::atomic<std::uint32_t> arms_{0}, cuts_{0};
+  std::atomic<nanoseconds> beat_{nanoseconds{0}};
+
+  // The window offers a recorder, or takes the offer back; the loop takes it and from then on it is
+  // the loop's, until it has been asked to let go and says that it has.
+  std::unique_ptr<Recorder> recorder_;
+  bool stopping_ = false;
+  std::atomic<Recorder*> offered_recorder_{nullptr};
+  std::atomic<bool> let_go_{false}, has_let_go_{false};
 
   // The loop's own.
+  Recorder* recording_to_ = nullptr;
   std::unique_ptr<Rig> rig_;
   Plug* plug_ = nullptr;
   DeviceReading guide_;
@@ -122,9 +163,10 @@ class LiveLoop {
   GuidedHand guided_;
   bool led_ = false;  // by the guide, since it was last touched
   Parameters parameters_;
+  SafetyLimits limits_;
   RigStart home_;
   RigStart rebase_;
-  std::uint32_t resets_ = 0;
+  std::uint32_t resets_ = 0, known_arms_ = 0, known_cuts_ = 0;
   std::vector<double> row_;
   double compute_ = 0;
 

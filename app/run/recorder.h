@@ -35,6 +35,7 @@ class Recorder {
   bool changed(const Parameters& now) noexcept;  // holds from the next row pushed on
 
   // The owner's side.
+  std::size_t stride() const noexcept { return ring_.stride(); }  // doubles a row
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }

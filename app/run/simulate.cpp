@@ -23,7 +23,9 @@ class Run {
         rig_(plan.arm, plan.scene),
         parameters_(plan.parameters),
         row_(static_cast<std::size_t>(rig_.layout().stride())) {
-    rig_.start(parameters_, plan.start ? *plan.start : rest_at(plan.arm, plan.hand.sample(0, T())));
+    const RigStart start = plan.start ? *plan.start : rest_at(plan.arm, plan.hand.sample(0, T()));
+    rig_.start(parameters_, start);
+    armed_ = start.armed;
   }
 
   // One tick; false when the run is over.
@@ -36,7 +38,7 @@ class Run {
     const auto k = static_cast<std::size_t>(end_.rows);
     const bool changed = apply_changes();
     const auto began = std::chrono::steady_clock::now();
-    rig_.step(parameters_, {hand(k), armed(k)}, row_);
+    rig_.step(parameters_, {hand(k), wish(k)}, row_);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     rig_.layout().in(std::span(row_), Column::wake_latency)[0] = wake_latency;
     rig_.layout().in(std::span(row_), Column::compute)[0] = took.count();
@@ -61,8 +63,11 @@ class Run {
     return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n)};
   }
 
-  bool armed(std::size_t k) const {
-    return plan_.force.empty() || plan_.force[std::min(k, plan_.force.size() - 1)];
+  ForceWish wish(std::size_t k) {
+    const bool armed = plan_.force.empty() || plan_.force[std::min(k, plan_.force.size() - 1)];
+    if (armed == armed_) return ForceWish::as_it_is;
+    armed_ = armed;
+    return armed ? ForceWish::arm : ForceWish::cut;
   }
 
   bool apply_changes() {
@@ -81,6 +86,7 @@ class Run {
   Parameters parameters_;
   std::vector<double> row_;
   std::size_t next_ = 0;
+  bool armed_ = true;
   RunEnd end_;
 };
 

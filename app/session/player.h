@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "devices/files/session.h"
 
@@ -10,27 +11,29 @@ namespace limpid {
 
 class Player {
  public:
-  explicit Player(Session session) : session_(std::move(session)) {}
+  explicit Player(std::shared_ptr<const Session> session) : session_(std::move(session)) {}
 
-  const Session& session() const { return session_; }
-  double duration() const { return static_cast<double>(session_.size()) * session_.info.tick; }
+  const Session& session() const { return *session_; }
+  // For work that goes on beside the window, also when the player is gone.
+  const std::shared_ptr<const Session>& shared() const { return session_; }
+  double duration() const { return static_cast<double>(session_->size()) * session_->info.tick; }
   double time() const { return time_; }  // [s]
   std::size_t index() const {
-    const auto k = static_cast<std::size_t>(std::max(0.0, time_ / session_.info.tick + 1e-6));
-    return std::min(k, session_.size() - 1);
+    const auto k = static_cast<std::size_t>(std::max(0.0, time_ / session_->info.tick + 1e-6));
+    return std::min(k, session_->size() - 1);
   }
-  std::span<const double> row() const { return session_.row(index()); }
+  std::span<const double> row() const { return session_->row(index()); }
 
   bool playing() const { return playing_; }
   void play() {
-    if (time_ >= duration() - session_.info.tick) time_ = 0;
+    if (time_ >= duration() - session_->info.tick) time_ = 0;
     playing_ = true;
   }
   void pause() { playing_ = false; }
-  void seek(double time) { time_ = std::clamp(time, 0.0, duration() - session_.info.tick); }
+  void seek(double time) { time_ = std::clamp(time, 0.0, duration() - session_->info.tick); }
   void step(int ticks) {
     pause();
-    seek(time_ + ticks * session_.info.tick);
+    seek(time_ + ticks * session_->info.tick);
   }
   void advance(double dt) {
     if (!playing_) return;
@@ -48,7 +51,7 @@ class Player {
   bool loop = false;
 
  private:
-  Session session_;
+  std::shared_ptr<const Session> session_;
   double time_ = 0;
   bool playing_ = false;
 };

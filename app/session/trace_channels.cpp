@@ -1,7 +1,9 @@
 #include "app/session/trace_channels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace limpid {
 namespace {
@@ -32,6 +34,22 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human, norm(layout_.human_torque(row)));
   put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
   put(Channel::contact, norm(at(Column::contact_torque)));
+}
+
+void TraceChannels::append(History& history, std::span<const double> row,
+                           std::span<const double> again) const {
+  const auto one = static_cast<std::size_t>(count());
+  std::array<double, 2 * (static_cast<std::size_t>(Channel::joints) + kMaxDof)> all{};
+  const auto used = std::span(all).first(static_cast<std::size_t>(history.channels()));
+  values(row, used.first(one));
+  if (used.size() > one) {
+    if (again.empty()) {
+      std::ranges::fill(used.subspan(one), std::numeric_limits<double>::quiet_NaN());
+    } else {
+      values(again, used.subspan(one));
+    }
+  }
+  history.append(layout_.in(row, Column::time)[0], used);
 }
 
 std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {

@@ -29,6 +29,9 @@ class TraceChannels {
   int count() const { return static_cast<int>(Channel::joints) + layout_.dof(); }
   // Fills count() values.
   void values(std::span<const double> row, std::span<double> into) const;
+  // Adds a row; in a history with room for two runs, the same row of the second one too.
+  void append(History& history, std::span<const double> row,
+              std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
 
   // The three plots: coordination error, controller energy, torques. With `rerun` a second run's

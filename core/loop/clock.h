@@ -3,7 +3,8 @@
 // Deadlines are never set from "now", so nothing adds up to a drift, and one tick is always one T:
 // after a stall the ticks that were missed run back to back, without sleeping, until the schedule
 // is met again. At most kMaxCatchUp ticks run so, for at most as many periods; what would still be
-// overdue then is given up: the schedule slips, all later deadlines move by whole periods.
+// overdue then is given up: the schedule slips, all later deadlines move by whole periods. Where
+// ticks move motors none may run so: what is missed is given up at once.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +44,10 @@ class Clock {
 
   // start: deadline of tick 0; period: T > 0; spin: how long before a deadline to stop sleeping and
   // to watch the clock instead. kSpin pays under real-time scheduling; else 0, or it does harm.
-  Clock(nanoseconds start, nanoseconds period, nanoseconds spin, Time time = {})
-      : deadline_(start), period_(period), spin_(spin), time_(time) {}
+  // catch_up: how many ticks may run back to back, 0 to kMaxCatchUp.
+  Clock(nanoseconds start, nanoseconds period, nanoseconds spin, Time time = {},
+        std::int64_t catch_up = kMaxCatchUp)
+      : deadline_(start), period_(period), spin_(spin), catch_up_(catch_up), time_(time) {}
 
   // Returns when the next tick is to begin.
   Wake wait() noexcept {
@@ -82,7 +85,7 @@ class Clock {
   void slip(nanoseconds now) noexcept {
     const std::int64_t overdue = (now - deadline_) / period_ + 1;
     const std::int64_t series = std::max(series_ticks_, (now - catch_up_start_) / period_);
-    const std::int64_t allowed = std::max<std::int64_t>(1 + kMaxCatchUp - series, 0);
+    const std::int64_t allowed = std::max<std::int64_t>(1 + catch_up_ - series, 0);
     const std::int64_t given_up = std::max<std::int64_t>(overdue - allowed, 0);
     deadline_ += given_up * period_;
     counts_.slipped += given_up;
@@ -96,6 +99,7 @@ class Clock {
   nanoseconds deadline_;
   nanoseconds period_;
   nanoseconds spin_;
+  std::int64_t catch_up_;
   Time time_;
   std::int64_t tick_ = 0;
   std::int64_t series_ticks_ = 0;  // since the last sleep: the one after it, then those catching up

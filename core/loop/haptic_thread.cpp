@@ -58,11 +58,12 @@ HapticThread::~HapticThread() {
   thread_.join();
 }
 
-void HapticThread::start(nanoseconds period, Body body) {
+void HapticThread::start(nanoseconds period, Body body, Overdue overdue) {
   if (period <= nanoseconds::zero())
     throw std::invalid_argument("the haptic thread's period must be positive");
   stop();
   period_ = period;
+  overdue_ = overdue;
   body_ = std::move(body);
   forget_last_run();
   {
@@ -130,13 +131,20 @@ std::string HapticThread::run_until_failure_or_stop() noexcept {
 void HapticThread::run() {
   const MonotonicTime time;
   const nanoseconds start = time.now() + period_;
-  Clock<> clock(start, period_, realtime_.realtime() ? Clock<>::kSpin : nanoseconds::zero());
+  Clock<> clock(start, period_, realtime_.realtime() ? Clock<>::kSpin : nanoseconds::zero(), time,
+                overdue_ == Overdue::run ? Clock<>::kMaxCatchUp : 0);
   RateMeter meter(start);
   double compute = 0;
+  nanoseconds before = start;
+  std::int64_t slipped = 0;
   while (!stop_requested_.load(relaxed)) {
     const Wake wake = clock.wait();
     publish(wake, clock.counts(), meter.update(wake));
-    body_({wake.tick, in_seconds(wake.latency), compute});
+    const std::int64_t all_slipped = clock.counts().slipped;
+    const auto periods = static_cast<int>(1 + all_slipped - std::exchange(slipped, all_slipped));
+    const double dt = wake.tick == 0 ? 0 : in_seconds(wake.moment - before);
+    before = wake.moment;
+    body_({wake.tick, in_seconds(wake.latency), compute, periods, dt});
     compute = in_seconds(time.now() - wake.moment);
     compute_time_.add(compute);
   }

@@ -16,9 +16,17 @@
 namespace limpid {
 
 struct TickTiming {
-  std::int64_t tick;        // 0, 1, 2, ..., none left out; time is tick * T
+  std::int64_t tick;        // 0, 1, 2, ..., none left out
   double wake_latency;      // how long after its deadline the tick began [s]
   double previous_compute;  // how long the tick before took, 0 for the first [s]
+  int periods = 1;          // since the tick before: more than 1 where ticks were given up
+  double dt = 0;            // the same as it really passed, 0 for the first [s]
+};
+
+// What becomes of ticks that are late.
+enum class Overdue : std::uint8_t {
+  run,      // back to back, as far as Clock allows: one tick is one period of the world
+  given_up  // for real motors
 };
 
 struct LoopStatus {
@@ -47,7 +55,7 @@ class HapticThread {
 
   // Runs `body` every period from now on; stops what ran before. Counts and histograms begin anew.
   // body: must not throw; if it does all the same the loop stops and status() tells why.
-  void start(nanoseconds period, Body body);
+  void start(nanoseconds period, Body body, Overdue overdue = Overdue::run);
 
   // Returns when the last tick is over. Not to be called from within a tick.
   void stop();
@@ -74,6 +82,7 @@ class HapticThread {
 
   // The owner's while the thread rests, the thread's while it runs.
   nanoseconds period_{0};
+  Overdue overdue_ = Overdue::run;
   Body body_;
 
   // Both threads' at any time. Nothing hangs on the order of these numbers, hence relaxed.

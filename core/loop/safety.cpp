@@ -9,6 +9,22 @@ namespace {
 constexpr double kSmooth = 0.005;  // of the velocity that is judged: encoders have steps [s]
 constexpr double kForget = 1;      // of the energy put out [s]
 
+// Full force up to the limit, none beyond `gone`.
+void fade(Objections& against, ForceState reason, double value, double limit, double gone) {
+  if (!(value > limit)) return;
+  const double part = std::max(0.0, (gone - value) / (gone - limit));
+  if (part >= against.ceiling) return;
+  against.ceiling = part;
+  against.limited = reason;
+}
+
+ForceState fault_of(const DeviceHealth& health) {
+  if (health.lost) return ForceState::lost;
+  if (health.fault) return ForceState::fault;
+  if (!(health.age <= SafetyLimits::kStaleReading)) return ForceState::stale;
+  return ForceState::on;
+}
+
 }  // namespace
 
 const char* explain(ForceState state) {
@@ -23,74 +39,77 @@ const char* explain(ForceState state) {
     case ForceState::too_far: return "a joint is out of its range";
     case ForceState::energy: return "the motors put out too much energy";
     case ForceState::diverged: return "the loop became unstable";
+    case ForceState::unwatched: return "the window did not answer for 0.2 s";
+    case ForceState::stalled: return "the loop stood still for more than 5 ms";
   }
   return "";
 }
 
+SafetyLimits allowed(SafetyLimits wanted) {
+  const SafetyLimits most;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    double& value = wanted.*info.field;
+    value = std::isnan(value) ? most.*info.field : std::clamp(value, info.least, most.*info.field);
+  }
+  return wanted;
+}
+
 template <int N>
 Safety<N>::Safety(const ArmDescription& arm)
-    : lower_(Vec<N>::Zero(arm.dof())), upper_(Vec<N>::Zero(arm.dof())) {
+    : arm_lower_(Vec<N>::Zero(arm.dof())), arm_upper_(Vec<N>::Zero(arm.dof())) {
   for (int i = 0; i < arm.dof(); ++i) {
-    lower_[i] = arm.joints[static_cast<std::size_t>(i)].lower;
-    upper_[i] = arm.joints[static_cast<std::size_t>(i)].upper;
+    arm_lower_[i] = arm.joints[static_cast<std::size_t>(i)].lower;
+    arm_upper_[i] = arm.joints[static_cast<std::size_t>(i)].upper;
   }
+  limit({});
   start();
 }
 
 template <int N>
 void Safety<N>::start() {
   v_ = Vec<N>::Zero(lower_.size());
-  state_ = ForceState::off;
-  ceiling_ = energy_ = 0;
+  energy_ = 0;
+}
+
+// A joint without a stop on one side keeps its range as it is.
+template <int N>
+void Safety<N>::limit(const SafetyLimits& wanted) {
+  limits_ = allowed(wanted);
+  lower_ = arm_lower_;
+  upper_ = arm_upper_;
+  for (Eigen::Index i = 0; i < lower_.size(); ++i) {
+    const double off = (1 - limits_.range) / 2 * (arm_upper_[i] - arm_lower_[i]);
+    if (!(off > 0) || std::isinf(off)) continue;
+    lower_[i] += off;
+    upper_[i] -= off;
+  }
 }
 
 template <int N>
-void Safety<N>::trip(ForceState reason) {
-  ceiling_ = 0;
-  state_ = reason;
-  tripped_ = reason;
-}
-
-// Full force up to the limit, none beyond `gone`.
-template <int N>
-void Safety<N>::fade(ForceState reason, double value, double limit, double gone) {
-  if (!(value > limit)) return;
-  const double part = std::max(0.0, (gone - value) / (gone - limit));
-  if (part >= ceiling_) return;
-  ceiling_ = part;
-  state_ = reason;
-}
-
-template <int N>
-void Safety<N>::judge(const DeviceHealth& health, bool wanted, bool diverged, const Vec<N>& x,
-                      const Vec<N>& v, const Jacobian<N>& J, double put_out, double T) {
+Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Vec<N>& x,
+                            const Vec<N>& v, const Jacobian<N>& J, double put_out, double T) {
+  Objections against;
+  if (diverged) against.fault = ForceState::diverged;
+  if (!health.real) return against;
+  if (health.gap) v_ = v;
   v_ += std::min(1.0, T / kSmooth) * (v - v_);
-  energy_ = std::max(0.0, energy_ * (1 - T / kForget) + put_out);
-  if (!wanted) tripped_ = ForceState::on;
-  ceiling_ = 1;
-  state_ = ForceState::on;
-  if (diverged) return trip(ForceState::diverged);
-  if (!health.real) {
-    if (!wanted) ceiling_ = 0, state_ = ForceState::off;
-    return;
-  }
-  if (health.lost) return trip(ForceState::lost);
-  if (health.fault) return trip(ForceState::fault);
-  if (!(health.age <= SafetyLimits::kStaleReading)) return trip(ForceState::stale);
-  if (tripped_ != ForceState::on) return trip(tripped_);
-  if (!wanted || !health.hand) {
-    ceiling_ = 0;
-    state_ = wanted ? ForceState::no_hand : ForceState::off;
-    return;
-  }
+  energy_ = std::max(0.0, energy_ * std::max(0.0, 1 - T / kForget) + put_out);
+  against.hand = health.hand;
+  against.gap = health.gap;
+  if (against.fault == ForceState::on) against.fault = fault_of(health);
   const auto gone = [](double limit) { return SafetyLimits::kFade * limit; };
-  fade(ForceState::too_fast, v_.cwiseAbs().maxCoeff(), limits.joint_speed,
-       gone(limits.joint_speed));
-  fade(ForceState::too_fast, (J * v_).norm(), limits.tip_speed, gone(limits.tip_speed));
-  fade(ForceState::too_far, std::max((x - upper_).maxCoeff(), (lower_ - x).maxCoeff()), 0,
-       limits.overrun);
-  fade(ForceState::energy, energy_, limits.energy, gone(limits.energy));
-  if (energy_ > gone(limits.energy)) trip(ForceState::energy);
+  fade(against, ForceState::too_fast, v_.cwiseAbs().maxCoeff(), limits_.joint_speed,
+       gone(limits_.joint_speed));
+  fade(against, ForceState::too_fast, (J * v_).norm(), limits_.tip_speed, gone(limits_.tip_speed));
+  fade(against, ForceState::too_far, std::max((x - upper_).maxCoeff(), (lower_ - x).maxCoeff()), 0,
+       SafetyLimits::kOverrun);
+  fade(against, ForceState::energy, energy_, limits_.energy, gone(limits_.energy));
+  fade(against, ForceState::unwatched, health.silence, SafetyLimits::kSilence,
+       2 * SafetyLimits::kSilence);
+  if (against.fault != ForceState::on) return against;
+  if (energy_ > gone(limits_.energy)) against.fault = ForceState::energy;
+  if (health.silence >= 2 * SafetyLimits::kSilence) against.fault = ForceState::unwatched;
+  return against;
 }
 
 // The smallest force at the tip that makes this torque, as far as a force there can.
@@ -100,8 +119,8 @@ Vec<N> Safety<N>::within_tip_force(const Vec<N>& tau, const Jacobian<N>& J) cons
   A.diagonal().array() += 1e-9 * (A.trace() + 1e-12);  // stretched out, or in a plane
   const Vec3 b = J * tau;
   const double force = A.ldlt().solve(b).norm();
-  if (!(force > limits.tip_force)) return tau;
-  return tau * (limits.tip_force / force);
+  if (!(force > limits_.tip_force)) return tau;
+  return tau * (limits_.tip_force / force);
 }
 
 template class Safety<3>;

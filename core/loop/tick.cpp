@@ -34,19 +34,25 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
 
 template <int N>
 void Tick<N>::start(const Parameters& p, const Start<N>& start) {
+  rebase(p, start);
+  motors_.start();
+  safety_.start();
+  gate_.start(start.armed);
+}
+
+template <int N>
+void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   const Vec<N> zero = Vec<N>::Zero(start.x1.size());
   proxy_.place(start.x2, start.v2, p.inertia_ratio);
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
-  motors_.start(start.armed);
-  safety_.start();
   books_ = {};
   x1_before_ = start.x1;
   f1_hat_ = start.f1_hat;
   tau1_ = vbar2_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  k_ = 0;
+  k_ = period_ = 0;
   diverged_ = false;
 }
 
@@ -57,10 +63,14 @@ void Tick<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
 }
 
 template <int N>
-const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force_wanted,
+const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish wish,
                            std::span<double> row) {
   const NoSubnormals fast_at_rest;
-  const double T = p.tick;
+  const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
+  if (in.health.gap) begin_after_gap(in);
+  const int periods = k_ > 0 && !in.health.gap ? in.periods : 1;
+  const double T = periods * p.tick;
+  if (k_ > 0) period_ += static_cast<std::uint64_t>(in.periods);
   if (k_ > 0) close_books(in, T);
   proxy_.set_ratio(p.inertia_ratio);
   if (p.kind != kind_) motors_.begin_slew();
@@ -68,7 +78,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   b_d_ = resolve<N>(p.damping, arm_damping_);
 
   // The device, (5), as the controller believes it to be.
-  if (k_ > 0) {
+  if (k_ > 0 && !in.health.gap) {
     velocity_.update(in.measured, T, p.velocity, p.encoder_step);
   } else {
     velocity_.reset(in.measured);
@@ -81,8 +91,9 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   const Vec<N>& v1 = velocity_.raw();
 
   // Human force, (16)-(18).
-  f1_hat_ = k_ > 0 ? observer_.estimate(p.alpha, T, device_.M, device_.C, device_.v, b_d_)
-                   : observer_.present();
+  f1_hat_ = k_ > 0 && !in.health.gap
+                ? observer_.estimate(p.alpha, T, device_.M, device_.C, device_.v, b_d_)
+                : observer_.present();
 
   // The coupling, (7)-(15); the proxy, (4), with the springs and dampers of (2) at the midpoint.
   x2_ = proxy_.x();
@@ -100,25 +111,40 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, bool force
   vbar2_ = proxy_.vbar();
 
   diverged_ = diverged_ || !command_.allFinite();
-  pass_on(p, in, force_wanted);
+  pass_on(p, in, wish, put_out, T);
   observer_.applied(p.anti_windup ? tau1_ : command_);
-  write_row(p, in, force_wanted, row);
+  write_row(p, in, row);
   x1_before_ = in.x;
   ++k_;
   return tau1_;
 }
 
+// Nobody knows what the device did meanwhile, but that it was without torque: it starts as one
+// found at rest does.
+template <int N>
+void Tick<N>::begin_after_gap(const Reading<N>& in) {
+  velocity_.reset(in.measured);
+  f1_hat_.setZero();
+  observer_.reset(f1_hat_, f1_hat_);
+  tau1_.setZero();
+  motors_.start();
+  x1_before_ = in.x;
+}
+
 // The command on its way to the motors.
 template <int N>
-void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, bool force_wanted) {
+void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
+                      double T) {
   const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
-  const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
   if (in.health.real) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
-  safety_.judge(in.health, force_wanted, diverged_, in.measured, device_.v, J_, put_out, p.tick);
+  const Objections against =
+      safety_.judge(in.health, diverged_, in.measured, device_.v, J_, put_out, T);
+  // As much time as really passed, and no more than a tick's.
+  const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
+  gate_.step(wish, against, dt);
   const bool real = in.health.real && !diverged_;
-  tau1_ =
-      motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit,
-                   safety_.allowed(), p.tick, safety_.ceiling(), real ? safety_.limits.slew : 0);
+  tau1_ = motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit,
+                       gate_.gain(), dt, real ? SafetyLimits::kSlew : 0);
 }
 
 template <int N>
@@ -130,13 +156,12 @@ void Tick<N>::close_books(const Reading<N>& in, double T) {
 }
 
 template <int N>
-void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, bool force_wanted,
-                        std::span<double> row) const {
+void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const {
   const auto put = [&](Column c, const Vec<N>& values) {
     std::copy_n(values.data(), values.size(), layout_.in(row, c).begin());
   };
   const auto set = [&](Column c, double value) { layout_.in(row, c)[0] = value; };
-  set(Column::time, static_cast<double>(k_) * p.tick);
+  set(Column::time, static_cast<double>(period_) * p.tick);
   put(Column::device_position, in.x);
   put(Column::device_velocity, in.v);
   put(Column::measured_position, in.measured);
@@ -148,8 +173,8 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, bool force_wa
   put(Column::proxy_torque, proxy_.tau());
   put(Column::contact_torque, proxy_.f());
   put(Column::hand_torque_estimate, f1_hat_);
-  set(Column::force_wanted, force_wanted ? 1 : 0);
-  set(Column::force_state, static_cast<double>(safety_.state()));
+  set(Column::force_wanted, gate_.armed() ? 1 : 0);
+  set(Column::force_state, static_cast<double>(gate_.why()));
   set(Column::kind, static_cast<double>(p.kind));
   set(Column::eta, p.eta);
   set(Column::alpha, p.alpha);

@@ -22,15 +22,17 @@ struct Reading {
   Vec<N> measured;  // x1_k as the encoders give it [rad]
   Vec<N> x, v;      // true state if it is known, else as measured [rad, rad/s]
   DeviceHealth health{};
+  int periods = 1;  // since the reading before, in ticks; more than 1 after a late one
+  double dt = 0;    // the same as it really passed [s]; 0: as long as it should be
 };
 
 // Where a loop starts.
 template <int N>
 struct Start {
-  Vec<N> x1, v1;  // device [rad, rad/s]
-  Vec<N> x2, v2;  // proxy
-  Vec<N> f1_hat;  // estimate of the human torque [N m]
-  bool armed = true;
+  Vec<N> x1, v1;      // device [rad, rad/s]
+  Vec<N> x2, v2;      // proxy
+  Vec<N> f1_hat;      // estimate of the human torque [N m]
+  bool armed = true;  // at full force from the first tick on; not for real motors
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
@@ -45,10 +47,13 @@ class Tick {
   Tick(const ArmDescription& arm, const Scene& scene);
 
   void start(const Parameters& p, const Start<N>& start);
+  // The same, but for the force: it goes on as it is.
+  void rebase(const Parameters& p, const Start<N>& start);
+  void limit(const SafetyLimits& limits) { safety_.limit(limits); }
 
   // Runs tick k and writes its row, except for what only the device and the clock know (hand,
   // timing). Returns the motor torque to be held until t_k+1 [N m].
-  const Vec<N>& run(const Parameters& p, const Reading<N>& in, bool force_wanted,
+  const Vec<N>& run(const Parameters& p, const Reading<N>& in, ForceWish wish,
                     std::span<double> row);
 
   // Another scene, between two ticks: takes `contacts` in and gives the old ones out. Allocates
@@ -60,19 +65,19 @@ class Tick {
   Vec3 tip() const { return arm_.tip(frames_); }      // of the device as measured [m]
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.
-  bool steady(bool force_wanted) const {
-    return motors_.steady(force_wanted) && proxy_.contacts().recoverable();
+  bool steady() const {
+    return gate_.steady() && motors_.steady() && proxy_.contacts().recoverable();
   }
   // The command was not finite: the loop is unstable, force is off.
   bool diverged() const { return diverged_; }
-  ForceState force_state() const { return safety_.state(); }
+  const ForceGate& force() const { return gate_; }
   const RowLayout& layout() const { return layout_; }
 
  private:
-  void pass_on(const Parameters& p, const Reading<N>& in, bool force_wanted);
+  void begin_after_gap(const Reading<N>& in);
+  void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
   void close_books(const Reading<N>& in, double T);
-  void write_row(const Parameters& p, const Reading<N>& in, bool force_wanted,
-                 std::span<double> row) const;
+  void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
 
   RowLayout layout_;
   Arm<N> arm_;
@@ -84,6 +89,7 @@ class Tick {
   Proxy<N> proxy_;
   MotorStage<N> motors_;
   Safety<N> safety_;
+  ForceGate gate_;
   Jacobian<N> J_;  // of the device's tip
   EnergyBooks<N> books_;
 
@@ -93,7 +99,8 @@ class Tick {
   // Of the last tick, for the books and for the delayed terms of (1):
   Vec<N> x1_before_, tau1_, vbar2_, b_d_;
   CouplingKind kind_ = CouplingKind::standard;
-  std::uint64_t k_ = 0;
+  std::uint64_t k_ = 0;       // ticks run
+  std::uint64_t period_ = 0;  // of the present tick; the same unless ticks were given up
   bool diverged_ = false;
 };
 

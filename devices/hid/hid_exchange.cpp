@@ -25,6 +25,7 @@ bool HidExchange::read(DeviceReading& newest) noexcept {
   arrivals_.update();
   const Arrival& arrival = arrivals_.front();
   newest = arrival.reading;
+  known_lapses_ = newest.lapses;
   newest.age = newest.count > 0 ? in_seconds(clock_() - arrival.moment)
                                 : std::numeric_limits<double>::infinity();
   return !lost();
@@ -35,6 +36,7 @@ void HidExchange::write(std::span<const double> torque) noexcept {
   command.torque.fill(0);
   std::copy_n(torque.begin(), std::min(torque.size(), dof_), command.torque.begin());
   command.moment = clock_();
+  command.lapses = known_lapses_;
   command.any = true;
   commands_.publish();
 }
@@ -91,6 +93,7 @@ void HidExchange::send() noexcept {
   if (!news && sent_any_ && now - sent_ < kSendPeriod) return;
   const Torque torque = torque_now(now);
   protocol_.encode(std::span(torque).first(dof_), now, deliver_);
+  if (failures_ == 0) heard_ = now;
   sent_ = now;
   sent_any_ = true;
 }
@@ -102,16 +105,26 @@ bool HidExchange::may_push(nanoseconds now) const noexcept {
          now - arrival_.moment <= protocol_.stale_after() && reading.hand && !reading.fault;
 }
 
-HidExchange::Torque HidExchange::torque_now(nanoseconds now) const noexcept {
+HidExchange::Torque HidExchange::torque_now(nanoseconds now) noexcept {
+  const Command& command = commands_.front();
+  if (!command.any || command.lapses != arrival_.reading.lapses) return {};
   Torque torque{};
-  if (!may_push(now)) return torque;
+  bool any = false;
   const std::vector<double>& effort = protocol_.traits().effort;
   for (std::size_t i = 0; i < dof_; ++i) {
-    const double asked = commands_.front().torque[i];
-    if (!std::isfinite(asked)) return {};
+    const double asked = command.torque[i];
+    if (!std::isfinite(asked)) return withheld();
+    any = any || asked != 0;
     torque[i] = std::clamp(asked, -effort[i], effort[i]);
   }
-  return torque;
+  const bool heard = !sent_any_ || now - heard_ <= kSendGap;
+  return any && !(may_push(now) && heard) ? withheld() : torque;
+}
+
+HidExchange::Torque HidExchange::withheld() noexcept {
+  ++arrival_.reading.lapses;
+  arrivals_.write(arrival_);
+  return {};
 }
 
 // Some endpoints take milliseconds for a report; what comes meanwhile is not to wait for the next.

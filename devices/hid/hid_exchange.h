@@ -4,6 +4,10 @@
 // The torque sent is zero unless all of this holds: a tick asked for it at most kTorqueLife ago;
 // the newest reading is younger than the protocol allows; the device reports no fault and the hand
 // on it; every number is finite.
+//
+// A torque that was withheld, or came to a device that had heard nothing for a while, is a lapse:
+// the force is gone, and must not come back in one report. Torques count again once the loop has
+// read of the lapse, which makes it start from zero.
 #pragma once
 
 #include <array>
@@ -28,6 +32,8 @@ class HidExchange {
   // With the turn in which it is noticed, less than 10 ms.
   static constexpr nanoseconds kTorqueLife = std::chrono::microseconds(8500);
   static constexpr nanoseconds kSendPeriod = std::chrono::milliseconds(1);
+  // Devices drop their force by themselves after 10 ms; a PID effect may be 4 ms old already.
+  static constexpr nanoseconds kSendGap = std::chrono::milliseconds(5);
   static constexpr nanoseconds kAskAfter = std::chrono::milliseconds(2);
   static constexpr int kMostFailures = 10;  // writes in a row; then the device is lost
 
@@ -53,7 +59,8 @@ class HidExchange {
   struct Command {
     Torque torque{};
     nanoseconds moment{};
-    bool any = false;  // any was given yet
+    std::uint32_t lapses = 0;  // that the loop knew of
+    bool any = false;          // any was given yet
   };
   struct Arrival {
     DeviceReading reading;
@@ -65,7 +72,8 @@ class HidExchange {
   void ask_if_silent() noexcept;
   void send() noexcept;
   bool may_push(nanoseconds now) const noexcept;
-  Torque torque_now(nanoseconds now) const noexcept;
+  Torque torque_now(nanoseconds now) noexcept;
+  Torque withheld() noexcept;
   bool deliver(std::span<const std::uint8_t> report) noexcept;
   void lose() noexcept { lost_.store(true, std::memory_order_relaxed); }
 
@@ -74,6 +82,7 @@ class HidExchange {
   ReadClock clock_;
   std::size_t dof_;
 
+  std::uint32_t known_lapses_ = 0;  // to the haptic thread
   TripleBuffer<Command> commands_;
   TripleBuffer<Arrival> arrivals_;
   std::atomic<bool> lost_{false};
@@ -84,6 +93,7 @@ class HidExchange {
   Arrival arrival_;
   SendReport deliver_;
   nanoseconds sent_{};
+  nanoseconds heard_{};  // by the device
   bool sent_any_ = false;
   int failures_ = 0;
   nanoseconds asked_{};

@@ -97,7 +97,7 @@ class Stroke {
     const auto x = inverse_kinematics(arm_, target(++k_), x_);
     if (x) x_ = *x;
   }
-  void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, true, row_); }
+  void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, ForceWish::as_it_is, row_); }
   bool touches() const { return !tick_.proxy().f().isZero(0); }
   bool diverged() const { return tick_.diverged(); }
 

@@ -52,7 +52,7 @@ class Pressed {
 
   const Vec<N>& control() {
     const Reading<N> reading = arm_.read(p_.encoder_step);
-    return tick_.run(p_, reading, true, row_);
+    return tick_.run(p_, reading, ForceWish::as_it_is, row_);
   }
   void live(const Vec<N>& torque) {
     const double angle = 1e-3 * k_++;

@@ -108,7 +108,7 @@ TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
   std::size_t most = 0;
   std::array<ContactForce, 32> forces;
   for (int k = 0; k < 3000; ++k) {
-    rig.step(p, {{path(1e-3 * k), 1}, true}, rows.add());
+    rig.step(p, {{path(1e-3 * k), 1}}, rows.add());
     const std::size_t count = rig.contacts(forces);
     most = std::max(most, count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -132,7 +132,7 @@ TEST_P(MeshInBothCouplings, IsRepeatedToTheLastBit) {
   Rows before(first.layout());
   int k = 0;
   for (; k < 900 || !first.steady(); ++k) {
-    first.step(p, {{path(1e-3 * k), 1}, true}, before.add());
+    first.step(p, {{path(1e-3 * k), 1}}, before.add());
   }
   // A recording begins in the middle of the contact, and is run again from its first row.
   RigStart present = rest_at(arm, path(0));
@@ -142,7 +142,7 @@ TEST_P(MeshInBothCouplings, IsRepeatedToTheLastBit) {
   Rig second(arm, scene);
   Rows recorded(first.layout()), again(first.layout());
   for (int i = 0; i < 1500; ++i) {
-    const RigInput input{{path(1e-3 * (k + i)), 1}, true};
+    const RigInput input{{path(1e-3 * (k + i)), 1}};
     first.step(p, input, recorded.add());
     if (i == 0) second.start(p, start_of(first.layout(), recorded.row(0)));
     second.step(p, input, again.add());
@@ -163,7 +163,7 @@ TEST_P(MeshInBothCouplings, GoesOnWhenTheWorldIsExchangedForTheSame) {
   Rows a(left.layout()), b(left.layout());
   for (int k = 0; k < 2500; ++k) {
     if (k == 1200) right.exchange(same);
-    const RigInput input{{path(1e-3 * k), 1}, true};
+    const RigInput input{{path(1e-3 * k), 1}};
     left.step(p, input, a.add());
     right.step(p, input, b.add());
   }
@@ -183,7 +183,7 @@ TEST_P(MeshInBothCouplings, GetsToAnotherStiffnessWithoutAJump) {
   Rows rows(rig.layout());
   for (int k = 0; k < 2000; ++k) {
     if (k == 1200) rig.exchange(stiffer);
-    rig.step(p, {{path(1e-3 * k), 1}, true}, rows.add());
+    rig.step(p, {{path(1e-3 * k), 1}}, rows.add());
   }
   // From no torque to the limit in a tenth of a second.
   for (int joint = 0; joint < 3; ++joint) {

@@ -17,6 +17,7 @@
 #include "devices/rig.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/wisher.h"
 
 namespace {
 
@@ -150,6 +151,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   hand.reset(home);
   RigStart present = start;
   std::size_t touched = 0;
+  test::Wisher wisher(true);
   {
     const Watch watch;
     for (int k = 0; k < 1200; ++k) {
@@ -164,14 +166,13 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       const Vec3 goal = home + 0.03 * Vec3(std::sin(9 * t), std::sin(7 * t), -std::sin(5 * t));
       const HandInput input =
           hand.step(k % 500 < 400, goal, crowded.tip(), p.hand_stiffness, p.tick);
-      crowded.step(p, {input, k % 600 < 500}, row);
+      crowded.step(p, {input, wisher.at(k % 600 < 500)}, row);
       touched += crowded.contacts(contacts);
       ring.push(row);
       std::copy(row.begin(), row.end(), snapshots.back().begin());
       snapshots.publish();
       if (k % 333 == 332) {  // as a recording begins
-        crowded.present(present);
-        crowded.start(p, present);
+        crowded.rebase(p, present, goal);
       }
     }
   }

@@ -29,7 +29,7 @@ Rows press(const Parameters& p, double depth, double rest) {
     const double s = std::min(1.0, static_cast<double>(k) * p.tick);
     const double smooth = s * s * (3 - 2 * s);
     const Vec3 target(kHome.x(), kHome.y(), smooth * (kTableTop - depth));
-    rig.step(p, {{target, 1}, true}, rows.add());
+    rig.step(p, {{target, 1}}, rows.add());
   }
   return rows;
 }
@@ -42,7 +42,7 @@ Rows follow(const Parameters& p, const Scene& scene, const HandPath& hand) {
   Rows rows(rig.layout());
   const auto ticks = static_cast<std::size_t>(hand.duration() / p.tick);
   for (std::size_t k = 0; k < ticks && !rig.diverged(); ++k) {
-    rig.step(p, {{hand.sample(k, p.tick), 1}, true}, rows.add());
+    rig.step(p, {{hand.sample(k, p.tick), 1}}, rows.add());
   }
   return rows;
 }
@@ -186,7 +186,7 @@ double growth(double eta) {
   double early = 0, late = 0;
   for (std::size_t k = 0; k < 3000; ++k) {
     const double nudge = k < 20 ? 1e-4 : 0;
-    rig.step(p, {{kHome + Vec3(nudge, nudge, nudge), 1}, true}, rows.add());
+    rig.step(p, {{kHome + Vec3(nudge, nudge, nudge), 1}}, rows.add());
     const double speed = rows.vec(k, Column::device_velocity).norm();
     if (k < 500) early = std::max(early, speed);
     if (k >= 2500) late = std::max(late, speed);
@@ -226,11 +226,11 @@ TEST(Loop, ThatIsUnstableSaysSoAndGivesNoMoreTorque) {
   Rows rows(rig.layout());
   std::size_t k = 0;
   for (; k < 20000 && !rig.diverged(); ++k) {
-    rig.step(p, {{kHome + Vec3(0.01, 0.01, 0.01), 1}, true}, rows.add());
+    rig.step(p, {{kHome + Vec3(0.01, 0.01, 0.01), 1}}, rows.add());
   }
   ASSERT_TRUE(rig.diverged()) << rows.vec(k - 1, Column::device_velocity).norm();
   for (int i = 0; i < 10; ++i) {
-    rig.step(p, {{kHome, 1}, true}, rows.add());
+    rig.step(p, {{kHome, 1}}, rows.add());
     EXPECT_EQ(rows.vec(rows.size() - 1, Column::motor_torque).norm(), 0);
   }
   EXPECT_EQ(rows.vec(k - 1, Column::motor_torque).norm(), 0);

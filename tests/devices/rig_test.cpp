@@ -42,7 +42,12 @@ class Script {
   RigInput at(std::size_t k) const {
     const double t = 1e-3 * static_cast<double>(k);
     const Vec3 way(std::sin(3 * t), std::sin(4.1 * t), std::sin(5.3 * t));
-    return {{home_ + 0.02 * way, k % 900 < 700 ? 1.0 : 0.3}, k % 1300 < 1000};
+    return {{home_ + 0.02 * way, k % 900 < 700 ? 1.0 : 0.3}, wish(k)};
+  }
+  static bool armed(std::size_t k) { return k % 1300 < 1000; }
+  static ForceWish wish(std::size_t k) {
+    if (k == 0 || armed(k) == armed(k - 1)) return ForceWish::as_it_is;
+    return armed(k) ? ForceWish::arm : ForceWish::cut;
   }
   static Parameters parameters(std::size_t k) {
     Parameters p;
@@ -100,10 +105,7 @@ TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
   live.start(Script::parameters(0), rest_at(arm_, home_));
   run(live, script_, 0, 777);
   RigStart start = rest_at(arm_, home_);
-  live.present(start);
-  start.target = script_.at(777).hand.target;
-  start.armed = script_.at(777).force;
-  live.start(Script::parameters(777), start);
+  live.rebase(Script::parameters(777), start, script_.at(777).hand.target);
   const Rows recorded = run(live, script_, 777, 2000);
 
   Rig again(arm_, scene_);
@@ -118,7 +120,7 @@ TEST_P(RigOfJoints, RestsWhereItIsPut) {
   rig.start(Parameters{}, start);
   EXPECT_LT((rig.tip() - home_).norm(), 1e-6);
   Rows rows(rig.layout());
-  for (int k = 0; k < 500; ++k) rig.step(Parameters{}, {{home_, 1}, true}, rows.add());
+  for (int k = 0; k < 500; ++k) rig.step(Parameters{}, {{home_, 1}}, rows.add());
   EXPECT_LT((rows.vec(499, Column::device_position) - start.x1).norm(), 1e-5);
   EXPECT_LT((rows.vec(499, Column::proxy_position) - start.x1).norm(), 1e-5);
   EXPECT_TRUE(rig.steady());
@@ -133,7 +135,7 @@ TEST_P(RigOfJoints, WritesWhatTheHandDid) {
     const RigInput input = script_.at(k);
     ASSERT_EQ(rows.vec(k, Column::hand_target), Eigen::VectorXd(input.hand.target));
     ASSERT_EQ(rows.at(k, Column::hand_grip), input.hand.grip);
-    ASSERT_EQ(rows.at(k, Column::force_wanted), input.force ? 1 : 0);
+    ASSERT_EQ(rows.at(k, Column::force_wanted), Script::armed(k) ? 1 : 0);
     ASSERT_EQ(rows.at(k, Column::eta), Script::parameters(k).eta);
     ASSERT_NEAR(rows.at(k, Column::time), 1e-3 * static_cast<double>(k), 1e-12);
   }
@@ -146,11 +148,11 @@ TEST(Rig, ListsTheContactsThatPush) {
   rig.start(Parameters{}, rest_at(arm, home));
   Rows rows(rig.layout());
   std::array<ContactForce, 4> contacts;
-  rig.step(Parameters{}, {{home, 1}, true}, rows.add());
+  rig.step(Parameters{}, {{home, 1}}, rows.add());
   EXPECT_EQ(rig.contacts(contacts), 0u);
   for (int k = 0; k < 3000; ++k) {
     const Vec3 target = home - Vec3(0, 0, std::min(0.045, 3e-5 * k));
-    rig.step(Parameters{}, {{target, 1}, true}, rows.add());
+    rig.step(Parameters{}, {{target, 1}}, rows.add());
   }
   ASSERT_EQ(rig.contacts(contacts), 1u);
   EXPECT_GT(contacts[0].force.z(), 0.3);

@@ -33,7 +33,7 @@ inline Rows run(const Scene& scene, const Parameters& p, const Path& path, doubl
   rig.start(p, rest_at(arm, path(0)));
   Rows rows(rig.layout());
   for (int k = 0; k < seconds / p.tick && !rig.diverged(); ++k) {
-    rig.step(p, {{path(k * p.tick), 1}, true}, rows.add());
+    rig.step(p, {{path(k * p.tick), 1}}, rows.add());
   }
   EXPECT_FALSE(rig.diverged());
   return rows;

@@ -1,14 +1,18 @@
 // A reference device on the desk and the running loop that holds it, as the program has them.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
 #include "app/live/live_loop.h"
+#include "app/run/replay.h"
 #include "devices/files/scene_file.h"
 #include "devices/files/urdf_file.h"
 #include "devices/hid/device_list.h"
@@ -81,12 +85,21 @@ class Desk {
   }
   void open() { open(connect()); }
   void open(std::unique_ptr<Device> one) {
+    await_reading(*one, 200ms);
     loop.open(arm, scene, controls.parameters, std::move(one));
-    arm_force(false);
+    window = std::jthread([this](const std::stop_token& closed) {
+      while (!closed.stop_requested()) {
+        if (!hangs) {
+          const std::lock_guard lock(mutex);
+          loop.set(controls);
+        }
+        std::this_thread::sleep_for(16ms);
+      }
+    });
   }
-  void arm_force(bool on) {
-    controls.force = on;
-    loop.set(controls);
+  void arm_force(bool on) { on ? loop.arm() : loop.cut(); }
+  void record(const std::filesystem::path& out, const RunPlan& plan) {
+    loop.record(std::make_unique<Recorder>(out, session_info(plan), plan.parameters, true));
   }
   // Until the stick leans on the gate's side and is pushed back.
   bool push() {
@@ -118,8 +131,35 @@ class Desk {
   Scene scene = joystick_gate();
   std::unique_ptr<Model> model;
   std::unique_ptr<UhidDevice> device;
+  // What the window sets, from its next frame on.
+  void set(const std::function<void(Controls&)>& change) {
+    const std::lock_guard lock(mutex);
+    change(controls);
+  }
+
   Controls controls;
+  std::mutex mutex;
   LiveLoop loop{{}};
+  std::atomic<bool> hangs = false;  // the window does
+  std::jthread window;
+};
+
+// Says where the stick is as usual, but keeps the loop waiting when told to.
+class Stalling final : public Device {
+ public:
+  Stalling(std::unique_ptr<Device> device, const std::atomic<bool>& stalled)
+      : device_(std::move(device)), stalled_(stalled) {}
+  const DeviceTraits& traits() const override { return device_->traits(); }
+  bool read(DeviceReading& newest) noexcept override {
+    while (stalled_) std::this_thread::sleep_for(100us);
+    return device_->read(newest);
+  }
+  void write(std::span<const double> torque) noexcept override { device_->write(torque); }
+  void stop() noexcept override { device_->stop(); }
+
+ private:
+  std::unique_ptr<Device> device_;
+  const std::atomic<bool>& stalled_;
 };
 
 // One line of the table of measured times.

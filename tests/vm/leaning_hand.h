@@ -61,7 +61,7 @@ inline Rows circle_virtually(const ArmDescription& arm, const Scene& scene,
       torque[i] =
           hand.stiffness * (target - state.x1[axis]) + hand.damping * (speed - state.v1[axis]);
     }
-    rig.step({}, {{home, 0, torque}, true}, rows.add());
+    rig.step({}, {{home, 0, torque}}, rows.add());
   }
   return rows;
 }

@@ -2,11 +2,10 @@
 // ended.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/vm/desk.h"
+#include "tests/vm/driver.h"
 
 namespace limpid::test {
 namespace {
@@ -93,24 +92,6 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheLoopIsClosed) {
   this->expect_zero("closed", this->desk.zero_after(moment), kTickLife);
 }
 
-// Says where the stick is as usual, but keeps the loop waiting when told to.
-class Stalling final : public Device {
- public:
-  Stalling(std::unique_ptr<Device> device, const std::atomic<bool>& stalled)
-      : device_(std::move(device)), stalled_(stalled) {}
-  const DeviceTraits& traits() const override { return device_->traits(); }
-  bool read(DeviceReading& newest) noexcept override {
-    while (stalled_) wait(1ms);
-    return device_->read(newest);
-  }
-  void write(std::span<const double> torque) noexcept override { device_->write(torque); }
-  void stop() noexcept override { device_->stop(); }
-
- private:
-  std::unique_ptr<Device> device_;
-  const std::atomic<bool>& stalled_;
-};
-
 TYPED_TEST(FailingLoop, EndsForceWhenNoTickComes) {
   std::atomic<bool> stalled = false;
   this->desk.open(std::make_unique<Stalling>(this->desk.connect(), stalled));
@@ -123,38 +104,9 @@ TYPED_TEST(FailingLoop, EndsForceWhenNoTickComes) {
   this->desk.loop.close();
 }
 
-TYPED_TEST(FailingLoop, EndsForceWhenTheTickThrows) {
-  Rig rig(this->desk.arm, this->desk.scene, true);
-  const auto device = this->desk.connect();
-  rig.start({}, rest_at(this->desk.arm, Vec3(0, 0, 0.12)));
-  rig.plug(device.get());
-  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
-  std::atomic<bool> fail = false;
-  HapticThread thread;
-  thread.start(1ms, [&](const TickTiming&) {
-    if (fail) throw std::runtime_error("a tick that fails");
-    rig.step({}, {{rig.tip(), 1}, true}, row);
-  });
-  ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
-  const Time moment = steady_now();
-  fail = true;
-  wait(100ms);
-  this->expect_zero("exception in the tick", this->desk.zero_after(moment), kTickLife);
-  EXPECT_EQ(thread.status().failure, "a tick that fails");
-}
-
-// The driver is another process: this program with the device's kind as its argument.
-pid_t start_driver(HidKind kind) {
-  std::string program = "/proc/self/exe";
-  std::string word = kind == HidKind::raw ? "drive-raw" : "drive-pid";
-  char* arguments[] = {program.data(), word.data(), nullptr};
-  pid_t child = 0;
-  return posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0 ? child
-                                                                                         : -1;
-}
-
-TYPED_TEST(FailingLoop, EndsForceWhenTheProcessDies) {
-  for (const int signal : {SIGKILL, SIGSEGV, SIGTERM}) {
+// SIGABRT: also what becomes of an exception in the loop.
+TYPED_TEST(FailingLoop, EndsForceWhenTheProcessIsInterruptedOrDies) {
+  for (const int signal : {SIGINT, SIGTERM, SIGKILL, SIGSEGV, SIGABRT}) {
     const pid_t driver = start_driver(this->desk.kKind);
     ASSERT_GT(driver, 0);
     ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));

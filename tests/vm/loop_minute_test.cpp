@@ -2,7 +2,6 @@
 // arm.
 #include <gtest/gtest.h>
 
-#include "app/run/replay.h"
 #include "tests/support/rows.h"
 #include "tests/support/temp_dir.h"
 #include "tests/vm/desk.h"
@@ -54,11 +53,11 @@ Minute run_on_device(Desk<PidJoystickModel>& desk) {
   plan.arm = desk.arm;
   plan.scene = desk.scene;
   plan.hand.source = "device";
-  desk.loop.record(dir / "a.h5", session_info(plan), plan.parameters, true);
+  desk.record(dir / "a.h5", plan);
   wait(std::chrono::seconds(static_cast<int>(kMinute + Circling::kRest)));
   EXPECT_EQ(desk.force_state(), ForceState::on);
   EXPECT_EQ(desk.loop.recorder()->dropped(), 0u);
-  desk.loop.stop_recording();
+  desk.loop.finish_recording();
   const LoopStatus status = desk.loop.status();
   EXPECT_EQ(status.slipped, 0);  // late ones are caught up
   desk.loop.close();

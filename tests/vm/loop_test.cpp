@@ -2,7 +2,6 @@
 // that was pulled out comes back without force.
 #include <gtest/gtest.h>
 
-#include "app/run/replay.h"
 #include "tests/support/rows.h"
 #include "tests/support/temp_dir.h"
 #include "tests/vm/desk.h"
@@ -87,7 +86,7 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   plan.arm = desk.arm;
   plan.scene = desk.scene;
   plan.hand.source = "device";
-  desk.loop.record(dir / "a.h5", session_info(plan), plan.parameters, false);
+  desk.record(dir / "a.h5", plan);
   ASSERT_TRUE(wait_until([&] { return desk.loop.update() && desk.loop.snapshot().recording; }));
   const auto ticks_before = desk.loop.status().ticks;
   ASSERT_TRUE(desk.push());
@@ -113,7 +112,7 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   EXPECT_TRUE(desk.push());
   const auto dropped = desk.loop.recorder()->dropped();
   const auto ticks_after = desk.loop.status().ticks;
-  desk.loop.stop_recording();
+  desk.loop.finish_recording();
   desk.loop.close();
   EXPECT_EQ(dropped, 0u);
 

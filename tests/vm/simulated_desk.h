@@ -12,6 +12,7 @@
 #include "devices/rig.h"
 #include "tests/support/hid/pid_joystick_model.h"
 #include "tests/support/hid/raw_device_model.h"
+#include "tests/support/wisher.h"
 #include "tests/vm/leaning_hand.h"
 
 namespace limpid::test {
@@ -133,7 +134,7 @@ class SimulatedDesk {
       now += microseconds(50);
       link->exchange.step();
       now += microseconds(450);
-      if (ticking) rig.step({}, {{rig.tip(), 1}, armed}, row.add());
+      if (ticking) rig.step({}, {{rig.tip(), 1}, wisher.at(armed)}, row.add());
     }
   }
   // Until it has been pushed for a while, as far as it is.
@@ -156,6 +157,7 @@ class SimulatedDesk {
 
   Time now = std::chrono::hours(1);
   bool armed = false, ticking = true;
+  Wisher wisher;
   std::unique_ptr<Model> model;
   Rig rig;
   Rows row;

@@ -11,7 +11,7 @@ Player player(std::size_t rows) {
   Session session;
   session.info = test::sample_info(3);
   session.rows = test::sample_rows(session.layout, 0, rows);
-  return Player(std::move(session));
+  return Player(std::make_shared<const Session>(std::move(session)));
 }
 
 TEST(Player, ShowsTheRowOfItsTime) {

@@ -9,6 +9,7 @@
 
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
+#include "tests/support/wisher.h"
 
 namespace limpid {
 namespace {
@@ -34,7 +35,7 @@ Rows run(const ArmDescription& arm, const Scene& scene, const Parameters& p, std
   Rows rows(tick.layout());
   for (std::size_t k = 0; k < ticks; ++k) {
     const Vec<kAnyDof> x = led(n, k, p.tick);
-    tick.run(p, {x, x, Vec<kAnyDof>::Zero(n)}, true, rows.add());
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(n)}, ForceWish::as_it_is, rows.add());
   }
   return rows;
 }
@@ -164,8 +165,8 @@ TEST(Tick, SwitchesTheCouplingWithoutAJumpOfTheMotors) {
   for (std::size_t k = 0; k < 1500; ++k) {
     p.kind = k / 300 % 2 ? CouplingKind::standard : CouplingKind::proposed;
     const Vec<3> x = led(3, k, p.tick);
-    tick.run(p, {x, x, Vec<3>::Zero()}, true, rows.add());
-    if (k == 0 || tick.steady(true)) continue;
+    tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+    if (k == 0 || tick.steady()) continue;
     slewed = true;
     const Vector jump = rows.vec(k, Column::motor_torque) - rows.vec(k - 1, Column::motor_torque);
     for (int i = 0; i < 3; ++i) {
@@ -180,12 +181,13 @@ TEST(Tick, GivesNoTorqueWhileForceIsOffAndSaysSo) {
   const ArmDescription arm = random_arm(3, 124);
   const Parameters p;
   Tick<3> tick(arm, stop());
+  test::Wisher wisher(true);
   tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
   Rows rows(tick.layout());
   for (std::size_t k = 0; k < 300; ++k) {
     const Vec<3> x = led(3, k, p.tick);
     const bool force = k < 100 || k >= 200;
-    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, force, rows.add());
+    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, wisher.at(force), rows.add());
     ASSERT_EQ(rows.at(k, Column::force_wanted), force ? 1 : 0);
     ASSERT_EQ(tau, rows.vec(k, Column::motor_torque));
     if (!force) {
@@ -204,7 +206,7 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
   for (std::size_t k = 0; k < 100; ++k) {
     Vec<3> x = led(3, k, p.tick);
     if (k == 50) x[1] = std::numeric_limits<double>::quiet_NaN();
-    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, true, rows.add());
+    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
     ASSERT_EQ(tick.diverged(), k >= 50);
     ASSERT_TRUE(tau.allFinite());
     if (k >= 50) {
@@ -215,7 +217,7 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
   tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
   EXPECT_FALSE(tick.diverged());
   const Vec<3> x = led(3, 0, p.tick);
-  tick.run(p, {x, x, Vec<3>::Zero()}, true, rows.add());
+  tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
   EXPECT_FALSE(tick.diverged());
 }
 
@@ -229,8 +231,8 @@ TEST(Tick, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   Rows a(fixed.layout()), b(any.layout());
   for (std::size_t k = 0; k < 500; ++k) {
     const Vec<3> x = led(3, k, p.tick);
-    fixed.run(p, {x, x, Vec<3>::Zero()}, true, a.add());
-    any.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, true, b.add());
+    fixed.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, a.add());
+    any.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, b.add());
     for (std::size_t i = 0; i < a.row(k).size(); ++i) {
       ASSERT_NEAR(a.row(k)[i], b.row(k)[i], 1e-7 * (1 + std::abs(a.row(k)[i]))) << k << ", " << i;
     }

@@ -42,6 +42,8 @@ struct LiveRawDevice : testing::Test {
     std::atomic<bool> pushed = false;
     std::thread ticks([&] {
       while (!pushed) {
+        DeviceReading newest;
+        device.read(newest);
         device.write(std::vector<double>{0.25, 0});
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }

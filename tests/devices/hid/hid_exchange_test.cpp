@@ -35,16 +35,21 @@ struct RawExchange : testing::Test {
     const auto received = device->received();
     return received.empty() ? test::RawCommand{.right = false} : test::raw_command(received.back());
   }
+  // As the haptic thread does.
+  void tick() {
+    exchange->read(newest);
+    exchange->write(torque);
+  }
   // A device that is being pushed.
   void push() {
     reading_arrives();
-    exchange->write(torque);
+    tick();
     ASSERT_EQ(turn().torque[0], 0.25f);
   }
   // A turn with all well, but for what the test has changed.
   test::RawCommand healthy_turn() {
     reading_arrives();
-    exchange->write(torque);
+    tick();
     return turn();
   }
 
@@ -191,6 +196,7 @@ TEST_F(RawExchange, TakesNoNumberForZeroOnAllJoints) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     push();
     reading_arrives();
+    exchange->read(newest);
     exchange->write(std::vector<double>{0.25, bad});
     EXPECT_FALSE(turn().pushes());
   }
@@ -235,16 +241,76 @@ TEST_F(RawExchange, ReportsALostDevice) {
 TEST_F(RawExchange, GivesUpADeviceThatTakesNoReports) {
   push();
   device->refuse_writes(true);
-  for (int i = 1; i < HidExchange::kMostFailures; ++i) healthy_turn();
+  for (int i = 0; i < 9; ++i) healthy_turn();
   EXPECT_FALSE(exchange->lost());
   device->refuse_writes(false);
+  EXPECT_FALSE(healthy_turn().pushes()) << "it had dropped its force, which comes back slowly";
   EXPECT_TRUE(healthy_turn().pushes()) << "one that takes them again is well";
   device->refuse_writes(true);
-  for (int i = 0; i < HidExchange::kMostFailures; ++i) healthy_turn();
+  for (int i = 0; i < 9; ++i) healthy_turn();
+  EXPECT_FALSE(exchange->lost()) << "failures before a success do not count";
+  healthy_turn();
   EXPECT_TRUE(exchange->lost());
   // The last word may get through all the same.
   device->refuse_writes(false);
   EXPECT_TRUE(exchange->finish());
+}
+
+// What the loop does not know of it cannot mend: it would go on from the torque it had.
+TEST_F(RawExchange, GivesNoTorqueAfterAStallUntilTheLoopHasHeardOfIt) {
+  for (const int stall : {9, 20, 100, 1000}) {
+    push();
+    exchange->read(newest);
+    const std::uint32_t before = newest.lapses;
+    for (int i = 0; i < stall; ++i) {
+      reading_arrives();
+      turn();
+    }
+    reading_arrives();
+    exchange->write(torque);  // worked out before the stall
+    EXPECT_FALSE(turn().pushes()) << stall;
+    exchange->read(newest);
+    EXPECT_EQ(newest.lapses, before + 1) << stall;
+    EXPECT_TRUE(healthy_turn().pushes()) << stall;
+  }
+}
+
+TEST_F(RawExchange, GivesNoTorqueAfterItHasStoodStillItself) {
+  for (const int stall : {6, 9, 20, 100, 1000}) {
+    push();
+    const std::uint32_t before = newest.lapses;
+    now += milliseconds(stall - 1);
+    EXPECT_FALSE(healthy_turn().pushes()) << stall;
+    exchange->read(newest);
+    EXPECT_EQ(newest.lapses, before + 1) << stall;
+    EXPECT_TRUE(healthy_turn().pushes()) << stall;
+  }
+}
+
+TEST_F(RawExchange, TellsTheLoopWheneverItKeptATorqueBack) {
+  push();
+  const std::uint32_t before = newest.lapses;
+  reading_arrives({0, 0}, 5);  // the hand is gone, for less than a tick
+  exchange->write(torque);
+  EXPECT_FALSE(turn(microseconds(300)).pushes());
+  reading_arrives();
+  exchange->write(torque);
+  EXPECT_FALSE(turn(microseconds(300)).pushes());
+  exchange->read(newest);
+  EXPECT_TRUE(newest.hand);
+  EXPECT_EQ(newest.lapses, before + 1);
+}
+
+TEST_F(RawExchange, CountsNoLapseWhileThereIsNoTorqueToKeepBack) {
+  const std::vector<double> none{0, 0};
+  for (int i = 0; i < 50; ++i) {
+    reading_arrives({0, 0}, 5);
+    exchange->read(newest);
+    exchange->write(none);
+    turn(milliseconds(i % 20 + 1));
+  }
+  exchange->read(newest);
+  EXPECT_EQ(newest.lapses, 0u);
 }
 
 TEST_F(RawExchange, EndsWithAStop) {

@@ -22,6 +22,8 @@ struct SilentJoystick : testing::Test {
   bool pushed_after(int turns) {
     for (int i = 0; i < turns; ++i) {
       now += milliseconds(1);
+      DeviceReading newest;
+      exchange->read(newest);
       exchange->write(std::vector<double>{0.5, 0});
       exchange->step();
     }

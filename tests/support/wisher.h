@@ -1,0 +1,22 @@
+// From "armed or not" at each tick to what is asked for at it.
+#pragma once
+
+#include "core/loop/arming.h"
+
+namespace limpid::test {
+
+class Wisher {
+ public:
+  explicit Wisher(bool armed = false) : armed_(armed) {}
+
+  ForceWish at(bool armed) {
+    if (armed == armed_) return ForceWish::as_it_is;
+    armed_ = armed;
+    return armed ? ForceWish::arm : ForceWish::cut;
+  }
+
+ private:
+  bool armed_;
+};
+
+}  // namespace limpid::test

@@ -1,0 +1,154 @@
+// The limits that hold on every real device, measured where they matter: at a raw device that is
+// led by a stiff hand, far too fast, too far, or along with its motors.
+#include <gtest/gtest.h>
+
+#include "tests/vm/desk.h"
+
+namespace limpid::test {
+namespace {
+
+// The first joint is pressed towards smaller angles wherever it is, as hard as its motor can.
+struct LimitedLoop : testing::Test {
+  // The stick rests at -0.3 rad for 1.2 s, then is led to 0.3 at `rate` [rad/s], and stays.
+  void open(double rate, double effort = kEffort) {
+    AxisPhysics physics = stick_axis(0);
+    physics.stiffness = 120 * effort;
+    physics.damping = 0.4 * effort;
+    physics.inertia *= effort / kEffort;
+    physics.path = [rate](double t) { return std::clamp(-0.3 + rate * (t - kStart), -0.3, 0.3); };
+    auto model = std::make_unique<RawDeviceModel>(
+        RawDeviceLayout{.joints = 2, .torque_limit = effort, .physics = stick_axis(1)});
+    desk = std::make_unique<Desk<RawDeviceModel>>(std::move(model));
+    desk->device->with([&](Time) { desk->model->hand().axis(0) = physics; });
+    desk->arm = arm;
+    for (Joint& joint : desk->arm.joints) joint.effort = effort;
+    desk->scene = Scene{};
+    desk->scene.joint_contacts.push_back({"", 0, -1, 1, 100});
+    desk->controls.parameters.k_vc = 100;
+    desk->set([&](Controls& controls) { controls.limits = limits; });
+    desk->open();
+    desk->arm_force(true);
+    began = desk->device->with([&](Time now) {
+      desk->model->hand().begin(now);
+      return now + std::chrono::microseconds(static_cast<int>(1e6 * kStart));
+    });
+  }
+  // The smallest |torque| in this time, counted from where the hand begins to move [N m].
+  double least(Time from, Time to) {
+    return extreme(
+        from, to, [](double a, double b) { return std::min(a, b); }, 1e9);
+  }
+  double most(Time from, Time to) {
+    return extreme(
+        from, to, [](double a, double b) { return std::max(a, b); }, 0);
+  }
+  template <class Choose>
+  double extreme(Time from, Time to, Choose choose, double result) {
+    return desk->device->with([&](Time) {
+      for (const ForceSample& sample : desk->model->forces().samples()) {
+        if (sample.time < began + from || sample.time > began + to) continue;
+        result = choose(result, std::abs(sample.torque[0]));
+      }
+      return result;
+    });
+  }
+  void report(const char* what, double torque) {
+    std::printf("| %-48s | %7.3f N m |\n", what, torque);
+  }
+
+  static constexpr double kStart = 1.2;  // [s]
+  ArmDescription arm = joystick_arm();
+  SafetyLimits limits;
+  std::unique_ptr<Desk<RawDeviceModel>> desk;
+  Time began{};
+};
+
+TEST_F(LimitedLoop, FadesWhenAJointIsFasterThan15RadiansASecond) {
+  open(24);  // 25 ms for 0.6 rad; force is gone at 22.5
+  wait(1400ms);
+  EXPECT_GT(most(-50ms, 0ms), 0.4);
+  const double torque = least(10ms, 28ms);
+  report("joint at 24 rad/s", torque);
+  EXPECT_EQ(torque, 0);
+  wait(700ms);
+  EXPECT_GT(most(700ms, 900ms), 0.4) << "it comes back by itself";
+}
+
+TEST_F(LimitedLoop, FadesWhenTheTipIsFasterThan2MetresASecond) {
+  arm.tip.translation() *= 3;  // 0.36 m: 9 rad/s are 3.2 m/s, where it is gone at 3
+  open(9);
+  wait(1400ms);
+  EXPECT_GT(most(-50ms, 0ms), 0.4);
+  const double torque = least(20ms, 70ms);
+  report("tip at 3.2 m/s", torque);
+  EXPECT_EQ(torque, 0);
+}
+
+TEST_F(LimitedLoop, FadesBeyondTheRangeOfAJoint) {
+  arm.joints[0].upper = 0.1;
+  open(1);
+  wait(2000ms);
+  EXPECT_GT(most(0ms, 300ms), 0.4);
+  EXPECT_NEAR(most(450ms, 450ms + 1ms), 0.25, 0.1);  // halfway beyond
+  const double torque = most(550ms, 800ms);
+  report("0.2 rad beyond the range", torque);
+  EXPECT_EQ(torque, 0);
+  EXPECT_EQ(desk->force_state(), ForceState::too_far);
+}
+
+TEST_F(LimitedLoop, PushesWithTenNewtonsAtMost) {
+  open(0.5, 5);  // 5 N m at 0.12 m would be 42 N
+  wait(2500ms);
+  const double torque = most(-500ms, 1200ms);
+  report("10 N at 0.12 m", torque);
+  EXPECT_LE(torque, 10 * 0.12 * 1.01);
+  EXPECT_GE(torque, 10 * 0.12 * 0.9);
+}
+
+TEST_F(LimitedLoop, EndsWhenTheMotorsPutOutTooMuchEnergy) {
+  arm.tip.translation() *= 5;  // 10 N at 0.6 m
+  open(0.6, 5);
+  wait(2500ms);  // led against the force: energy goes in
+  ASSERT_EQ(desk->force_state(), ForceState::on);
+  ASSERT_GT(most(1000ms, 1200ms), 4);
+  const Time back = desk->device->with([&](Time now) {
+    const double t0 = std::chrono::duration<double>(now - began).count() + kStart;
+    desk->model->hand().axis(0).path = [t0](double t) {
+      return std::clamp(0.3 - 2.5 * (t - t0), -0.3, 0.3);
+    };
+    return now;
+  });
+  wait(500ms);
+  const auto zero = desk->zero_after(back);
+  ASSERT_TRUE(zero) << "5 N m over 0.6 rad are 3 J";
+  print_time("raw: 2.25 J put out at 12.5 W", zero, 230ms);
+  EXPECT_LE(*zero, 230ms);
+  EXPECT_EQ(desk->force_state(), ForceState::energy);
+  wait(700ms);
+  EXPECT_EQ(desk->torque(), 0);
+}
+
+TEST_F(LimitedLoop, IsZeroWhenTheLoopBecomesUnstable) {
+  open(0.5);
+  wait(1000ms);
+  ASSERT_LT(desk->torque(), -0.4);
+  const Time moment = steady_now();
+  desk->set([](Controls& controls) { controls.parameters.k_vc = 1.7e308; });
+  wait(100ms);
+  const auto zero = desk->zero_after(moment);
+  print_time("raw: unstable (and a frame)", zero, 25ms);
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, 25ms);
+  EXPECT_EQ(desk->force_state(), ForceState::diverged);
+}
+
+TEST_F(LimitedLoop, ObeysTheLowerLimitsOfItsUser) {
+  limits = {.tip_speed = 0.06, .tip_force = 2};
+  open(0.6);  // 0.072 m/s: 0.6 of the force is left
+  wait(2000ms);
+  EXPECT_NEAR(most(-200ms, 0ms), 2 * 0.12, 0.01);
+  EXPECT_NEAR(least(300ms, 900ms), 0.6 * 2 * 0.12, 0.05);
+}
+
+}  // namespace
+}  // namespace limpid::test
