@@ -158,6 +158,31 @@ TEST(AxisCheck, WaitsUntilTheDeviceIsAtRest) {
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::restless);
 }
 
+// Each push moves it, but always the same way: that was a hand.
+TEST(AxisCheck, BelievesOnlyWhatMovesBothWays) {
+  AxisCheck check(traits(1));
+  std::vector<double> x{0};
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    x[0] = 0.2 * std::abs(check.step({x, 1e-3, true})[0]);
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::restless);
+  EXPECT_FALSE(check.passed());
+}
+
+// Once pushed it goes on by itself, a radian a second, out of a way of one radian.
+TEST(AxisCheck, GivesUpADeviceThatRunsOn) {
+  AxisCheck check(traits(1));
+  std::vector<double> x{0};
+  bool running = false;
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    const double torque = check.step({x, 1e-3, true})[0];
+    running = running || torque > 0.05;
+    x[0] += running ? 1e-3 : 0;
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::too_far);
+  EXPECT_LT(x[0], 0.16);
+}
+
 TEST(AxisCheck, NeedsMotorsAndARange) {
   DeviceTraits mouse = traits(3);
   mouse.pushes = false;
