@@ -32,6 +32,7 @@ DeviceNotes read_notes(const toml::table& t) {
       take(*limits, info.key, info.least, value, value);
     }
   }
+  notes.checked = t["checked"].value_or(false);
   if (const toml::array* axes = t["axis"].as_array()) {
     for (const toml::node& node : *axes) {
       AxisAdjustment& axis = notes.axes.emplace_back();
@@ -59,10 +60,21 @@ toml::table write_notes(const DeviceNotes& notes) {
                      {"effort", notes.pid.effort},
                      {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
                      {"limits", limits},
+                     {"checked", notes.checked},
                      {"axis", axes}};
 }
 
 }  // namespace
+
+bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
+  if (!check.passed() || check.dof() > static_cast<int>(notes.pid.reverse.size())) return false;
+  for (int i = 0; i < check.dof(); ++i) {
+    bool& reverse = notes.pid.reverse[static_cast<std::size_t>(i)];
+    if (check.finding(i).verdict == AxisVerdict::reversed) reverse = !reverse;
+  }
+  notes.checked = true;
+  return true;
+}
 
 fs::path device_book_file() { return user_config_dir() / "devices.toml"; }
 

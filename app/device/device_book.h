@@ -9,6 +9,7 @@
 
 #include "core/loop/safety.h"
 #include "devices/adjusted_device.h"
+#include "devices/hid/axis_check.h"
 #include "devices/hid/pid_joystick.h"
 
 namespace limpid {
@@ -17,7 +18,13 @@ struct DeviceNotes {
   std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
   PidSettings pid;                   // of a joystick
   SafetyLimits limits;               // of its force; lower than usual
+  bool checked = false;              // its motors were seen to move its axes as they are told
 };
+
+// Takes in what a check that is done has found of a joystick with the settings noted here; the
+// forces of its reversed axes are turned round. False, and nothing is changed, if it has not
+// passed.
+bool remember_check(const AxisCheck& check, DeviceNotes& notes);
 
 struct DeviceBook {
   std::string in_use;  // id of the device; empty: the virtual arm

@@ -54,11 +54,11 @@ std::optional<HidKind> kind_of(const ReportDescriptor& descriptor) {
   return std::nullopt;
 }
 
-std::optional<HidKind> kind_of_file(const fs::path& path) {
+std::optional<ReportDescriptor> read_descriptor(const fs::path& path) {
   const std::string bytes = read_file(path);
   try {
-    return kind_of(parse_report_descriptor(
-        {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
+    return parse_report_descriptor(
+        {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   } catch (const HidError&) {
     return std::nullopt;
   }
@@ -91,13 +91,15 @@ std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRo
   for (fs::directory_iterator entry(roots.sysfs, error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path device = entry->path() / "device";
-    const auto kind = kind_of_file(device / "report_descriptor");
+    const auto descriptor = read_descriptor(device / "report_descriptor");
+    const auto kind = descriptor ? kind_of(*descriptor) : std::nullopt;
     if (!kind) continue;
+    std::string missing =
+        *kind == HidKind::pid_joystick ? PidJoystick::objection(*descriptor) : std::string();
     const std::string uevent = read_file(device / "uevent");
     const std::string path = (roots.dev / entry->path().filename()).string();
-    found.push_back({{value_of(uevent, "HID_NAME"), id_of(uevent), path},
-                     *kind,
-                     what_is_missing(path, udev_rule)});
+    if (missing.empty()) missing = what_is_missing(path, udev_rule);
+    found.push_back({{value_of(uevent, "HID_NAME"), id_of(uevent), path}, *kind, missing});
   }
   std::sort(found.begin(), found.end(),
             [](const FoundDevice& a, const FoundDevice& b) { return a.place.path < b.place.path; });

@@ -19,6 +19,7 @@ using namespace pid;
 constexpr int kMostAxes = 2;
 constexpr int kLoadTries = 20;
 constexpr std::chrono::milliseconds kLoadPause{5};
+constexpr Usage kGamePad = make_usage(0x01, 0x05);
 constexpr double kUsualRate = 125;  // of HID devices; the report descriptor does not say [Hz]
 
 const ReportField* find_position(const ReportDescriptor& descriptor, int axis) {
@@ -45,8 +46,18 @@ bool PidJoystick::describes(const ReportDescriptor& descriptor) {
          descriptor.find(ReportKind::output, kBlockIndex, kSetConstantForce);
 }
 
+// What moves says so: joysticks and wheels are of the usage Joystick. Pads that shake declare
+// constant forces too, for programs which know no other effect.
+std::string PidJoystick::objection(const ReportDescriptor& descriptor) {
+  const ReportField* position = find_position(descriptor, 0);
+  if (!position || !position->within(kGamePad)) return {};
+  return "it calls itself a game pad: its motors shake the hand but do not move the stick, so that "
+         "it cannot be an arm";
+}
+
 PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& settings)
     : settings_(settings), reports_(descriptor), buttons_(button_fields(descriptor)) {
+  if (std::string why = objection(descriptor); !why.empty()) throw HidError(why);
   require_within(settings.range, 100, "range [rad]");
   require_within(settings.effort, 100, "effort [N m]");
   require_within(settings.duration, 0.1, "duration [s]");
@@ -62,9 +73,9 @@ PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& 
     traits_.resolution.push_back(2 * settings.range / steps);
   }
   if (axes_.empty()) throw HidError("the PID device has no axis that it can push");
-  for (const Usage usage : {kDevicePaused, kSafetySwitch, kActuatorPower}) {
+  for (const Usage usage : {kDevicePaused, kActuatorsEnabled, kSafetySwitch, kActuatorPower}) {
     const ReportField* field = descriptor.find(ReportKind::input, usage, kState);
-    if (field && !field->array) state_.push_back(*field);
+    if (field && !field->array) state_.push_back({*field, usage});
   }
   const std::uint8_t id = axes_[0].position.report_id;
   silent_report_.resize(descriptor.report_bytes(ReportKind::input, id));
@@ -90,6 +101,7 @@ void PidJoystick::open(HidTransport& transport) {
     send_or_throw(transport, axis.force);
   }
   make_stop_reports();
+  send_or_throw(transport, reports_.device_control(kDeviceContinue));
   send_or_throw(transport, reports_.device_control(kEnableActuators));
 }
 
@@ -156,21 +168,32 @@ Decoded PidJoystick::decode_positions(std::span<const std::uint8_t> report,
   return decoded;
 }
 
+// Firmwares leave bits out which they do not know: OpenFFBoard never closes its safety switch, and
+// says that it is paused when an effect is made and nothing any more once it goes on. So a bit says
+// that something is wrong only after it has said that all was well.
 bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
                                DeviceReading& reading) noexcept {
   bool any = false;
-  bool well = true;
-  for (const ReportField& field : state_) {
-    if (report[0] != field.report_id) continue;
-    const auto on = get_field(report, field);
+  for (StateBit& bit : state_) {
+    if (report[0] != bit.field.report_id) continue;
+    const auto on = get_field(report, bit.field);
     if (!on) continue;
     any = true;
-    if (field.usages[0] == kSafetySwitch) reading.hand = *on;
-    if (field.usages[0] == kDevicePaused) well = well && !*on;
-    if (field.usages[0] == kActuatorPower) well = well && *on;
+    bit.well = (*on != 0) == (bit.usage != kDevicePaused);
+    bit.was_well = bit.was_well || bit.well;
   }
-  if (any) reading.fault = !well;
-  return any;
+  if (!any) return false;
+  reading.hand = true;
+  reading.fault = false;
+  for (const StateBit& bit : state_) {
+    if (bit.well || !bit.was_well) continue;
+    if (bit.usage == kSafetySwitch) {
+      reading.hand = false;
+    } else {
+      reading.fault = true;
+    }
+  }
+  return true;
 }
 
 // A force that changes is sent at once; the effects are started again long before they end, and

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 
 #include "devices/hid/hid_protocol.h"
 #include "devices/hid/pid_reports.h"
@@ -20,15 +21,19 @@ struct PidSettings {
   double duration = 0.010;  // of an effect that is not started again, at most 0.1 [s]
   double restart = 0.004;   // after so long it is started again, less than the duration [s]
   std::array<bool, 2>
-      reverse{};  // X, Y: the device pushes the wrong way; check it with little force
+      reverse{};  // X, Y: the device pushes the wrong way; products differ, axis_check.h finds it
 };
 
 // Joints: X (positive to the right) and Y (positive towards the user), or X alone.
 class PidJoystick final : public HidProtocol {
  public:
   static bool describes(const ReportDescriptor& descriptor);
+  // Why a device that it describes cannot be an arm all the same, for people; empty if it may be
+  // one. Whether its motors move it only trying shows (axis_check.h).
+  static std::string objection(const ReportDescriptor& descriptor);
 
-  // Throws HidError naming what the device lacks, or which setting is out of range.
+  // Throws HidError naming what the device lacks, why it is no arm, or which setting is out of
+  // range.
   explicit PidJoystick(const ReportDescriptor& descriptor, const PidSettings& settings = {});
 
   // Resets it, makes its effects and switches its motors on, all forces 0.
@@ -54,6 +59,14 @@ class PidJoystick final : public HidProtocol {
     Report start;
   };
 
+  // What a device says of itself by one bit.
+  struct StateBit {
+    ReportField field;
+    Usage usage = 0;
+    bool well = false;
+    bool was_well = false;  // ever, on this connection
+  };
+
   int create_effect(HidTransport& transport) const;
   void make_stop_reports();
   Decoded decode_positions(std::span<const std::uint8_t> report,
@@ -65,7 +78,7 @@ class PidJoystick final : public HidProtocol {
   DeviceTraits traits_;
   std::vector<Axis> axes_;
   std::vector<ReportField> buttons_;
-  std::vector<ReportField> state_;
+  std::vector<StateBit> state_;
   Report silent_report_;
   std::vector<Report> stop_reports_;
   nanoseconds started_{};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "devices/hid/hid_error.h"
 #include "devices/hid/pid_usages.h"
@@ -21,14 +22,14 @@ constexpr Usage axis_usage(int axis) {
   return make_usage(0x01, static_cast<std::uint16_t>(0x30 + axis));
 }
 
-// Where effects cannot name their axis, they say by an angle from where they push, clockwise from
-// the far side: from the right a positive force pushes to the left, against X; from the far side it
-// pushes towards the user, along Y.
-constexpr double kTurn[] = {0.25, 0};  // of a full circle
+// Effects say by an angle from where they push, clockwise from the far side: from the right a
+// positive force pushes to the left, against X; from the far side it pushes towards the user, along
+// Y. Some firmwares have it the other way round, but all of them keep the axes apart.
+constexpr double kDegrees[] = {90, 0};
 constexpr double kSign[] = {-1, 1};
 
-void set(Report& report, const ReportField& field, std::int64_t value) {
-  if (put_field(report, field, value)) return;
+void set(Report& report, const ReportField& field, std::int64_t value, std::uint32_t index = 0) {
+  if (put_field(report, field, value, index)) return;
   throw HidError(fmt::format("report {} has no room for {}", field.report_id, value));
 }
 
@@ -63,6 +64,32 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
   return std::llround(std::clamp(ticks, lowest, static_cast<double>(field.logical_max)));
 }
 
+// How many degrees one of the field's physical numbers is; 0 if it does not say. Most firmwares
+// count hundredths and forget the unit, but nothing other than degrees makes about 360 of a circle.
+double degrees_per_number(const ReportField& field) {
+  const auto span = static_cast<double>(field.physical_max - field.physical_min);
+  const bool radians = (field.unit & 0xF) == 2 && (field.unit >> 4 & 0xF) == 1;
+  const double one =
+      std::pow(10, std::clamp(field.unit_exponent, -9, 9)) * (radians ? 180 / std::numbers::pi : 1);
+  return span > 0 && std::abs(span * one - 360) < 36 ? one : 0;
+}
+
+// The number in a direction field that means this angle. A field that says nothing of degrees holds
+// one circle.
+std::int64_t to_direction(const ReportField& field, double degrees) {
+  const auto steps = static_cast<double>(field.logical_max - field.logical_min);
+  double part = degrees / 360;
+  if (const double one = degrees_per_number(field); one > 0) {
+    const double first = one * static_cast<double>(field.physical_min);
+    const double last = one * static_cast<double>(field.physical_max);
+    const double within = degrees < first  ? degrees + 360
+                          : degrees > last ? degrees - 360
+                                           : degrees;
+    part = (within - first) / (last - first);
+  }
+  return field.logical_min + std::llround(std::clamp(part, 0.0, 1.0) * steps);
+}
+
 double full_force(const ReportField& magnitude) {
   return static_cast<double>(std::min(-magnitude.logical_min, magnitude.logical_max));
 }
@@ -92,6 +119,7 @@ PidReports::PidReports(ReportDescriptor descriptor) : descriptor_(std::move(desc
   Report trial = blank(magnitude_);
   set(trial, magnitude_, std::llround(full_force(magnitude_)));
   set(trial, magnitude_, -std::llround(full_force(magnitude_)));
+  by_angle_ = by_angle();
 }
 
 const ReportField& PidReports::need(ReportKind kind, Usage usage, Usage within,
@@ -139,6 +167,10 @@ std::optional<int> PidReports::created(std::span<const std::uint8_t> block_load)
   if (full && chosen(block_load, *full, kLoadFull)) {
     throw HidError("the PID device has no room for another effect");
   }
+  const ReportField* error = descriptor_.find(kFeature, kLoadError, kBlockLoad);
+  if (error && chosen(block_load, *error, kLoadError)) {
+    throw HidError("the PID device cannot make an effect of constant force");
+  }
   const auto& status = need(kFeature, kLoadSuccess, kBlockLoad, "Block Load Status");
   if (!chosen(block_load, status, kLoadSuccess)) return std::nullopt;
   const auto& index = need(kFeature, kBlockIndex, kBlockLoad, "PID Block Load");
@@ -162,27 +194,55 @@ Report PidReports::set_effect(int block, int axis, double duration) const {
   return report;
 }
 
-// By naming the axis where the device knows that: angles often have few steps, so that a force
-// along one axis leaks into the other.
+// By an angle: naming the axis by its enable bit pushes on the wrong one with most firmwares, and
+// some take the angle only if no axis is enabled. Of two direction fields some firmwares read the
+// first for both axes, others one for each axis, so both say the same; where there are three, the
+// second may be an axis that is not to be pushed.
 void PidReports::set_direction(Report& report, int axis) const {
-  if (names_axis(axis)) {
+  if (!by_angle_) {
+    if (!names_axis(axis)) {
+      throw HidError("the PID device does not describe a direction of effects");
+    }
     set(report, *descriptor_.find(kOut, axis_usage(axis), kAxesEnable), 1);
     return;
   }
-  const auto angle = std::find_if(
-      descriptor_.fields.begin(), descriptor_.fields.end(), [](const ReportField& field) {
-        return field.kind == kOut && field.within(kSetEffect) && field.within(kDirection);
-      });
-  if (angle == descriptor_.fields.end()) {
-    throw HidError("the PID device does not describe a direction of effects");
+  if (const auto* enable = descriptor_.find(kOut, kDirectionEnable, kSetEffect)) {
+    set(report, *enable, 1);
   }
-  set(report, need(kOut, kDirectionEnable, kSetEffect, "Direction Enable"), 1);
-  const auto circle = static_cast<double>(angle->logical_max - angle->logical_min);
-  set(report, *angle, angle->logical_min + std::llround(kTurn[axis] * circle));
+  std::uint32_t values = 0;
+  for (const ReportField& field : descriptor_.fields) {
+    if (is_direction(field)) values += field.count;
+  }
+  std::uint32_t left = values == 2 ? 2 : 1;
+  for (const ReportField& field : descriptor_.fields) {
+    if (!is_direction(field)) continue;
+    for (std::uint32_t i = 0; i < field.count && left > 0; ++i, --left) {
+      set(report, field, to_direction(field, kDegrees[axis]), i);
+    }
+  }
+}
+
+bool PidReports::is_direction(const ReportField& field) const {
+  return field.kind == kOut && field.within(kSetEffect) && field.within(kDirection);
+}
+
+bool PidReports::by_angle() const {
+  const auto& fields = descriptor_.fields;
+  const bool has_direction = std::any_of(
+      fields.begin(), fields.end(), [&](const ReportField& field) { return is_direction(field); });
+  const bool can_enable = descriptor_.find(kOut, kDirectionEnable, kSetEffect) != nullptr;
+  return has_direction && (can_enable || !names_axes());
 }
 
 bool PidReports::names_axis(int axis) const {
   return descriptor_.find(kOut, axis_usage(axis), kAxesEnable) != nullptr;
+}
+
+bool PidReports::names_axes() const {
+  const auto& fields = descriptor_.fields;
+  return std::any_of(fields.begin(), fields.end(), [](const ReportField& field) {
+    return field.kind == kOut && field.within(kAxesEnable);
+  });
 }
 
 Report PidReports::constant_force(int block) const {
@@ -194,7 +254,7 @@ Report PidReports::constant_force(int block) const {
 }
 
 std::int64_t PidReports::force_level(int axis, double strength) const noexcept {
-  const double sign = names_axis(axis) ? 1 : kSign[axis];
+  const double sign = by_angle_ ? kSign[axis] : 1;
   return std::llround(sign * std::clamp(strength, -1.0, 1.0) * full_force(magnitude_));
 }
 
@@ -223,11 +283,6 @@ std::optional<Report> PidReports::block_free(int block) const {
   return report;
 }
 
-bool PidReports::drives(int axis) const {
-  const bool says_which = std::any_of(
-      descriptor_.fields.begin(), descriptor_.fields.end(),
-      [](const ReportField& field) { return field.kind == kOut && field.within(kAxesEnable); });
-  return !says_which || names_axis(axis);
-}
+bool PidReports::drives(int axis) const { return !names_axes() || names_axis(axis); }
 
 }  // namespace limpid

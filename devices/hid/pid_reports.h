@@ -25,7 +25,7 @@ class PidReports {
   Report create_constant_force() const;
   Report block_load() const;
   // The index of the new effect in the filled block load report; nothing if it is not ready.
-  // Throws HidError if the device has no room.
+  // Throws HidError if the device has no room or refuses.
   std::optional<int> created(std::span<const std::uint8_t> block_load) const;
 
   // `axis`: 0 for X, 1 for Y; it lasts for `duration` [s] after each start.
@@ -48,10 +48,14 @@ class PidReports {
   Report blank(const ReportField& field) const;
   Report operation(int block, bool start) const;
   void set_direction(Report& report, int axis) const;
-  bool names_axis(int axis) const;  // effects can, else by an angle
+  bool is_direction(const ReportField& field) const;
+  bool by_angle() const;            // effects say where they push from
+  bool names_axis(int axis) const;  // they can be enabled for this axis
+  bool names_axes() const;          // for any
 
   ReportDescriptor descriptor_;
   ReportField magnitude_;
+  bool by_angle_ = false;
 };
 
 }  // namespace limpid

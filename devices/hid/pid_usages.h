@@ -31,6 +31,7 @@ inline constexpr Usage kDeviceGain = pid_usage(0x7E);
 inline constexpr Usage kBlockLoad = pid_usage(0x89);
 inline constexpr Usage kLoadSuccess = pid_usage(0x8C);
 inline constexpr Usage kLoadFull = pid_usage(0x8D);
+inline constexpr Usage kLoadError = pid_usage(0x8E);
 inline constexpr Usage kBlockFree = pid_usage(0x90);
 inline constexpr Usage kCreateNewEffect = pid_usage(0xAB);
 
@@ -39,9 +40,11 @@ inline constexpr Usage kEnableActuators = pid_usage(0x97);
 inline constexpr Usage kDisableActuators = pid_usage(0x98);
 inline constexpr Usage kStopAllEffects = pid_usage(0x99);
 inline constexpr Usage kDeviceReset = pid_usage(0x9A);
+inline constexpr Usage kDeviceContinue = pid_usage(0x9C);
 
 inline constexpr Usage kState = pid_usage(0x92);
 inline constexpr Usage kDevicePaused = pid_usage(0x9F);
+inline constexpr Usage kActuatorsEnabled = pid_usage(0xA0);
 inline constexpr Usage kSafetySwitch = pid_usage(0xA4);
 inline constexpr Usage kActuatorPower = pid_usage(0xA6);
 

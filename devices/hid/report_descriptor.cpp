@@ -156,7 +156,10 @@ class Parser {
     if (locals_.usages.size() < kMaxUsages) locals_.usages.push_back(usage);
   }
 
+  // In a set of alternatives a range as a whole would be one of them; none is known to do that.
   void add_usage_range(const LocalUsage& maximum) {
+    if (locals_.alternative) return;
+    locals_.alternative = locals_.in_delimiter;
     const bool has_page = locals_.minimum.has_page || maximum.has_page;
     for (std::uint64_t value = locals_.minimum.value;
          value <= maximum.value && locals_.usages.size() < kMaxUsages; ++value) {

@@ -13,6 +13,7 @@
 
 #include "core/loop/trace_ring.h"
 #include "core/loop/triple_buffer.h"
+#include "devices/hid/axis_check.h"
 #include "devices/mouse_hand.h"
 #include "devices/rig.h"
 #include "tests/support/meshes.h"
@@ -180,6 +181,26 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   EXPECT_EQ(locks, 0);
   EXPECT_GT(touched, 100u);
   EXPECT_FALSE(crowded.diverged());
+}
+
+TEST(NoWaiting, NeitherAllocatesNorLocksWhileAxesAreChecked) {
+  DeviceTraits traits;
+  traits.dof = 2;
+  traits.pushes = true;
+  traits.lower = {-0.5, -0.5};
+  traits.upper = traits.effort = {0.5, 0.5};
+  AxisCheck check(traits);
+  std::array<double, 2> x{};
+  {
+    const Watch watch;
+    for (int k = 0; k < 6000 && !check.done(); ++k) {
+      const auto torque = check.step({x, 1e-3, true});
+      x = {0.6 * torque[0], -0.6 * torque[1]};
+    }
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  EXPECT_TRUE(check.passed());
 }
 
 }  // namespace

@@ -46,9 +46,11 @@ inline Scene joystick_gate() { return read_scene("joystick.toml", joystick_arm()
 
 template <class Model>
 std::unique_ptr<Model> make_model() {
-  if constexpr (std::is_same_v<Model, PidJoystickModel>) {
-    return std::make_unique<Model>(
-        PidJoystickOptions{.torque_limit = kEffort, .physics = stick_axis(1)});
+  if constexpr (std::is_base_of_v<PidJoystickModel, Model>) {
+    PidJoystickOptions options = Model::usual_options();
+    options.torque_limit = kEffort;
+    options.physics = stick_axis(1);
+    return std::make_unique<Model>(options);
   } else {
     return std::make_unique<Model>(
         RawDeviceLayout{.joints = 2, .torque_limit = kEffort, .physics = stick_axis(1)});
@@ -71,7 +73,7 @@ template <class Model>
 class Desk {
  public:
   static constexpr HidKind kKind =
-      std::is_same_v<Model, PidJoystickModel> ? HidKind::pid_joystick : HidKind::raw;
+      std::is_base_of_v<PidJoystickModel, Model> ? HidKind::pid_joystick : HidKind::raw;
 
   Desk() : Desk(make_model<Model>()) {}
   explicit Desk(std::unique_ptr<Model> one) : model(std::move(one)) {
@@ -81,7 +83,9 @@ class Desk {
   }
 
   static std::unique_ptr<Device> connect() {
-    return open_hid_device(find_device(kKind), {.range = kRange, .effort = kEffort});
+    PidSettings settings{.range = kRange, .effort = kEffort};
+    if constexpr (kKind == HidKind::pid_joystick) settings.reverse = Model::kReversed;
+    return open_hid_device(find_device(kKind), settings);
   }
   void open() { open(connect()); }
   void open(std::unique_ptr<Device> one) {

@@ -118,7 +118,7 @@ void probe_space_mouse() {
   pull_out_and_in(device, handle, model.identity());
 }
 
-// Constant force towards positive X, for 20 ms at a time.
+// Constant force from the west, for 20 ms at a time; most firmwares push towards positive X then.
 class PidHost {
  public:
   PidHost(hid_device* device, const PidLayout& layout)
@@ -142,13 +142,9 @@ class PidHost {
     put(effect, reports_.effect_type, type_);
     put(effect, reports_.duration, 20);
     put(effect, reports_.gain, reports_.gain.max);
-    if (reports_.axes) {
-      put(effect, *reports_.axes, 1);
-    } else {  // from the west
-      put(effect, reports_.direction_enable, 1);
-      put(effect, reports_.direction, std::lround(0.75 * reports_.direction.max));
-    }
-    return get(load, reports_.load_status) == 1 && send(control) && send(effect);
+    put(effect, reports_.direction_enable, 1);
+    put(effect, reports_.direction, std::lround(0.75 * reports_.direction.max));
+    return get(load, reports_.load_status) == 1 && send(effect) && send(control);
   }
   Report half_force() const {
     Report report = blank(Kind::output, reports_.constant_index.id);
@@ -178,9 +174,9 @@ class PidHost {
   std::int64_t index_ = 0, type_ = 0;
 };
 
-void probe_pid_joystick(const char* name, const PidLayout& layout) {
-  std::puts(name);
-  const PidJoystickOptions options{.layout = layout};
+void probe_pid_joystick(const char* title, const PidJoystickOptions& options) {
+  std::puts(title);
+  const PidLayout& layout = options.layout;
   PidJoystickModel model(options);
   UhidDevice device(model);
   Handle handle = open_device(model.identity());
@@ -204,7 +200,9 @@ void probe_pid_joystick(const char* name, const PidLayout& layout) {
                       model.violations().size());
   });
   // The hand gives way: torque over stiffness.
-  const double expected = options.torque_limit / 2 / options.physics.stiffness;
+  const bool reversed = options.firmware == PidFirmware::arduino;
+  const double sign = reversed ? -1 : 1;
+  const double expected = sign * options.torque_limit / 2 / options.physics.stiffness;
   std::printf("  stick at %.4f rad, expected %.4f; force at most %.3f N m; zero %.1f ms after\n",
               x * options.physics.upper, expected, largest, zero ? milliseconds(*zero) : NAN);
   promise(std::abs(x * options.physics.upper - expected) < 2e-3, "the stick gives way");
@@ -274,8 +272,13 @@ int main() {
   prctl(PR_SET_TIMERSLACK, 1);
   hid_init();
   probe_space_mouse();
-  probe_pid_joystick("PID joystick", PidLayout::standard());
-  probe_pid_joystick("PID joystick of another make", PidLayout::unusual());
+  probe_pid_joystick("PID joystick", {});
+  probe_pid_joystick("PID joystick of another make", {.layout = PidLayout::unusual()});
+  for (const PidFirmware firmware :
+       {PidFirmware::arduino, PidFirmware::fino, PidFirmware::open_ffboard, PidFirmware::adapt}) {
+    probe_pid_joystick(("PID joystick, " + name(firmware)).c_str(),
+                       PidJoystickOptions::of(firmware));
+  }
   probe_raw_device();
   hid_exit();
   return all_kept ? 0 : 1;

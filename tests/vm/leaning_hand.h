@@ -93,11 +93,11 @@ struct Allowed {
 // While the stick leans on the gate its torque changes with the hand's speed through three springs
 // in a row: the hand's, the coupling's and the gate's (600 N/m at the tip). At the touch the stick
 // has the hand's speed itself, or half more when it slips off, and only the latter two count. The
-// device rounds angles to 65534 steps over its range and torques to 10000 over its effort.
-inline Allowed allowed_difference(double delay) {
+// device rounds angles to 65534 steps over its range and torques to so many over its effort.
+inline Allowed allowed_difference(double delay, int torque_levels = 10000) {
   const double hand = stick_axis(0).stiffness, coupling = Parameters{}.k_vc;
   const double gate = 600 * kStickLength * kStickLength;
-  const double rounding = coupling * 2 * kRange / 65534 + kEffort / 10000;
+  const double rounding = coupling * 2 * kRange / 65534 + kEffort / torque_levels;
   return {delay * Circling::kFastest / (1 / hand + 1 / coupling + 1 / gate) + rounding,
           delay * 1.5 * Circling::kFastest / (1 / coupling + 1 / gate) + rounding};
 }

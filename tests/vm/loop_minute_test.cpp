@@ -34,7 +34,8 @@ struct Minute {
   Session session;
 };
 
-Minute run_on_device(Desk<PidJoystickModel>& desk) {
+template <class Model>
+Minute run_on_device(Desk<Model>& desk) {
   const TempDir dir;
   Minute minute;
   std::vector<Time> reads;
@@ -80,8 +81,19 @@ Minute run_on_device(Desk<PidJoystickModel>& desk) {
   return minute;
 }
 
-TEST(PidLoop, AgreesWithTheVirtualArmForAMinute) {
-  Desk<PidJoystickModel> desk;
+template <class Model>
+struct PidMinute : testing::Test {};
+using Models = testing::Types<ArduinoJoystick, FinoJoystick, OpenFfboardJoystick, AdaptJoystick>;
+struct Names {
+  template <class Model>
+  static std::string GetName(int) {
+    return name(Model::usual_options().firmware);
+  }
+};
+TYPED_TEST_SUITE(PidMinute, Models, Names);
+
+TYPED_TEST(PidMinute, AgreesWithTheVirtualArm) {
+  Desk<TypeParam> desk;
   desk.scene.spheres.clear();  // around its edge the torque changes faster than the hand moves
   const Minute minute = run_on_device(desk);
   ASSERT_GE(minute.session.size(), 60'000u);
@@ -90,7 +102,7 @@ TEST(PidLoop, AgreesWithTheVirtualArmForAMinute) {
   Rows rows(minute.session.layout);
   for (std::size_t k = 0; k < minute.session.size(); ++k) rows.add(minute.session.row(k));
   const Difference d = difference(rows, circle_virtually(desk.arm, desk.scene, minute.times));
-  const Allowed allowed = allowed_difference(2e-3);
+  const Allowed allowed = allowed_difference(2e-3, TypeParam::kTorqueLevels);
   std::printf(
       "| %zu ticks, torque up to %.3f N m; difference rms %.3f (allowed %.2f), at most "
       "%.2f (allowed %.2f) mN m\n",

@@ -17,6 +17,12 @@
 
 namespace limpid::test {
 
+template <class Model>
+constexpr int torque_levels() {
+  if constexpr (std::is_base_of_v<PidJoystickModel, Model>) return Model::kTorqueLevels;
+  return 10000;
+}
+
 // To the model at once, without a kernel between.
 class ModelTransport final : public HidTransport {
  public:
@@ -98,7 +104,7 @@ class SimulatedLink final : public Device {
 template <class Model>
 class SimulatedDesk {
  public:
-  static constexpr bool kPid = std::is_same_v<Model, PidJoystickModel>;
+  static constexpr bool kPid = std::is_base_of_v<PidJoystickModel, Model>;
 
   SimulatedDesk(const ArmDescription& arm, const Scene& scene)
       : model(make_model()), rig(arm, scene, true), row(rig.layout()) {
@@ -112,8 +118,9 @@ class SimulatedDesk {
   void connect() {
     std::unique_ptr<HidProtocol> protocol;
     if constexpr (kPid) {
-      protocol = std::make_unique<PidJoystick>(parse_report_descriptor(model->report_descriptor()),
-                                               PidSettings{.range = kRange, .effort = kEffort});
+      protocol = std::make_unique<PidJoystick>(
+          parse_report_descriptor(model->report_descriptor()),
+          PidSettings{.range = kRange, .effort = kEffort, .reverse = Model::kReversed});
     } else {
       protocol = std::make_unique<RawProtocol>();
     }
@@ -147,8 +154,10 @@ class SimulatedDesk {
 
   static std::unique_ptr<Model> make_model() {
     if constexpr (kPid) {
-      return std::make_unique<Model>(
-          PidJoystickOptions{.torque_limit = kEffort, .physics = stick_axis(1)});
+      PidJoystickOptions options = Model::usual_options();
+      options.torque_limit = kEffort;
+      options.physics = stick_axis(1);
+      return std::make_unique<Model>(options);
     } else {
       return std::make_unique<Model>(
           RawDeviceLayout{.joints = 2, .torque_limit = kEffort, .physics = stick_axis(1)});

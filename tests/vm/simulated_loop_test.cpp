@@ -53,7 +53,8 @@ struct SimulatedLoop : testing::Test {
 
   SimulatedDesk<Model> desk{joystick(), gate()};
 };
-using Models = testing::Types<PidJoystickModel, RawDeviceModel>;
+using Models = testing::Types<PidJoystickModel, ArduinoJoystick, FinoJoystick, OpenFfboardJoystick,
+                              AdaptJoystick, RawDeviceModel>;
 TYPED_TEST_SUITE(SimulatedLoop, Models);
 
 TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceFallsSilent) { this->expect_end(Fault::silent); }
@@ -121,7 +122,7 @@ TYPED_TEST(SimulatedLoop, AgreesWithTheVirtualArm) {
   here.run(kTicks);
   EXPECT_TRUE(here.model->violations().empty()) << here.model->violations()[0];
   const Difference d = difference(here.row, circle_virtually(joystick(), gate(), times));
-  const Allowed allowed = allowed_difference(1.1e-3);
+  const Allowed allowed = allowed_difference(1.1e-3, torque_levels<TypeParam>());
   EXPECT_GT(d.largest_torque, 0.15);
   EXPECT_LT(d.rms, allowed.usual);
   EXPECT_LT(d.worst, allowed.touching);

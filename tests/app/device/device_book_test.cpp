@@ -44,6 +44,64 @@ TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
   EXPECT_EQ(again.pid.reverse, notes.pid.reverse);
 }
 
+// Joints that give way by so much a newton metre.
+AxisCheck checked(const std::vector<double>& give) {
+  DeviceTraits traits;
+  traits.dof = static_cast<int>(give.size());
+  traits.pushes = true;
+  traits.lower.assign(give.size(), -0.35);
+  traits.upper.assign(give.size(), 0.35);
+  traits.effort.assign(give.size(), 0.5);
+  AxisCheck check(traits);
+  std::vector<double> x(give.size());
+  for (int i = 0; i < 20'000 && !check.done(); ++i) {
+    const auto torque = check.step({x, 1e-3, true});
+    for (std::size_t j = 0; j < give.size(); ++j) x[j] = give[j] * torque[j];
+  }
+  return check;
+}
+
+TEST(DeviceBook, RemembersWhatACheckHasFound) {
+  const test::TempDir dir;
+  DeviceBook book;
+  DeviceNotes& notes = book.notes["a"];
+  notes.pid.reverse = {false, true};
+  EXPECT_FALSE(notes.checked);
+  EXPECT_TRUE(remember_check(checked({0.5, -0.5}), notes));
+  EXPECT_TRUE(notes.checked);
+  EXPECT_EQ(notes.pid.reverse, (std::array{false, false})) << "reversed once more";
+  EXPECT_TRUE(remember_check(checked({-0.5, 0.5}), notes));
+  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+  const DeviceNotes again = written_and_read(book, dir / "devices.toml").notes.at("a");
+  EXPECT_TRUE(again.checked);
+  EXPECT_EQ(again.pid.reverse, (std::array{true, false}));
+}
+
+TEST(DeviceBook, RemembersNothingOfACheckThatFailed) {
+  DeviceNotes notes;
+  notes.pid.reverse = {true, false};
+  EXPECT_FALSE(remember_check(checked({-0.5, 0}), notes));
+  EXPECT_FALSE(notes.checked);
+  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+}
+
+// Written before there were checks.
+TEST(DeviceBook, TakesTheJoysticksOfOldBooksForUnchecked) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "in_use = \"a\"\n[device.a]\nrange = 0.6\neffort = 1.75\n"
+                         "reverse = [true, false]\naxis = [{zero = 0.25, scale = 1.0, inverted = "
+                         "true}]\n";
+  std::string complaint;
+  const DeviceNotes notes = load_device_book(file, complaint).notes.at("a");
+  EXPECT_EQ(complaint, "");
+  EXPECT_FALSE(notes.checked);
+  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+  EXPECT_EQ(notes.pid.range, 0.6);
+  EXPECT_EQ(notes.pid.effort, 1.75);
+  EXPECT_TRUE(notes.axes.at(0).inverted);
+}
+
 TEST(DeviceBook, LeavesOutWhatMakesNoSense) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";

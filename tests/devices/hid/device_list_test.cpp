@@ -64,6 +64,18 @@ TEST_F(FakeSystem, LeavesOutWhatIsNoHapticDevice) {
 
 TEST_F(FakeSystem, IsEmptyWithoutHidraw) { EXPECT_TRUE(list().empty()); }
 
+// It speaks PID, but it cannot be an arm.
+TEST_F(FakeSystem, SaysThatAGamePadIsNoArm) {
+  Bytes pad = test::pid_joystick::whole();
+  pad[3] = 0x05;  // the usage of its outermost collection
+  plug_in("hidraw0", pad, "HID_NAME=GC adapter\n");
+  plug_in("hidraw1", test::pid_joystick::whole(), "HID_NAME=Stick\n");
+  const auto found = list();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_THAT(found[0].missing, testing::HasSubstr("game pad"));
+  EXPECT_EQ(found[1].missing, "");
+}
+
 TEST_F(FakeSystem, SaysHowToGetPermission) {
   plug_in("hidraw0", test::raw_device(), "HID_NAME=T2\n");
   fs::permissions(roots.dev / "hidraw0", fs::perms::none);

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 ReportDescriptor whole() { return parse_report_descriptor(parts::whole()); }
 
-// The n-th effect is block n.
+// The first effect is block 1, the next one block 2.
 class PidDevice final : public HidTransport {
  public:
   int read(std::span<std::uint8_t>, int) noexcept override { return 0; }
@@ -35,7 +35,7 @@ class PidDevice final : public HidTransport {
   }
   int get_feature(std::span<std::uint8_t> report) noexcept override {
     if (report.size() != 5 || report[0] != 6) return -1;
-    report[1] = static_cast<std::uint8_t>(created.size());
+    report[1] = static_cast<std::uint8_t>(first_block + created.size() - 1);
     report[2] = load_status;
     return 5;
   }
@@ -44,6 +44,7 @@ class PidDevice final : public HidTransport {
 
   std::vector<Report> received, created;
   std::uint8_t load_status = 1;
+  std::size_t first_block = 1;
 
  private:
   std::vector<std::uint8_t> descriptor_;
@@ -63,17 +64,19 @@ struct OpenPidJoystick : testing::Test {
 };
 
 // Reports as the PID specification has them, laid out by this descriptor.
-const Report kReset{12, 4}, kStopAll{12, 3}, kEnable{12, 1}, kDisable{12, 2}, kGain{13, 255};
+const Report kReset{12, 4}, kStopAll{12, 3}, kEnable{12, 1}, kDisable{12, 2}, kContinue{12, 6},
+    kGain{13, 255};
 const Report kForce1Zero{5, 1, 0, 0}, kForce2Zero{5, 2, 0, 0};
 const Report kStart1{10, 1, 1, 1}, kStart2{10, 2, 1, 1}, kStop1{10, 1, 3, 0}, kStop2{10, 2, 3, 0};
-// Constant force is the third type here; 10 ms; full gain; along X, along Y.
-const Report kEffect1{1, 1, 3, 10, 0, 0, 0, 255, 0, 1, 0, 0};
-const Report kEffect2{1, 2, 3, 10, 0, 0, 0, 255, 0, 2, 0, 0};
+// Constant force is the third type here; 10 ms; full gain; with a direction and no axis enabled,
+// from the right (a quarter of 256 steps) and from the far side.
+const Report kEffect1{1, 1, 3, 10, 0, 0, 0, 255, 0, 4, 64, 64};
+const Report kEffect2{1, 2, 3, 10, 0, 0, 0, 255, 0, 4, 0, 0};
 
 TEST_F(OpenPidJoystick, MakesItsEffectsBeforeItsMotorsAreOn) {
   EXPECT_THAT(device.created, ElementsAre(Report{5, 3, 0, 0}, Report{5, 3, 0, 0}));
   EXPECT_THAT(device.received, ElementsAre(kReset, kStopAll, kGain, kEffect1, kForce1Zero, kEffect2,
-                                           kForce2Zero, kEnable));
+                                           kForce2Zero, kContinue, kEnable));
 }
 
 TEST_F(OpenPidJoystick, KnowsItsRange) {
@@ -114,17 +117,47 @@ TEST(PidJoystick, UsesNoNumberOutsideOfItsRange) {
   EXPECT_EQ(reading.buttons, 1u);
 }
 
+constexpr std::uint8_t kPaused = 1, kActuators = 2, kSafe = 4, kPower = 16;
+constexpr std::uint8_t kWell = kActuators | kSafe | kPower;
+
 TEST_F(OpenPidJoystick, HearsOfItsSafetySwitchAndItsPower) {
-  const std::uint8_t safe = 1 << 2, power = 1 << 4, paused = 1 << 0;
-  EXPECT_EQ(joystick.decode(Report{2, safe | power, 0}, reading), Decoded::status);
+  EXPECT_EQ(joystick.decode(Report{2, kWell, 0}, reading), Decoded::status);
   EXPECT_TRUE(reading.hand);
   EXPECT_FALSE(reading.fault);
-  joystick.decode(Report{2, power, 0}, reading);
+  for (const int ill : {kWell & ~kPower, kWell & ~kActuators, kWell | kPaused}) {
+    joystick.decode(Report{2, static_cast<std::uint8_t>(ill), 0}, reading);
+    EXPECT_TRUE(reading.fault) << ill;
+    EXPECT_TRUE(reading.hand) << ill;
+    joystick.decode(Report{2, kWell, 0}, reading);
+    EXPECT_FALSE(reading.fault) << ill;
+  }
+  joystick.decode(Report{2, kWell & ~kSafe, 0}, reading);
   EXPECT_FALSE(reading.hand);
-  joystick.decode(Report{2, safe, 0}, reading);
-  EXPECT_TRUE(reading.fault);
-  joystick.decode(Report{2, safe | power | paused, 0}, reading);
-  EXPECT_TRUE(reading.fault);
+  EXPECT_FALSE(reading.fault);
+  joystick.decode(Report{2, kWell, 0}, reading);
+  EXPECT_TRUE(reading.hand);
+}
+
+// OpenFFBoard says that it is paused when it makes an effect, and never closes its safety switch.
+TEST_F(OpenPidJoystick, TakesABitThatNeverSaidThatAllIsWellForNothing) {
+  for (const int state : {+kPaused, kPaused | kPower, 0}) {
+    joystick.decode(Report{2, static_cast<std::uint8_t>(state), 0}, reading);
+    EXPECT_TRUE(reading.hand) << state;
+  }
+  EXPECT_TRUE(reading.fault) << "the power was on and went";
+  joystick.decode(Report{2, kPower, 0}, reading);
+  EXPECT_FALSE(reading.fault);
+  joystick.decode(Report{2, kPower | kPaused, 0}, reading);
+  EXPECT_TRUE(reading.fault) << "it was not paused and is now";
+}
+
+TEST_F(OpenPidJoystick, ForgetsItsBitsWithTheConnection) {
+  joystick.decode(Report{2, kWell, 0}, reading);
+  PidJoystick again(whole());
+  DeviceReading news;
+  again.decode(Report{2, 0, 0}, news);
+  EXPECT_TRUE(news.hand);
+  EXPECT_FALSE(news.fault);
 }
 
 TEST_F(OpenPidJoystick, TakesNothingFromGarbage) {
@@ -133,31 +166,10 @@ TEST_F(OpenPidJoystick, TakesNothingFromGarbage) {
   }
 }
 
+// The force comes from the right: a positive one pushes to the left, so X needs the other sign.
 TEST_F(OpenPidJoystick, PushesAlongItsAxes) {
   EXPECT_THAT(encode({0.5, -0.25}, milliseconds(1)),
-              ElementsAre(Report{5, 1, 255, 0}, Report{5, 2, 0x80, 0xFF}, kStart1, kStart2));
-}
-
-// From the right, a quarter of a circle, and positive pushes to the left: X needs the opposite
-// sign.
-TEST(PidJoystick, PushesByAnAngleWhereEffectsCannotNameTheirAxis) {
-  PidDevice device;
-  const Bytes known = parts::whole();
-  Bytes unnamed = known;
-  const Bytes enable{0x09, 0x55, 0xA1, 0x02, 0x05, 0x01, 0x09, 0x30, 0x09, 0x31};
-  const auto at = std::search(unnamed.begin(), unnamed.end(), enable.begin(), enable.end());
-  ASSERT_NE(at, unnamed.end());
-  at[1] = 0x5A;  // any other collection
-  PidJoystick joystick(parse_report_descriptor(unnamed));
-  joystick.open(device);
-  EXPECT_THAT(device.received,
-              testing::IsSupersetOf({Report{1, 1, 3, 10, 0, 0, 0, 255, 0, 4, 64, 0},
-                                     Report{1, 2, 3, 10, 0, 0, 0, 255, 0, 4, 0, 0}}));
-  std::vector<Report> sent;
-  joystick.encode(std::vector<double>{0.5, 0.25}, {},
-                  [&](auto report) { sent.emplace_back(report.begin(), report.end()); });
-  EXPECT_EQ(sent.at(0), (Report{5, 1, 0x01, 0xFF}));
-  EXPECT_EQ(sent.at(1), (Report{5, 2, 128, 0}));
+              ElementsAre(Report{5, 1, 0x01, 0xFF}, Report{5, 2, 0x80, 0xFF}, kStart1, kStart2));
 }
 
 TEST_F(OpenPidJoystick, SendsOnlyWhatChanges) {
@@ -173,13 +185,13 @@ TEST_F(OpenPidJoystick, StartsItsEffectsAgainBeforeTheyEnd) {
   encode({0.5, 0}, milliseconds(0));
   EXPECT_THAT(encode({0.5, 0}, milliseconds(3)), ElementsAre());
   EXPECT_THAT(encode({0.5, 0}, milliseconds(4)),
-              ElementsAre(Report{5, 1, 255, 0}, kStart1, kStart2));
+              ElementsAre(Report{5, 1, 0x01, 0xFF}, kStart1, kStart2));
   EXPECT_THAT(encode({0.5, 0}, milliseconds(5)), ElementsAre());
 }
 
 TEST_F(OpenPidJoystick, NeverPushesHarderThanFull) {
   EXPECT_THAT(encode({-7, 7}, {}),
-              ElementsAre(Report{5, 1, 0x01, 0xFF}, Report{5, 2, 255, 0}, kStart1, kStart2));
+              ElementsAre(Report{5, 1, 255, 0}, Report{5, 2, 255, 0}, kStart1, kStart2));
 }
 
 TEST_F(OpenPidJoystick, StopsInEveryWayItKnows) {
@@ -201,22 +213,54 @@ TEST(PidJoystick, CanBeTurnedRound) {
   joystick.encode(std::vector<double>{1.0, 0.0}, {}, [&](auto report) {
     if (first.empty()) first.assign(report.begin(), report.end());
   });
-  EXPECT_EQ(first, (Report{5, 1, 0x01, 0xFF}));
+  EXPECT_EQ(first, (Report{5, 1, 255, 0}));
+}
+
+std::string complaint(PidDevice& device) {
+  try {
+    PidJoystick joystick(whole());
+    joystick.open(device);
+  } catch (const HidError& error) {
+    return error.what();
+  }
+  return "none";
 }
 
 TEST(PidJoystick, SaysWhenThereIsNoRoomForAnEffect) {
   PidDevice device;
   device.load_status = 2;
-  PidJoystick joystick(whole());
-  EXPECT_THROW(joystick.open(device), HidError);
+  EXPECT_THAT(complaint(device), HasSubstr("no room"));
   EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
+}
+
+TEST(PidJoystick, SaysWhenTheDeviceCannotMakeAnEffect) {
+  PidDevice device;
+  device.load_status = 3;
+  EXPECT_THAT(complaint(device), HasSubstr("cannot make an effect"));
 }
 
 TEST(PidJoystick, SaysWhenTheDeviceDoesNotAnswer) {
   PidDevice device;
-  device.load_status = 3;
+  device.load_status = 0;
+  EXPECT_THAT(complaint(device), HasSubstr("does not say where"));
+}
+
+// Blocks count from 1; 0 is that of no effect.
+TEST(PidJoystick, TakesNoBlockZero) {
+  PidDevice device;
+  device.first_block = 0;
+  EXPECT_THAT(complaint(device), HasSubstr("does not say where"));
+  EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
+}
+
+TEST(PidJoystick, UsesTheBlocksThatItIsGiven) {
+  PidDevice device;
+  device.first_block = 39;
   PidJoystick joystick(whole());
-  EXPECT_THROW(joystick.open(device), HidError);
+  joystick.open(device);
+  EXPECT_THAT(device.received, testing::IsSupersetOf({Report{5, 39, 0, 0}, Report{5, 40, 0, 0}}));
+  EXPECT_THAT(joystick.stop_reports(),
+              testing::IsSupersetOf({Report{10, 39, 3, 0}, Report{10, 40, 3, 0}}));
 }
 
 TEST(PidJoystick, NamesWhatTheDeviceLacks) {
@@ -239,6 +283,17 @@ TEST(PidJoystick, NamesWhatTheDeviceLacks) {
   EXPECT_THAT(complaint(common + parts::effect_operation() + create), HasSubstr("Stop All"));
   EXPECT_THAT(complaint(parts::input() + parts::set_effect() + rest + create),
               HasSubstr("Set Constant Force"));
+}
+
+// An adapter for pads with motors that shake: two axes, constant force, and a game pad.
+TEST(PidJoystick, TakesAGamePadForNoArm) {
+  Bytes pad = parts::whole();
+  ASSERT_EQ(pad[3], 0x04);  // Joystick
+  EXPECT_EQ(PidJoystick::objection(parse_report_descriptor(pad)), "");
+  pad[3] = 0x05;
+  const ReportDescriptor descriptor = parse_report_descriptor(pad);
+  EXPECT_THAT(PidJoystick::objection(descriptor), HasSubstr("game pad"));
+  EXPECT_THROW(PidJoystick{descriptor}, HidError);
 }
 
 TEST(PidJoystick, RefusesSettingsThatMakeNoSense) {

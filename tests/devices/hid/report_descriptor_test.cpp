@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <optional>
+#include <utility>
+
 #include "devices/hid/hid_error.h"
 #include "devices/hid/pid_usages.h"
+#include "devices/hid/report_fields.h"
 #include "tests/support/hid_descriptors.h"
 
 namespace limpid {
@@ -100,6 +105,105 @@ TEST(ReportDescriptor, TakesTheFirstOfAlternativeUsages) {
   const ReportDescriptor d = parse_report_descriptor(bytes);
   EXPECT_TRUE(d.find(ReportKind::input, kX));
   EXPECT_FALSE(d.find(ReportKind::input, make_usage(1, 0x31)));
+}
+
+// One set of alternatives a value: X or Y, Z or Rx, and Ry alone.
+TEST(ReportDescriptor, TakesTheFirstOfEachSetOfAlternatives) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x03,              //
+                    0xA9, 0x01, 0x09, 0x30, 0x09, 0x31, 0xA9, 0x00,  //
+                    0xA9, 0x01, 0x09, 0x32, 0x09, 0x33, 0xA9, 0x00,  //
+                    0x09, 0x34, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    const ReportField& field = d.fields[static_cast<std::size_t>(i)];
+    EXPECT_EQ(field.usages,
+              std::vector<Usage>{make_usage(1, static_cast<std::uint16_t>(0x30 + 2 * i))});
+    EXPECT_EQ(field.bit_offset, 8u + 8u * static_cast<unsigned>(i));
+    EXPECT_EQ(field.count, 1u);
+  }
+}
+
+// A range among alternatives is one of them as a whole: it must not shift those that follow.
+TEST(ReportDescriptor, TakesNoRangeBesideAnAlternative) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x02, 0xA9, 0x01, 0x09, 0x30,
+                    0x19, 0x33, 0x29, 0x35, 0xA9, 0x00, 0x09, 0x31, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 2u);
+  EXPECT_EQ(d.fields[0].usages, std::vector<Usage>{kX});
+  EXPECT_EQ(d.fields[1].usages, std::vector<Usage>{make_usage(1, 0x31)});
+}
+
+// More values than usages: the last usage is that of all which remain.
+TEST(ReportDescriptor, GivesTheLastUsageAllValuesThatRemain) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x04, 0x95, 0x05, 0x09, 0x30, 0x09, 0x31,
+                    0x81, 0x02, 0x75, 0x08, 0x95, 0x01, 0x09, 0x32, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 3u);
+  EXPECT_EQ(d.fields[0].count, 1u);
+  EXPECT_EQ(d.fields[1].count, 4u);
+  EXPECT_EQ(d.fields[1].bit_offset, 8u + 4u);
+  EXPECT_EQ(d.fields[2].bit_offset, 8u + 20u);
+  EXPECT_EQ(d.report_bytes(ReportKind::input, 0), 5u);  // the id's place and 28 bits
+  const Bytes report{0, 0x21, 0x43, 0x65, 0x07};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(get_field(report, d.fields[1], i), 2 + static_cast<int>(i));
+  }
+  EXPECT_EQ(get_field(report, d.fields[1], 4), std::nullopt);
+  EXPECT_EQ(get_field(report, d.fields[2]), 0x76);
+}
+
+// Fewer values than usages: those without a value are none.
+TEST(ReportDescriptor, HasNoFieldForAUsageWithoutAValue) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0x09, 0x30, 0x09, 0x31, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  EXPECT_EQ(d.fields.size(), 1u);
+  EXPECT_FALSE(d.find(ReportKind::input, make_usage(1, 0x31)));
+}
+
+// Each range by its own minimum: a maximum is signed only where that is below 0.
+TEST(ReportDescriptor, ReadsTheSignOfEachMaximumFromItsOwnMinimum) {
+  struct Case {
+    Bytes range;
+    std::array<std::int64_t, 4> expected;  // logical, physical
+  };
+  const Case cases[] = {
+      // 36000 in two bytes beside a signed logical range.
+      {{0x15, 0x81, 0x25, 0x7F, 0x35, 0x00, 0x46, 0xA0, 0x8C}, {-127, 127, 0, 36000}},
+      // -100 in one byte beside an unsigned logical range.
+      {{0x15, 0x00, 0x25, 0xFF, 0x36, 0xD4, 0xFE, 0x45, 0x9C}, {0, 255, -300, -100}},
+      {{0x15, 0x00, 0x25, 0xFF, 0x36, 0xF0, 0xD8, 0x46, 0x88, 0x13}, {0, 255, -10000, 5000}},
+      {{0x16, 0x00, 0x80, 0x26, 0xFF, 0x7F, 0x35, 0x0A, 0x45, 0xC8}, {-32768, 32767, 10, 200}},
+      // No physical range is the logical one, not 0.
+      {{0x15, 0xF6, 0x25, 0x14, 0x35, 0x00, 0x45, 0x00}, {-10, 20, -10, 20}},
+      {{0x15, 0xF6, 0x25, 0x14, 0x35, 0x00, 0x45, 0x01}, {-10, 20, 0, 1}},
+  };
+  for (const Case& one : cases) {
+    const Bytes field{0x05, 0x01, 0x75, 0x10, 0x95, 0x01, 0x09, 0x30, 0x81, 0x02};
+    const ReportDescriptor d = parse_report_descriptor(one.range + field);
+    ASSERT_EQ(d.fields.size(), 1u);
+    const ReportField& f = d.fields[0];
+    EXPECT_EQ((std::array{f.logical_min, f.logical_max, f.physical_min, f.physical_max}),
+              one.expected);
+  }
+}
+
+// Exponents are four bits by the letter, and a signed byte in many devices.
+TEST(ReportDescriptor, ReadsExponentsAsDevicesWriteThem) {
+  const std::pair<std::uint8_t, int> cases[] = {{0x00, 0},  {0x07, 7},  {0x08, -8},
+                                                {0x0D, -3}, {0x0F, -1}, {0xFD, -3}};
+  for (const auto& [byte, exponent] : cases) {
+    const Bytes bytes{0x55, byte, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02};
+    EXPECT_EQ(parse_report_descriptor(bytes).fields.at(0).unit_exponent, exponent);
+  }
+}
+
+// What a main item used up is not there for the next.
+TEST(ReportDescriptor, ForgetsUsagesAfterEachItem) {
+  const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0x09, 0x30, 0x81, 0x02, 0x81, 0x02};
+  const ReportDescriptor d = parse_report_descriptor(bytes);
+  ASSERT_EQ(d.fields.size(), 2u);
+  EXPECT_TRUE(d.fields[1].usages.empty());
 }
 
 TEST(ReportDescriptor, SkipsLongItems) {

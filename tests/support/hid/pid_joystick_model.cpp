@@ -14,13 +14,48 @@ constexpr std::uint8_t kConstant = 0x26;
 constexpr int kBytesAnEffect = 32;
 enum Operation { kStart = 1, kStartSolo, kStop };
 enum Control { kEnable = 1, kDisable, kStopAll, kReset, kPause, kContinue };
-enum LoadStatus { kSuccess = 1, kFull };
+enum LoadStatus { kSuccess = 1, kFull, kError };
 
 double share(std::int64_t value, const Field& field) {
   return static_cast<double>(value) / static_cast<double>(field.max);
 }
 
 }  // namespace
+
+std::string name(PidFirmware firmware) {
+  switch (firmware) {
+    case PidFirmware::standard: return "standard";
+    case PidFirmware::arduino: return "arduino";
+    case PidFirmware::fino: return "fino";
+    case PidFirmware::open_ffboard: return "open_ffboard";
+    case PidFirmware::adapt: return "adapt";
+  }
+  return {};
+}
+
+PidJoystickOptions PidJoystickOptions::of(PidFirmware firmware) {
+  PidJoystickOptions options;
+  options.firmware = firmware;
+  if (firmware == PidFirmware::standard) return options;
+  options.layout.control_in_report = true;
+  options.layout.direction_in_hundredths = true;
+  options.layout.physical_axes = false;
+  options.capacity = 13;
+  if (firmware == PidFirmware::open_ffboard) {
+    options.layout.magnitude_max = 32767;
+    options.layout.direction_max = 36000;
+    options.layout.control_in_bits = true;
+    options.layout.override_switch = false;
+    options.capacity = 40;
+  }
+  if (firmware == PidFirmware::adapt) {
+    options.layout.magnitude_max = 255;
+    options.layout.direction_max = 180;
+    options.capacity = 17;
+    options.first_block = 2;
+  }
+  return options;
+}
 
 PidJoystickModel::PidJoystickModel(const PidJoystickOptions& options)
     : PidJoystickModel(options, pid_reports(options.layout)) {}
@@ -32,12 +67,16 @@ PidJoystickModel::PidJoystickModel(const PidJoystickOptions& options, PidReports
       hand_(std::vector<AxisPhysics>(2, options.physics)) {}
 
 void PidJoystickModel::restart(Time now) {
+  const PidFirmware firmware = options_.firmware;
   effects_.clear();
-  actuators_ = paused_ = false;
+  actuators_ = firmware == PidFirmware::arduino || firmware == PidFirmware::fino;
+  paused_ = false;
   device_gain_ = 1;
   created_ = 0;
   sent_stick_ = {};
   sent_state_ = state();
+  said_.clear();
+  if (actuators_) say_state();  // as soon as it is plugged in
   hand_.begin(now);
 }
 
@@ -92,7 +131,10 @@ std::vector<Report> PidJoystickModel::next_input(Time) {
     due.push_back(news);
     sent_stick_ = news;
   }
-  if (Report news = state(); news != sent_state_) {
+  due.insert(due.end(), said_.begin(), said_.end());
+  said_.clear();
+  const bool by_itself = options_.firmware != PidFirmware::open_ffboard;
+  if (Report news = state(); by_itself && news != sent_state_) {
     due.push_back(news);
     sent_state_ = news;
   }
@@ -101,9 +143,15 @@ std::vector<Report> PidJoystickModel::next_input(Time) {
 
 Report PidJoystickModel::state() const {
   Report report = reports_.writer.blank(Kind::input, reports_.state_playing.id);
-  const unsigned flags =
-      (paused_ ? kPidPaused : 0) | (actuators_ ? kPidActuators : 0) | kPidSafety | kPidPower;
-  for (int i = 0; i < 5; ++i) put(report, reports_.state_flags.at(i), (flags >> i) & 1);
+  put(report, reports_.power, powerless_ ? 0 : 1);
+  put(report, reports_.actuators, actuators_ ? 1 : 0);
+  if (options_.firmware == PidFirmware::open_ffboard) {
+    put(report, reports_.paused, actuators_ ? 0 : 1);
+    put(report, reports_.state_playing, actuators_ ? 1 : 0);
+    return report;
+  }
+  put(report, reports_.paused, paused_ ? 1 : 0);
+  put(report, reports_.safety, let_go_ ? 0 : 1);
   for (const auto& [index, effect] : effects_) {
     if (!effect.playing) continue;
     put(report, reports_.state_playing, 1);
@@ -175,9 +223,39 @@ void PidJoystickModel::set_effect(ReportView report) {
   if (get(report, reports_.trigger_button) != 0) violation("an effect waits for a button");
   std::tie(effect->x, effect->y) = direction(report);
   effect->parameters = true;
+  if (options_.firmware != PidFirmware::open_ffboard) return;
+  actuators_ = true;
+  say_state();
 }
 
+// Where a force of this effect pushes.
 std::pair<double, double> PidJoystickModel::direction(ReportView report) {
+  const bool enabled = get(report, reports_.direction_enable) != 0;
+  const bool x = get(report, *reports_.axes) != 0, y = get(report, reports_.axes->at(1)) != 0;
+  const auto turn = [&](int field) {
+    const Field where = reports_.direction.at(field);
+    return static_cast<double>(allowed(report, where, "a direction")) / where.max;
+  };
+  const auto angle = [&](int field) { return 2 * std::numbers::pi * turn(field); };
+  switch (options_.firmware) {
+    case PidFirmware::standard: break;
+    case PidFirmware::arduino: {  // it compares all three bits at once
+      const bool polar = enabled && !x && !y;
+      return {std::sin(angle(0)), -std::cos(angle(polar ? 0 : 1))};
+    }
+    case PidFirmware::fino: {
+      const bool polar = enabled && !x && !y;
+      return {polar || x ? -std::sin(angle(0)) : 0, polar || y ? std::cos(angle(0)) : 0};
+    }
+    case PidFirmware::open_ffboard:
+      if (enabled) return {-std::sin(angle(0)), std::cos(angle(0))};
+      return {x ? 1 - 2 * turn(0) : 0, y ? 2 * turn(1) - 1 : 0};
+    case PidFirmware::adapt: return {-std::sin(angle(0)), std::cos(angle(0))};
+  }
+  return standard_direction(report);
+}
+
+std::pair<double, double> PidJoystickModel::standard_direction(ReportView report) {
   if (get(report, reports_.direction_enable) != 0) {
     const Field& field = reports_.direction;
     const auto turn = static_cast<double>(allowed(report, field, "a direction")) / field.max;
@@ -197,8 +275,12 @@ void PidJoystickModel::set_constant(ReportView report) {
   PidEffect* effect = this->effect(get(report, reports_.constant_index));
   if (!effect) return;
   if (effect->type != 0 && effect->type != kConstant) violation("not an effect of constant force");
-  effect->magnitude =
-      share(allowed(report, reports_.magnitude, "the magnitude"), reports_.magnitude);
+  const auto magnitude = allowed(report, reports_.magnitude, "the magnitude");
+  effect->magnitude = share(magnitude, reports_.magnitude);
+  // To the joystick itself a number of 7 bits goes on.
+  if (options_.firmware == PidFirmware::adapt) {
+    effect->magnitude = static_cast<double>(magnitude / 2) / 127;
+  }
 }
 
 void PidJoystickModel::operate(ReportView report, Time now) {
@@ -216,7 +298,15 @@ void PidJoystickModel::operate(ReportView report, Time now) {
 }
 
 void PidJoystickModel::control(ReportView report) {
-  const auto what = allowed(report, reports_.control, "the device control");
+  if (!options_.layout.control_in_bits) {
+    return control(static_cast<int>(allowed(report, reports_.control, "the device control")));
+  }
+  for (int i = 0; i < kContinue; ++i) {
+    if (get(report, reports_.control.at(i)) != 0) control(i + 1);
+  }
+}
+
+void PidJoystickModel::control(int what) {
   if (what == kEnable) actuators_ = true;
   if (what == kDisable) actuators_ = false;
   if (what == kPause) paused_ = true;
@@ -224,10 +314,20 @@ void PidJoystickModel::control(ReportView report) {
   if (what == kStopAll) {
     for (auto& [index, effect] : effects_) effect.playing = false;
   }
-  if (what != kReset) return;
-  effects_.clear();
-  paused_ = false;
-  actuators_ = true;
+  if (what == kReset) effects_.clear();
+  switch (options_.firmware) {
+    case PidFirmware::arduino: break;
+    case PidFirmware::fino: break;
+    case PidFirmware::open_ffboard:  // either it plays or it does not
+      paused_ = false;
+      actuators_ = what == kEnable || what == kContinue;
+      break;
+    case PidFirmware::standard:
+    case PidFirmware::adapt:
+      if (what != kReset) break;
+      paused_ = false;
+      actuators_ = true;
+  }
 }
 
 bool PidJoystickModel::on_set_feature(ReportView report, Time) {
@@ -236,10 +336,13 @@ bool PidJoystickModel::on_set_feature(ReportView report, Time) {
   if (!complete(report, *type, Kind::feature)) return false;
   const auto choice = allowed(report, *type, "the effect's type");
   created_ = 0;
-  for (int index = options_.capacity; index >= 1; --index) {
+  if (options_.fails_to_load) return true;
+  const int first = options_.first_block;
+  for (int index = first + options_.capacity - 1; index >= first; --index) {
     if (!effects_.contains(index)) created_ = index;  // the lowest that is free
   }
   if (created_ == 0) return true;
+  if (options_.firmware == PidFirmware::open_ffboard) say_state();
   effects_[created_].type = options_.layout.effect_types[static_cast<std::size_t>(choice - 1)];
   return true;
 }
@@ -254,7 +357,8 @@ std::optional<Report> PidJoystickModel::on_get_feature(std::uint8_t id) {
     Report report = reports_.writer.blank(Kind::feature, id);
     const int free = options_.capacity - static_cast<int>(effects_.size());
     put(report, reports_.load_index, created_);
-    put(report, reports_.load_status, created_ ? kSuccess : kFull);
+    const LoadStatus failure = options_.fails_to_load ? kError : kFull;
+    put(report, reports_.load_status, created_ ? kSuccess : failure);
     put(report, reports_.load_free, free * kBytesAnEffect);
     return report;
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 
 #include "tests/support/hid/pid_layout.h"
 #include "tests/support/hid/reference_device.h"
@@ -14,14 +15,31 @@
 
 namespace limpid::test {
 
+// Products read the same reports in their own ways; worked out from their published sources. They
+// differ in how the angle of an effect and its axis bits become a force and in what they say of
+// themselves.
+enum class PidFirmware {
+  standard,
+  arduino,       // the Arduino joystick library with force feedback
+  fino,          //
+  open_ffboard,  //
+  adapt,         // adapt-ffb-joy, with a SideWinder Force Feedback Pro
+};
+std::string name(PidFirmware firmware);
+
 struct PidJoystickOptions {
+  PidFirmware firmware = PidFirmware::standard;
   HidIdentity identity{"Limpid PID joystick", 0x1209, 0x4C49, "PID-1"};
   PidLayout layout{};
-  int capacity = 4;           // effects at a time, at most 40
-  double torque_limit = 1;    // of each axis, at full magnitude and gain [N m]
-  AxisPhysics physics{};      // of both axes
-  bool only_changes = false;  // it says nothing while nothing moves
+  int capacity = 4;            // effects at a time, at most 40
+  int first_block = 1;         // the lowest index of an effect
+  bool fails_to_load = false;  // it makes no effect and says so
+  double torque_limit = 1;     // of each axis, at full magnitude and gain [N m]
+  AxisPhysics physics{};       // of both axes
+  bool only_changes = false;   // it says nothing while nothing moves
   Time period = std::chrono::milliseconds(1);
+
+  static PidJoystickOptions of(PidFirmware firmware);
 };
 
 struct PidEffect {
@@ -38,12 +56,20 @@ struct PidEffect {
 
 class PidJoystickModel : public ReferenceDevice {
  public:
+  // Whether a host that follows the standard pushes it the wrong way along X and Y.
+  static constexpr std::array<bool, 2> kReversed{};
+  static constexpr int kTorqueLevels = 10000;  // from none to full torque, at least
+
   explicit PidJoystickModel(const PidJoystickOptions& options = {});
 
+  // Its safety switch and its power, as it says if it says so at all.
+  void let_go(bool off) { let_go_ = off; }
+  void lose_power(bool off) { powerless_ = off; }
   SprungHand& hand() { return hand_; }
   const SprungHand& hand() const { return hand_; }
   void press(std::uint8_t buttons) { buttons_ = buttons; }
   // By their index.
+  static PidJoystickOptions usual_options() { return {}; }
   const std::map<int, PidEffect>& effects() const { return effects_; }
   bool actuators() const { return actuators_; }
   double device_gain() const { return device_gain_; }
@@ -63,8 +89,11 @@ class PidJoystickModel : public ReferenceDevice {
   void set_constant(ReportView report);
   void operate(ReportView report, Time now);
   void control(ReportView report);
+  void control(int what);
   void end_effects(Time now);
   std::pair<double, double> direction(ReportView report);
+  std::pair<double, double> standard_direction(ReportView report);
+  void say_state() { said_.push_back(state()); }
   // The effect of this index; nullptr, and a violation, if there is none.
   PidEffect* effect(std::int64_t index);
   bool complete(ReportView report, const Field& field, DescriptorWriter::Kind kind);
@@ -80,8 +109,26 @@ class PidJoystickModel : public ReferenceDevice {
   bool actuators_ = false, paused_ = false;
   double device_gain_ = 1;
   std::uint8_t buttons_ = 0;
+  bool let_go_ = false, powerless_ = false;
   int created_ = 0;  // index; 0: the pool was full
   Report sent_stick_, sent_state_;
+  std::vector<Report> said_;  // states that wait to be sent
 };
+
+// The same as types, for typed tests.
+template <PidFirmware kFirmware>
+class PidJoystickOf final : public PidJoystickModel {
+ public:
+  static constexpr std::array<bool, 2> kReversed{kFirmware == PidFirmware::arduino,
+                                                 kFirmware == PidFirmware::arduino};
+  static constexpr int kTorqueLevels = kFirmware == PidFirmware::adapt ? 127 : 10000;
+  explicit PidJoystickOf(const PidJoystickOptions& options = PidJoystickOptions::of(kFirmware))
+      : PidJoystickModel(options) {}
+  static PidJoystickOptions usual_options() { return PidJoystickOptions::of(kFirmware); }
+};
+using ArduinoJoystick = PidJoystickOf<PidFirmware::arduino>;
+using FinoJoystick = PidJoystickOf<PidFirmware::fino>;
+using OpenFfboardJoystick = PidJoystickOf<PidFirmware::open_ffboard>;
+using AdaptJoystick = PidJoystickOf<PidFirmware::adapt>;
 
 }  // namespace limpid::test

@@ -77,9 +77,15 @@ void Builder::inputs() {
   reports.buttons = writer.field(Kind::input, 1, 8);
 
   begin(0x92);
-  writer.report(2).usages({0x9F, 0xA0, 0xA4, 0xA5, 0xA6}).logical(0, 1);
-  reports.state_flags = writer.field(Kind::input, 1, 5);
-  writer.padding(Kind::input, 3).usage(0x94);
+  const int override_switch = layout.override_switch ? 1 : 0;
+  writer.report(2).usages({0x9F, 0xA0, 0xA4});
+  if (layout.override_switch) writer.usage(0xA5);
+  writer.usage(0xA6).logical(0, 1);
+  reports.paused = writer.field(Kind::input, 1, 4 + override_switch);
+  reports.actuators = reports.paused.at(1);
+  reports.safety = reports.paused.at(2);
+  reports.power = reports.paused.at(3 + override_switch);
+  writer.padding(Kind::input, 4 - override_switch).usage(0x94);
   reports.state_playing = writer.field(Kind::input, 1, 1);
   writer.usage(0x22).logical(0, kEffects);
   reports.state_index = writer.field(Kind::input, 7, 1);
@@ -109,8 +115,12 @@ void Builder::axes_and_direction() {
   reports.direction_enable = writer.field(Kind::output, 1, 1);
   writer.padding(Kind::output, layout.enables_axes ? 5 : 7);
   begin(0x57);
-  writer.page(kOrdinals).usages({1, 2}).logical(0, layout.direction_max).physical(0, 360);
-  writer.unit(kDegrees, 0);
+  writer.page(kOrdinals).usages({1, 2}).logical(0, layout.direction_max);
+  if (layout.direction_in_hundredths) {
+    writer.physical(0, 36000).unit(0, -2);
+  } else {
+    writer.physical(0, 360).unit(kDegrees, 0);
+  }
   reports.direction = writer.field(Kind::output, layout.direction_max > 255 ? 16 : 8, 2);
   writer.physical(0, 0).unit(0, 0);
   end();
@@ -151,7 +161,12 @@ void Builder::operate() {
   reports.free_index = index(Kind::output);
   end();
   const std::vector<std::uint8_t> commands = {0x97, 0x98, 0x99, 0x9A, 0x9B, 0x9C};
-  if (layout.control_in_report) {
+  if (layout.control_in_bits) {
+    begin_report(0x96);
+    writer.usages({0x97, 0x98, 0x99, 0x9A, 0x9B, 0x9C}).logical(1, 6).physical(0, 0);
+    reports.control = writer.field(Kind::output, 1, 8);
+    end();
+  } else if (layout.control_in_report) {
     begin_report(0x95);
     reports.control = choice(Kind::output, 0x96, commands);
     end();

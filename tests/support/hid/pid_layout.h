@@ -14,11 +14,14 @@ struct PidLayout {
   std::vector<std::uint8_t> effect_types = {0x26, 0x31, 0x40};  // constant, sine, spring
   std::uint8_t first_id = 1;                                    // of the output and feature reports
   int magnitude_max = 10000;                                    // 16 bits; below 128: 8 bits
-  bool enables_axes = true;        // else forces have a direction and nothing else
-  int direction_max = 255;         // of a whole turn; above 255: 16 bits
-  bool physical_axes = true;       // the stick's axes tell their angle [mrad]
-  bool control_in_report = false;  // device control inside a collection of its own
-  bool creates_effects = true;     // else the host chooses the effects' indices
+  bool enables_axes = true;              // else forces have a direction and nothing else
+  int direction_max = 255;               // of a whole turn; above 255: 16 bits
+  bool direction_in_hundredths = false;  // of degrees, the unit left out; else degrees
+  bool physical_axes = true;             // the stick's axes tell their angle [mrad]
+  bool control_in_report = false;        // device control inside a collection of its own
+  bool control_in_bits = false;          // device control has a bit a command, else their numbers
+  bool override_switch = true;           // among the device's states
+  bool creates_effects = true;           // else the host chooses the effects' indices
 
   // As in the examples of the standard.
   static PidLayout standard() { return {}; }
@@ -30,7 +33,8 @@ struct PidReports {
   DescriptorWriter writer;
   // input
   Field x, y, buttons;
-  Field state_flags, state_playing, state_index;
+  Field paused, actuators, safety, power;  // states of the device, one bit each
+  Field state_playing, state_index;
   // set effect, set constant force
   Field effect_index, effect_type, duration, gain, trigger_button;
   std::optional<Field> axes;
@@ -45,9 +49,6 @@ struct PidReports {
   Field load_index, load_status, load_free;
   Field pool_size, pool_effects, pool_managed;
 };
-
-// States of the device in the PID state report, one bit each.
-inline constexpr unsigned kPidPaused = 1, kPidActuators = 2, kPidSafety = 4, kPidPower = 16;
 
 PidReports pid_reports(const PidLayout& layout);
 

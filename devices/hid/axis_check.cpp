@@ -1,0 +1,183 @@
+#include "devices/hid/axis_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace limpid {
+namespace {
+
+constexpr double kShare = 0.1;     // of full force, at most
+constexpr double kFadeIn = 0.5;    // until then it grows [s]
+constexpr double kLongest = 0.7;   // of a push [s]
+constexpr double kStill = 0.2;     // of a rest without a motion [s]
+constexpr double kPatience = 0.5;  // for that [s]; three rests and two pushes are 2.9 s
+constexpr double kEnough = 0.01;   // of its whole way
+constexpr double kAllowed = 0.15;  // of its whole way
+constexpr double kSteps = 8;       // of the encoder, at least enough
+constexpr double kSudden = 0.015;  // so early the torque is too small to have moved it so far [s]
+constexpr double kClear = 2;       // the axis moves so much more than any other
+constexpr int kPhases = 5;
+
+constexpr bool is_push(int phase) { return phase % 2 == 1; }
+
+}  // namespace
+
+const char* explain(AxisVerdict verdict) {
+  switch (verdict) {
+    case AxisVerdict::unknown: return "It has not been pushed yet.";
+    case AxisVerdict::right: return "It moves as it is pushed.";
+    case AxisVerdict::reversed: return "It moves the other way; its force will be turned round.";
+    case AxisVerdict::wrong_axis:
+      return "Another axis moved: this device pushes along its axes in a way Limpid does not know, "
+             "so it cannot be used as an arm.";
+    case AxisVerdict::nothing_moved:
+      return "It did not move both ways. Hold it less firmly, near its middle, and try again; a "
+             "pad whose motors only shake the hand is not an arm.";
+    case AxisVerdict::too_far:
+      return "It moved further or faster than so little force should move it. Its full force is "
+             "more than "
+             "was said, or it does not obey: it cannot be used as an arm.";
+    case AxisVerdict::restless:
+      return "It moved by itself. Let go of it, or hold it still, and try again.";
+    case AxisVerdict::interrupted: return "The check was interrupted; nothing is stored.";
+  }
+  return "";
+}
+
+const char* what_to_do(AxisStage stage) {
+  switch (stage) {
+    case AxisStage::resting: return "Bring it near its middle and let go, or hold it lightly.";
+    case AxisStage::pushing: return "It is being pushed a little. Do not hold against it.";
+    case AxisStage::done: return "";
+  }
+  return "";
+}
+
+AxisCheck::AxisCheck(const DeviceTraits& traits) : dof_(traits.dof) {
+  const auto joints = static_cast<std::size_t>(traits.dof);
+  const auto all = {traits.lower.size(), traits.upper.size(), traits.effort.size()};
+  if (!traits.pushes || joints < 1 || joints > kMaxDof || std::min(all) < joints) {
+    throw std::invalid_argument("a device without motors cannot be checked");
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double step = i < traits.resolution.size() ? traits.resolution[i] : 0;
+    const double way = traits.upper[i] - traits.lower[i];
+    if (!(way > 0 && traits.effort[i] > 0)) {
+      throw std::invalid_argument("a joint without range or effort cannot be checked");
+    }
+    most_[i] = kShare * traits.effort[i];
+    enough_[i] = std::max(kEnough * way, kSteps * step);
+    allowed_[i] = std::max(kAllowed * way, 2 * enough_[i]);
+  }
+}
+
+AxisStage AxisCheck::stage() const {
+  if (done_) return AxisStage::done;
+  return is_push(phase_) ? AxisStage::pushing : AxisStage::resting;
+}
+
+bool AxisCheck::passed() const {
+  return std::all_of(findings_.begin(), findings_.begin() + dof_, [](const AxisFinding& one) {
+    return one.verdict == AxisVerdict::right || one.verdict == AxisVerdict::reversed;
+  });
+}
+
+double AxisCheck::gone(int axis, const Joints& from, const Joints& limits) const noexcept {
+  const auto i = static_cast<std::size_t>(axis);
+  return (x_[i] - from[i]) / limits[i];
+}
+
+double AxisCheck::furthest(const Joints& from, const Joints& limits) const noexcept {
+  double most = 0;
+  for (int i = 0; i < dof_; ++i) most = std::max(most, std::abs(gone(i, from, limits)));
+  return most;
+}
+
+std::span<const double> AxisCheck::step(const Tick& in) noexcept {
+  const auto joints = static_cast<std::size_t>(dof_);
+  bool sound = in.well && in.T > 0 && in.x.size() >= joints;
+  for (std::size_t i = 0; sound && i < joints; ++i) sound = std::isfinite(in.x[i]);
+  if (!done_ && !sound) end(AxisVerdict::interrupted);
+  if (!done_) {
+    std::copy_n(in.x.begin(), joints, x_.begin());
+    if (!started_) start_ = x_;
+    started_ = true;
+    time_ += in.T;
+    if (phase_ > 0 && furthest(home_, allowed_) > 1) {
+      end(AxisVerdict::too_far);
+    } else if (is_push(phase_)) {
+      push();
+    } else {
+      rest(in.T);
+    }
+  }
+  return {torque_.data(), joints};
+}
+
+void AxisCheck::rest(double T) noexcept {
+  still_ += T;
+  if (furthest(start_, enough_) > 0.5) {
+    start_ = x_;
+    still_ = 0;
+  }
+  if (still_ >= kStill) return next();
+  if (time_ >= kPatience) end(AxisVerdict::restless);
+}
+
+void AxisCheck::push() noexcept {
+  if (furthest(start_, enough_) > 1) return judge();
+  if (time_ >= kLongest) return end(AxisVerdict::nothing_moved);
+  const auto i = static_cast<std::size_t>(axis_);
+  const double grown = std::min(1.0, time_ / kFadeIn);
+  torque_[i] = (phase_ == 1 ? 1 : -1) * grown * most_[i];
+}
+
+// Something has moved: was it this axis, and the same way as its torque?
+void AxisCheck::judge() noexcept {
+  const auto i = static_cast<std::size_t>(axis_);
+  const double mine = gone(axis_, start_, enough_);
+  for (int other = 0; other < dof_; ++other) {
+    if (other == axis_) continue;
+    if (std::abs(mine) < kClear * std::abs(gone(other, start_, enough_))) {
+      return end(AxisVerdict::wrong_axis);
+    }
+  }
+  if (torque_[i] == 0) return end(AxisVerdict::restless);  // before it was pushed
+  if (time_ < kSudden) return end(AxisVerdict::too_far);
+  const double moved_per_torque = (x_[i] - start_[i]) / torque_[i];
+  const int sense = moved_per_torque > 0 ? 1 : -1;
+  if (phase_ == 1) {
+    sense_ = sense;
+    found().moved_per_torque = std::abs(moved_per_torque);
+  } else {
+    if (sense != sense_) return end(AxisVerdict::restless);
+    found().moved_per_torque = (found().moved_per_torque + std::abs(moved_per_torque)) / 2;
+  }
+  next();
+}
+
+// To the axis' next phase, at the end of which it is trusted, or to the next axis.
+void AxisCheck::next() noexcept {
+  torque_.fill(0);
+  time_ = still_ = 0;
+  start_ = x_;
+  if (phase_ == 0) home_ = x_;
+  if (++phase_ < kPhases) return;
+  found().verdict = sense_ > 0 ? AxisVerdict::right : AxisVerdict::reversed;
+  phase_ = 0;
+  if (axis_ + 1 == dof_) {
+    done_ = true;
+  } else {
+    ++axis_;
+  }
+}
+
+void AxisCheck::end(AxisVerdict verdict) noexcept {
+  torque_.fill(0);
+  if (done_) return;
+  found().verdict = verdict;
+  done_ = true;
+}
+
+}  // namespace limpid

@@ -1,0 +1,206 @@
+#include "devices/hid/axis_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace limpid {
+namespace {
+
+DeviceTraits traits(int joints) {
+  const auto n = static_cast<std::size_t>(joints);
+  DeviceTraits one;
+  one.dof = joints;
+  one.pushes = true;
+  one.lower.assign(n, -0.5);
+  one.upper.assign(n, 0.5);
+  one.resolution.assign(n, 1e-4);
+  one.effort.assign(n, 2.0);
+  return one;
+}
+
+// Joints that give way in proportion to their torque, by so much a newton metre.
+struct Springs {
+  std::vector<double> give;
+  std::vector<double> x = std::vector<double>(give.size());
+  double most = 0, time = 0;
+
+  void tick(AxisCheck& check, bool well = true) {
+    const auto torque = check.step({x, 1e-3, well});
+    ASSERT_EQ(torque.size(), x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = give[i] * torque[i];
+      most = std::max(most, std::abs(torque[i]));
+    }
+    time += 1e-3;
+  }
+  void run(AxisCheck& check) {
+    while (!check.done() && time < 100) tick(check);
+  }
+  bool pushes(AxisCheck& check) {
+    for (int i = 0; i < 2000 && !check.done(); ++i) {
+      tick(check);
+      for (const double one : x) {
+        if (std::abs(one) > 1e-6) return true;
+      }
+    }
+    return false;
+  }
+};
+
+TEST(AxisCheck, FindsTheSignAndTheGiveOfEachJoint) {
+  AxisCheck check(traits(3));
+  Springs springs{{0.2, -0.4, 0.3}};
+  springs.run(check);
+  EXPECT_TRUE(check.passed());
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::right);
+  EXPECT_EQ(check.finding(1).verdict, AxisVerdict::reversed);
+  EXPECT_EQ(check.finding(2).verdict, AxisVerdict::right);
+  EXPECT_NEAR(check.finding(1).moved_per_torque, 0.4, 1e-9);
+  EXPECT_LE(springs.time, 3 * 3.0);
+}
+
+// 2 N m is full force. A joint that takes all the time there is gives way too little.
+TEST(AxisCheck, AsksForATenthOfFullForceAndThreeSecondsAtMost) {
+  AxisCheck check(traits(1));
+  Springs firm{{0.049}};
+  firm.run(check);
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::nothing_moved);
+  EXPECT_LE(firm.most, 0.2 + 1e-12);
+  EXPECT_GT(firm.most, 0.19);
+  EXPECT_LE(firm.time, 3.0);
+  AxisCheck again(traits(1));
+  Springs slack{{0.0501}};
+  slack.run(again);
+  EXPECT_TRUE(again.passed());
+  EXPECT_LE(slack.time, 3.0);
+}
+
+TEST(AxisCheck, FadesIn) {
+  AxisCheck check(traits(1));
+  Springs firm{{0.0}};
+  double before = 0, steepest = 0;
+  for (int i = 0; i < 5000 && !check.done(); ++i) {
+    const double torque = check.step({firm.x, 1e-3, true})[0];
+    steepest = std::max(steepest, torque - before);
+    before = torque;
+  }
+  EXPECT_LE(steepest, 0.2 * 1e-3 / 0.5 + 1e-12) << "half a second to a tenth of 2 N m";
+}
+
+TEST(AxisCheck, IsWithoutTorqueOnceCancelled) {
+  AxisCheck check(traits(2));
+  Springs springs{{0.06, 0.06}};
+  ASSERT_TRUE(springs.pushes(check));
+  EXPECT_EQ(check.stage(), AxisStage::pushing);
+  check.cancel();
+  EXPECT_TRUE(check.done());
+  EXPECT_FALSE(check.passed());
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+  for (int i = 0; i < 10; ++i) springs.tick(check);
+  EXPECT_EQ(springs.x, (std::vector<double>{0, 0}));
+}
+
+TEST(AxisCheck, IsWithoutTorqueAsSoonAsTheDeviceIsNotWell) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> at_rest{0, 0}, broken{0, nan}, too_few{0};
+  const AxisCheck::Tick ills[] = {{at_rest, 1e-3, false},
+                                  {broken, 1e-3, true},
+                                  {too_few, 1e-3, true},
+                                  {at_rest, 0, true},
+                                  {at_rest, nan, true}};
+  for (const AxisCheck::Tick& ill : ills) {
+    AxisCheck check(traits(2));
+    Springs springs{{0.06, 0.06}};
+    ASSERT_TRUE(springs.pushes(check));
+    const auto torque = check.step(ill);
+    EXPECT_EQ(torque[0], 0);
+    EXPECT_EQ(torque[1], 0);
+    EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+    springs.run(check);
+    EXPECT_FALSE(check.passed()) << "it does not go on by itself";
+  }
+}
+
+TEST(AxisCheck, KeepsWhatItHasFoundWhenCancelledAtItsEnd) {
+  AxisCheck check(traits(1));
+  Springs springs{{0.2}};
+  springs.run(check);
+  ASSERT_TRUE(check.passed());
+  check.cancel();
+  EXPECT_TRUE(check.passed());
+}
+
+// A joint that its motor turns by seven steps of its encoder.
+TEST(AxisCheck, WantsMoreThanTheNoiseOfACoarseEncoder) {
+  DeviceTraits coarse = traits(1);
+  coarse.resolution = {0.004};
+  AxisCheck check(coarse);
+  std::vector<double> x{0};
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    const double torque = check.step({x, 1e-3, true})[0];
+    x[0] = 0.004 * std::round(7 * torque / 0.2);
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::nothing_moved);
+}
+
+TEST(AxisCheck, WaitsUntilTheDeviceIsAtRest) {
+  AxisCheck check(traits(1));
+  std::vector<double> x{0};
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    x[0] = 0.03 * std::sin(0.05 * i);
+    EXPECT_EQ(check.step({x, 1e-3, true})[0], 0);
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::restless);
+}
+
+// Each push moves it, but always the same way: that was a hand.
+TEST(AxisCheck, BelievesOnlyWhatMovesBothWays) {
+  AxisCheck check(traits(1));
+  std::vector<double> x{0};
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    x[0] = 0.2 * std::abs(check.step({x, 1e-3, true})[0]);
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::restless);
+  EXPECT_FALSE(check.passed());
+}
+
+// Once pushed it goes on by itself, a radian a second, out of a way of one radian.
+TEST(AxisCheck, GivesUpADeviceThatRunsOn) {
+  AxisCheck check(traits(1));
+  std::vector<double> x{0};
+  bool running = false;
+  for (int i = 0; i < 10'000 && !check.done(); ++i) {
+    const double torque = check.step({x, 1e-3, true})[0];
+    running = running || torque > 0.05;
+    x[0] += running ? 1e-3 : 0;
+  }
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::too_far);
+  EXPECT_LT(x[0], 0.16);
+}
+
+TEST(AxisCheck, NeedsMotorsAndARange) {
+  DeviceTraits mouse = traits(3);
+  mouse.pushes = false;
+  EXPECT_THROW(AxisCheck{mouse}, std::invalid_argument);
+  DeviceTraits weak = traits(1);
+  weak.effort = {0};
+  EXPECT_THROW(AxisCheck{weak}, std::invalid_argument);
+  DeviceTraits narrow = traits(1);
+  narrow.upper = narrow.lower;
+  EXPECT_THROW(AxisCheck{narrow}, std::invalid_argument);
+}
+
+TEST(AxisCheck, HasAWordForEverything) {
+  for (int i = 0; i <= static_cast<int>(AxisVerdict::interrupted); ++i) {
+    EXPECT_GT(std::string(explain(static_cast<AxisVerdict>(i))).size(), 10u);
+  }
+  EXPECT_NE(std::string(what_to_do(AxisStage::resting)), what_to_do(AxisStage::pushing));
+}
+
+}  // namespace
+}  // namespace limpid
