@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/desktop/experiments_panel.h"
+#include "app/desktop/guard.h"
 #include "app/desktop/keys.h"
 #include "app/desktop/panels.h"
 #include "app/desktop/scene_dialogs.h"
+#include "app/desktop/unsaved.h"
 #include "app/interrupt.h"
 #include "app/rtkit.h"
 #include "app/style/theme.h"
@@ -46,11 +48,24 @@ struct Panels {
   ViewPanel view;
   SidePanel side;
   SceneDialogs scene;
+  SessionDialog session;
   ExperimentsPanel experiments;
 };
 
+// What throws becomes a notice, but not the same one in every frame.
+template <class Work>
+void guard(Workbench& bench, Work&& work) {
+  guarded(
+      [&bench](const char* what) {
+        const auto same = [what](const Notice& notice) { return notice.text == what; };
+        if (std::ranges::none_of(bench.notices, same)) bench.say(what, true);
+      },
+      std::forward<Work>(work));
+}
+
 void draw(Workbench& bench, Window& window, Panels& panels) {
-  draw_menu_bar(bench, window);
+  const auto part = [&bench](auto&& work) { guard(bench, work); };
+  part([&] { draw_menu_bar(bench, window); });
   int points_x = 0, points_y = 0;
   window.size(points_x, points_y);
   const auto width = static_cast<float>(points_x);
@@ -70,11 +85,13 @@ void draw(Workbench& bench, Window& window, Panels& panels) {
   const float right = s.show_right ? width - scaled(s.right) : width;
 
   const ScreenRect view{{left, top}, {right, middle}};
-  panels.view.draw(bench, window, view);
-  if (s.show_left) draw_coupling_panel(bench, {{0, top}, {left, middle}});
-  if (s.show_right) panels.side.draw(bench, {{right, top}, {width, middle}}, window.frame_time());
-  if (s.show_plots) draw_plots(bench, window, {{0, middle}, {width, bottom}});
-  draw_transport(bench, {{0, bottom}, {width, height}});
+  part([&] { panels.view.draw(bench, window, view); });
+  if (s.show_left) part([&] { draw_coupling_panel(bench, {{0, top}, {left, middle}}); });
+  if (s.show_right) {
+    part([&] { panels.side.draw(bench, {{right, top}, {width, middle}}, window.frame_time()); });
+  }
+  if (s.show_plots) part([&] { draw_plots(bench, window, {{0, middle}, {width, bottom}}); });
+  part([&] { draw_transport(bench, {{0, bottom}, {width, height}}); });
 
   const float grip = 3 * scale;
   if (s.show_left) {
@@ -88,14 +105,20 @@ void draw(Workbench& bench, Window& window, Panels& panels) {
     splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120,
              520);
   }
-  draw_dialogs(bench);
-  panels.scene.draw(bench, view);
-  panels.experiments.draw(bench);
+  part([&] { draw_dialogs(bench); });
+  part([&] { panels.session.draw(bench); });
+  part([&] { panels.scene.draw(bench, view); });
+  part([&] { panels.experiments.draw(bench); });
   draw_notices(bench, view);
 }
 
 // For scripts that drive the window.
-void print_state(Workbench& bench) {
+void print_state(Workbench& bench, const Window& window) {
+  const Focus focus = focus_of(bench);
+  nlohmann::json notices = nlohmann::json::array();
+  for (const Notice& notice : bench.notices) notices.push_back(notice.text);
+  int width = 0, height = 0;
+  window.size(width, height);
   const std::span<const double> row = bench.row();
   const RowLayout& layout = bench.shown().channels().layout();
   const LoopStatus status = bench.live.status();
@@ -109,7 +132,9 @@ void print_state(Workbench& bench) {
       "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
       "{}, "
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
-      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}}}\n",
+      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
+      "{}, "
+      "\"typing\": {}, \"notices\": {}, \"size\": [{}, {}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
       layout.in(row, Column::hand_grip)[0], bench.controls.force, bench.live.recording(),
@@ -118,8 +143,9 @@ void print_state(Workbench& bench) {
       objects_of(bench.editor.scene()).size(),
       selected ? nlohmann::json(name_of(bench.editor.scene(), *selected)).dump() : "null",
       bench.loader.busy(), bench.editor.dirty(), nlohmann::json(bench.scene_file).dump(),
-      bench.show_add_model || bench.show_save_as || bench.after_question != nullptr,
-      bench.quality_level());
+      focus.question || modal(focus.dialog), bench.quality_level(), bench.parameters.alpha,
+      nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
+      notices.dump(), width, height);
   std::fflush(stdout);
 }
 
@@ -133,6 +159,42 @@ void open_world(Workbench& bench, const DesktopOptions& options) {
     if (bench.settings.scene.empty()) throw;
     bench.open_world(device, "");
     bench.say(e.what(), true);
+  }
+}
+
+// Changes that the user could not be asked about are kept for the next start.
+void keep_changes(Workbench& bench) {
+  if (!bench.editor.dirty()) return;
+  const std::string name = std::filesystem::path(bench.scene_file).stem().string();
+  for (const std::filesystem::path& folder :
+       {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
+    try {
+      const auto file = keep_unsaved(bench.editor.scene(), bench.stage->arm(), name, folder);
+      fmt::print(stderr, "limpid: unsaved changes are in {}\n", file.string());
+      return;
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "limpid: unsaved changes: {}\n", e.what());
+    }
+  }
+}
+
+void tell_of_kept_changes(Workbench& bench) {
+  for (const std::filesystem::path& file : take_unsaved(scenes_dir())) {
+    bench.say(
+        fmt::format("Limpid was ended while a scene had unsaved changes. They are in {}: open "
+                    "it from the gallery (Ctrl+G).",
+                    file.filename().string()));
+  }
+}
+
+void say_what_was_saved(Workbench& bench, const Window& window) {
+  for (const SavedPicture& picture : window.saved()) {
+    if (picture.error.empty()) {
+      bench.say("Saved " + picture.file.string());
+    } else {
+      bench.say(picture.error + ". See to it that the folder is there and can be written to.",
+                true);
+    }
   }
 }
 
@@ -160,6 +222,7 @@ void run_desktop(const DesktopOptions& options) {
   open_world(bench, options);
   if (!complaint.empty()) bench.say(complaint, true);
   bench.recover_leftovers();
+  tell_of_kept_changes(bench);
   if (!options.session.empty()) bench.open_session(options.session);
 
   Panels panels;
@@ -167,27 +230,31 @@ void run_desktop(const DesktopOptions& options) {
   int frame = 0;
   bool leaving = false;
   while (!leaving) {
-    if (!window.begin_frame()) {
+    if (!window.begin_frame(focus_of(bench))) {
       // Unsaved changes are asked about, unless somebody interrupts from outside.
+      if (interrupted) {
+        keep_changes(bench);
+        break;
+      }
       bench.leave_scene([&leaving] { leaving = true; });
       window.keep_open();
-      leaving = leaving || interrupted;
       continue;
     }
     if (interrupted) window.close();
     const double now = glfwGetTime();
     bench.history.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
-    handle_keys(bench, window);
-    bench.open_dropped(window.dropped());
-    bench.update(now - last);
+    guard(bench, [&] { handle_keys(bench, window); });
+    guard(bench, [&] { bench.open_dropped(window.dropped()); });
+    guard(bench, [&] { bench.update(now - last); });
     last = now;
     draw(bench, window, panels);
     window.end_frame();
+    say_what_was_saved(bench, window);
     bench.automatic_quality.frame(window.frame_time());
-    if (options.print_state && ++frame % 6 == 0) print_state(bench);
+    if (options.print_state && ++frame % 6 == 0) print_state(bench, window);
   }
   panels.scene.drop_pictures();
-  if (!window.full_screen()) window.size(bench.settings.width, bench.settings.height);
+  if (!window.full_screen()) window.asked_size(bench.settings.width, bench.settings.height);
   if (const std::string error = save_settings(bench.settings); !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);
   }

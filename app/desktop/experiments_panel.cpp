@@ -66,11 +66,12 @@ void ExperimentsPanel::take(Workbench& bench) {
 
 void ExperimentsPanel::draw(Workbench& bench) {
   take(bench);
-  if (!bench.show_experiments) return;
+  if (bench.dialog != Dialog::experiments) return;
+  bool open = true;
   const ImVec2 room = ImGui::GetMainViewport()->Size;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
-  if (ImGui::Begin("Experiments", &bench.show_experiments,
+  if (ImGui::Begin("Experiments", &open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     ImGui::BeginChild("list", {17 * ImGui::GetFontSize(), 0});
     draw_list(bench);
@@ -93,6 +94,7 @@ void ExperimentsPanel::draw(Workbench& bench) {
     ImGui::EndChild();
   }
   ImGui::End();
+  if (!open && bench.dialog == Dialog::experiments) bench.dialog = Dialog::none;
 }
 
 void ExperimentsPanel::draw_list(Workbench& bench) {
@@ -167,7 +169,7 @@ void ExperimentsPanel::draw_verdict(Workbench& bench, const Verdict& verdict) {
   for (const fs::path& trial : verdict.trials) {
     if (ImGui::Selectable(trial.stem().c_str())) {
       bench.open_session(trial);
-      bench.show_experiments = false;
+      bench.dialog = Dialog::none;
     }
   }
 }

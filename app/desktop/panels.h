@@ -24,8 +24,19 @@ void draw_menu_bar(Workbench& bench, Window& window);
 void draw_coupling_panel(Workbench& bench, const ScreenRect& rect);
 void draw_plots(Workbench& bench, Window& window, const ScreenRect& rect);
 void draw_transport(Workbench& bench, const ScreenRect& rect);
+// What is there to read.
 void draw_dialogs(Workbench& bench);
 void draw_notices(Workbench& bench, const ScreenRect& view);
+
+// Asks for a recording to open.
+class SessionDialog {
+ public:
+  void draw(Workbench& bench);
+
+ private:
+  bool was_shown_ = false;
+  std::string typed_, complaint_;
+};
 
 // Scene, hand, device, analysis and timing.
 class SidePanel {

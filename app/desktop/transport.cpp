@@ -101,7 +101,7 @@ void live_controls(Workbench& bench) {
   } else if (button("Play", "Plays the last recording, or opens one (P).")) {
     bench.toggle_playing();
   }
-  if (button("Open...", "Choose a recorded session (Ctrl+O).")) bench.show_open = true;
+  if (button("Open...", "Choose a recorded session (Ctrl+O).")) bench.dialog = Dialog::open_session;
   if (button("A/B", "Switch between standard and proposed coupling without a jump (C).")) {
     bench.toggle_coupling();
   }

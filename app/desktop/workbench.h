@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/desktop/device_desk.h"
+#include "app/desktop/focus.h"
 #include "app/desktop/placement.h"
 #include "app/desktop/scene_editor.h"
 #include "app/desktop/scene_loader.h"
@@ -141,9 +142,7 @@ class Workbench {
   Background<std::vector<double>> rerunning;
   Background<std::string> exporting;
   std::string scene_file, device_file;
-  bool show_help = false, show_about = false, show_open = false, show_experiments = false;
-  bool show_gallery = false, show_add_model = false, show_save_as = false;
-  std::string typed_path;
+  Dialog dialog = Dialog::none;  // that is open
 
  private:
   void open(ArmDescription arm, Scene scene, MeshModels models,
