@@ -10,6 +10,7 @@
 #include "app/desktop/experiments_panel.h"
 #include "app/desktop/guard.h"
 #include "app/desktop/keys.h"
+#include "app/desktop/layout.h"
 #include "app/desktop/panels.h"
 #include "app/desktop/scene_dialogs.h"
 #include "app/desktop/unsaved.h"
@@ -45,6 +46,7 @@ void splitter(const char* name, const ScreenRect& rect, bool vertical, double di
 
 // The parts of the window that remember something themselves.
 struct Panels {
+  WindowLayout layout;
   ViewPanel view;
   SidePanel side;
   SceneDialogs scene;
@@ -66,50 +68,42 @@ void guard(Workbench& bench, Work&& work) {
 void draw(Workbench& bench, Window& window, Panels& panels) {
   const auto part = [&bench](auto&& work) { guard(bench, work); };
   part([&] { draw_menu_bar(bench, window); });
-  int points_x = 0, points_y = 0;
-  window.size(points_x, points_y);
-  const auto width = static_cast<float>(points_x);
-  const auto height = static_cast<float>(points_y);
+  int width = 0, height = 0;
+  window.size(width, height);
   Settings& s = bench.settings;
   const float scale = current_scale();
-  // Whole pixels: no seams between the panels.
-  const auto scaled = [&](double size) { return std::round(static_cast<float>(size) * scale); };
-  const float top = std::round(ImGui::GetFrameHeight());
-  const float transport =
-      std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y);
-  const float bottom = height - transport;
-  // On a low window the panels above need the height more than the plots do.
-  const float plots = std::min(scaled(s.plots), std::round(0.27f * height));
-  const float middle = s.show_plots ? bottom - plots : bottom;
-  const float left = s.show_left ? scaled(s.left) : 0;
-  const float right = s.show_right ? width - scaled(s.right) : width;
-
-  const ScreenRect view{{left, top}, {right, middle}};
-  part([&] { panels.view.draw(bench, window, view); });
-  if (s.show_left) part([&] { draw_coupling_panel(bench, {{0, top}, {left, middle}}); });
-  if (s.show_right) {
-    part([&] { panels.side.draw(bench, {{right, top}, {width, middle}}, window.frame_time()); });
-  }
-  if (s.show_plots) part([&] { draw_plots(bench, window, {{0, middle}, {width, bottom}}); });
-  part([&] { draw_transport(bench, {{0, bottom}, {width, height}}); });
+  const Layout at = panels.layout(
+      s,
+      {.width = static_cast<float>(width),
+       .height = static_cast<float>(height),
+       .scale = scale,
+       .menu = std::round(ImGui::GetFrameHeight()),
+       .transport = std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y)});
+  part([&] { panels.view.draw(bench, window, at.view); });
+  if (at.show_left) part([&] { draw_coupling_panel(bench, at.left); });
+  if (at.show_right) part([&] { panels.side.draw(bench, at.right, window.frame_time()); });
+  if (at.show_plots) part([&] { draw_plots(bench, window, at.plots); });
+  part([&] { draw_transport(bench, at.transport); });
 
   const float grip = 3 * scale;
-  if (s.show_left) {
+  const auto [left, top] = at.view.min;
+  const auto [right, middle] = at.view.max;
+  if (at.show_left) {
     splitter("left grip", {{left - grip, top}, {left + grip, middle}}, true, 1, s.left, 220, 480);
   }
-  if (s.show_right) {
+  if (at.show_right) {
     splitter("right grip", {{right - grip, top}, {right + grip, middle}}, true, -1, s.right, 220,
              480);
   }
-  if (s.show_plots) {
-    splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120,
-             520);
+  if (at.show_plots) {
+    splitter("plot grip", {{0, middle - grip}, {at.plots.max.x, middle + grip}}, false, -1, s.plots,
+             120, 520);
   }
   part([&] { draw_dialogs(bench); });
   part([&] { panels.session.draw(bench); });
-  part([&] { panels.scene.draw(bench, view); });
+  part([&] { panels.scene.draw(bench, at.view); });
   part([&] { panels.experiments.draw(bench); });
-  draw_notices(bench, view);
+  draw_notices(bench, at.view);
 }
 
 // For scripts that drive the window.

@@ -108,7 +108,7 @@ void ExperimentsPanel::draw_list(Workbench& bench) {
       const double part = running_.part();
       const std::string left =
           part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "";
-      ImGui::ProgressBar(static_cast<float>(part), {-1, 0}, left.c_str());
+      progress_bar(part, 0, left);
     } else if (ImGui::Button(waits ? "waits" : "Run")) {
       queue_.push_back(&experiment);
     }

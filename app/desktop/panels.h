@@ -19,6 +19,9 @@ void heading(const char* text);
 void read_out(const char* label, const std::string& value, const std::string& broken = {},
               const char* help = nullptr);
 void tooltip(const char* text);
+// A bar filled to `part`, 0 to 1, with a text on it; `width` [px], 0: all there is. Without a text
+// it says the part.
+void progress_bar(double part, float width, std::string text = {});
 
 void draw_menu_bar(Workbench& bench, Window& window);
 void draw_coupling_panel(Workbench& bench, const ScreenRect& rect);

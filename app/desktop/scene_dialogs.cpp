@@ -54,7 +54,7 @@ void draw_progress(Workbench& bench, const ScreenRect& view) {
   }
   if (loader.waiting() > 0) text += fmt::format(", {} more after it", loader.waiting());
   ImGui::TextUnformatted(text.c_str());
-  ImGui::ProgressBar(static_cast<float>(loader.part()), {22 * em, 0});
+  progress_bar(loader.part(), 22 * em);
   ImGui::SameLine();
   if (ImGui::Button("Cancel")) loader.cancel();
   ImGui::End();

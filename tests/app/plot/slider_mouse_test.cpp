@@ -1,6 +1,8 @@
 // What the mouse does to a slider, frame by frame.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "app/style/parameter_slider.h"
 #include "imgui_frames.h"
 
