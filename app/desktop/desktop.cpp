@@ -100,9 +100,10 @@ void draw(Workbench& bench, Window& window, Panels& panels) {
              120, 520);
   }
   part([&] { draw_dialogs(bench); });
-  part([&] { panels.session.draw(bench); });
-  part([&] { panels.scene.draw(bench, at.view); });
   part([&] { panels.experiments.draw(bench); });
+  // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
+  part([&] { panels.scene.draw(bench, at.view); });
+  part([&] { panels.session.draw(bench); });
   draw_notices(bench, at.view);
 }
 

@@ -7,7 +7,7 @@ namespace limpid {
 namespace {
 
 // At scale 1 [px]: what the view keeps between two panels, and plots that can still be read.
-constexpr float kLeastView = 300, kLeastPlots = 100;
+constexpr float kLeastView = 300, kLeastPlots = 130;
 constexpr float kMostPlots = 0.27f;  // of the window's height
 
 }  // namespace

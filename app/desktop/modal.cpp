@@ -24,10 +24,11 @@ bool begin_modal(const char* title, bool& open, const ImVec2& size) {
 }
 
 bool accepted() {
-  const bool enter =
-      ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) || ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false);
-  return enter && !ImGui::GetIO().WantTextInput &&
-         ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+  // The Enter that opened the dialog is not its own.
+  if (ImGui::IsWindowAppearing() || ImGui::GetIO().WantTextInput) return false;
+  return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
+         (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) ||
+          ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
 }
 
 }  // namespace limpid

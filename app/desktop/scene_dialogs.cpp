@@ -63,11 +63,11 @@ void draw_progress(Workbench& bench, const ScreenRect& view) {
 }  // namespace
 
 void SceneDialogs::draw(Workbench& bench, const ScreenRect& view) {
+  draw_progress(bench, view);
   if (bench.after_question && modal(bench.dialog)) bench.dialog = Dialog::none;
   gallery_.draw(bench);
   draw_paths(bench);
   draw_question(bench);
-  draw_progress(bench, view);
 }
 
 void SceneDialogs::draw_paths(Workbench& bench) {

@@ -19,8 +19,10 @@ class Guard : public ImGuiFrames {
     for (int i = 0; i < 3; ++i) {
       heard.clear();
       frame([&] {
+        ImGui::Begin("beside it");
+        ImGui::End();
         guarded([this](const char* what) { heard = what; }, work);
-        ImGui::Begin("after it");
+        ImGui::Begin("beside it");
         shown = ImGui::GetFont() == ImGui::GetIO().Fonts->Fonts[0];
         ImGui::End();
       });
