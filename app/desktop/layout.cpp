@@ -8,7 +8,8 @@ namespace {
 
 // At scale 1 [px]: what the view keeps between two panels, and plots that can still be read.
 constexpr float kLeastView = 300, kLeastPlots = 130;
-constexpr float kMostPlots = 0.27f;  // of the window's height
+// Of the window's height: what plots take unless they need more, and what the view keeps then.
+constexpr float kMostPlots = 0.27f, kLeastAbovePlots = 0.4f;
 
 }  // namespace
 
@@ -33,11 +34,14 @@ Layout WindowLayout::operator()(Settings& settings, const WindowSize& size) {
   if (right_folded_) right = 0;
 
   const float bottom = size.height - size.transport;
-  const float plots = std::min(scaled(settings.plots), std::round(kMostPlots * size.height));
+  const float plots =
+      std::max(std::min(scaled(settings.plots), std::round(kMostPlots * size.height)),
+               std::round(kLeastPlots * size.scale));
   Layout at;
   at.show_left = left > 0;
   at.show_right = right > 0;
-  at.show_plots = settings.show_plots && plots >= kLeastPlots * size.scale;
+  at.show_plots =
+      settings.show_plots && bottom - plots - size.menu >= kLeastAbovePlots * size.height;
   const float middle = at.show_plots ? bottom - plots : bottom;
   at.view = {{left, size.menu}, {size.width - right, middle}};
   at.left = {{0, size.menu}, {left, middle}};
