@@ -88,7 +88,8 @@ void ExperimentsPanel::draw(Workbench& bench) {
           experiments_dir().c_str());
       ImGui::Spacing();
       for (const Experiment& experiment : experiments()) {
-        ImGui::BulletText("%s: %s", experiment.name, experiment.about);
+        ImGui::Bullet();
+        ImGui::TextWrapped("%s: %s", experiment.name, experiment.about);
       }
     }
     ImGui::EndChild();

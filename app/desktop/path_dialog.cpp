@@ -50,7 +50,9 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
   if (text_ != before) complaint_.clear();
   list_folder();
   bool picked = false;
-  ImGui::BeginChild("folder", {0, 14 * ImGui::GetTextLineHeightWithSpacing()}, true);
+  const float list = std::min(14 * ImGui::GetTextLineHeightWithSpacing(),
+                              0.4f * ImGui::GetMainViewport()->WorkSize.y);
+  ImGui::BeginChild("folder", {0, list}, true);
   for (const fs::path& folder : folders_) {
     const bool up = folder == "..";
     if (ImGui::Selectable(((up ? std::string("..") : folder.filename().string()) + "/").c_str())) {

@@ -71,6 +71,8 @@ class WindowTest(unittest.TestCase):
     def key(self, name: str, closes: bool = False) -> None:
         """A key press; one that closes the window leaves none for its release."""
         self.xdotool("key", "--window", self.window, "--delay", "120", name, check=not closes)
+        if closes:
+            self.xdotool("keyup", name)  # or it repeats into the next window
 
     def type(self, text: str) -> None:
         self.xdotool("type", "--window", self.window, "--delay", "60", text)
