@@ -13,6 +13,7 @@ LETTERS = "rcfpgxle1 2[]?d"
 # What typing must leave alone.
 LASTING = ("force", "recording", "playing", "kind", "eta", "alpha", "objects", "selected", "dirty")
 ETA = (250, 99)  # on its slider, right of its value
+NAME = (1100, 176)  # of the selected object
 
 
 def lasting(state: dict) -> dict:
@@ -78,6 +79,19 @@ class Keys(WindowTest):
         state = self.wait("no typing", lambda s: not s["typing"] and not s["force"])
         self.assertEqual(state["eta"], before["eta"])
         self.wait_for_notice("Force off")
+
+    def test_what_is_typed_into_an_objects_name_does_nothing_else(self) -> None:
+        self.key("Tab")
+        self.wait("an object", lambda s: s["selected"] == "table top")
+        before = self.state()
+        self.click(*NAME)
+        self.wait("typing", lambda s: s["typing"])
+        self.key("ctrl+a")
+        self.type("crisp fog")
+        self.key("Return")
+        after = self.wait("its new name", lambda s: s["selected"] == "crisp fog")
+        for key in ("force", "recording", "playing", "kind", "eta", "alpha", "objects"):
+            self.assertEqual(after[key], before[key], key)
 
     def test_enter_and_escape_belong_to_the_dialog(self) -> None:
         self.key("F1")
