@@ -96,7 +96,7 @@ struct Window::Impl {
     ImGuiIO& io = ImGui::GetIO();
     for (const int key : std::exchange(tapped, {})) io.KeysDown[key] = false;
     held.set_focus(focus);
-    std::vector<int> pressed;
+    std::vector<KeyPress> pressed;
     int last = GLFW_KEY_UNKNOWN;  // that a character comes from
     for (const KeyEvent& event : std::exchange(events, {})) {
       if (event.kind != KeyEvent::Kind::character) last = event.key;
@@ -104,7 +104,7 @@ struct Window::Impl {
         case KeyEvent::Kind::press:
           held.press(event.key);
           keys.push_back({event.key, event.modifiers});
-          pressed.push_back(event.key);
+          pressed.push_back(keys.back());
           break;
         case KeyEvent::Kind::repeat:
           if (!held.stale(event.key)) keys.push_back({event.key, event.modifiers, true});
@@ -118,12 +118,20 @@ struct Window::Impl {
     for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
       if (held.stale(key)) io.KeysDown[key] = false;
     }
-    // ImGui looks at what is down, and would never see a key let go before it looks.
-    for (const int key : pressed) {
-      if (key < 0 || io.KeysDown[key]) continue;
-      io.KeysDown[key] = true;
-      tapped.push_back(key);
+    // ImGui looks at what is down, and would never see keys let go before it looks.
+    int modifiers = 0;
+    for (const KeyPress& press : pressed) {
+      if (press.key < 0 || io.KeysDown[press.key]) continue;
+      io.KeysDown[press.key] = true;
+      tapped.push_back(press.key);
+      modifiers |= press.modifiers;
     }
+    const auto held_down = [&](int modifier, int left, int right) {
+      return (modifiers & modifier) != 0 || io.KeysDown[left] || io.KeysDown[right];
+    };
+    io.KeyCtrl = held_down(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = held_down(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = held_down(GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
   }
 
   void save(const Picture& wanted) const {

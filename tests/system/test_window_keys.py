@@ -86,7 +86,8 @@ class Keys(WindowTest):
         before = self.state()
         self.click(*NAME)
         self.wait("typing", lambda s: s["typing"])
-        self.key("ctrl+a")
+        # So fast that all of it falls into one frame.
+        self.xdotool("key", "--window", self.window, "--delay", "1", "ctrl+a")
         self.type("crisp fog")
         self.key("Return")
         after = self.wait("its new name", lambda s: s["selected"] == "crisp fog")
