@@ -86,8 +86,11 @@ class Keys(WindowTest):
         before = self.state()
         self.click(*NAME)
         self.wait("typing", lambda s: s["typing"])
-        # So fast that all of it falls into one frame.
-        self.xdotool("key", "--window", self.window, "--delay", "1", "ctrl+a")
+        # All of it in one frame, as on a computer that draws slowly.
+        self.app.send_signal(signal.SIGSTOP)
+        self.key("ctrl+a")
+        self.app.send_signal(signal.SIGCONT)
+        time.sleep(1)
         self.type("crisp fog")
         self.key("Return")
         after = self.wait("its new name", lambda s: s["selected"] == "crisp fog")
