@@ -5,6 +5,10 @@
 #include <stb/stb_image_write.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -104,8 +108,22 @@ void write_png(const std::filesystem::path& path, int width, int height,
   if (width < 1 || height < 1 ||
       rgba.size() != 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("a picture's size and its pixels do not agree");
-  if (stbi_write_png(path.string().c_str(), width, height, 4, rgba.data(), 4 * width) == 0)
+  // By way of memory: stb's own writing to files does not notice a full disk.
+  std::vector<unsigned char> png;
+  const auto append = [](void* to, void* data, int size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    static_cast<std::vector<unsigned char>*>(to)->insert(
+        static_cast<std::vector<unsigned char>*>(to)->end(), bytes, bytes + size);
+  };
+  if (stbi_write_png_to_func(append, &png, width, height, 4, rgba.data(), 4 * width) == 0)
     throw std::runtime_error(path.string() + ": the picture cannot be written");
+  errno = 0;
+  std::FILE* file = std::fopen(path.string().c_str(), "wb");
+  const bool whole = file != nullptr && std::fwrite(png.data(), 1, png.size(), file) == png.size();
+  const bool closed = file != nullptr && std::fclose(file) == 0;
+  if (!whole || !closed)
+    throw std::runtime_error(path.string() +
+                             ": the picture cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace limpid

@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/desktop/experiments_panel.h"
+#include "app/desktop/guard.h"
 #include "app/desktop/keys.h"
+#include "app/desktop/layout.h"
 #include "app/desktop/panels.h"
 #include "app/desktop/scene_dialogs.h"
+#include "app/desktop/unsaved.h"
 #include "app/interrupt.h"
 #include "app/rtkit.h"
 #include "app/style/theme.h"
@@ -43,59 +46,74 @@ void splitter(const char* name, const ScreenRect& rect, bool vertical, double di
 
 // The parts of the window that remember something themselves.
 struct Panels {
+  WindowLayout layout;
   ViewPanel view;
   SidePanel side;
   SceneDialogs scene;
+  SessionDialog session;
   ExperimentsPanel experiments;
 };
 
+// What throws becomes a notice, but not the same one in every frame.
+template <class Work>
+void guard(Workbench& bench, Work&& work) {
+  guarded(
+      [&bench](const char* what) {
+        const auto same = [what](const Notice& notice) { return notice.text == what; };
+        if (std::ranges::none_of(bench.notices, same)) bench.say(what, true);
+      },
+      std::forward<Work>(work));
+}
+
 void draw(Workbench& bench, Window& window, Panels& panels) {
-  draw_menu_bar(bench, window);
-  int points_x = 0, points_y = 0;
-  window.size(points_x, points_y);
-  const auto width = static_cast<float>(points_x);
-  const auto height = static_cast<float>(points_y);
+  const auto part = [&bench](auto&& work) { guard(bench, work); };
+  part([&] { draw_menu_bar(bench, window); });
+  int width = 0, height = 0;
+  window.size(width, height);
   Settings& s = bench.settings;
   const float scale = current_scale();
-  // Whole pixels: no seams between the panels.
-  const auto scaled = [&](double size) { return std::round(static_cast<float>(size) * scale); };
-  const float top = std::round(ImGui::GetFrameHeight());
-  const float transport =
-      std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y);
-  const float bottom = height - transport;
-  // On a low window the panels above need the height more than the plots do.
-  const float plots = std::min(scaled(s.plots), std::round(0.27f * height));
-  const float middle = s.show_plots ? bottom - plots : bottom;
-  const float left = s.show_left ? scaled(s.left) : 0;
-  const float right = s.show_right ? width - scaled(s.right) : width;
-
-  const ScreenRect view{{left, top}, {right, middle}};
-  panels.view.draw(bench, window, view);
-  if (s.show_left) draw_coupling_panel(bench, {{0, top}, {left, middle}});
-  if (s.show_right) panels.side.draw(bench, {{right, top}, {width, middle}}, window.frame_time());
-  if (s.show_plots) draw_plots(bench, window, {{0, middle}, {width, bottom}});
-  draw_transport(bench, {{0, bottom}, {width, height}});
+  const Layout at = panels.layout(
+      s,
+      {.width = static_cast<float>(width),
+       .height = static_cast<float>(height),
+       .scale = scale,
+       .menu = std::round(ImGui::GetFrameHeight()),
+       .transport = std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y)});
+  part([&] { panels.view.draw(bench, window, at.view); });
+  if (at.show_left) part([&] { draw_coupling_panel(bench, at.left); });
+  if (at.show_right) part([&] { panels.side.draw(bench, at.right, window.frame_time()); });
+  if (at.show_plots) part([&] { draw_plots(bench, window, at.plots); });
+  part([&] { draw_transport(bench, at.transport); });
 
   const float grip = 3 * scale;
-  if (s.show_left) {
+  const auto [left, top] = at.view.min;
+  const auto [right, middle] = at.view.max;
+  if (at.show_left) {
     splitter("left grip", {{left - grip, top}, {left + grip, middle}}, true, 1, s.left, 220, 480);
   }
-  if (s.show_right) {
+  if (at.show_right) {
     splitter("right grip", {{right - grip, top}, {right + grip, middle}}, true, -1, s.right, 220,
              480);
   }
-  if (s.show_plots) {
-    splitter("plot grip", {{0, middle - grip}, {width, middle + grip}}, false, -1, s.plots, 120,
-             520);
+  if (at.show_plots) {
+    splitter("plot grip", {{0, middle - grip}, {at.plots.max.x, middle + grip}}, false, -1, s.plots,
+             120, 520);
   }
-  draw_dialogs(bench);
-  panels.scene.draw(bench, view);
-  panels.experiments.draw(bench);
-  draw_notices(bench, view);
+  part([&] { draw_dialogs(bench); });
+  part([&] { panels.experiments.draw(bench); });
+  // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
+  part([&] { panels.scene.draw(bench, at.view); });
+  part([&] { panels.session.draw(bench); });
+  draw_notices(bench, at.view);
 }
 
 // For scripts that drive the window.
-void print_state(Workbench& bench) {
+void print_state(Workbench& bench, const Window& window) {
+  const Focus focus = focus_of(bench);
+  nlohmann::json notices = nlohmann::json::array();
+  for (const Notice& notice : bench.notices) notices.push_back(notice.text);
+  int width = 0, height = 0;
+  window.size(width, height);
   const std::span<const double> row = bench.row();
   const RowLayout& layout = bench.shown().channels().layout();
   const LoopStatus status = bench.live.status();
@@ -109,7 +127,9 @@ void print_state(Workbench& bench) {
       "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
       "{}, "
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
-      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}}}\n",
+      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
+      "{}, "
+      "\"typing\": {}, \"notices\": {}, \"size\": [{}, {}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), bench.parameters.eta,
       channel(Channel::error), channel(Channel::contact), channel(Channel::energy_total),
       layout.in(row, Column::hand_grip)[0], bench.force_armed(), bench.live.recording(),
@@ -118,8 +138,9 @@ void print_state(Workbench& bench) {
       objects_of(bench.editor.scene()).size(),
       selected ? nlohmann::json(name_of(bench.editor.scene(), *selected)).dump() : "null",
       bench.loader.busy(), bench.editor.dirty(), nlohmann::json(bench.scene_file).dump(),
-      bench.show_add_model || bench.show_save_as || bench.after_question != nullptr,
-      bench.quality_level());
+      focus.question || modal(focus.dialog), bench.quality_level(), bench.parameters.alpha,
+      nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
+      notices.dump(), width, height);
   std::fflush(stdout);
 }
 
@@ -133,6 +154,41 @@ void open_world(Workbench& bench, const DesktopOptions& options) {
     if (bench.settings.scene.empty()) throw;
     bench.open_world(device, "");
     bench.say(e.what(), true);
+  }
+}
+
+// Changes that the user could not be asked about are kept for the next start.
+void keep_changes(const Scene& scene, const ArmDescription& arm, const std::string& scene_file) {
+  const std::string name = std::filesystem::path(scene_file).stem().string();
+  for (const std::filesystem::path& folder :
+       {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
+    try {
+      const auto file = keep_unsaved(scene, arm, name, folder);
+      fmt::print(stderr, "limpid: unsaved changes are in {}\n", file.string());
+      return;
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "limpid: unsaved changes: {}\n", e.what());
+    }
+  }
+}
+
+void tell_of_kept_changes(Workbench& bench) {
+  for (const std::filesystem::path& file : take_unsaved(scenes_dir())) {
+    bench.say(
+        fmt::format("Limpid was ended while a scene had unsaved changes. They are in {}: open "
+                    "it from the gallery (Ctrl+G).",
+                    file.filename().string()));
+  }
+}
+
+void say_what_was_saved(Workbench& bench, const Window& window) {
+  for (const SavedPicture& picture : window.saved()) {
+    if (picture.error.empty()) {
+      bench.say("Saved " + picture.file.string());
+    } else {
+      bench.say(picture.error + ". See to it that the folder is there and can be written to.",
+                true);
+    }
   }
 }
 
@@ -160,6 +216,7 @@ void run_desktop(const DesktopOptions& options) {
   open_world(bench, options);
   if (!complaint.empty()) bench.say(complaint, true);
   bench.recover_leftovers();
+  tell_of_kept_changes(bench);
   if (!options.session.empty()) bench.open_session(options.session);
 
   Panels panels;
@@ -167,27 +224,36 @@ void run_desktop(const DesktopOptions& options) {
   int frame = 0;
   bool leaving = false;
   while (!leaving) {
-    if (!window.begin_frame()) {
+    if (!window.begin_frame(focus_of(bench))) {
       // Unsaved changes are asked about, unless somebody interrupts from outside.
+      if (interrupted) {
+        if (bench.editor.dirty()) {
+          keep_changes(bench.editor.scene(), bench.stage->arm(), bench.scene_file);
+        }
+        break;
+      }
       bench.leave_scene([&leaving] { leaving = true; });
       window.keep_open();
-      leaving = leaving || interrupted;
       continue;
     }
     if (interrupted) window.close();
     const double now = glfwGetTime();
     bench.history.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
-    handle_keys(bench, window);
-    bench.open_dropped(window.dropped());
-    bench.update(now - last);
+    guard(bench, [&] { handle_keys(bench, window); });
+    guard(bench, [&] { bench.open_dropped(window.dropped()); });
+    guard(bench, [&] { bench.update(now - last); });
     last = now;
     draw(bench, window, panels);
     window.end_frame();
+    say_what_was_saved(bench, window);
     bench.automatic_quality.frame(window.frame_time());
-    if (options.print_state && ++frame % 6 == 0) print_state(bench);
+    if (options.print_state && ++frame % 6 == 0) print_state(bench, window);
+  }
+  if (const SetAside* waiting = bench.unsaved_set_aside()) {
+    keep_changes(waiting->world->scene, waiting->arm, waiting->file);
   }
   panels.scene.drop_pictures();
-  if (!window.full_screen()) window.size(bench.settings.width, bench.settings.height);
+  if (!window.full_screen()) window.asked_size(bench.settings.width, bench.settings.height);
   if (const std::string error = save_settings(bench.settings); !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);
   }

@@ -78,7 +78,8 @@ void Workbench::change_arm(const ArmDescription& arm, std::unique_ptr<Device> de
     return open(arm, std::move(scene->scene), std::move(scene->models), std::move(device),
                 !editor.dirty());
   }
-  if (!set_aside_) set_aside_ = SetAside{scene_file, editor.version().world, editor.dirty()};
+  if (!set_aside_)
+    set_aside_ = SetAside{scene_file, stage->arm(), editor.version().world, editor.dirty()};
   const fs::path file = own_scene(arm);
   scene_file = file.string();
   open(arm, read_scene(file, arm), {}, std::move(device));

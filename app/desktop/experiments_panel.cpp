@@ -66,11 +66,12 @@ void ExperimentsPanel::take(Workbench& bench) {
 
 void ExperimentsPanel::draw(Workbench& bench) {
   take(bench);
-  if (!bench.show_experiments) return;
+  if (bench.dialog != Dialog::experiments) return;
+  bool open = true;
   const ImVec2 room = ImGui::GetMainViewport()->Size;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
-  if (ImGui::Begin("Experiments", &bench.show_experiments,
+  if (ImGui::Begin("Experiments", &open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     ImGui::BeginChild("list", {17 * ImGui::GetFontSize(), 0});
     draw_list(bench);
@@ -87,12 +88,14 @@ void ExperimentsPanel::draw(Workbench& bench) {
           experiments_dir().c_str());
       ImGui::Spacing();
       for (const Experiment& experiment : experiments()) {
-        ImGui::BulletText("%s: %s", experiment.name, experiment.about);
+        ImGui::Bullet();
+        ImGui::TextWrapped("%s: %s", experiment.name, experiment.about);
       }
     }
     ImGui::EndChild();
   }
   ImGui::End();
+  if (!open && bench.dialog == Dialog::experiments) bench.dialog = Dialog::none;
 }
 
 void ExperimentsPanel::draw_list(Workbench& bench) {
@@ -106,7 +109,7 @@ void ExperimentsPanel::draw_list(Workbench& bench) {
       const double part = running_.part();
       const std::string left =
           part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "";
-      ImGui::ProgressBar(static_cast<float>(part), {-1, 0}, left.c_str());
+      progress_bar(part, 0, left);
     } else if (ImGui::Button(waits ? "waits" : "Run")) {
       queue_.push_back(&experiment);
     }
@@ -167,7 +170,7 @@ void ExperimentsPanel::draw_verdict(Workbench& bench, const Verdict& verdict) {
   for (const fs::path& trial : verdict.trials) {
     if (ImGui::Selectable(trial.stem().c_str())) {
       bench.open_session(trial);
-      bench.show_experiments = false;
+      bench.dialog = Dialog::none;
     }
   }
 }

@@ -14,7 +14,7 @@ namespace limpid {
 
 class ExperimentsPanel {
  public:
-  // A window over the others while `bench.show_experiments`.
+  // A window over the others while it is the open dialog.
   void draw(Workbench& bench);
 
  private:

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/assets.h"
+#include "app/desktop/modal.h"
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -79,38 +80,33 @@ const PictureTexture* Gallery::picture(const fs::path& file) {
 }
 
 void Gallery::draw(Workbench& bench) {
-  if (!bench.show_gallery) {
-    was_shown_ = false;
-    return;
-  }
-  if (!was_shown_) read();
-  was_shown_ = true;
   const ImGuiViewport* screen = ImGui::GetMainViewport();
   const float em = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos(screen->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(64 * em, 0.94f * screen->WorkSize.x),
-                            std::min(44 * em, 0.9f * screen->WorkSize.y)});
-  if (ImGui::Begin("Gallery", &bench.show_gallery,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoResize |
-                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
-    const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
-    const int columns = std::max(1, static_cast<int>((room + gap) / (18 * em)));
-    const float width =
-        (room - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
-    const auto cards = [&](const char* name, const std::vector<GalleryCard>& list) {
-      if (list.empty()) return;
-      heading(name);
-      int column = 0;
-      for (const GalleryCard& card : list) {
-        if (column++ % columns != 0) ImGui::SameLine();
-        draw_card(bench, card, &list == &own_, width);
-      }
-    };
-    cards("Yours", own_);
-    cards("Shipped with Limpid", shipped_);
-  }
-  ImGui::End();
+  const bool wanted = bench.dialog == Dialog::gallery;
+  bool open = wanted;
+  const bool shown = begin_modal("Gallery", open,
+                                 {std::min(64 * em, 0.94f * screen->WorkSize.x),
+                                  std::min(44 * em, 0.9f * screen->WorkSize.y)});
+  if (wanted && !open) bench.dialog = Dialog::none;
+  if (shown && !was_shown_) read();
+  was_shown_ = shown;
+  if (!shown) return;
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+  const int columns = std::max(1, static_cast<int>((room + gap) / (18 * em)));
+  const float width = (room - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+  const auto cards = [&](const char* name, const std::vector<GalleryCard>& list) {
+    if (list.empty()) return;
+    heading(name);
+    int column = 0;
+    for (const GalleryCard& card : list) {
+      if (column++ % columns != 0) ImGui::SameLine();
+      draw_card(bench, card, &list == &own_, width);
+    }
+  };
+  cards("Yours", own_);
+  cards("Shipped with Limpid", shipped_);
+  ImGui::EndPopup();
 }
 
 void Gallery::draw_card(Workbench& bench, const GalleryCard& card, bool own, float width) {
@@ -149,7 +145,7 @@ void Gallery::draw_card(Workbench& bench, const GalleryCard& card, bool own, flo
   if (!card.session.empty()) {
     if (ImGui::Button("Play its recorded session")) {
       bench.open_session(card.session);
-      bench.show_gallery = false;
+      bench.dialog = Dialog::none;
     }
     open = ImGui::IsItemHovered();
   }
@@ -163,7 +159,7 @@ void Gallery::draw_card(Workbench& bench, const GalleryCard& card, bool own, flo
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
       bench.open_scene(card.scene);
-      bench.show_gallery = false;
+      bench.dialog = Dialog::none;
     }
   }
   ImGui::EndChild();

@@ -25,10 +25,10 @@ std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension
 
 void file_menu(Workbench& bench, Window& window) {
   if (!ImGui::BeginMenu("File")) return;
-  if (ImGui::MenuItem("Open session...", "Ctrl+O")) bench.show_open = true;
-  if (ImGui::MenuItem("Add model...", "Ctrl+M")) bench.show_add_model = true;
+  if (ImGui::MenuItem("Open session...", "Ctrl+O")) bench.dialog = Dialog::open_session;
+  if (ImGui::MenuItem("Add model...", "Ctrl+M")) bench.dialog = Dialog::add_model;
   if (ImGui::MenuItem("Save scene", "Ctrl+S")) bench.save_scene();
-  if (ImGui::MenuItem("Save scene as...", "Ctrl+Shift+S")) bench.show_save_as = true;
+  if (ImGui::MenuItem("Save scene as...", "Ctrl+Shift+S")) bench.dialog = Dialog::save_scene;
   if (ImGui::MenuItem("Save picture", "F12")) bench.save_picture(window);
   ImGui::Separator();
   if (ImGui::MenuItem("Undo", "Ctrl+Z")) bench.undo();
@@ -89,13 +89,13 @@ void session_menu(Workbench& bench) {
     bench.close_playback();
   }
   ImGui::Separator();
-  if (ImGui::MenuItem("Experiments of the paper...", "F5")) bench.show_experiments = true;
+  if (ImGui::MenuItem("Experiments of the paper...", "F5")) bench.dialog = Dialog::experiments;
   ImGui::EndMenu();
 }
 
 void scene_menu(Workbench& bench) {
   if (!ImGui::BeginMenu("Scene")) return;
-  if (ImGui::MenuItem("Gallery...", "Ctrl+G")) bench.show_gallery = true;
+  if (ImGui::MenuItem("Gallery...", "Ctrl+G")) bench.dialog = Dialog::gallery;
   ImGui::Separator();
   for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
     if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, bench.scene_file == file.string())) {
@@ -123,9 +123,31 @@ void device_menu(Workbench& bench) {
   ImGui::EndMenu();
 }
 
-// Right-hand end of the menu bar: rate, late ticks, coupling, force.
-void status(Workbench& bench) {
-  const Palette& colours = palette(current_theme());
+struct StatusPart {
+  std::string text;
+  Rgb ink;
+  std::string help;
+};
+
+StatusPart force_part(const Workbench& bench) {
+  const Palette& colours = current_palette();
+  const Snapshot& now = bench.live.snapshot();
+  const std::string why = explain(now.force_state);
+  switch (now.arming) {
+    case Arming::on: return {"force on [Esc]", colours.text, "Esc or space cut it at once"};
+    case Arming::fading: return {"force fades [Esc]", colours.text, "Force: " + why};
+    case Arming::waiting:
+      return {"force waits [Esc]", colours.text, "It fades in with the hand: " + why};
+    case Arming::tripped:
+      return {"force off [F]", colours.broken, "Force is off: " + why + ". F arms it again."};
+    case Arming::off: break;
+  }
+  return {"force off [F]", colours.muted, "F arms it"};
+}
+
+// Rate, missed ticks and coupling, the most important last.
+std::vector<StatusPart> status_parts(Workbench& bench) {
+  const Palette& colours = current_palette();
   const LoopStatus loop = bench.live.status();
   const Parameters& p = bench.parameters;
   const bool recorded = bench.playing_back();
@@ -134,50 +156,85 @@ void status(Workbench& bench) {
   const bool proposed =
       recorded ? layout.in(row, Column::kind)[0] != 0 : p.kind == CouplingKind::proposed;
   const double eta = recorded ? layout.in(row, Column::eta)[0] : p.eta;
-  struct Part {
-    std::string text;
-    Rgb ink;
-    std::string help;
-  };
-  const bool rate_bad = !loop.running;
-  std::vector<Part> parts;
-  if (recorded)
-    parts.push_back({"playing " + bench.playback->file.filename().string(), colours.text, ""});
-  parts.push_back({rate_bad ? "loop stopped" : fmt::format("{:.0f} Hz", loop.rate),
-                   rate_bad ? colours.broken : colours.muted, loop.failure});
-  parts.push_back({fmt::format("{} late", loop.missed),
+  const bool stopped = !loop.running;
+  std::vector<StatusPart> parts;
+  if (recorded) {
+    const std::string file = bench.playback->file.filename().string();
+    parts.push_back({"playing " + file, colours.text, file});
+  }
+  parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", loop.rate),
+                   stopped ? colours.broken : colours.muted, loop.failure});
+  parts.push_back({fmt::format("{} missed", loop.missed),
                    loop.missed > loop.ticks / 100 ? colours.broken : colours.muted,
-                   "Ticks that began after the next one was due"});
+                   fmt::format("{} ticks missed: they began after the next one was due.\n{} began "
+                               "more than 0.2 ms late, {} slipped: given up after a stall.",
+                               loop.missed, loop.late, loop.slipped)});
   parts.push_back({proposed ? fmt::format("PROPOSED \xCE\xB7 {:.2f}", eta) : "STANDARD",
                    colours.text, "C switches"});
-  parts.push_back({bench.force_armed() ? "force on [Esc]" : "force off [F]",
-                   bench.force_armed() ? colours.text : colours.muted,
-                   bench.force_armed() ? "Esc or space cut it at once" : "F arms it"});
+  return parts;
+}
+
+float status_width(const StatusPart& part) {
+  return ImGui::CalcTextSize(part.text.c_str()).x + 1.4f * ImGui::GetFontSize();
+}
+
+// At the right-hand end of the menu bar as much as there is room for; the force is the last to go.
+void status(Workbench& bench) {
+  std::vector<StatusPart> parts = status_parts(bench);
+  parts.push_back(force_part(bench));
+  const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX();
   float width = 0;
-  const float gap = 1.4f * ImGui::GetFontSize();
-  for (const Part& part : parts) width += ImGui::CalcTextSize(part.text.c_str()).x + gap;
-  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width));
-  for (const Part& part : parts) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(part.ink));
-    ImGui::TextUnformatted(part.text.c_str());
-    ImGui::PopStyleColor();
-    if (!part.help.empty()) tooltip(part.help.c_str());
-    ImGui::SameLine(0, gap);
+  auto first = parts.end();
+  while (first != parts.begin()) {
+    const float more = status_width(*std::prev(first));
+    if (first != parts.end() && width + more > room) break;
+    width += more;
+    --first;
   }
+  ImGui::SameLine(ImGui::GetWindowWidth() - width);
+  for (; first != parts.end(); ++first) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(first->ink));
+    ImGui::TextUnformatted(first->text.c_str());
+    ImGui::PopStyleColor();
+    if (!first->help.empty()) tooltip(first->help.c_str());
+    ImGui::SameLine(0, 1.4f * ImGui::GetFontSize());
+  }
+}
+
+void help_menu(Workbench& bench) {
+  if (!ImGui::BeginMenu("Help")) return;
+  if (ImGui::MenuItem("Keys and mouse", "?")) bench.dialog = Dialog::help;
+  if (ImGui::MenuItem("About Limpid")) bench.dialog = Dialog::about;
+  ImGui::EndMenu();
+}
+
+void menus(Workbench& bench, Window& window) {
+  file_menu(bench, window);
+  view_menu(bench, window);
+  session_menu(bench);
+  scene_menu(bench);
+  device_menu(bench);
+  help_menu(bench);
+}
+
+// Of all menus side by side.
+float menus_width() {
+  float width = ImGui::GetStyle().WindowPadding.x;
+  for (const char* menu : {"File", "View", "Session", "Scene", "Device", "Help"}) {
+    width += ImGui::CalcTextSize(menu).x + 2 * ImGui::GetStyle().ItemSpacing.x;
+  }
+  return width;
 }
 
 }  // namespace
 
 void draw_menu_bar(Workbench& bench, Window& window) {
   if (!ImGui::BeginMainMenuBar()) return;
-  file_menu(bench, window);
-  view_menu(bench, window);
-  session_menu(bench);
-  scene_menu(bench);
-  device_menu(bench);
-  if (ImGui::BeginMenu("Help")) {
-    if (ImGui::MenuItem("Keys and mouse", "?")) bench.show_help = true;
-    if (ImGui::MenuItem("About Limpid")) bench.show_about = true;
+  const bool room = menus_width() + status_width(force_part(bench)) < ImGui::GetWindowWidth();
+  if (room) {
+    menus(bench, window);
+  } else if (ImGui::BeginMenu("Menu")) {
+    menus(bench, window);
     ImGui::EndMenu();
   }
   status(bench);

@@ -19,13 +19,27 @@ void heading(const char* text);
 void read_out(const char* label, const std::string& value, const std::string& broken = {},
               const char* help = nullptr);
 void tooltip(const char* text);
+// A bar filled to `part`, 0 to 1, with a text on it; `width` [px], 0: all there is. Without a text
+// it says the part.
+void progress_bar(double part, float width, std::string text = {});
 
 void draw_menu_bar(Workbench& bench, Window& window);
 void draw_coupling_panel(Workbench& bench, const ScreenRect& rect);
 void draw_plots(Workbench& bench, Window& window, const ScreenRect& rect);
 void draw_transport(Workbench& bench, const ScreenRect& rect);
+// What is there to read.
 void draw_dialogs(Workbench& bench);
 void draw_notices(Workbench& bench, const ScreenRect& view);
+
+// Asks for a recording to open.
+class SessionDialog {
+ public:
+  void draw(Workbench& bench);
+
+ private:
+  bool was_shown_ = false;
+  std::string typed_, complaint_;
+};
 
 // Scene, hand, device, analysis and timing.
 class SidePanel {

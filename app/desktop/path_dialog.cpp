@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "app/desktop/modal.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 
@@ -15,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "~/gear.glb" as a shell takes it.
+}  // namespace
+
 fs::path expanded(const std::string& text) {
   const char* home = std::getenv("HOME");
   if (home != nullptr && (text == "~" || text.starts_with("~/"))) {
@@ -24,10 +26,10 @@ fs::path expanded(const std::string& text) {
   return text;
 }
 
-}  // namespace
-
 fs::path PathDialog::draw(bool& open, const fs::path& first) {
-  if (!open) {
+  const float em = ImGui::GetFontSize();
+  const float width = std::min(44 * em, 0.9f * ImGui::GetMainViewport()->WorkSize.x);
+  if (!begin_modal(options_.title, open, {width, 0})) {
     was_open_ = false;
     return {};
   }
@@ -40,53 +42,46 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
   }
   was_open_ = true;
   fs::path chosen;
-  const float em = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(44 * em, 0.9f * ImGui::GetMainViewport()->WorkSize.x), 0});
-  if (ImGui::Begin(options_.title, &open,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                       ImGuiWindowFlags_AlwaysAutoResize)) {
-    if (appears) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(-1);
-    const std::string before = text_;
-    const bool entered = ImGui::InputTextWithHint("##path", "path of the file", &text_,
-                                                  ImGuiInputTextFlags_EnterReturnsTrue);
-    if (text_ != before) complaint_.clear();
-    list_folder();
-    bool picked = false;
-    ImGui::BeginChild("folder", {0, 14 * ImGui::GetTextLineHeightWithSpacing()}, true);
-    for (const fs::path& folder : folders_) {
-      const bool up = folder == "..";
-      if (ImGui::Selectable(
-              ((up ? std::string("..") : folder.filename().string()) + "/").c_str())) {
-        go_to(up ? fs::path(listed_).parent_path() : folder);
-        break;
-      }
-    }
-    for (const fs::path& file : files_) {
-      const bool is_it = file == expanded(text_);
-      if (ImGui::Selectable(file.filename().c_str(), is_it,
-                            ImGuiSelectableFlags_AllowDoubleClick)) {
-        text_ = file.string();
-        complaint_.clear();
-        picked = ImGui::IsMouseDoubleClicked(0);
-      }
-    }
-    if (folders_.empty() && files_.empty()) ImGui::TextDisabled("no such folder");
-    ImGui::EndChild();
-    const bool pressed = ImGui::Button(replaced_.empty() ? options_.action : "Replace it");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel")) open = false;
-    if (entered || pressed || picked) chosen = choose();
-    if (!complaint_.empty()) {
-      ImGui::SameLine();
-      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
-      ImGui::TextWrapped("%s", complaint_.c_str());
-      ImGui::PopStyleColor();
+  if (appears) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const std::string before = text_;
+  const bool entered = ImGui::InputTextWithHint("##path", "path of the file", &text_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  if (text_ != before) complaint_.clear();
+  list_folder();
+  bool picked = false;
+  const float list = std::min(14 * ImGui::GetTextLineHeightWithSpacing(),
+                              0.4f * ImGui::GetMainViewport()->WorkSize.y);
+  ImGui::BeginChild("folder", {0, list}, true);
+  for (const fs::path& folder : folders_) {
+    const bool up = folder == "..";
+    if (ImGui::Selectable(((up ? std::string("..") : folder.filename().string()) + "/").c_str())) {
+      go_to(up ? fs::path(listed_).parent_path() : folder);
+      break;
     }
   }
-  ImGui::End();
+  for (const fs::path& file : files_) {
+    const bool is_it = file == expanded(text_);
+    if (ImGui::Selectable(file.filename().c_str(), is_it, ImGuiSelectableFlags_AllowDoubleClick)) {
+      text_ = file.string();
+      complaint_.clear();
+      picked = ImGui::IsMouseDoubleClicked(0);
+    }
+  }
+  if (folders_.empty() && files_.empty()) ImGui::TextDisabled("no such folder");
+  ImGui::EndChild();
+  const bool pressed = ImGui::Button(replaced_.empty() ? options_.action : "Replace it");
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel")) open = false;
+  if (entered || pressed || picked || accepted()) chosen = choose();
+  if (!complaint_.empty()) {
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
+    ImGui::TextWrapped("%s", complaint_.c_str());
+    ImGui::PopStyleColor();
+  }
   if (!chosen.empty()) open = false;
+  ImGui::EndPopup();
   return chosen;
 }
 

@@ -7,6 +7,9 @@
 
 namespace limpid {
 
+// "~/gear.glb" as a shell takes it.
+std::filesystem::path expanded(const std::string& text);
+
 class PathDialog {
  public:
   struct Options {

@@ -86,7 +86,7 @@ void Workbench::toggle_playing() {
   } else if (!last_recording.empty()) {
     open_session(last_recording);
   } else {
-    show_open = true;
+    dialog = Dialog::open_session;
   }
 }
 

@@ -203,7 +203,7 @@ fs::path Workbench::own_scene_file() const {
 void Workbench::save_scene() {
   const fs::path file = own_scene_file();
   if (file.empty()) {
-    show_save_as = true;  // those that came with Limpid stay as they are
+    dialog = Dialog::save_scene;  // those that came with Limpid stay as they are
   } else {
     save_scene_as(file);
   }
@@ -234,7 +234,7 @@ void Workbench::save_and_leave() {
   if (own.empty()) {
     // Leaving is up to the user then: the dialog may be given up.
     after_question = nullptr;
-    show_save_as = true;
+    dialog = Dialog::save_scene;
   } else if (save_scene_as(own)) {
     std::exchange(after_question, nullptr)();
   }

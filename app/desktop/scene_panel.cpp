@@ -72,7 +72,7 @@ void ScenePanel::draw(Workbench& bench) {
     if (ImGui::Button("Save scene", {width, 0})) bench.save_scene();
     tooltip("Ctrl+S. A scene that came with Limpid is saved as your own.");
     ImGui::SameLine();
-    if (ImGui::Button("Gallery...", {width, 0})) bench.show_gallery = true;
+    if (ImGui::Button("Gallery...", {width, 0})) bench.dialog = Dialog::gallery;
     tooltip("Ctrl+G: scenes to open, with pictures.");
   }
   ImGui::EndDisabled();
@@ -125,7 +125,7 @@ void ScenePanel::draw_buttons(Workbench& bench) {
   tooltip("Turns the camera to it (double click).");
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
-    if (ImGui::MenuItem("Model (.glb, .gltf)...", "Ctrl+M")) bench.show_add_model = true;
+    if (ImGui::MenuItem("Model (.glb, .gltf)...", "Ctrl+M")) bench.dialog = Dialog::add_model;
     if (ImGui::MenuItem("Ball")) bench.add_object(Sphere{.name = "ball", .radius = 0.02});
     if (ImGui::MenuItem("Block")) {
       bench.add_object(Box{.name = "block", .size = Vec3::Constant(0.04)});

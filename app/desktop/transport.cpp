@@ -12,7 +12,13 @@ std::string clock_text(double seconds) {
   return fmt::format("{:02d}:{:04.1f}", minutes, seconds - 60 * minutes);
 }
 
+float button_width(const char* label) {
+  return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+// Left out where there is no room for it; a key does the same.
 bool button(const char* label, const char* help, bool on = false, bool bad = false) {
+  if (button_width(label) > ImGui::GetContentRegionAvail().x) return false;
   const Palette& colours = palette(current_theme());
   if (on) {
     const Rgb back = bad ? colours.broken : colours.accent;
@@ -27,10 +33,16 @@ bool button(const char* label, const char* help, bool on = false, bool bad = fal
   return pressed;
 }
 
+constexpr float kChoice = 74;    // width of a list at scale 1 [px]
+constexpr float kTimeline = 60;  // the least of it
+constexpr float kProgress = 110;
+
 // A drop-down list of numbers; returns the one chosen.
 double choose(const char* name, double value, std::initializer_list<double> choices,
               const char* unit) {
-  ImGui::SetNextItemWidth(74 * current_scale());
+  const float width = kChoice * current_scale();
+  if (width > ImGui::GetContentRegionAvail().x) return value;
+  ImGui::SetNextItemWidth(width);
   const auto text = [&](double x) { return fmt::format("{:g}{}", x, unit); };
   if (ImGui::BeginCombo(name, text(value).c_str())) {
     for (const double choice : choices) {
@@ -44,7 +56,7 @@ double choose(const char* name, double value, std::initializer_list<double> choi
 void timeline(Workbench& bench, float right) {
   Player& player = bench.playback->player;
   auto time = static_cast<float>(player.time());
-  ImGui::SetNextItemWidth(std::max(60.0f, right - ImGui::GetCursorPosX()));
+  ImGui::SetNextItemWidth(std::max(kTimeline * current_scale(), right - ImGui::GetCursorPosX()));
   if (ImGui::SliderFloat("##timeline", &time, 0, static_cast<float>(player.duration()), "")) {
     player.pause();
     player.seek(time);
@@ -53,33 +65,65 @@ void timeline(Workbench& bench, float right) {
   ImGui::SameLine();
 }
 
+void rerun_controls(Workbench& bench) {
+  if (!bench.rerunning.busy()) {
+    if (button(
+            "Re-run",
+            "Let the recorded hand drive a new simulation under the present settings and show it "
+            "beside the recording (E).")) {
+      bench.start_rerun();
+    }
+    return;
+  }
+  progress_bar(bench.rerunning.part(), kProgress * current_scale(), "re-running");
+  ImGui::SameLine();
+  if (button("Cancel", "Stop the re-run")) bench.rerunning.cancel();
+}
+
 void playback_controls(Workbench& bench) {
   Player& player = bench.playback->player;
-  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses.")) bench.toggle_playing();
-  if (button("|<", "To the beginning (Home)")) player.seek(0);
-  if (button("<", "One tick back (left arrow)")) player.step(-1);
-  if (button(">", "One tick on (right arrow)")) player.step(1);
-  if (button("Loop", "Begin again at the end (L)", player.loop)) player.loop = !player.loop;
   const float scale = current_scale();
-  player.speed = choose("##speed", player.speed, {0.1, 0.2, 0.5, 1, 2, 5, 10}, "x");
-  tooltip("Speed of playback, 0.1 to 10");
-  ImGui::SameLine();
-  if (bench.rerunning.busy()) {
-    ImGui::ProgressBar(static_cast<float>(bench.rerunning.part()), {110 * scale, 0}, "re-running");
-    ImGui::SameLine();
-    if (button("Cancel", "Stop the re-run")) bench.rerunning.cancel();
-  } else if (button("Re-run",
-                    "Let the recorded hand drive a new simulation under the present "
-                    "settings and show it beside the recording (E).")) {
-    bench.start_rerun();
-  }
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
   const std::string clock = clock_text(player.time()) + " / " + clock_text(player.duration());
-  const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize("Back to live").x -
-                      ImGui::CalcTextSize(clock.c_str()).x - 4 * ImGui::GetStyle().ItemSpacing.x;
-  timeline(bench, right);
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(clock.c_str());
-  ImGui::SameLine();
+  // What there is no room for is left out, the least important first.
+  float room = ImGui::GetContentRegionAvail().x - button_width("Pause") - kTimeline * scale -
+               button_width("Back to live") - 3 * gap;
+  const auto fits = [&](float width) {
+    const bool enough = width + gap <= room;
+    if (enough) room -= width + gap;
+    return enough;
+  };
+  const bool with_clock = fits(ImGui::CalcTextSize(clock.c_str()).x);
+  const bool with_rerun =
+      fits(bench.rerunning.busy() ? kProgress * scale + gap + button_width("Cancel")
+                                  : button_width("Re-run"));
+  const bool with_speed = fits(kChoice * scale);
+  const bool with_steps = fits(button_width("|<") + 2 * button_width("<") + 2 * gap);
+  const bool with_loop = fits(button_width("Loop"));
+
+  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses.")) bench.toggle_playing();
+  if (with_steps) {
+    if (button("|<", "To the beginning (Home)")) player.seek(0);
+    if (button("<", "One tick back (left arrow)")) player.step(-1);
+    if (button(">", "One tick on (right arrow)")) player.step(1);
+  }
+  if (with_loop && button("Loop", "Begin again at the end (L)", player.loop)) {
+    player.loop = !player.loop;
+  }
+  if (with_speed) {
+    player.speed = choose("##speed", player.speed, {0.1, 0.2, 0.5, 1, 2, 5, 10}, "x");
+    tooltip("Speed of playback, 0.1 to 10");
+    ImGui::SameLine();
+  }
+  if (with_rerun) rerun_controls(bench);
+  const float after = button_width("Back to live") + gap +
+                      (with_clock ? ImGui::CalcTextSize(clock.c_str()).x + gap : 0);
+  timeline(bench, ImGui::GetWindowContentRegionMax().x - after);
+  if (with_clock) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(clock.c_str());
+    ImGui::SameLine();
+  }
   if (button("Back to live", "Leave the recording; the device is yours again (Backspace).")) {
     bench.close_playback();
   }
@@ -95,13 +139,13 @@ void live_controls(Workbench& bench) {
     const double seconds =
         static_cast<double>(bench.live.recorder()->rows()) * bench.parameters.tick;
     ImGui::AlignTextToFramePadding();
-    ImGui::Text("%s  %s", clock_text(seconds).c_str(),
-                bench.live.recorder()->out().filename().c_str());
+    ImGui::TextUnformatted(clock_text(seconds).c_str());
+    tooltip(bench.live.recorder()->out().c_str());
     ImGui::SameLine();
   } else if (button("Play", "Plays the last recording, or opens one (P).")) {
     bench.toggle_playing();
   }
-  if (button("Open...", "Choose a recorded session (Ctrl+O).")) bench.show_open = true;
+  if (button("Open...", "Choose a recorded session (Ctrl+O).")) bench.dialog = Dialog::open_session;
   if (button("A/B", "Switch between standard and proposed coupling without a jump (C).")) {
     bench.toggle_coupling();
   }

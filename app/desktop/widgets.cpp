@@ -1,3 +1,8 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -49,6 +54,30 @@ void read_out(const char* label, const std::string& value, const std::string& br
   } else if (help != nullptr) {
     ImGui::SetTooltip("%s", help);
   }
+}
+
+void progress_bar(double part, float width, std::string text) {
+  const Palette& colours = current_palette();
+  const double filled = std::clamp(part, 0.0, 1.0);
+  if (text.empty()) text = fmt::format("{:.0f} %", 100 * filled);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size(width > 0 ? width : ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight());
+  const ImVec2 to(at.x + size.x, at.y + size.y);
+  const float edge = at.x + static_cast<float>(filled) * size.x;
+  const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+  const ImVec2 place(std::round(at.x + (size.x - extent.x) / 2),
+                     std::round(at.y + (size.y - extent.y) / 2));
+  // The text has the colours of both sides of the edge, each with its own contrast.
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const auto side = [&](float from, float until, Rgb back, Rgb ink) {
+    draw->PushClipRect({from, at.y}, {until, to.y}, true);
+    draw->AddRectFilled(at, to, colour(back), ImGui::GetStyle().FrameRounding);
+    if (extent.x <= size.x) draw->AddText(place, colour(ink), text.c_str());
+    draw->PopClipRect();
+  };
+  side(at.x, edge, colours.accent, colours.panel);
+  side(edge, to.x, colours.frame, colours.text);
+  ImGui::Dummy(size);
 }
 
 }  // namespace limpid

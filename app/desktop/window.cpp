@@ -22,27 +22,120 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 constexpr auto kFrame = std::chrono::microseconds(16667);
+constexpr int kLeastWidth = 900, kLeastHeight = 560;
+
+// What a key or an input method did, in the order it happened.
+struct KeyEvent {
+  enum class Kind { press, repeat, release, character } kind;
+  int key = 0;
+  int modifiers = 0;
+  unsigned character = 0;
+};
+
+// Where windows may be: the screen without the desktop's bars.
+struct WorkArea {
+  int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
+  float scale = 1;  // of the screen
+};
+
+WorkArea work_area() {
+  WorkArea area;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return area;
+  glfwGetMonitorWorkarea(monitor, &area.x, &area.y, &area.width, &area.height);
+  float vertical = 1;
+  glfwGetMonitorContentScale(monitor, &area.scale, &vertical);
+  return area;
+}
+
+// Inside of the area with the frame that the desktop drew round the window.
+void move_into(const WorkArea& area, GLFWwindow* window) {
+  int left = 0, top = 0, right = 0, bottom = 0, x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowFrameSize(window, &left, &top, &right, &bottom);
+  glfwGetWindowPos(window, &x, &y);
+  glfwGetWindowSize(window, &width, &height);
+  const int fit_width = std::min(width, area.width - left - right);
+  const int fit_height = std::min(height, area.height - top - bottom);
+  if (fit_width != width || fit_height != height) glfwSetWindowSize(window, fit_width, fit_height);
+  const auto held = [](int at, int low, int high) {
+    return std::clamp(at, low, std::max(low, high));
+  };
+  const int fit_x = held(x, area.x + left, area.x + area.width - right - fit_width);
+  const int fit_y = held(y, area.y + top, area.y + area.height - bottom - fit_height);
+  if (fit_x != x || fit_y != y) glfwSetWindowPos(window, fit_x, fit_y);
+}
 
 }  // namespace
 
 struct Window::Impl {
   GLFWwindow* glfw = nullptr;
   std::string renderer;
+  std::vector<KeyEvent> events;
+  std::vector<int> tapped;  // pressed and released within the last frame
+  HeldKeys held;
   std::vector<KeyPress> keys;
   std::vector<std::filesystem::path> dropped;
   SteadyClock::time_point due = SteadyClock::now();
   SteadyClock::time_point began = due;
   double frame_time = 0;
-  std::filesystem::path picture;
-  double left = 0, top = 0, right = 0, bottom = 0;  // of the picture; nothing: all
-  int x = 0, y = 0, width = 0, height = 0;          // before full screen
+  struct Picture {
+    std::filesystem::path file;
+    double left, top, right, bottom;  // nothing: all
+  };
+  std::vector<Picture> pictures;  // to be saved
+  std::vector<SavedPicture> saved;
+  int x = 0, y = 0, width = 0, height = 0;  // before full screen
+  float screen_scale = 1;
 
   static Impl& of(GLFWwindow* window) {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
   }
 
-  void save() {
-    const std::filesystem::path file = std::exchange(picture, {});
+  // Hands the keys out, and to ImGui those that are its own.
+  void deal_keys(const Focus& focus) {
+    ImGuiIO& io = ImGui::GetIO();
+    for (const int key : std::exchange(tapped, {})) io.KeysDown[key] = false;
+    held.set_focus(focus);
+    std::vector<KeyPress> pressed;
+    int last = GLFW_KEY_UNKNOWN;  // that a character comes from
+    for (const KeyEvent& event : std::exchange(events, {})) {
+      if (event.kind != KeyEvent::Kind::character) last = event.key;
+      switch (event.kind) {
+        case KeyEvent::Kind::press:
+          held.press(event.key);
+          keys.push_back({event.key, event.modifiers});
+          pressed.push_back(keys.back());
+          break;
+        case KeyEvent::Kind::repeat:
+          if (!held.stale(event.key)) keys.push_back({event.key, event.modifiers, true});
+          break;
+        case KeyEvent::Kind::release: held.release(event.key); break;
+        case KeyEvent::Kind::character:
+          if (!held.stale(last)) io.AddInputCharacter(event.character);
+          break;
+      }
+    }
+    for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
+      if (held.stale(key)) io.KeysDown[key] = false;
+    }
+    // ImGui looks at what is down, and would never see keys let go before it looks.
+    int modifiers = 0;
+    for (const KeyPress& press : pressed) {
+      if (press.key < 0 || io.KeysDown[press.key]) continue;
+      io.KeysDown[press.key] = true;
+      tapped.push_back(press.key);
+      modifiers |= press.modifiers;
+    }
+    const auto held_down = [&](int modifier, int left, int right) {
+      return (modifiers & modifier) != 0 || io.KeysDown[left] || io.KeysDown[right];
+    };
+    io.KeyCtrl = held_down(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = held_down(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = held_down(GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  }
+
+  void save(const Picture& wanted) const {
+    const auto& [file, left, top, right, bottom] = wanted;
     int pixels_x = 0, pixels_y = 0, points_x = 0, points_y = 0;
     glfwGetFramebufferSize(glfw, &pixels_x, &pixels_y);
     glfwGetWindowSize(glfw, &points_x, &points_y);
@@ -75,14 +168,23 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  impl_->glfw = glfwCreateWindow(options.width, options.height, "Limpid", nullptr, nullptr);
+  const WorkArea area = work_area();
+  impl_->screen_scale = area.scale;
+  const auto fitting = [&](int asked, int least, int most) {
+    const double scaled = static_cast<double>(area.scale) * asked;
+    return static_cast<int>(std::clamp<double>(scaled, std::min(least, most), most));
+  };
+  impl_->glfw = glfwCreateWindow(fitting(options.width, kLeastWidth, area.width),
+                                 fitting(options.height, kLeastHeight, area.height), "Limpid",
+                                 nullptr, nullptr);
   if (impl_->glfw == nullptr) {
     glfwTerminate();
     throw std::runtime_error("the display gives no OpenGL 3.3; `limpid run` works without");
   }
   glfwMakeContextCurrent(impl_->glfw);
-  glfwSetWindowSizeLimits(impl_->glfw, 900, 560, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowSizeLimits(impl_->glfw, std::min(kLeastWidth, area.width),
+                          std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
+  move_into(area, impl_->glfw);
   glfwSwapInterval(0);
   const auto ask =
       reinterpret_cast<const unsigned char* (*)(unsigned)>(glfwGetProcAddress("glGetString"));
@@ -92,7 +194,10 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   }
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
-    if (action != GLFW_RELEASE) Impl::of(w).keys.push_back({key, modifiers});
+    const auto kind = action == GLFW_PRESS    ? KeyEvent::Kind::press
+                      : action == GLFW_REPEAT ? KeyEvent::Kind::repeat
+                                              : KeyEvent::Kind::release;
+    Impl::of(w).events.push_back({.kind = kind, .key = key, .modifiers = modifiers});
   });
   glfwSetDropCallback(impl_->glfw, [](GLFWwindow* w, int count, const char** paths) {
     for (int i = 0; i < count; ++i) Impl::of(w).dropped.emplace_back(paths[i]);
@@ -102,6 +207,10 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
+  // In place of ImGui's own: characters go through deal_keys().
+  glfwSetCharCallback(impl_->glfw, [](GLFWwindow* w, unsigned character) {
+    Impl::of(w).events.push_back({.kind = KeyEvent::Kind::character, .character = character});
+  });
   ImGui_ImplOpenGL3_Init("#version 330 core");
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
@@ -118,7 +227,7 @@ Window::~Window() {
   glfwTerminate();
 }
 
-bool Window::begin_frame() {
+bool Window::begin_frame(const Focus& focus) {
   std::this_thread::sleep_until(impl_->due);
   // A frame that took too long does not hurry the next ones.
   impl_->due = std::max(impl_->due + kFrame, SteadyClock::now());
@@ -127,19 +236,25 @@ bool Window::begin_frame() {
   impl_->dropped.clear();
   glfwPollEvents();
   if (glfwWindowShouldClose(impl_->glfw)) return false;
+  impl_->deal_keys(focus);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  if (ImGui::GetIO().WantTextInput) {
-    std::erase_if(impl_->keys, [](const KeyPress& k) { return k.key != GLFW_KEY_ESCAPE; });
-  }
   return true;
 }
 
 void Window::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  if (!impl_->picture.empty()) impl_->save();
+  impl_->saved.clear();
+  for (const Impl::Picture& picture : std::exchange(impl_->pictures, {})) {
+    SavedPicture& result = impl_->saved.emplace_back(SavedPicture{picture.file, ""});
+    try {
+      impl_->save(picture);
+    } catch (const std::exception& e) {
+      result.error = e.what();
+    }
+  }
   glfwSwapBuffers(impl_->glfw);
   const std::chrono::duration<double> took = SteadyClock::now() - impl_->began;
   impl_->frame_time = took.count();
@@ -173,6 +288,11 @@ void Window::size(int& width, int& height) const {
 void Window::framebuffer_size(int& width, int& height) const {
   glfwGetFramebufferSize(impl_->glfw, &width, &height);
 }
+void Window::asked_size(int& width, int& height) const {
+  size(width, height);
+  width = static_cast<int>(std::lround(static_cast<float>(width) / impl_->screen_scale));
+  height = static_cast<int>(std::lround(static_cast<float>(height) / impl_->screen_scale));
+}
 const std::string& Window::renderer() const { return impl_->renderer; }
 double Window::frame_time() const { return impl_->frame_time; }
 
@@ -180,11 +300,9 @@ void Window::save_picture(const std::filesystem::path& png) { save_picture(png, 
 
 void Window::save_picture(const std::filesystem::path& png, double left, double top, double right,
                           double bottom) {
-  impl_->picture = png;
-  impl_->left = left;
-  impl_->top = top;
-  impl_->right = right;
-  impl_->bottom = bottom;
+  impl_->pictures.push_back({png, left, top, right, bottom});
 }
+
+const std::vector<SavedPicture>& Window::saved() const { return impl_->saved; }
 
 }  // namespace limpid

@@ -259,7 +259,6 @@ void Workbench::save_picture(Window& window) {
   const std::string name =
       fmt::format("limpid-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr)));
   window.save_picture(sessions_dir() / name);
-  say("Saved " + (sessions_dir() / name).string());
 }
 
 int Workbench::quality_level() const {

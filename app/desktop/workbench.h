@@ -12,6 +12,7 @@
 #include <string>
 
 #include "app/desktop/device_desk.h"
+#include "app/desktop/focus.h"
 #include "app/desktop/placement.h"
 #include "app/desktop/scene_editor.h"
 #include "app/desktop/scene_loader.h"
@@ -71,6 +72,7 @@ struct EditState {
 // A scene that waits until the device which brought its own is gone.
 struct SetAside {
   std::string file;
+  ArmDescription arm;
   std::shared_ptr<const SceneEditor::World> world;
   bool unsaved = false;
 };
@@ -116,6 +118,10 @@ class Workbench {
   bool save_scene_as(const std::filesystem::path& file);
   // Does it at once, or after the user has been asked what to do with unsaved changes.
   void leave_scene(std::function<void()> then);
+  // The scene that waits for the end of a device, if it has changes that no file has.
+  const SetAside* unsaved_set_aside() const {
+    return set_aside_ && set_aside_->unsaved ? &*set_aside_ : nullptr;
+  }
   void save_and_leave();  // the answers
   void discard_and_leave();
 
@@ -166,9 +172,7 @@ class Workbench {
   Background<Rerun> rerunning;
   Background<std::string> exporting;
   std::string scene_file, device_file;
-  bool show_help = false, show_about = false, show_open = false, show_experiments = false;
-  bool show_gallery = false, show_add_model = false, show_save_as = false;
-  std::string typed_path;
+  Dialog dialog = Dialog::none;  // that is open
 
  private:
   // A world, and its loop.

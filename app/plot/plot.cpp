@@ -228,11 +228,10 @@ void Plot::save_png_when_due(const PlotFrame& frame, const PlotSaving& saving) {
   try {
     const auto file = free_file(saving.folder, spec_.file_name, "png");
     if (saving.save_png) saving.save_png(frame.outer, file);
-    notice_ = PlotNotice{"Saved " + file.string()};
   } catch (const std::exception& e) {
     notice_ = PlotNotice{e.what(), true};
+    notice_until_ = ImGui::GetTime() + kNoticeTime;
   }
-  notice_until_ = ImGui::GetTime() + kNoticeTime;
 }
 
 void Plot::tell(PlotNotice notice, PlotEvents& events) {

@@ -9,6 +9,7 @@ namespace {
 constexpr float kSwatch = 14;  // [px] at scale 1
 constexpr float kApart = 12;
 constexpr float kPad = 5;
+constexpr float kMostHidden = 0.3f;  // of the plot's area
 
 // How many points of the traces the box would hide.
 int hidden_points(const PlotFrame& frame, const ScreenRect& box, const std::vector<Trace>& traces) {
@@ -91,6 +92,13 @@ void PlotLegend::place_inside(const PlotFrame& frame, const PlotSpec& spec,
   const float pad = kPad * frame.scale;
   ImVec2 size = lay_out(spec, 0.85f * frame.area.width() - 2 * pad, frame.scale);
   size = {size.x + 2 * pad, size.y + 1.2f * pad};
+  // In a small plot it would hide what it explains; the read-out at the mouse names the curves,
+  // too.
+  if (size.x * size.y > kMostHidden * frame.area.width() * frame.area.size().y) {
+    entries_.clear();
+    inside_ = false;
+    return;
+  }
   std::array<int, 4> hidden{};
   for (int corner = 0; corner < 4; ++corner) {
     hidden[static_cast<std::size_t>(corner)] =

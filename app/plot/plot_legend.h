@@ -15,7 +15,8 @@ class PlotLegend {
   float place_outside(const ScreenRect& outer, float title_end, float title_bottom,
                       float least_height, const PlotSpec& spec, float scale);
 
-  // Where place_outside() found no room: the corner where it hides least of the traces.
+  // Where place_outside() found no room: the corner where it hides least of the traces. Nowhere in
+  // a plot that is too small for it.
   void place_inside(const PlotFrame& frame, const PlotSpec& spec, const std::vector<Trace>& traces);
 
   // Curve under the mouse, -1 for none.

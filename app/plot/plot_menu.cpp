@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -11,10 +13,14 @@ namespace {
 constexpr std::size_t kMostRowsToCopy = 300'000;  // beyond that, clipboards become slow
 
 std::filesystem::path save_text(const std::filesystem::path& file, const std::string& text) {
+  errno = 0;
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
+  if (!out) {
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
+                                         errno != 0 ? std::strerror(errno) : "unknown why"));
+  }
   return file;
 }
 
@@ -45,7 +51,8 @@ std::filesystem::path free_file(const std::filesystem::path& folder, const std::
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder, error)) {
-    throw std::runtime_error("cannot create folder " + folder.string());
+    throw std::runtime_error(
+        fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
   }
   for (int number = 1;; ++number) {
     const auto file = folder / fmt::format("{}-{:03}.{}", name, number, extension);

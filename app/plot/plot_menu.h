@@ -15,8 +15,8 @@ struct PlotSaving {
   std::filesystem::path folder;  // created when missing
 
   // Asked to save what is on the screen between two corners [px, ImGui coordinates] as a PNG; it
-  // is called while the frame is built, so the pixels are to be read after it is drawn. Without
-  // it PNG is not offered.
+  // is called while the frame is built, so the pixels are to be read after it is drawn, and who
+  // reads them says what became of it. Without it PNG is not offered.
   std::function<void(const ScreenRect& box, const std::filesystem::path& file)> save_png;
 };
 

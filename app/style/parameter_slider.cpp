@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -140,6 +141,47 @@ bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin
   return true;
 }
 
+// Where on the track the mouse wants the value now. A press alone may be the first half of a double
+// click, which must leave the value alone: it counts once the mouse is dragged, or when no second
+// one has come.
+class TrackMouse {
+ public:
+  explicit TrackMouse(ImGuiID id)
+      : memory_(*ImGui::GetStateStorage()), place_(id + 1), since_(id + 2) {}
+
+  void forget() { memory_.SetFloat(since_, kNever); }
+
+  // `held`: the track, by the mouse's left button.
+  std::optional<double> wanted(const ImRect& track, bool held) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto now = static_cast<float>(ImGui::GetTime());
+    const float place = (io.MousePos.x - track.Min.x) / track.GetWidth();
+    if (held && io.MouseClicked[0]) {
+      memory_.SetFloat(place_, place);
+      memory_.SetFloat(since_, now);
+    }
+    const float since = memory_.GetFloat(since_, kNever);
+    if (held && ImGui::IsMouseDragging(0, kDragStarts * current_scale())) {
+      forget();
+      const bool moved = io.MouseDelta.x != 0 || since != kNever;
+      return moved ? std::optional<double>(place) : std::nullopt;
+    }
+    if (since == kNever || now - since < io.MouseDoubleClickTime) return std::nullopt;
+    forget();
+    // One that was hidden meanwhile comes back as it was left.
+    return now - since < kForgotten ? std::optional<double>(memory_.GetFloat(place_))
+                                    : std::nullopt;
+  }
+
+ private:
+  static constexpr float kNever = -1;
+  static constexpr float kForgotten = 3;   // [s]
+  static constexpr float kDragStarts = 3;  // [px] at scale 1
+
+  ImGuiStorage& memory_;
+  ImGuiID place_, since_;
+};
+
 bool number_slider(const ParameterInfo& info, double& value, double paper_value, bool broken) {
   ImGuiWindow* window = ImGui::GetCurrentWindow();
   const float text = ImGui::GetTextLineHeight();
@@ -157,14 +199,18 @@ bool number_slider(const ParameterInfo& info, double& value, double paper_value,
   const float r = 6 * scale;
   const ImRect track({box.Min.x + r, box.Min.y + text + 2 * scale}, {box.Max.x - r, box.Max.y});
   bool changed = false;
-  if (typing(box, id, info, type, value, changed)) return changed;
+  TrackMouse mouse(id);
+  if (typing(box, id, info, type, value, changed)) {
+    mouse.forget();
+    return changed;
+  }
   bool over = false;
   bool held = false;
   ImGui::ButtonBehavior(box, id, &over, &held);
   // Only the track is for dragging: a click on the caption leaves the value alone.
   const bool from_track = held && io.MouseClickedPos[0].y >= track.Min.y;
-  if (from_track && (io.MouseDelta.x != 0 || io.MouseClicked[0])) {
-    const double wanted = slider_value(info, (io.MousePos.x - track.Min.x) / track.GetWidth());
+  if (const auto place = mouse.wanted(track, from_track)) {
+    const double wanted = slider_value(info, *place);
     changed = wanted != value;
     value = wanted;
   }

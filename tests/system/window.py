@@ -19,16 +19,18 @@ WIDTH, HEIGHT = 1280, 720
 class WindowTest(unittest.TestCase):
     """One window for all of a test; its state comes as a line of JSON ten times a second."""
 
+    SIZE = (WIDTH, HEIGHT)  # of the window, as it was left the last time
+
     def setUp(self) -> None:
         self.home = Path(tempfile.mkdtemp(prefix="limpid-window-"))
         self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
         settings = self.home / "config/limpid/settings.toml"
         settings.parent.mkdir(parents=True)
-        settings.write_text(f"[window]\nwidth = {WIDTH}\nheight = {HEIGHT}\n")
+        settings.write_text(f"[window]\nwidth = {self.SIZE[0]}\nheight = {self.SIZE[1]}\n")
         read, write = os.pipe()
         self.xvfb = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1600x900x24", "-nolisten", "tcp",
-             "-ac", "+extension", "GLX"], pass_fds=[write], stderr=subprocess.DEVNULL)
+             "-ac", "-noreset", "+extension", "GLX"], pass_fds=[write], stderr=subprocess.DEVNULL)
         self.addCleanup(self.stop, self.xvfb)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -38,7 +40,11 @@ class WindowTest(unittest.TestCase):
                             "XDG_DATA_HOME": str(self.home / "data")}
         self.states = (self.home / "states").open("w")
         self.addCleanup(self.states.close)
+        self.prepare()
         self.start()
+
+    def prepare(self) -> None:
+        """What a test wants to be there before the first start."""
 
     def start(self) -> None:
         """The program; what it said of its state before is forgotten."""
@@ -65,9 +71,22 @@ class WindowTest(unittest.TestCase):
     def key(self, name: str, closes: bool = False) -> None:
         """A key press; one that closes the window leaves none for its release."""
         self.xdotool("key", "--window", self.window, "--delay", "120", name, check=not closes)
+        if closes:
+            self.xdotool("keyup", name)  # or it repeats into the next window
 
     def type(self, text: str) -> None:
         self.xdotool("type", "--window", self.window, "--delay", "60", text)
+
+    def notices(self) -> str:
+        return "\n".join(self.state()["notices"])
+
+    def wait_for_notice(self, text: str) -> None:
+        self.wait(f"a notice with '{text}'", lambda s: any(text in n for n in s["notices"]))
+
+    def click(self, x: float, y: float, times: int = 1) -> None:
+        self.move(x, y)
+        time.sleep(0.2)
+        self.xdotool("click", "--repeat", str(times), "--delay", "120", "1")
 
     def move(self, x: float, y: float) -> None:
         self.xdotool("mousemove", "--window", self.window, str(int(x)), str(int(y)))

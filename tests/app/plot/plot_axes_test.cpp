@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include "app/plot/autoscale.h"
 #include "app/plot/plot_group.h"
 #include "app/plot/plot_menu.h"
+#include "render/offscreen.h"
 
 namespace limpid {
 namespace {
@@ -126,12 +128,22 @@ TEST(PlotMenu, NeverOverwritesAFile) {
   EXPECT_EQ(free_file(folder, "energy", "csv"), folder / "energy-002.csv");
 }
 
-TEST(PlotMenu, SaysWhichFolderCannotBeMade) {
+TEST(PlotMenu, SaysWhichFolderCannotBeMadeAndWhy) {
   try {
     free_file("/dev/null/plots", "energy", "csv");
     FAIL();
   } catch (const std::runtime_error& e) {
     EXPECT_NE(std::string(e.what()).find("/dev/null/plots"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("Not a directory"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Picture, FullDiskIsToldOf) {
+  try {
+    write_png("/dev/full", 2, 2, std::vector<unsigned char>(16, 255));
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("No space left on device"), std::string::npos) << e.what();
   }
 }
 

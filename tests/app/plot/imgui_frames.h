@@ -1,0 +1,35 @@
+// ImGui without a window: frames with the mouse and the keys as a test wants them.
+#pragma once
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace limpid {
+
+class ImGuiFrames : public testing::Test {
+ protected:
+  ImGuiFrames() {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {800, 600};
+    io.KeyMap[ImGuiKey_Enter] = GLFW_KEY_ENTER;
+    io.KeyMap[ImGuiKey_Escape] = GLFW_KEY_ESCAPE;
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  }
+  ~ImGuiFrames() override { ImGui::DestroyContext(); }
+
+  // One frame of `seconds` in which `draw` is called.
+  template <class Draw>
+  void frame(Draw&& draw, float seconds = 0.02f) {
+    ImGui::GetIO().DeltaTime = seconds;
+    ImGui::NewFrame();
+    draw();
+    ImGui::Render();
+  }
+};
+
+}  // namespace limpid

@@ -1,0 +1,270 @@
+"""Keys, dialogs and what may go wrong in the window, under Xvfb with xdotool."""
+
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from support import ASSETS
+from window import WindowTest
+
+LETTERS = "rcfpgxle1 2[]?d"
+# What typing must leave alone.
+LASTING = ("force", "recording", "playing", "kind", "eta", "alpha", "objects", "selected", "dirty")
+ETA = (250, 99)  # on its slider, right of its value
+NAME = (1100, 176)  # of the selected object
+
+
+def lasting(state: dict) -> dict:
+    return {key: state[key] for key in LASTING}
+
+
+class Keys(WindowTest):
+    def settled(self) -> dict:
+        """The state once keys pressed up to now have done what they do."""
+        time.sleep(1)
+        return self.state()
+
+    def escape_from(self, dialog: str) -> None:
+        self.key("Escape")
+        self.wait(f"{dialog} to close", lambda s: s["dialog"] == "" and not s["force"])
+        self.wait_for_notice("Force off")
+        self.key("f")
+        self.wait("force on", lambda s: s["force"])
+
+    def make_a_change(self) -> None:
+        self.key("Tab")
+        self.wait("an object", lambda s: s["selected"] is not None)
+        self.key("ctrl+d")
+        self.wait("a second one", lambda s: s["objects"] == 2 and s["dirty"])
+
+    def test_what_is_typed_into_a_field_does_nothing_else(self) -> None:
+        before = lasting(self.state())
+        for keys, dialog in (("ctrl+o", "open session"), ("ctrl+m", "add model"),
+                             ("ctrl+shift+s", "save scene")):
+            with self.subTest(dialog):
+                self.key(keys)
+                self.wait(dialog, lambda s: s["dialog"] == dialog and s["typing"])
+                self.type(LETTERS)
+                self.key("F2")
+                self.key("ctrl+g")
+                self.key("ctrl+m")
+                state = self.settled()
+                self.assertEqual(lasting(state), before)
+                self.assertEqual(state["dialog"], dialog)
+                self.escape_from(dialog)
+
+    def test_what_is_typed_over_a_slider_does_nothing_else(self) -> None:
+        before = lasting(self.state())
+        self.click(*ETA, times=2)
+        self.wait("typing", lambda s: s["typing"])
+        self.assertEqual(lasting(self.settled()), before, "a double click moves nothing")
+        self.type("rcfpx")
+        self.assertEqual(lasting(self.settled()), before)
+        self.key("ctrl+a")
+        self.type("0.5")
+        self.key("Return")
+        self.wait("the typed value", lambda s: s["eta"] == 0.5 and not s["typing"])
+        self.key("ctrl+z")
+        self.wait("one step back", lambda s: s["eta"] == before["eta"])
+        self.key("ctrl+z")
+        self.wait_for_notice("Nothing to undo")
+
+        # Escape gives typing up, and cuts the force.
+        self.click(*ETA, times=2)
+        self.wait("typing", lambda s: s["typing"])
+        self.type("7")
+        self.key("Escape")
+        state = self.wait("no typing", lambda s: not s["typing"] and not s["force"])
+        self.assertEqual(state["eta"], before["eta"])
+        self.wait_for_notice("Force off")
+
+    def test_what_is_typed_into_an_objects_name_does_nothing_else(self) -> None:
+        self.key("Tab")
+        self.wait("an object", lambda s: s["selected"] == "table top")
+        before = self.state()
+        self.click(*NAME)
+        self.wait("typing", lambda s: s["typing"])
+        # Ctrl is let go in the frame of the A, as on a computer that draws slowly.
+        self.xdotool("keydown", "ctrl")
+        time.sleep(0.5)
+        self.app.send_signal(signal.SIGSTOP)
+        self.xdotool("key", "a")
+        self.xdotool("keyup", "ctrl")
+        self.app.send_signal(signal.SIGCONT)
+        time.sleep(1)
+        self.type("crisp fog")
+        self.key("Return")
+        after = self.wait("its new name", lambda s: s["selected"] == "crisp fog")
+        for key in ("force", "recording", "playing", "kind", "eta", "alpha", "objects"):
+            self.assertEqual(after[key], before[key], key)
+
+    def test_enter_and_escape_belong_to_the_dialog(self) -> None:
+        self.key("F1")
+        self.wait("the help", lambda s: s["dialog"] == "help")
+        self.key("Return")
+        self.wait("no help", lambda s: s["dialog"] == "")
+        self.key("F1")
+        self.wait("the help", lambda s: s["dialog"] == "help")
+        self.escape_from("help")
+        for keys, dialog in (("F5", "experiments"), ("ctrl+g", "gallery")):
+            self.key(keys)
+            self.wait(dialog, lambda s: s["dialog"] == dialog)
+            self.escape_from(dialog)
+
+        self.key("ctrl+o")
+        self.wait("the field", lambda s: s["dialog"] == "open session" and s["typing"])
+        self.key("Return")
+        self.assertEqual(self.settled()["dialog"], "open session", "there is nothing to accept")
+        self.escape_from("open session")
+        self.key("ctrl+o")
+        self.wait("the field", lambda s: s["typing"])
+        self.type("/no/such/file.h5")
+        self.key("Return")
+        self.assertEqual(self.settled()["dialog"], "open session", "and says that it is not there")
+        self.escape_from("open session")
+        session = sorted((ASSETS / "sessions").glob("*.h5"))[0]
+        self.key("ctrl+o")
+        self.wait("the field", lambda s: s["typing"])
+        self.type(str(session))
+        self.key("Return")
+        self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
+
+    def test_a_key_held_while_a_dialog_opens_is_not_typed_into_it(self) -> None:
+        session = sorted((ASSETS / "sessions").glob("*.h5"))[0]
+        self.xdotool("keydown", "ctrl", "keydown", "o")
+        self.wait("the field", lambda s: s["dialog"] == "open session" and s["typing"])
+        self.xdotool("keyup", "ctrl")
+        time.sleep(1.5)  # the o repeats
+        self.xdotool("keyup", "o")
+        self.type(str(session))
+        self.key("Return")
+        self.wait("playback, of a path without o before it", lambda s: s["playing"])
+
+    def test_the_question_lets_no_shortcut_through(self) -> None:
+        self.make_a_change()
+        self.key("ctrl+q")
+        self.wait("the question", lambda s: s["dialog"] == "question")
+        before = self.state()
+        for key in ("r", "c", "p", "F1", "F2", "F5", "ctrl+o", "ctrl+z", "ctrl+s", "ctrl+g",
+                    "Delete", "bracketleft"):
+            self.key(key)
+        after = self.settled()
+        self.assertEqual(lasting(after), lasting(before))
+        self.assertEqual(after["dialog"], "question")
+        self.key("space")
+        self.wait("force off", lambda s: not s["force"])
+        self.assertEqual(self.settled()["dialog"], "question")
+        self.key("Escape")
+        self.wait("the window to stay", lambda s: s["dialog"] == "" and s["dirty"])
+
+        # Enter asks for a name here; held, it does not accept the one that stands there.
+        self.key("ctrl+q")
+        self.wait("the question", lambda s: s["dialog"] == "question")
+        self.xdotool("keydown", "Return")
+        self.wait("the dialog", lambda s: s["dialog"] == "save scene" and s["typing"])
+        time.sleep(1.5)
+        self.xdotool("keyup", "Return")
+        state = self.settled()
+        self.assertTrue(state["dirty"])
+        self.assertEqual(state["dialog"], "save scene")
+        self.key("Return")
+        self.wait("the scene to be saved", lambda s: not s["dirty"] and s["dialog"] == "")
+        self.assertTrue((self.home / "data/limpid/scenes/table.toml").exists())
+
+
+class WhatGoesWrong(WindowTest):
+    def test_a_picture_that_cannot_be_written_is_told_of_and_nothing_ends(self) -> None:
+        sessions = self.home / "data/limpid/sessions"
+        self.wait("the folder", lambda s: sessions.exists())
+        shutil.rmtree(sessions)
+        sessions.write_text("in the way")
+        self.key("F12")
+        self.wait_for_notice("cannot be written: Not a directory")
+        self.assertNotIn("Saved", self.notices())
+        sessions.unlink()
+        sessions.mkdir()
+        self.key("F12")
+        self.wait_for_notice("Saved")
+        self.assertEqual(len(list(sessions.glob("*.png"))), 1)
+
+    def change(self) -> None:
+        self.xdotool("key", "--window", self.window, "Tab")
+        self.wait("an object", lambda s: s["selected"] is not None)
+        self.key("ctrl+d")
+        self.wait("a change", lambda s: s["dirty"])
+
+    def test_termination_keeps_the_recording_and_unsaved_changes(self) -> None:
+        import h5py
+        import numpy
+
+        self.change()
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        time.sleep(2)
+        self.app.send_signal(signal.SIGTERM)
+        self.assertEqual(self.app.wait(30), 0)
+        sessions = self.home / "data/limpid/sessions"
+        self.assertEqual(list(sessions.glob("*.part")), [])
+        with h5py.File(*sessions.glob("*.h5")) as session:
+            ticks = session["time"][...]
+            self.assertGreater(len(ticks), 1000)
+            self.assertTrue(numpy.allclose(numpy.diff(ticks), 0.001), "every tick is there")
+        kept = self.home / "data/limpid/scenes/table-unsaved.toml"
+        self.assertEqual(kept.read_text().count("[[plane]]"), 2)
+
+        self.start()
+        self.wait_for_notice("table-recovered.toml")
+        self.assertFalse(kept.exists())
+        self.assertTrue(kept.with_name("table-recovered.toml").exists())
+        self.app.send_signal(signal.SIGINT)
+        self.assertEqual(self.app.wait(30), 0)
+        self.assertFalse(kept.exists(), "nothing was changed this time")
+
+    def test_ctrl_c_keeps_unsaved_changes_even_while_they_are_asked_about(self) -> None:
+        self.change()
+        self.key("ctrl+q")
+        self.wait("the question", lambda s: s["dialog"] == "question")
+        self.app.send_signal(signal.SIGINT)
+        self.assertEqual(self.app.wait(30), 0)
+        self.assertTrue((self.home / "data/limpid/scenes/table-unsaved.toml").exists())
+
+
+class LargerThanTheScreen(WindowTest):
+    SIZE = (5000, 4000)
+
+    def assert_fits(self) -> None:
+        words = self.xdotool("getwindowgeometry", "--shell", self.window).split()
+        geometry = {name: int(value) for name, value in (word.split("=") for word in words)}
+        self.assertGreaterEqual(min(geometry["X"], geometry["Y"]), 0)
+        self.assertLessEqual(geometry["X"] + geometry["WIDTH"], 1600)
+        self.assertLessEqual(geometry["Y"] + geometry["HEIGHT"], 900)
+
+    def test_the_window_is_made_to_fit_at_every_start(self) -> None:
+        self.assert_fits()
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        self.start()
+        self.assert_fits()
+
+
+@unittest.skipUnless(shutil.which("xprop"), "needs xprop")
+class OnAScreenOf150Percent(WindowTest):
+    SIZE = (1000, 580)
+
+    def prepare(self) -> None:
+        subprocess.run(["xprop", "-root", "-format", "RESOURCE_MANAGER", "8s", "-set",
+                        "RESOURCE_MANAGER", "Xft.dpi: 144"], env=self.environment, check=True)
+
+    def test_the_window_does_not_grow_from_start_to_start(self) -> None:
+        self.assertEqual(self.state()["size"], [1500, 870])
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        self.prepare()
+        self.start()
+        self.assertEqual(self.state()["size"], [1500, 870])
+
+
+if __name__ == "__main__":
+    unittest.main()
