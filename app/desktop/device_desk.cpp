@@ -20,14 +20,19 @@ DeviceDesk::DeviceDesk(AskForPriority ask) : hub(device_book_file(), std::move(a
 void DeviceDesk::update(Workbench& bench) {
   look(bench);
   take_connected(bench);
+  follow_check(bench);
   if (bench.live.real()) bench.controls.limits = hub.notes(hub.in_use()).limits;
   if (bench.live.device_plugged()) return watch(bench);
-  if (hub.in_use().empty() || connecting_.valid() || Clock::now() < retry_at_) return;
+  if (hub.in_use().empty() || connecting_.valid() || check_.valid() || Clock::now() < retry_at_) {
+    return;
+  }
   const FoundDevice* found = hub.present();
   if (found == nullptr) {
     problem_ = "not connected";
   } else if (!found->missing.empty()) {
     problem_ = found->missing;
+  } else if (hub.needs_check()) {
+    if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
   } else if (must_wait(bench)) {
     problem_ = "waits for the end of the recording";
   } else {
@@ -96,6 +101,36 @@ void DeviceDesk::take_connected(Workbench& bench) {
   }
 }
 
+void DeviceDesk::save(Workbench& bench) const {
+  if (const std::string error = hub.save(); !error.empty()) bench.say(error, true);
+}
+
+void DeviceDesk::start_check(Workbench& bench) {
+  talk_ = std::make_shared<AxisCheckTalk>();
+  problem_.clear();
+  connecting_id_ = hub.in_use();
+  check_ = bench.device_errands.run(hub.checking(talk_));
+}
+
+void DeviceDesk::follow_check(Workbench& bench) {
+  if (!check_.valid()) return;
+  talk_->see_window();
+  try {
+    const auto check = take_ready(check_);
+    if (!check || connecting_id_ != hub.in_use()) return;
+    problem_ = report_of(*check);
+    if (!remember_check(*check, hub.notes(hub.in_use()))) {
+      return bench.say("The check has not passed; the device stays out of the loop.", true);
+    }
+    bench.say("Its axes move as they are pushed.\n" + problem_);
+    problem_.clear();
+    save(bench);
+  } catch (const std::exception& e) {
+    problem_ = e.what();
+    retry_at_ = Clock::now() + kRetry;
+  }
+}
+
 void DeviceDesk::use(Workbench& bench, const std::string& id) {
   if (bench.recording()) {
     bench.say("Stop the recording before changing the device.", true);
@@ -103,14 +138,15 @@ void DeviceDesk::use(Workbench& bench, const std::string& id) {
   }
   if (id == hub.in_use()) return;
   hub.use(id);
+  cancel_check();
   problem_.clear();
   retry_at_ = {};
   bench.close_device();
-  if (const std::string error = hub.save(); !error.empty()) bench.say(error, true);
+  save(bench);
 }
 
 void DeviceDesk::connect_anew(Workbench& bench) {
-  if (const std::string error = hub.save(); !error.empty()) bench.say(error, true);
+  save(bench);
   if (!bench.live.device_plugged()) return;
   bench.cut_force();
   bench.live.plug(nullptr);

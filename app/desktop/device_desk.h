@@ -25,9 +25,20 @@ class DeviceDesk {
   // Another device; empty: the virtual arm.
   void use(Workbench& bench, const std::string& id);
   // After the notes on the device in use have changed.
+  void save(Workbench& bench) const;
+  // The same, where it has to be connected anew for it.
   void connect_anew(Workbench& bench);
 
   const std::string& problem() const { return problem_; }  // why it is not in the loop
+
+  // The check of a joystick's axes, which has to come before it may push.
+  bool awaits_check() const { return hub.needs_check() && !check_.valid(); }
+  void start_check(Workbench& bench);
+  void cancel_check() {
+    if (talk_) talk_->cancel = true;
+  }
+  // What goes on in it; null: none does.
+  const AxisCheckTalk* check() const { return check_.valid() ? talk_.get() : nullptr; }
 
   DeviceHub hub;
 
@@ -38,6 +49,7 @@ class DeviceDesk {
   void connect(Workbench& bench);
   void take_connected(Workbench& bench);
   void watch(Workbench& bench);
+  void follow_check(Workbench& bench);
   // A recording goes on with the device that it began with only.
   bool must_wait(const Workbench& bench) const;
 
@@ -48,6 +60,8 @@ class DeviceDesk {
   std::future<std::vector<FoundDevice>> looking_;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;
+  std::future<AxisCheck> check_;
+  std::shared_ptr<AxisCheckTalk> talk_;
 };
 
 }  // namespace limpid

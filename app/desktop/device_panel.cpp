@@ -34,19 +34,35 @@ void choices(Workbench& bench) {
   if (!known) choice(bench, "the one used before", bench.devices.hub.in_use(), "Not plugged in.");
 }
 
+// The guided check of a joystick that has not been used before; true while there is one to show.
+bool axis_check(Workbench& bench) {
+  DeviceDesk& desk = bench.devices;
+  if (const AxisCheckTalk* check = desk.check()) {
+    ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
+    if (ImGui::Button("Stop (Esc)")) desk.cancel_check();
+    return true;
+  }
+  if (!desk.awaits_check()) return false;
+  ImGui::TextWrapped("%s", desk.problem().c_str());
+  if (ImGui::Button("Check the axes")) desk.start_check(bench);
+  tooltip(
+      "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
+      "stick stand free, the hands beside it; Esc stops it.");
+  return true;
+}
+
 void status(Workbench& bench) {
   const DeviceDesk& desk = bench.devices;
-  if (desk.hub.in_use().empty()) return;
+  if (desk.hub.in_use().empty() || axis_check(bench)) return;
   if (!desk.problem().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
     ImGui::TextWrapped("%s", desk.problem().c_str());
     ImGui::PopStyleColor();
     const FoundDevice* found = desk.hub.present();
-    if (found != nullptr && !found->missing.empty() && ImGui::SmallButton("copy the command")) {
-      const std::size_t from = found->missing.find('\''), to = found->missing.rfind('\'');
-      if (to > from) {
-        ImGui::SetClipboardText(found->missing.substr(from + 1, to - from - 1).c_str());
-      }
+    const std::string missing = found != nullptr ? found->missing : std::string();
+    const std::size_t from = missing.find('\''), to = missing.rfind('\'');
+    if (from < to && ImGui::SmallButton("copy the command")) {
+      ImGui::SetClipboardText(missing.substr(from + 1, to - from - 1).c_str());
     }
     return;
   }
@@ -117,6 +133,28 @@ bool joystick_settings(PidSettings& pid) {
   return changed;
 }
 
+// True once a limit was changed.
+bool limit_sliders(SafetyLimits& limits) {
+  if (!ImGui::TreeNode("Limits of force")) return false;
+  tooltip("They can be lowered for this device; as they are at first is the most they can be.");
+  bool changed = false;
+  const SafetyLimits most;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    auto value = static_cast<float>(limits.*info.field);
+    ImGui::SetNextItemWidth(-9 * ImGui::GetFontSize());
+    const std::string format = fmt::format("%.3g {}", info.unit);
+    if (ImGui::SliderFloat(info.label, &value, static_cast<float>(info.least),
+                           static_cast<float>(most.*info.field), format.c_str(),
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+      limits.*info.field = static_cast<double>(value);
+      limits = allowed(limits);
+    }
+    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  }
+  ImGui::TreePop();
+  return changed;
+}
+
 void adjustments(Workbench& bench) {
   DeviceDesk& desk = bench.devices;
   const FoundDevice* found = desk.hub.present();
@@ -129,8 +167,16 @@ void adjustments(Workbench& bench) {
   for (std::size_t i = 0; i < joints; ++i) {
     changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.real()) || changed;
   }
-  if (found->kind == HidKind::pid_joystick) changed = joystick_settings(notes.pid) || changed;
+  if (found->kind == HidKind::pid_joystick) {
+    const auto reverse = notes.pid.reverse;
+    changed = joystick_settings(notes.pid) || changed;
+    if (notes.pid.reverse != reverse) notes.checked = false;
+  }
   if (changed) desk.connect_anew(bench);
+  if (!bench.live.real()) return;
+  ImGui::BeginDisabled(bench.recording());
+  if (limit_sliders(notes.limits)) desk.save(bench);
+  ImGui::EndDisabled();
 }
 
 }  // namespace

@@ -91,7 +91,10 @@ class Workbench {
 
   // Coupling and force.
   void toggle_coupling();
-  void cut_force() { live.cut(); }
+  void cut_force() {
+    live.cut();
+    devices.cancel_check();
+  }
   void toggle_force() { force_armed() ? live.cut() : live.arm(); }
   // Whether force is on, or will be as soon as nothing keeps it off.
   bool force_armed() const;

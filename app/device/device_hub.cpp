@@ -59,19 +59,47 @@ const FoundDevice* DeviceHub::present() const {
 
 void DeviceHub::use(const std::string& id) { book_.in_use = id; }
 
-std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
+namespace {
+
+const FoundDevice& usable(const std::optional<FoundDevice>& found, const std::string& id) {
+  if (!found) throw HidError(fmt::format("{} is not connected", id));
+  if (!found->missing.empty()) {
+    throw HidError(fmt::format("{}: {}", found->place.name, found->missing));
+  }
+  return *found;
+}
+
+}  // namespace
+
+DeviceNotes DeviceHub::known() const {
+  const auto notes = book_.notes.find(book_.in_use);
+  return notes == book_.notes.end() ? DeviceNotes{} : notes->second;
+}
+
+std::optional<FoundDevice> DeviceHub::found_now() const {
   const FoundDevice* device = present();
-  const auto known = book_.notes.find(book_.in_use);
-  return [id = book_.in_use, found = device == nullptr ? std::nullopt : std::optional(*device),
-          notes = known == book_.notes.end() ? DeviceNotes{} : known->second, ask = ask_] {
-    if (!found) throw HidError(fmt::format("{} is not connected", id));
-    if (!found->missing.empty()) {
-      throw HidError(fmt::format("{}: {}", found->place.name, found->missing));
-    }
-    std::unique_ptr<Device> opened =
-        std::make_unique<AdjustedDevice>(open_hid_device(*found, notes.pid, ask), notes.axes);
+  return device == nullptr ? std::nullopt : std::optional(*device);
+}
+
+std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
+  return [id = book_.in_use, found = found_now(), notes = known(), ask = ask_] {
+    std::unique_ptr<Device> opened = std::make_unique<AdjustedDevice>(
+        open_hid_device(usable(found, id), notes.pid, ask), notes.axes);
     await_reading(*opened, kFirstReading);
     return opened;
+  };
+}
+
+bool DeviceHub::needs_check() const {
+  const FoundDevice* device = present();
+  return device != nullptr && device->kind == HidKind::pid_joystick && !known().checked;
+}
+
+std::function<AxisCheck()> DeviceHub::checking(std::shared_ptr<AxisCheckTalk> talk) const {
+  return [id = book_.in_use, found = found_now(), pid = known().pid, ask = ask_, talk] {
+    const std::unique_ptr<Device> device = open_hid_device(usable(found, id), pid, ask);
+    await_reading(*device, kFirstReading);
+    return run_axis_check(*device, *talk, ask);
   };
 }
 

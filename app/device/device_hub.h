@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/device/axis_check_run.h"
 #include "app/device/device_book.h"
 #include "core/dynamics/arm_description.h"
 #include "devices/hid/device_list.h"
@@ -38,11 +40,18 @@ class DeviceHub {
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
   // be called from anywhere, later. Errors: HidError.
   std::function<std::unique_ptr<Device>()> opening() const;
+  // It is a joystick whose axes were not checked yet: it may not push.
+  bool needs_check() const;
+  // Connects to it and checks its axes, as opening() and run_axis_check().
+  std::function<AxisCheck()> checking(std::shared_ptr<AxisCheckTalk> talk) const;
   // Returns what went wrong, empty if nothing did.
   std::string save() const { return save_device_book(book_, file_); }
   const std::string& complaint() const { return complaint_; }
 
  private:
+  DeviceNotes known() const;  // of the device in use
+  std::optional<FoundDevice> found_now() const;
+
   std::filesystem::path file_;
   AskForPriority ask_;
   std::string complaint_;

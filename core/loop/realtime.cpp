@@ -88,9 +88,17 @@ void set_priority(RealtimeReport& report, const AskForPriority& ask) {
   report.explanation += ask ? " and rtkit did not grant it" : " and rtkit was not asked";
 }
 
+// A thread starts as the one that made it, which may have stepped back. The system lets only the
+// privileged forward again.
+void step_forward() {
+  const sched_param param{};
+  if (sched_getscheduler(0) == SCHED_IDLE) sched_setscheduler(0, SCHED_OTHER, &param);
+}
+
 }  // namespace
 
 RealtimeReport become_realtime(const AskForPriority& ask) {
+  step_forward();
   prctl(PR_SET_TIMERSLACK, 1UL);
   RealtimeReport report;
   report.memory_locked = lock_memory();

@@ -1,9 +1,12 @@
 #include "devices/hid/hid_device.h"
 
+#include <sched.h>
+
 #include <optional>
 
 #include "core/loop/clock.h"
 #include "devices/hid/guardian.h"
+#include "devices/hid/hid_error.h"
 
 namespace limpid {
 
@@ -38,6 +41,9 @@ void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexc
   std::optional<Guardian> guardian;
   try {
     become_realtime(ask);
+    if (sched_getscheduler(0) == SCHED_IDLE) {
+      throw HidError("its thread would run behind all others: whoever opened it had stepped back");
+    }
     if (traits_.pushes && !path_.empty()) guardian.emplace(path_, protocol_->stop_reports());
     guarded.set_value();
   } catch (...) {

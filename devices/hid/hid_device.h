@@ -26,7 +26,7 @@ struct HidPlace {
 class HidDevice final : public Device {
  public:
   // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). Not
-  // for the haptic thread.
+  // for the haptic thread, nor for one that yielded to it: the device's own thread starts as that.
   HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
             const HidPlace& place, const AskForPriority& ask = {});
   // The device is without force and its motors are off when this returns, if it can be reached. Of

@@ -7,6 +7,8 @@
 
 #include "app/run/replay.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/fake_device.h"
+#include "tests/support/random_arm.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {
@@ -33,6 +35,7 @@ std::unique_ptr<Recorder> recorder(const std::filesystem::path& out, const ArmDe
 void let_live(LiveLoop& loop, std::int64_t ticks) {
   const auto until = loop.status().ticks + ticks;
   while (loop.status().ticks < until && loop.status().running) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(loop.status().running) << loop.status().failure;
 }
 
 TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
@@ -128,6 +131,85 @@ TEST(LiveLoop, RefusesAHomeOutOfReachAndGoesOnAsBefore) {
                std::invalid_argument);
   EXPECT_TRUE(loop.status().running);
   let_live(loop, 10);
+}
+
+TEST(LiveLoop, KeepsTheForceOfTheVirtualArmInAnotherScene) {
+  LiveLoop loop({});
+  const auto open = [&] { loop.open(test::omni(), Scene{}, Parameters{}, kHome); };
+  const auto armed = [&] {
+    let_live(loop, 10);
+    loop.update();
+    return loop.snapshot().arming != Arming::off;
+  };
+  open();
+  EXPECT_TRUE(armed());
+  loop.cut();
+  EXPECT_FALSE(armed());
+  open();
+  EXPECT_FALSE(armed());
+  loop.arm();
+  EXPECT_TRUE(armed());
+  open();
+  EXPECT_TRUE(armed());
+}
+
+TEST(LiveLoop, ForgetsWhatWasAskedBeforeItWasOpened) {
+  LiveLoop loop({});
+  auto device = std::make_unique<test::FakeDevice>(3);
+  loop.arm();
+  loop.open(test::omni(), Scene{}, Parameters{}, std::move(device));
+  loop.arm();
+  loop.cut();
+  let_live(loop, 20);
+  loop.update();
+  EXPECT_EQ(loop.snapshot().arming, Arming::off);
+}
+
+TEST(LiveLoop, TakesItsForceAwayWhenNobodySetsItsControls) {
+  LiveLoop loop({});
+  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::FakeDevice>(3));
+  const auto state = [&] {
+    loop.update();
+    return loop.snapshot().arming;
+  };
+  loop.arm();
+  for (int i = 0; i < 700 && state() != Arming::on; ++i) {
+    loop.set({});
+    std::this_thread::sleep_for(5ms);
+  }
+  ASSERT_EQ(state(), Arming::on);
+  for (int i = 0; i < 2000 && state() != Arming::tripped; ++i) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(state(), Arming::tripped);
+  EXPECT_EQ(loop.snapshot().force_state, ForceState::unwatched);
+}
+
+// The recorder is offered, taken and given up in every order, again and again.
+TEST(LiveLoop, LosesNoRecorderHoweverSoonItIsStopped) {
+  const test::TempDir dir;
+  const ArmDescription arm = test::omni();
+  LiveLoop loop({});
+  loop.open(arm, Scene{}, Parameters{}, kHome);
+  for (int i = 0; i < 40; ++i) {
+    const auto file = dir / ("a" + std::to_string(i) + ".h5").c_str();
+    loop.record(recorder(file, arm, Scene{}, Parameters{}));
+    if (i % 4 != 0) std::this_thread::sleep_for(std::chrono::microseconds(300 * (i % 7)));
+    if (i % 5 == 4) {
+      loop.open(arm, Scene{}, Parameters{}, kHome);  // in the middle of it
+    }
+    loop.finish_recording();
+    EXPECT_FALSE(loop.recording());
+    EXPECT_TRUE(std::filesystem::exists(file)) << i;
+  }
+}
+
+TEST(LiveLoop, TakesNoRecorderOfAnotherWidth) {
+  const test::TempDir dir;
+  LiveLoop loop({});
+  loop.open(test::omni(), Scene{}, Parameters{}, kHome);
+  EXPECT_THROW(loop.record(recorder(dir / "a.h5", test::random_arm(2, 3), Scene{}, Parameters{})),
+               std::invalid_argument);
+  EXPECT_FALSE(loop.recording());
+  let_live(loop, 20);
 }
 
 }  // namespace

@@ -213,5 +213,25 @@ TEST(MonotonicTime, NeverWakesBeforeTheMomentAskedFor) {
   time.sleep_until(time.now() - 1s);
 }
 
+TEST(Clock, RunsNoTickBackToBackWhereNoneMayBe) {
+  for (const nanoseconds stall : {1'100us, 6'300us, 20'900us, 1'000'400us}) {
+    World world;
+    TestClock clock(kStart, kT, 0ns, SimulatedTime{&world}, 0);
+    for (int k = 0; k < 5; ++k) clock.wait();
+    const nanoseconds before = world.now;
+    world.now += stall;
+    const Wake late = clock.wait();
+    EXPECT_EQ(late.tick, 5);
+    EXPECT_EQ(late.moment, before + stall) << "at once, and only once";
+    const auto sleeps = world.sleeps.size();
+    const Wake next = clock.wait();
+    EXPECT_EQ(world.sleeps.size(), sleeps + 1) << "then it waits";
+    EXPECT_EQ((next.moment - kStart) % kT, 0ns) << "on the old schedule";
+    EXPECT_LE(next.moment - late.moment, kT);
+    // So many periods as have passed have been run or given up.
+    EXPECT_EQ(next.tick + clock.counts().slipped, (next.moment - kStart) / kT);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

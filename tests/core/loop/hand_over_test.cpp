@@ -64,7 +64,8 @@ TEST_F(Handing, WorksWhileBothSidesRun) {
   constexpr int kOffers = 20'000;
   HandOver<Thing> over;
   std::atomic<bool> done = false;
-  int newest = 0;
+  std::atomic<int> newest = 0;
+  int taken_all = 0;
   Thing* held = nullptr;
   std::thread loop([&] {
     for (bool last = false; !last;) {
@@ -74,15 +75,20 @@ TEST_F(Handing, WorksWhileBothSidesRun) {
       EXPECT_EQ(taken->twice, 2 * taken->value);
       EXPECT_GT(taken->value, newest) << "older than one before";
       newest = taken->value;
+      ++taken_all;
       over.give_back(std::exchange(held, taken));
     }
   });
   for (int i = 1; i <= kOffers; ++i) {
     over.offer(make(i));
     EXPECT_LE(alive, 4);
+    // Now and then until the loop has it, or at least a newer one.
+    while (i % 100 == 0 && newest < i) over.collect();
   }
   done = true;
   loop.join();
+  EXPECT_GE(taken_all, kOffers / 100);
+  EXPECT_EQ(newest, kOffers);
   over.clear();
   delete held;
 }

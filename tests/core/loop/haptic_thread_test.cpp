@@ -160,5 +160,68 @@ TEST(YieldToHaptics, PutsTheCallingThreadAndItsChildrenBehindAllOthers) {
   }).join();
 }
 
+TEST(HapticThread, TellsEachTickHowManyPeriodsHavePassed) {
+  HapticThread haptics;
+  std::atomic<std::int64_t> periods = 0, ticks = 0, stalls = 0;
+  haptics.start(
+      1ms,
+      [&](const TickTiming& timing) {
+        if (timing.tick == 0) {
+          EXPECT_EQ(timing.dt, 0);
+        } else {
+          periods += timing.periods;
+          EXPECT_GT(timing.dt, 0);
+        }
+        if (ticks++ % 20 != 10 || stalls == 3) return;
+        ++stalls;
+        std::this_thread::sleep_for(30ms);
+      },
+      Overdue::given_up);
+  while (ticks < 100) std::this_thread::sleep_for(1ms);
+  haptics.stop();
+  const LoopStatus status = haptics.status();
+  EXPECT_EQ(periods, status.ticks - 1 + status.slipped);
+  EXPECT_GE(status.slipped, 3 * 28);
+}
+
+TEST(HapticThread, SaysThatNothingRunsWhileItIsStuckInATick) {
+  HapticThread haptics;
+  std::atomic<bool> stuck = false, go_on = false;
+  haptics.start(1ms, [&](const TickTiming& timing) {
+    if (timing.tick < 400) return;
+    stuck = true;
+    while (!go_on) std::this_thread::sleep_for(1ms);
+  });
+  while (!stuck) std::this_thread::sleep_for(1ms);
+  EXPECT_GT(haptics.status().rate, 0);
+  std::this_thread::sleep_for(1200ms);
+  EXPECT_EQ(haptics.status().rate, 0);
+  EXPECT_TRUE(haptics.status().running);
+  go_on = true;
+}
+
+TEST(HapticThread, CountsAnewAtEachStartAndKeepsTheCountsAfterTheEnd) {
+  HapticThread haptics;
+  std::atomic<std::int64_t> ticks = 0;
+  haptics.start(100us, [&](const TickTiming&) {
+    if (++ticks == 10) std::this_thread::sleep_for(20ms);
+  });
+  while (ticks < 500) std::this_thread::sleep_for(1ms);
+  haptics.stop();
+  const LoopStatus ended = haptics.status();
+  EXPECT_FALSE(ended.running);
+  EXPECT_EQ(ended.ticks, ticks);
+  EXPECT_GE(ended.missed, 1);
+  EXPECT_EQ(ended.rate, 0);
+  EXPECT_EQ(haptics.wake_latency().count(), static_cast<std::uint64_t>(ended.ticks));
+  std::promise<std::int64_t> first;
+  haptics.start(1s, [&](const TickTiming& timing) {
+    if (timing.tick == 0) first.set_value(haptics.status().ticks);
+  });
+  EXPECT_EQ(first.get_future().get(), 1);
+  EXPECT_EQ(haptics.wake_latency().count(), 1u);
+  haptics.stop();
+}
+
 }  // namespace
 }  // namespace limpid

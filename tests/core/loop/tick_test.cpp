@@ -239,5 +239,74 @@ TEST(Tick, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   }
 }
 
+// First order, implicit, 50 Hz: v += g (raw - v), g = T w / (1 + T w).
+TEST(Tick, WritesTheVelocityThatTheObserverUsed) {
+  const ArmDescription arm = random_arm(3, 127);
+  Parameters p;
+  p.velocity = VelocitySource::lowpass;
+  const Rows rows = run(arm, stop(), p, 400);
+  const double w = 2 * 3.14159265358979323846 * 50;
+  const double g = p.tick * w / (1 + p.tick * w);
+  Vector v = Vector::Zero(3);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const Vector raw =
+        (rows.vec(k, Column::measured_position) - rows.vec(k - 1, Column::measured_position)) /
+        p.tick;
+    v += g * (raw - v);
+    ASSERT_LT((rows.vec(k, Column::measured_velocity) - v).norm(), 1e-10) << k;
+  }
+}
+
+// What the stop has stored at first was not gained.
+TEST(Tick, CountsWhatContactsGainFromWhereItStarts) {
+  const ArmDescription arm = random_arm(3, 128);
+  const Parameters p;
+  Scene scene;
+  scene.joint_contacts.push_back({"", 0, led(3, 0, p.tick)[0] - 0.2, 1, 20});
+  const Rows rows = run(arm, scene, p, 600);
+  EXPECT_EQ(rows.at(0, Column::contact_gain), 0);
+  EXPECT_NEAR(rows.at(0, Column::contact_potential), 0.5 * 20 * 0.04, 0.02);
+  double work = 0;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    const double stored =
+        rows.at(k, Column::contact_potential) - rows.at(0, Column::contact_potential);
+    ASSERT_NEAR(rows.at(k, Column::contact_gain), work + stored, 1e-12) << k;
+    ASSERT_NEAR(rows.at(k, Column::contact_gain), 0, 1e-9) << k;
+    work += rows.vec(k, Column::contact_torque)
+                .dot(rows.vec(k + 1, Column::proxy_position) - rows.vec(k, Column::proxy_position));
+  }
+}
+
+TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
+  const ArmDescription arm = random_arm(3, 129);
+  Parameters p;
+  p.damping = 0.02;
+  Tick<kAnyDof> tick(arm, stop());
+  tick.start(p, Start<kAnyDof>::at_rest(led(3, 0, p.tick)));
+  Rows rows(tick.layout());
+  const auto damping = [](std::size_t k) { return k < 300 ? 0.02 : k < 301 ? 0.4 : 0.05; };
+  const auto ratio = [](std::size_t k) { return k < 250 ? 1e-4 : 3e-2; };
+  for (std::size_t k = 0; k < 600; ++k) {
+    p.damping = damping(k);
+    p.inertia_ratio = ratio(k);
+    const Vec<kAnyDof> x = led(3, k, p.tick);
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, rows.add());
+  }
+  double lost = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double own = rows.at(k, Column::energy_commanded) - rows.at(k, Column::energy_total);
+    ASSERT_NEAR(own, lost, 1e-12) << k;
+    const Vector x2 = rows.vec(k, Column::proxy_position);
+    const Vector v2 = rows.vec(k, Column::proxy_velocity);
+    const Model two = model(arm, x2, v2, ratio(k));
+    ASSERT_NEAR(rows.at(k, Column::proxy_kinetic), 0.5 * v2.dot(two.M * v2),
+                1e-9 * (1e-9 + v2.dot(two.M * v2)))
+        << k;
+    if (k + 1 == rows.size()) break;
+    const Vector dx = led(3, k + 1, p.tick) - led(3, k, p.tick);
+    lost += damping(k) / p.tick * dx.dot(dx);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -1,9 +1,12 @@
 #include "devices/hid/guardian.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <functional>
@@ -116,6 +119,49 @@ TEST(Guardian, SaysWhyItCannotOpenADevice) {
   } catch (const HidError& error) {
     EXPECT_STREQ(error.what(), "/nonexistent/hidraw0: No such file or directory");
   }
+}
+
+// Out of a session of its own it would be killed with the rest.
+TEST_F(GuardedPipe, GetsThemWhenTheWholeGroupIsKilled) {
+  in_another_process([](int device) {
+    setpgid(0, 0);
+    const Guardian guardian(device, kStop);
+    kill(0, SIGKILL);
+    pause();
+  });
+  EXPECT_EQ(received(), kStopBytes);
+}
+
+// A device that is busy for a while: only what is tried again gets through.
+TEST_F(GuardedPipe, GetsThemWhenItIsBusyAtFirst) {
+  fcntl(ends[1], F_SETFL, O_NONBLOCK);
+  const Report junk(1 << 16, 0xEE);
+  while (write(ends[1], junk.data(), junk.size()) > 0) {
+  }
+  const std::vector<Report> many(400, Report(4096, 0x55));  // whole or not at all
+  const pid_t child = fork();
+  if (child == 0) {
+    const Guardian guardian(ends[1], many);
+    raise(SIGKILL);
+  }
+  close(ends[1]);
+  waitpid(child, nullptr, 0);
+  usleep(50'000);
+  const Report bytes = received();
+  EXPECT_GE(std::count(bytes.begin(), bytes.end(), 0x55), 4096);
+}
+
+// It lives as long as the device is guarded: a pipe to somebody else must not stay open so long.
+TEST_F(GuardedPipe, KeepsNothingElseOpen) {
+  int other[2];
+  ASSERT_EQ(pipe(other), 0);
+  Guardian guardian(ends[1], kStop);
+  close(other[1]);
+  pollfd wait{other[0], POLLIN, 0};
+  EXPECT_EQ(poll(&wait, 1, 5000), 1) << "nobody can write any more";
+  EXPECT_NE(wait.revents & POLLHUP, 0);
+  close(other[0]);
+  guardian.dismiss();
 }
 
 }  // namespace
