@@ -48,7 +48,7 @@ void check_picture(const std::filesystem::path& png) {
   };
   const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
   if (std::filesystem::is_directory(png)) refuse(EISDIR);
-  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(errno);
+  if (access((folder / ".").c_str(), W_OK | X_OK) != 0) refuse(errno);
 }
 
 int run(const RunOptions& options) {

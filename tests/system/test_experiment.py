@@ -97,9 +97,11 @@ class Inertia(SystemTest):
 class Stopping(SystemTest):
     def stopped(self, out: Path, how: signal.Signals) -> dict[Path, int]:
         """The recordings it leaves, with their times."""
+        keys = (out / "passivity").glob
+        before = len(list(keys("*.key")))
         with Started("experiment", "passivity", "--out", out) as started:
             deadline = time.monotonic() + 60
-            while not list((out / "passivity").glob("*.key")) and time.monotonic() < deadline:
+            while len(list(keys("*.key"))) <= before and time.monotonic() < deadline:
                 time.sleep(0.01)
             self.assertEqual(started.stop(how), 1)
             said = started.process.communicate()[1].decode()
