@@ -117,8 +117,9 @@ TEST_P(MeshEnergy, IsLostOverHillsOnlyByALittleOfWhatIsStored) {
     return Vec3(stroke(kTop - 0.008, 0)(t) +
                 Vec3(0.02 * std::sin(3 * u), 0.01 * std::sin(2 * u), 0));
   };
-  const Scene scene = with_mesh(landscape(), Vec3(kHome.x(), 0, kTop));
-  const Rows rows = run(scene, parameters(), path, 5);
+  const Triangles hills = test::height_field(
+      150, 0.2, [](double x, double y) { return 0.002 * std::sin(120 * x) * std::cos(100 * y); });
+  const Rows rows = run(with_mesh(hills, Vec3(kHome.x(), 0, kTop)), parameters(), path, 5);
   double stored = 0;
   for (std::size_t k = 1000; k < rows.size(); ++k) {
     ASSERT_GT(rows.at(k, Column::contact_potential), 0) << k;
@@ -126,8 +127,6 @@ TEST_P(MeshEnergy, IsLostOverHillsOnlyByALittleOfWhatIsStored) {
   }
   const double gained =
       rows.at(rows.size() - 1, Column::contact_gain) - rows.at(1000, Column::contact_gain);
-  RecordProperty("gained_over_stored", std::to_string(gained / stored));
-  std::printf("gained %g stored %g ratio %g\n", gained, stored, gained / stored);
   EXPECT_GT(stored, 1e-4);
   EXPECT_LT(gained, 0);
   EXPECT_GT(gained, -0.12 * stored);

@@ -413,6 +413,27 @@ TEST_F(TipBeforeThings, PushesAtTheMiddleOfAStep) {
   EXPECT_NEAR(contacts.potential(), 0.5 * 700 * 9e-6 + 0.5 * 900 * 4e-6, 1e-8);
 }
 
+TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
+  // No further can it come within a tick.
+  add_plane(-0.015);
+  add_ball(-0.019);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.list().size(), 2u);
+  EXPECT_EQ(contacts.potential(), 0);
+  scene_ = {};
+  scene_.tip_radius = kRadius;
+  add_plane(-0.021);
+  add_ball(-0.03);
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_TRUE(contacts.list().empty());
+  scene_.joint_contacts.push_back({"", 1, x_[1] + 0.3, 1, 20});  // 0.3 rad before a stop
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.potential(), 0);
+}
+
 // Led through a sheet to 3 mm behind it; who starts anew there is pushed to the other side.
 class TipBehindASheet : public TipBeforeThings {
  protected:
