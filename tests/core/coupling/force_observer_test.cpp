@@ -188,6 +188,7 @@ TEST(ForceObserver, TakesNoShareOfAMotorThatPushesAtRandomForAHuman) {
   const Matrix nothing = Matrix::Zero(n, n);
   Observer observer(n);
   observer.applied(random.vector(n, 1));  // of a run before
+  observer.applied(random.vector(n, 1));
   observer.estimate(0.1, T, body.M, nothing, random.vector(n, 1), Vector::Zero(n));
   observer.reset(Vector::Zero(n), body.sample(T));
   for (int k = 0; k < 500; ++k) {
