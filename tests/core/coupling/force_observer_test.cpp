@@ -211,6 +211,8 @@ TEST(ForceObserver, FollowsItsRecurrenceUnderEverythingAtOnce) {
     Observer observer(n);
     Vector f = random.vector(n, 1), v = random.vector(n, 2);
     Vector tau = Vector::Zero(n), tau_before = tau;
+    observer.applied(random.vector(n, 1));  // of a run before
+    observer.applied(random.vector(n, 1));
     observer.reset(f, v);
     for (int k = 0; k < 100; ++k) {
       const Eigen::MatrixXd M = random.positive_definite(n, 1e-4, 1e-3);
