@@ -17,12 +17,17 @@ int refuse(const std::exception& e) {
   return 2;
 }
 
-// The window's options before a command would be lost.
-void check_order(const CLI::App& app, const std::string& command) {
+// Before a command that opens no window, the window's options would be lost.
+void check_order(const CLI::App& app, const CLI::App& command) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
-    throw UsageError(fmt::format("{0}: stands before the command; write limpid {1} {0} ...",
-                                 option->get_name(), command));
+    const std::string name = option->get_name();
+    if (command.get_option_no_throw(name) == nullptr) {
+      throw UsageError(
+          fmt::format("{}: is of the window, and limpid {} opens none", name, command.get_name()));
+    }
+    throw UsageError(fmt::format("{0}: stands before the command; write limpid {1} {0} ...", name,
+                                 command.get_name()));
   }
 }
 
@@ -48,8 +53,7 @@ int main(int argc, char** argv) {
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);
-  commands["play"] = declare_play(app);
-  const Command desktop = declare_desktop(app);
+  const WindowCommands window = declare_window(app);
   app.footer(
       "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
       "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
@@ -61,9 +65,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     const auto chosen = app.get_subcommands();
-    if (chosen.empty()) return desktop();
-    check_order(app, chosen.front()->get_name());
-    return commands.at(chosen.front()->get_name())();
+    if (chosen.empty()) return window.desktop();
+    const CLI::App& command = *chosen.front();
+    if (command.get_name() == "play") return window.play();
+    check_order(app, command);
+    return commands.at(command.get_name())();
   } catch (const CLI::Success& e) {
     return app.exit(e);  // --help, --version
   } catch (const CLI::ExtrasError&) {

@@ -18,8 +18,11 @@ Command declare_analyze(CLI::App& app);
 Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
-Command declare_play(CLI::App& app);
-// The window: `limpid` without a command, with the options of the app itself.
-Command declare_desktop(CLI::App& app);
+// The window: `limpid` without a command, and `limpid play`. The options of the app itself are the
+// window's and hold for both.
+struct WindowCommands {
+  Command desktop, play;
+};
+WindowCommands declare_window(CLI::App& app);
 
 }  // namespace limpid

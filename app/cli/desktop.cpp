@@ -26,6 +26,16 @@ void add(CLI::App& command, WindowOptions& options) {
                    "print the state as a line of JSON ten times a second");
 }
 
+// Options before and behind the command; what is said twice holds as it is said behind it.
+WindowOptions both(const WindowOptions& before, WindowOptions behind) {
+  behind.input = both(before.input, behind.input);
+  if (behind.desktop.ui_scale == DesktopOptions{}.ui_scale) {
+    behind.desktop.ui_scale = before.desktop.ui_scale;
+  }
+  behind.desktop.print_state |= before.desktop.print_state;
+  return behind;
+}
+
 int open_window(const WindowOptions& options) {
   DesktopOptions desktop = options.desktop;
   const InputOptions& input = options.input;
@@ -50,18 +60,15 @@ int open_window(const WindowOptions& options) {
 
 }  // namespace
 
-Command declare_play(CLI::App& app) {
-  auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
-  auto options = std::make_shared<WindowOptions>();
-  command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
-  add(*command, *options);
-  return [options] { return open_window(*options); };
-}
-
-Command declare_desktop(CLI::App& app) {
+WindowCommands declare_window(CLI::App& app) {
   auto options = std::make_shared<WindowOptions>();
   add(app, *options);
-  return [options] { return open_window(*options); };
+  auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
+  auto played = std::make_shared<WindowOptions>();
+  command->add_option("SESSION.h5", played->session, "the recording")->type_name("")->required();
+  add(*command, *played);
+  return {[options] { return open_window(*options); },
+          [options, played] { return open_window(both(*options, *played)); }};
 }
 
 }  // namespace limpid

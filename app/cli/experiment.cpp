@@ -1,15 +1,17 @@
 #include "app/experiments/experiment.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <chrono>
+#include <cerrno>
 #include <filesystem>
+#include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/progress.h"
 #include "app/interrupt.h"
 
 namespace limpid {
@@ -38,43 +40,32 @@ std::vector<const Experiment*> chosen(const std::string& name) {
   throw UsageError(fmt::format("\"{}\" is not an experiment; allowed: {}", name, names));
 }
 
-// Before the first trial, so that no work is lost on a place that cannot be written.
-void prepare(const fs::path& dir) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (!error && !fs::is_directory(dir)) error = std::make_error_code(std::errc::not_a_directory);
-  if (!error && access(dir.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
-  if (error) throw UsageError(fmt::format("--out {}: {}", dir.string(), error.message()));
+// Tries a file there, so that what forbids it is known. 0, or errno.
+int try_to_write(const fs::path& dir) {
+  const std::string probe = (dir / fmt::format(".{}.probe", getpid())).string();
+  const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (descriptor < 0) return errno;
+  const std::vector<char> some(1 << 16);
+  errno = ENOSPC;  // what a short write means
+  const bool written =
+      write(descriptor, some.data(), some.size()) == std::ssize(some) && fsync(descriptor) == 0;
+  const int code = written ? 0 : errno;
+  close(descriptor);
+  unlink(probe.c_str());
+  return code;
 }
 
-// "passivity (3 of 8): 45 %, 12 s left" on a terminal.
-class Progress {
- public:
-  Progress(const char* name, std::size_t index, std::size_t count)
-      : title_(fmt::format("{} ({} of {})", name, index + 1, count)) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void at(double part) {
-    if (isatty(STDERR_FILENO) == 0) return;
-    if (part < part_) began_ = std::chrono::steady_clock::now();  // its next series of trials
-    part_ = part;
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began_;
-    const double left = part > 0 ? elapsed.count() * (1 - part) / part : 0;
-    fmt::print(stderr, "\r\x1b[K{}: {:.0f} %, {:.0f} s left ", title_, 100 * part, left);
-    std::fflush(stderr);
-    shown_ = true;
-  }
-
- private:
-  std::string title_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-  double part_ = 0;
-  bool shown_ = false;
-};
+// Before the first trial, so that no work is lost on a place that cannot be written or is full.
+void prepare(const fs::path& dir) {
+  std::error_code error;
+  const bool created = fs::create_directories(dir, error);
+  if (!error && !fs::is_directory(dir)) error = std::make_error_code(std::errc::not_a_directory);
+  if (!error) error = {try_to_write(dir), std::generic_category()};
+  if (!error) return;
+  std::error_code none;
+  if (created) fs::remove(dir, none);
+  throw UsageError(fmt::format("--out {}: {}", dir.string(), error.message()));
+}
 
 void print(const Experiment& experiment, const Outcome& outcome) {
   fmt::print("{}: {}\n", experiment.name, outcome.passed() ? "passed" : "FAILED");
@@ -85,26 +76,38 @@ void print(const Experiment& experiment, const Outcome& outcome) {
   std::fflush(stdout);
 }
 
+// In words, with the experiment they are of. One without checks promises nothing.
+void note_failures(const Experiment& experiment, const Outcome& outcome,
+                   std::vector<std::string>& failed) {
+  for (const Check& c : outcome.checks) {
+    if (!c.passed) failed.push_back(fmt::format("{}: {}", experiment.name, c.what));
+  }
+  if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", experiment.name));
+}
+
 Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOptions& options,
                                 std::size_t index, std::size_t count) {
-  Progress progress(experiment.name, index, count);
+  Progress progress({.title = fmt::format("{} ({} of {})", experiment.name, index + 1, count),
+                     .whole = 100,
+                     .unit = "",
+                     .rate = "% a second"});
   return carry_out(experiment, {.dir = options.out,
                                 .seed = options.seed,
                                 .threads = options.threads,
                                 .stop = &interrupted,
-                                .progress = [&](double part) { progress.at(part); }});
+                                .progress = [&](double part) { progress.at(100 * part); }});
 }
 
 int run(const ExperimentOptions& options) {
   const std::vector<const Experiment*> wanted = chosen(options.name);
   prepare(options.out);
   catch_interrupts();
-  bool passed = true;
+  std::vector<std::string> failed;  // checks
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const Outcome outcome = carry_out_with_progress(*wanted[i], options, i, wanted.size());
       print(*wanted[i], outcome);
-      passed = passed && outcome.passed();
+      note_failures(*wanted[i], outcome, failed);
       write_report(options.out);
     }
   } catch (const Cancelled&) {
@@ -114,8 +117,11 @@ int run(const ExperimentOptions& options) {
     throw std::runtime_error(e.what());
   }
   fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
-  if (!passed) fmt::print(stderr, "limpid: checks failed\n");
-  return passed ? 0 : 1;
+  if (!failed.empty()) {
+    fmt::print(stderr, "limpid: {} failed: {}\n", failed.size() == 1 ? "a check" : "checks",
+               fmt::join(failed, "; "));
+  }
+  return failed.empty() ? 0 : 1;
 }
 
 std::string experiment_help() {
@@ -124,7 +130,8 @@ std::string experiment_help() {
   return text +
          "  all            one after the other\n\n"
          "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
-         "the trials. Called again with the same DIR it goes on where it was stopped.\n"
+         "the trials. Called again with the same DIR it goes on where it was stopped; trials of\n"
+         "another version of the program, or of other inputs, are run again.\n"
          "Exit status 1: a check failed, or it was stopped.";
 }
 

@@ -154,6 +154,23 @@ void InputOptions::add_hand(CLI::App& command) {
       ->check(whole_number());
 }
 
+InputOptions both(const InputOptions& first, InputOptions second) {
+  const auto unless_said = [](auto& said, const auto& before) {
+    if (said == std::decay_t<decltype(said)>{}) said = before;
+  };
+  unless_said(second.device, first.device);
+  unless_said(second.scene, first.scene);
+  unless_said(second.hand, first.hand);
+  unless_said(second.coupling, first.coupling);
+  unless_said(second.eta, first.eta);
+  unless_said(second.alpha, first.alpha);
+  unless_said(second.duration, first.duration);
+  unless_said(second.seed, first.seed);
+  second.configs.insert(second.configs.begin(), first.configs.begin(), first.configs.end());
+  second.settings.insert(second.settings.begin(), first.settings.begin(), first.settings.end());
+  return second;
+}
+
 Parameters make_parameters(const InputOptions& options, Parameters base) {
   for (const std::string& file : options.configs) apply_config(base, file);
   for (const std::string& setting : options.settings) apply_setting(base, setting);

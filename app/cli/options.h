@@ -36,6 +36,10 @@ struct InputOptions {
   void add_hand(CLI::App& command);
 };
 
+// What is given in two places: single ones as the second says, if it does; lists one after the
+// other.
+InputOptions both(const InputOptions& first, InputOptions second);
+
 // Reads every file and checks every value. Errors: UsageError, FileError, ParameterError.
 // A session given as the hand brings its own device, scene and parameters; options override them.
 RunPlan make_plan(const InputOptions& options);

@@ -2,16 +2,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
+#include <cerrno>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
+#include <cstring>
+#include <filesystem>
 #include <optional>
-#include <thread>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
+#include "app/cli/progress.h"
 #include "app/interrupt.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
@@ -21,43 +21,6 @@ namespace limpid {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-
-// "12.3 of 30.0 s simulated, 4 s left" on a terminal, once a run takes over a second. Printed by a
-// thread of its own, so that no tick waits for a terminal.
-class Progress {
- public:
-  explicit Progress(double whole) : whole_(whole) {
-    if (isatty(STDERR_FILENO) != 0) thread_ = std::jthread([this](auto stop) { show(stop); });
-  }
-
-  void at(double time) { time_.store(time, std::memory_order_relaxed); }
-
- private:
-  void show(const std::stop_token& stop) const {
-    using namespace std::chrono_literals;
-    const auto began = std::chrono::steady_clock::now();
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
-    std::condition_variable_any over;
-    const auto over_within = [&](Seconds time) {
-      over.wait_for(lock, stop, time, [] { return false; });
-      return stop.stop_requested();
-    };
-    if (over_within(1s)) return;
-    do {
-      const double time = time_.load(std::memory_order_relaxed);
-      const double elapsed = Seconds(std::chrono::steady_clock::now() - began).count();
-      const double left = time > 0 ? elapsed * (whole_ - time) / time : 0;
-      fmt::print(stderr, "\r{:.1f} of {:.1f} s simulated, {:.0f} s left ", time, whole_, left);
-      std::fflush(stderr);
-    } while (!over_within(200ms));
-    fmt::print(stderr, "\r{:60}\r", "");
-  }
-
-  double whole_;
-  std::atomic<double> time_{0};
-  std::jthread thread_;
-};
 
 struct RunOptions {
   InputOptions input;
@@ -72,12 +35,25 @@ void finish(Recorder& recorder) {
   try {
     recorder.finish();
   } catch (const FileError& e) {
-    throw std::runtime_error(e.what());
+    throw std::runtime_error(
+        fmt::format("{}; what was recorded up to there is in {}.part (limpid recover)", e.what(),
+                    recorder.out().string()));
   }
+}
+
+// Before the run, so that it is not made for nothing.
+void check_picture(const std::filesystem::path& png) {
+  const auto refuse = [&](int code) {
+    throw UsageError(fmt::format("--picture {}: {}", png.string(), std::strerror(code)));
+  };
+  const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
+  if (std::filesystem::is_directory(png)) refuse(EISDIR);
+  if (access((folder / ".").c_str(), W_OK | X_OK) != 0) refuse(errno);
 }
 
 int run(const RunOptions& options) {
   const RunPlan plan = make_plan(options.input);
+  if (!options.picture.empty()) check_picture(options.picture);
   catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
@@ -89,7 +65,10 @@ int run(const RunOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   RunEnd end;
   {
-    Progress progress(static_cast<double>(plan.rows) * plan.parameters.tick);
+    Progress progress({.title = "run",
+                       .whole = static_cast<double>(plan.rows) * plan.parameters.tick,
+                       .unit = "s",
+                       .rate = "times real time"});
     end = simulate(plan, {options.realtime, &interrupted},
                    [&](std::span<const double> row, const Parameters* changed) {
                      summary.add(row);
@@ -119,10 +98,11 @@ int run(const RunOptions& options) {
     }
   }
   if (end.diverged) {
-    fmt::print(stderr,
-               "limpid: the loop became unstable and was stopped at {:.3f} s; try a larger eta, a "
-               "smaller alpha or k_vc (`limpid analyze` shows the limits)\n",
-               summary.time());
+    fmt::print(
+        stderr,
+        "limpid: unstable from t = {:.3f} s on: {}; try a larger eta, a smaller alpha or k_vc "
+        "(`limpid analyze` shows the limits)\n",
+        end.diverged_at, end.why);
     return 1;
   }
   if (end.stopped) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());

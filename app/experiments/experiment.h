@@ -64,7 +64,8 @@ class Laboratory {
   struct Options {
     std::filesystem::path dir;
     std::uint64_t seed = 0;
-    unsigned threads = 0;  // 0: one a core
+    unsigned threads = 0;       // 0: one a core
+    std::uint64_t program = 0;  // trials of another one are run again; 0: this program's
     const std::atomic<bool>* stop = nullptr;
     // Part done of the experiment, 0 to 1; called from any thread, one at a time.
     std::function<void(double part)> progress;
@@ -74,8 +75,8 @@ class Laboratory {
   std::uint64_t seed() const { return options_.seed; }
 
   // Runs all trials on all cores, in any order; results in the order given. A kept trial whose
-  // session file is there already, from the same plan, is read instead of run. Throws Cancelled;
-  // FileError.
+  // session file is there already, whole, from the same program and plan, is read instead of run.
+  // Throws Cancelled; FileError.
   std::vector<TrialResult> run(const std::vector<Trial>& trials);
   // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
   void run(const std::vector<Trial>& trials,

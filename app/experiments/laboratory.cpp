@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <exception>
 #include <mutex>
@@ -7,50 +5,18 @@
 #include <thread>
 
 #include "app/experiments/experiment.h"
+#include "app/experiments/trial_store.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "devices/files/config_file.h"
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
-
-// The recorded hand went where the plan's hand goes.
-bool same_hand(const Session& session, const RunPlan& plan) {
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const Vec3 target = plan.hand.sample(k, plan.parameters.tick);
-    if (!std::ranges::equal(session.at(k, Column::hand_target), target)) return false;
-  }
-  return true;
-}
-
-// A session file stands for a trial if it says the same of itself and its hand, and was run to the
-// end of the plan or of the loop's stability.
-bool stands_for(const Session& session, const SessionInfo& info, const RunPlan& plan) {
-  const SessionInfo& s = session.info;
-  return s.config == info.config && s.device_urdf == info.device_urdf && s.scene == info.scene &&
-         s.source == info.source && s.seed == info.seed && s.app_version == info.app_version &&
-         s.tick == info.tick && session.size() > 0 && session.size() <= plan.rows &&
-         same_hand(session, plan);
-}
-
-// A file that cannot be read stands for nothing and will be replaced.
-std::optional<Session> read_if_session(const fs::path& file) {
-  std::error_code none;
-  if (!fs::exists(file, none)) return std::nullopt;
-  try {
-    return read_session(file);
-  } catch (const FileError&) {
-    return std::nullopt;
-  }
-}
-
-}  // namespace
 
 Laboratory::Laboratory(std::string experiment, Options options)
     : experiment_(std::move(experiment)), options_(std::move(options)) {
   if (options_.threads == 0) options_.threads = std::max(1u, std::thread::hardware_concurrency());
+  if (options_.program == 0) options_.program = program_digest();
 }
 
 TrialResult Laboratory::run_one(const Trial& trial) const {
@@ -59,13 +25,10 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   result.session.layout = RowLayout(trial.plan.arm.dof());
   const std::string& folder = trial.folder.empty() ? experiment_ : trial.folder;
   const fs::path file = options_.dir / folder / (trial.name + ".h5");
-  if (trial.keep) {
-    std::optional<Session> found = read_if_session(file);
-    if (found && stands_for(*found, result.session.info, trial.plan)) {
-      // A closed file that ends early is of a loop that became unstable there.
-      const std::uint64_t rows = found->size();
-      return {std::move(*found), {.rows = rows, .diverged = rows < trial.plan.rows}};
-    }
+  const std::uint64_t key = trial.keep ? trial_key(trial.plan, options_.program) : 0;
+  if (auto found = trial.keep ? stamped_session(file, key) : std::nullopt) {
+    const RunEnd end = end_of(*found);
+    return {std::move(*found), end};
   }
   if (stopped()) throw Cancelled();
   std::optional<Recorder> recorder;
@@ -77,13 +40,17 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   std::vector<double>& rows = result.session.rows;
   rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
   result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
-                        [&](std::span<const double> row, const Parameters*) {
+                        [&](std::span<const double> row, const Parameters* changed) {
                           rows.insert(rows.end(), row.begin(), row.end());
+                          if (recorder && changed != nullptr) recorder->changed(*changed);
                           return !recorder || recorder->push_waiting(row);
                         });
   // What was cut short stays a .part and is run again another time.
   if (stopped()) throw Cancelled();
-  if (recorder) recorder->finish();
+  if (recorder) {
+    recorder->finish();
+    stamp(file, key);
+  }
   return result;
 }
 

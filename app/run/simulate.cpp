@@ -7,11 +7,19 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "app/run/divergence.h"
 #include "core/loop/haptic_thread.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
 namespace {
+
+void note(RunEnd& end, const DivergenceWatch& watch) {
+  if (!watch.lost()) return;
+  end.diverged = true;
+  end.diverged_at = watch.since();
+  end.why = watch.why();
+}
 
 // The run as a sequence of ticks, whoever paces them.
 class Run {
@@ -21,6 +29,7 @@ class Run {
         pace_(pace),
         sink_(sink),
         rig_(plan.arm, plan.scene),
+        watch_(rig_.layout()),
         parameters_(plan.parameters),
         row_(static_cast<std::size_t>(rig_.layout().stride())) {
     const RigStart start = plan.start ? *plan.start : rest_at(plan.arm, plan.hand.sample(0, T()));
@@ -44,7 +53,8 @@ class Run {
     rig_.layout().in(std::span(row_), Column::compute)[0] = took.count();
     ++end_.rows;
     end_.stopped = !sink_(row_, changed ? &parameters_ : nullptr);
-    end_.diverged = rig_.diverged();
+    watch_.add(row_);
+    note(end_, watch_);
     return !end_.stopped && !end_.diverged;
   }
 
@@ -83,6 +93,7 @@ class Run {
   const RunPace& pace_;
   const RowSink& sink_;
   Rig rig_;
+  DivergenceWatch watch_;
   Parameters parameters_;
   std::vector<double> row_;
   std::size_t next_ = 0;
@@ -120,6 +131,15 @@ void apply_change(Parameters& p, const SettingChange& change) {
   const ParameterInfo* info = find_parameter(change.key());
   if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");
   if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.** field = kFromArm;
+}
+
+RunEnd end_of(const Session& session) {
+  DivergenceWatch watch(session.layout);
+  for (std::size_t k = 0; k < session.size(); ++k) watch.add(session.row(k));
+  RunEnd end;
+  end.rows = session.size();
+  note(end, watch);
+  return end;
 }
 
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/run/scene_meshes.h"
@@ -38,7 +39,12 @@ struct RunEnd {
   std::uint64_t rows = 0;  // that were run
   bool diverged = false;   // unstable at the last of them
   bool stopped = false;    // by the sink or by `stop`
+  double diverged_at = 0;  // the first row that no arm could follow, where it diverged [s]
+  std::string why = {};    // what that row had, in words
 };
+
+// The same of a run that was recorded to its end.
+RunEnd end_of(const Session& session);
 
 struct RunPace {
   bool realtime = false;                    // paced at the tick rate by the haptic thread
@@ -48,8 +54,8 @@ struct RunPace {
 // Makes a recorded change. Errors: ParameterError.
 void apply_change(Parameters& p, const SettingChange& change);
 
-// Errors: std::invalid_argument if the hand's first point cannot be reached; ParameterError in a
-// recorded change.
+// Ends early where the loop diverges (DivergenceWatch). Errors: std::invalid_argument if the hand's
+// first point cannot be reached; ParameterError in a recorded change.
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink);
 
 }  // namespace limpid

@@ -5,30 +5,39 @@
 #include <string>
 #include <vector>
 
+#include "app/run/divergence.h"
 #include "core/loop/row.h"
 
 namespace limpid {
 
+// Of a loop that became unstable: what it did while it was stable, and since when it was not.
 class Summary {
  public:
-  explicit Summary(const RowLayout& layout) : layout_(layout) {}
+  explicit Summary(const RowLayout& layout) : layout_(layout), watch_(layout) {}
 
   void add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
   // The row of the strongest contact; the last one of a run without any.
-  std::span<const double> memorable() const { return memorable_; }
+  std::span<const double> memorable() const { return totals().memorable; }
   std::string text() const;
 
  private:
+  struct Totals {
+    std::uint64_t rows = 0;
+    double largest_error = 0;                                          // |x_E| [rad]
+    double largest_contact = 0;                                        // |f2| [N m]
+    double human_square_sum = 0;                                       // of |f1| [N^2 m^2]
+    double energy_total = 0, energy_commanded = 0, highest_total = 0;  // [J]
+    std::uint64_t in_contact = 0;
+    std::vector<double> memorable;
+  };
+  const Totals& totals() const { return watch_.lost() ? stable_ : all_; }
+
   RowLayout layout_;
-  std::uint64_t rows_ = 0;
+  DivergenceWatch watch_;
   double time_ = 0;
-  double largest_error_ = 0;                                            // |x_E| [rad]
-  double largest_contact_ = 0;                                          // |f2| [N m]
-  double human_square_sum_ = 0;                                         // of |f1| [N^2 m^2]
-  double energy_total_ = 0, energy_commanded_ = 0, highest_total_ = 0;  // [J]
-  std::uint64_t in_contact_ = 0;
-  std::vector<double> memorable_;
+  Totals all_;
+  Totals stable_;  // up to where the present wild rows began
 };
 
 }  // namespace limpid

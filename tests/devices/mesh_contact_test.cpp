@@ -89,13 +89,30 @@ TEST_P(MeshInBothCouplings, OfABallIsFeltAsThatBall) {
 }
 
 const Vec3 kBody(0.18, 0, -0.1);  // its middle
+constexpr double kBodySize = 0.05, kBump = 0.1;
 
 Scene link_over_a_body() {
   Scene scene = with_mesh(
-      test::bumpy_body(5, 0.1).mapped([](const Vec3& p) { return Vec3(0.05 * p); }), kBody);
+      test::bumpy_body(5, kBump).mapped([](const Vec3& p) { return Vec3(kBodySize * p); }), kBody);
   const ArmDescription arm = test::omni();
   scene.probes.push_back({"link", 2, Vec3::Zero(), arm.tip.translation(), 0.006});
   return scene;
+}
+
+// How far a point is outside of the body the mesh was made from, along its radius [m].
+double outside(const Vec3& p) {
+  const Vec3 from = p - kBody;
+  return from.norm() - kBodySize * test::bumpy_radius(from.normalized(), kBump);
+}
+
+// Out of that body.
+Vec3 normal_of_body(const Vec3& p) {
+  constexpr double h = 1e-6;
+  Vec3 slope;
+  for (int i = 0; i < 3; ++i) {
+    slope[i] = outside(p + h * Vec3::Unit(i)) - outside(p - h * Vec3::Unit(i));
+  }
+  return slope.normalized();
 }
 
 TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
@@ -113,9 +130,12 @@ TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
     most = std::max(most, count);
     for (std::size_t i = 0; i < count; ++i) {
       ASSERT_TRUE(forces[i].force.allFinite());
-      EXPECT_NEAR(forces[i].force.normalized().dot(forces[i].normal), 1, 1e-12);
-      // Out of the body, which has its middle here; its slopes are less than 45 degrees.
-      EXPECT_GT(forces[i].force.dot(forces[i].point - kBody), 0);
+      // On the surface, facets a millimetre across, and straight out of it.
+      EXPECT_NEAR(outside(forces[i].point), 0, 1e-4);
+      const Vec3 out = normal_of_body(forces[i].point);
+      EXPECT_GT(forces[i].normal.dot(out), 0.99);
+      EXPECT_NEAR(forces[i].normal.norm(), 1, 1e-12);
+      EXPECT_GT(forces[i].force.dot(out), 0.99 * forces[i].force.norm());
     }
   }
   EXPECT_GE(most, 2u);

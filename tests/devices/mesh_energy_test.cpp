@@ -110,6 +110,28 @@ TEST_P(MeshEnergy, GivesNoMoreEnergyThanOfOneStepWhereItIsMadeBrokenAndSlidOver)
   }
 }
 
+TEST_P(MeshEnergy, IsLostOverHillsOnlyByALittleOfWhatIsStored) {
+  // Pressed all the while, over hill after hill and back.
+  const Path path = [](double t) {
+    const double u = std::max(0.0, t - 0.5);
+    return Vec3(stroke(kTop - 0.008, 0)(t) +
+                Vec3(0.02 * std::sin(3 * u), 0.01 * std::sin(2 * u), 0));
+  };
+  const Triangles hills = test::height_field(
+      150, 0.2, [](double x, double y) { return 0.002 * std::sin(120 * x) * std::cos(100 * y); });
+  const Rows rows = run(with_mesh(hills, Vec3(kHome.x(), 0, kTop)), parameters(), path, 5);
+  double stored = 0;
+  for (std::size_t k = 1000; k < rows.size(); ++k) {
+    ASSERT_GT(rows.at(k, Column::contact_potential), 0) << k;
+    stored = std::max(stored, rows.at(k, Column::contact_potential));
+  }
+  const double gained =
+      rows.at(rows.size() - 1, Column::contact_gain) - rows.at(1000, Column::contact_gain);
+  EXPECT_GT(stored, 1e-4);
+  EXPECT_LT(gained, 0);
+  EXPECT_GT(gained, -0.075 * stored);
+}
+
 bool produces_energy(const Rows& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (rows.at(k, Column::energy_total) > 1e-4) return true;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "tests/support/random_arm.h"
 
@@ -213,6 +215,155 @@ TEST(VirtualArm, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
     any.live(p, torque, {Vec3(0.1, 0, 0), 0.5});
     ASSERT_LT((fixed.read(0).x - any.read(0).x).norm(), 1e-9);
   }
+}
+
+// Two joints that know nothing of each other: crossed axes through one point, a ball at the end.
+// Inertias 5e-4 and 3e-4 kg m^2.
+ArmDescription two_wheels() {
+  ArmDescription arm;
+  arm.joints.resize(2);
+  arm.links.resize(2);
+  arm.joints[1].axis = Vec3::UnitX();
+  arm.links[0].inertia = 2e-4 * Mat3::Identity();
+  arm.links[1].inertia = 3e-4 * Mat3::Identity();
+  arm.joints[0].effort = 1;
+  arm.joints[1].effort = 0.25;
+  return arm;
+}
+
+Vector two(double a, double b) { return Eigen::Vector2d(a, b); }
+
+TEST(VirtualArm, RubsInEachJointByItsOwnFriction) {
+  ArmDescription description = two_wheels();
+  description.joints[0].friction = 0.02;
+  description.joints[1].friction = 0.05;
+  AnyArm arm(description);
+  Parameters p;
+  p.damping = 0;
+  arm.place(two(0, 0), two(6, -20), Vec3::Zero());
+  for (int k = 1; k <= 100; ++k) {
+    arm.live(p, two(0, 0), kNoHand);
+    const double t = k * p.tick;
+    ASSERT_NEAR(arm.read(0).v[0], 6 - 0.02 / 5e-4 * t, 0.01) << k;
+    ASSERT_NEAR(arm.read(0).v[1], -20 + 0.05 / 3e-4 * t, 0.01) << k;
+  }
+}
+
+TEST(VirtualArm, IsDampedInEachJointByItsOwnDamper) {
+  ArmDescription description = two_wheels();
+  description.joints[0].damping = 0.004;
+  description.joints[1].damping = 0.009;
+  AnyArm arm(description);
+  arm.place(two(0, 0), two(2, -3), Vec3::Zero());
+  for (int k = 0; k < 50; ++k) arm.live(Parameters{}, two(0, 0), kNoHand);
+  EXPECT_NEAR(arm.read(0).v[0], 2 * std::exp(-0.004 / 5e-4 * 0.05), 1e-4);
+  EXPECT_NEAR(arm.read(0).v[1], -3 * std::exp(-0.009 / 3e-4 * 0.05), 1e-4);
+}
+
+TEST(VirtualArm, IsHeldByTheStopsOfEachJointAsItsMotorIsStrong) {
+  ArmDescription description = two_wheels();
+  description.joints[0].lower = -0.5;
+  description.joints[0].upper = 0.8;
+  description.joints[1].lower = -0.3;
+  description.joints[1].upper = 0.4;
+  for (const double sign : {1.0, -1.0}) {
+    AnyArm arm(description);
+    arm.place(two(0, 0), two(0, 0), Vec3::Zero());
+    Parameters p;
+    p.damping = 0.012;
+    for (int k = 0; k < 3000; ++k) arm.live(p, sign * two(0.6, 0.2), kNoHand);
+    // 0.01 rad at the motor's limit.
+    EXPECT_NEAR(arm.read(0).x[0], (sign > 0 ? 0.8 : -0.5) + sign * 0.01 * 0.6 / 1, 1e-5);
+    EXPECT_NEAR(arm.read(0).x[1], (sign > 0 ? 0.4 : -0.3) + sign * 0.01 * 0.2 / 0.25, 1e-5);
+  }
+}
+
+TEST(VirtualArm, BouncesOffItsStopsAsAHalfDampedSpringDoes) {
+  // Damping ratio 1/2: after half a swing exp(-pi/sqrt(3)) = 0.163 of the speed is left.
+  ArmDescription description = two_wheels();
+  description.joints[0].upper = 0.1;
+  description.joints[1].lower = -0.1;
+  AnyArm arm(description);
+  Parameters p;
+  p.damping = 0;
+  p.substeps = 100;
+  arm.place(two(0, 0), two(4, -3), Vec3::Zero());
+  for (int k = 0; k < 150; ++k) arm.live(p, two(0, 0), kNoHand);
+  const double left = std::exp(-3.14159265358979 / std::sqrt(3.0));
+  EXPECT_NEAR(arm.read(0).v[0], -4 * left, 0.05 * 4 * left);
+  EXPECT_NEAR(arm.read(0).v[1], 3 * left, 0.05 * 3 * left);
+}
+
+TEST(VirtualArm, IsPulledByAHandThatGoesEvenlyFromTargetToTarget) {
+  // An arm too heavy to move; its tip at (1, 0, 0) is pulled sideways.
+  constexpr double k_h = 300, b_h = 2, d = 0.004;
+  Parameters p;
+  p.hand_stiffness = k_h;
+  p.hand_damping = b_h;
+  for (const double grip : {1.0, 0.3}) {
+    AnyArm arm(wheel(1e9));
+    arm.place(one(0), one(0), Vec3::UnitX());
+    arm.live(p, one(0), {Vec3(1, d, 0), grip});
+    EXPECT_NEAR(arm.hand_torque()[0], grip * (k_h * d / 2 + b_h * d / p.tick), 1e-9);
+    arm.live(p, one(0), {Vec3(1, 3 * d, 0), grip});
+    EXPECT_NEAR(arm.hand_torque()[0], grip * (k_h * 2 * d + b_h * 2 * d / p.tick), 1e-9);
+    arm.live(p, one(0), {Vec3(1, 3 * d, 0), grip});
+    EXPECT_NEAR(arm.hand_torque()[0], grip * k_h * 3 * d, 1e-9);
+    const double push = 0.25;
+    arm.live(p, one(0), {Vec3(1, 3 * d, 0), grip, std::span(&push, 1)});
+    EXPECT_NEAR(arm.hand_torque()[0], grip * k_h * 3 * d + 0.25, 1e-9);
+  }
+}
+
+TEST(VirtualArm, IsMovedByATorqueOfTheHandAsByOneOfTheMotors) {
+  Random random(136);
+  const ArmDescription description = random_arm(4, 136);
+  const Vector x = random.vector(4, 1), v = random.vector(4, 2);
+  AnyArm pushed(description), driven(description);
+  pushed.place(x, v, Vec3::Zero());
+  driven.place(x, v, Vec3::Zero());
+  for (int k = 0; k < 50; ++k) {
+    const Vector torque = random.vector(4, 0.05), half = 0.5 * torque;
+    const std::span hand(half.data(), 4);
+    pushed.live(Parameters{}, half, {Vec3::Zero(), 0, hand});
+    driven.live(Parameters{}, torque, kNoHand);
+    ASSERT_LT((pushed.read(0).x - driven.read(0).x).norm(), 1e-12);
+    ASSERT_LT((pushed.hand_torque() - half).norm(), 1e-15);
+    ASSERT_EQ(driven.hand_torque().norm(), 0);
+  }
+}
+
+TEST(VirtualArm, IsReadAtTheNearestEncoderStep) {
+  AnyArm arm(two_wheels());
+  arm.place(two(3.6e-3, -3.6e-3), two(0, 0), Vec3::Zero());
+  const auto reading = arm.read(1e-3);
+  EXPECT_NEAR(reading.measured[0], 4e-3, 1e-15);
+  EXPECT_NEAR(reading.measured[1], -4e-3, 1e-15);
+}
+
+TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
+  VirtualDevice<kAnyDof> device(two_wheels());
+  EXPECT_EQ(device.traits().dof, 2);
+  EXPECT_EQ(device.traits().effort, (std::vector<double>{1, 0.25}));
+  Parameters p;
+  p.damping = 0;
+  p.tick = 0.002;
+  p.encoder_step = 1e-3;
+  device.expect(p, kNoHand);
+  device.arm.place(two(0.0123, 0), two(0, 0), Vec3::Zero());
+  DeviceReading reading;
+  for (std::uint64_t k = 1; k <= 3; ++k) {
+    ASSERT_TRUE(device.read(reading));
+    EXPECT_EQ(reading.count, k);
+    EXPECT_EQ(reading.age, 0);
+  }
+  EXPECT_NEAR(reading.x[0], 0.012, 1e-15);
+  const double torque[] = {0.1, -0.06};
+  device.write(torque);
+  EXPECT_NEAR(device.arm.read(0).v[0], 0.1 / 5e-4 * 0.002, 1e-12);
+  EXPECT_NEAR(device.arm.read(0).v[1], -0.06 / 3e-4 * 0.002, 1e-12);
+  device.stop();  // without torque it goes on as it was
+  EXPECT_NEAR(device.arm.read(0).v[0], 0.4, 1e-12);
 }
 
 }  // namespace

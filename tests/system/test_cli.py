@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import os
 import pty
+import struct
+import termios
 import unittest
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -116,14 +120,13 @@ class Run(WithAnArm):
         self.assertRegex(result.out, r"ticks +100\b")
         self.assertEqual(list(folder.iterdir()), [])
 
-    def test_progress_is_shown_on_a_terminal_only(self) -> None:
-        words = ["run", *self.arm, "--realtime", "--duration", "2"]
-        quiet = limpid(*words, "--record", self.out())
-        self.assertEqual((quiet.status, quiet.err), (0, ""))
+    def on_a_terminal(self, columns: int, *words: str | Path) -> bytes:
+        """What it writes on a terminal of this width."""
         master, slave = pty.openpty()
-        with Started(*words, "--record", self.out(), stderr=slave) as started:
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        shown = b""
+        with Started(*words, stderr=slave) as started:
             os.close(slave)
-            shown = b""
             try:
                 while chunk := os.read(master, 4096):
                     shown += chunk
@@ -131,7 +134,34 @@ class Run(WithAnArm):
                 pass
             self.assertEqual(started.process.wait(timeout=20), 0)
         os.close(master)
-        self.assertRegex(shown, rb"\d of 2\.0 s.* s left")
+        return shown
+
+    def test_progress_is_one_line_on_a_terminal_that_leaves_nothing(self) -> None:
+        words = ["run", *self.arm, "--realtime", "--duration", "2.5"]
+        for columns in (100, 33):
+            with self.subTest(columns):
+                shown = self.on_a_terminal(columns, *words).decode()
+                if columns == 100:
+                    line = r"run: \d+ %, \d\.\d of 2\.5 s, 1\.0 times real time, [12] s left"
+                    self.assertRegex(shown, line)
+                screen, at = [" "] * columns, 0
+                for letter in shown:
+                    self.assertTrue(letter == "\r" or letter.isprintable(), repr(letter))
+                    if letter == "\r":
+                        at = 0
+                        continue
+                    self.assertLess(at, columns - 1, "a terminal would wrap")
+                    screen[at] = letter
+                    at += 1
+                    after = "".join(screen[at:]).strip()
+                    self.assertTrue(letter == " " or not after, "the rest of a longer line")
+                self.assertEqual("".join(screen).strip(), "", "something stays")
+
+    def test_progress_is_shown_on_a_terminal_only_and_of_long_runs_only(self) -> None:
+        words = ["run", *self.arm, "--realtime", "--duration", "1.5"]
+        quiet = limpid(*words, "--record", self.out())
+        self.assertEqual((quiet.status, quiet.err), (0, ""))
+        self.assertEqual(self.on_a_terminal(80, "run", *self.arm, "--duration", "0.2"), b"")
 
 
 class Info(WithAnArm):

@@ -5,10 +5,14 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 import signal
+import subprocess
 import time
 import unittest
 from pathlib import Path
+
+import h5py
 
 from limpid_check.session import read_session
 from support import Started, SystemTest, limpid
@@ -59,6 +63,20 @@ class Inertia(SystemTest):
         self.assertEqual(len(sessions), 3)
         self.assert_verified(read_session(sessions[0]))
 
+    def test_a_changed_recording_is_run_again(self) -> None:
+        out = self.directory / "changed"
+        shutil.copytree(self.out_dir, out)
+        session = sorted((out / "inertia").glob("*.h5"))[0]
+        with h5py.File(session, "r+") as file:
+            wanted = file["/device/position"][500, 1]
+            file["/device/position"][500, 1] = wanted + 1e-9
+        kept = sorted((out / "inertia").glob("*.h5"))[1].stat().st_mtime_ns
+        result = limpid("experiment", "inertia", "--out", out, timeout=300)
+        self.assertEqual(result.status, 0, result.err)
+        with h5py.File(session, "r") as file:
+            self.assertEqual(file["/device/position"][500, 1], wanted)
+        self.assertEqual(sorted((out / "inertia").glob("*.h5"))[1].stat().st_mtime_ns, kept)
+
     def test_a_second_call_reads_what_is_there(self) -> None:
         sessions = sorted((self.out_dir / "inertia").glob("*.h5"))
         before = [path.stat().st_mtime_ns for path in sessions]
@@ -77,20 +95,33 @@ class Inertia(SystemTest):
 
 
 class Stopping(SystemTest):
-    def test_ctrl_c_ends_it_cleanly_and_the_next_call_goes_on(self) -> None:
-        out = self.directory / "stopped"
+    def stopped(self, out: Path, how: signal.Signals) -> dict[Path, int]:
+        """The recordings it leaves, with their times."""
+        keys = (out / "passivity").glob
+        before = len(list(keys("*.key")))
         with Started("experiment", "passivity", "--out", out) as started:
             deadline = time.monotonic() + 60
-            while not list((out / "passivity").glob("*.h5")) and time.monotonic() < deadline:
+            while len(list(keys("*.key"))) <= before and time.monotonic() < deadline:
                 time.sleep(0.01)
-            self.assertEqual(started.stop(signal.SIGINT), 1)
-        done = {path: path.stat().st_mtime_ns for path in (out / "passivity").glob("*.h5")}
-        self.assertTrue(done)
+            self.assertEqual(started.stop(how), 1)
+            said = started.process.communicate()[1].decode()
+        self.assertEqual(said, "limpid: stopped; the same command goes on from here\n")
         self.assertFalse((out / "passivity.json").exists())
+        return {key: key.with_suffix(".h5").stat().st_mtime_ns
+                for key in (out / "passivity").glob("*.key")}  # fmt: skip
+
+    def test_ctrl_c_ends_it_cleanly_and_the_next_call_goes_on(self) -> None:
+        out = self.directory / "stopped"
+        self.assertTrue(self.stopped(out, signal.SIGTERM))
+        done = self.stopped(out, signal.SIGINT)
+        self.assertTrue(done)
+        for key in done:
+            self.assertGreater(len(read_session(key.with_suffix(".h5"))), 1000)
         result = limpid("experiment", "passivity", "--out", out, timeout=300)
         self.assertEqual(result.status, 0, result.err + result.out)
-        for path, written in done.items():
-            self.assertEqual(path.stat().st_mtime_ns, written, path)
+        self.assertEqual(list(out.rglob("*.part")), [])
+        for key, written in done.items():
+            self.assertEqual(key.with_suffix(".h5").stat().st_mtime_ns, written, key)
 
 
 class Refusals(SystemTest):
@@ -116,6 +147,30 @@ class Refusals(SystemTest):
         self.assertIn(str(file), self.refused("inertia", "--out", file))
         self.assertEqual(file.read_text(), "something of the user's")
         self.refused("inertia", "--out", file / "below")
+
+    def test_a_place_that_cannot_be_written_is_refused_with_the_reason(self) -> None:
+        self.assertIn("/proc/limpid: No such file or directory",
+                      self.refused("inertia", "--out", "/proc/limpid"))  # fmt: skip
+        below = self.directory / "plain"
+        below.write_text("")
+        self.assertIn(f"{below}/x: Not a directory", self.refused("inertia", "--out", below / "x"))
+
+    def test_a_full_disk_is_refused_with_the_reason_and_left_as_it_was(self) -> None:
+        place = self.directory / "full"
+        place.mkdir()
+        mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "limpid-test", str(place)]
+        if subprocess.run(mount, capture_output=True).returncode != 0:
+            self.skipTest("may not mount a file system")
+        self.addCleanup(subprocess.run, ["umount", str(place)], check=True)
+        (place / "fill").write_bytes(bytes(65536))
+        for out in (place / "new", place):
+            error = self.refused("inertia", "--out", out)
+            self.assertIn(f"{out}: No space left on device", error)
+            self.assertEqual([path.name for path in place.iterdir()], ["fill"])
+        record = limpid("run", "--duration", "1", "--record", place / "a.h5")
+        self.assertEqual(record.status, 2, record.err)
+        self.assertRegex(record.err, r"full/a\.h5.*: No space left on device")
+        self.assertEqual([path.name for path in place.iterdir()], ["fill"])
 
     def test_numbers_are_whole_and_not_negative(self) -> None:
         out = self.directory / "numbers"

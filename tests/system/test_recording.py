@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 import signal
 import time
 import unittest
@@ -68,28 +69,63 @@ class Recording(WithAnArm):
                 self.assert_verified(session)
 
     def test_ctrl_c_ends_a_run_that_no_clock_paces(self) -> None:
-        out = self.out()
-        words = ["run", *self.arm, "--duration", "80000", "--record", out]
-        with Started(*words) as started:
-            seen = wait_for_rows(started, self.part(out), 300)
-            self.assertEqual(started.stop(signal.SIGINT), 0)
-        self.assertFalse(self.part(out).exists())
-        with h5py.File(out, "r") as file:
-            self.assertGreaterEqual(min(len(file[name]) for name in DATASETS), seen)
+        for how in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(how):
+                out = self.out()
+                words = ["run", *self.arm, "--duration", "80000", "--record", out]
+                with Started(*words) as started:
+                    seen = wait_for_rows(started, self.part(out), 300)
+                    self.assertEqual(started.stop(how), 0)
+                    said = started.process.communicate()
+                self.assertFalse(self.part(out).exists())
+                with h5py.File(out, "r") as file:
+                    lengths = {len(file[name]) for name in DATASETS}
+                    self.assertEqual(len(lengths), 1, "not every column is complete")
+                    (rows,) = lengths
+                self.assertGreaterEqual(rows, seen)
+                self.assertIn(f"recorded {rows} ticks in {out}", said[0].decode())
+                self.assertIn(f"stopped at {(rows - 1) * 1e-3:.3f} s", said[1].decode())
 
-    def test_a_loop_that_flies_apart_fails_and_keeps_its_rows(self) -> None:
-        out = self.out()
-        absurd = [
-            "coupling.k_vc=10000", "coupling.b_vc=1", "coupling.eta=0.01", "observer.alpha=100",
-            "device.torque_limit=10000",
-        ]  # fmt: skip
-        options = [word for setting in absurd for word in ("--set", setting)]
-        result = limpid("run", *self.arm, *options, "--record", out)
-        self.assertEqual(result.status, 1)
-        self.assertEqual(len(result.error_lines), 1, result.err)
-        self.assertIn("unstable", result.err)
-        self.assertFalse(self.part(out).exists())
-        self.assertGreater(len(read_session(out)), 10)
+    def test_a_loop_that_flies_apart_says_since_when_and_why(self) -> None:
+        ways = {
+            "stiff": ["coupling.k_vc=10000", "coupling.b_vc=1", "coupling.eta=0.01",
+                      "observer.alpha=100", "device.torque_limit=10000"],
+            "wound up": ["coupling.eta=0.05", "observer.anti_windup=false", "hand.stiffness=3000"],
+            "strong": ["coupling.eta=0.05", "device.torque_limit=1000", "hand.stiffness=3000"],
+        }  # fmt: skip
+        for name, settings in ways.items():
+            with self.subTest(name):
+                out = self.out()
+                options = [word for setting in settings for word in ("--set", setting)]
+                result = limpid("run", *options, "--record", out)
+                self.assertEqual(result.status, 1, result.err + result.out)
+                self.assertEqual(len(result.error_lines), 1, result.err)
+                said = re.search(
+                    r"unstable from t = (\d+\.\d{3}) s on: "
+                    r"the (torque|speed|distance) .* joint [123] (grew beyond|is not finite)",
+                    result.err,
+                )
+                self.assertIsNotNone(said, result.err)
+                self.assertFalse(self.part(out).exists())
+                # the summary is of what went before, in numbers of this world
+                self.assertNotRegex(result.out, r"(?i)nan|inf\b|e\+")
+                for number in re.findall(r"\d+\.\d+", result.out):
+                    self.assertLess(float(number), 1e6, result.out)
+                self.assertIn(said.group(0), re.sub(" +", " ", limpid("info", out).out))
+                session = read_session(out)
+                self.assertGreater(len(session), 10)
+                before = session["/time"] < float(said.group(1)) - 1e-9
+                self.assertTrue(before.any())
+                for path in ("/device/velocity", "/proxy/velocity"):
+                    self.assertLess(np.abs(session[path][before]).max(), 1e3)
+                self.assertLess(np.abs(session["/device/commanded_torque"][before]).max(), 1e4)
+                again = limpid("run", "--hand", out)
+                self.assertEqual(again.status, 1)
+                self.assertIn(said.group(0), again.err)
+
+    def test_a_loop_that_saturates_into_a_limit_cycle_is_no_failed_run(self) -> None:
+        result = limpid("run", "--eta", "0.05", "--set", "hand.stiffness=3000", "--duration", "2")
+        self.assertEqual((result.status, result.err), (0, ""))
 
     def test_a_killed_run_loses_at_most_its_last_second(self) -> None:
         out = self.out()

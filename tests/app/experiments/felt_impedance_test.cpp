@@ -69,6 +69,23 @@ TEST(FeltJoint, IsTheInverseOf24WithoutTicksOrContact) {
   }
 }
 
+TEST(FeltJoint, IsLateByATickAndAHalfOfTheEstimateAndByHalfOneOfTheContact) {
+  // Next to no coupling and no proxy's damper: what stays is (m s + b_d) over the observer's share.
+  constexpr double T = 0.003, eta = 0.6, w_f = 150;
+  const FeltJoint free{2e-4, 0.012, 0, 1e-14, 0, T, 0};
+  const FeltJoint wall{2e-4, 0.012, 0, 1e-14, 0, T, 40};
+  for (const double f : {2.0, 15.0, 60.0}) {
+    const double w = 2 * kPi * f;
+    const std::complex<double> s(0, w);
+    const std::complex<double> share =
+        1.0 + (1 - eta) / eta * w_f / (s + w_f) * std::polar(1.0, -1.5 * T * w);
+    const std::complex<double> alone = 2e-4 * s + 0.012;
+    const std::complex<double> contact = 40.0 / s / eta * std::polar(1.0, -0.5 * T * w);
+    EXPECT_LT(std::abs(free.proposed(f, eta, w_f) - alone / share), 1e-9);
+    EXPECT_LT(std::abs(wall.proposed(f, eta, w_f) - (alone + contact) / share), 1e-9);
+  }
+}
+
 TEST(FeltJoint, AtLowFrequencyFeelsTheWallThroughTheProposedAndASeriesSpringThroughTheStandard) {
   const FeltJoint joint{2e-4, 0.012, 0.012, 10, 0.001, 0.001, 20};
   const double f = 1e-4, w = 2 * kPi * f;

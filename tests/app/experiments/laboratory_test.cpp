@@ -130,7 +130,11 @@ TEST_F(Laboratories, StopWhenToldAndGoOnLater) {
 TEST_F(Laboratories, PassOnWhatWentWrong) {
   Trial unreachable = trial("a", 1);
   for (Vec3& p : unreachable.plan.hand.position) p = Vec3(5, 0, 0);
-  EXPECT_THROW(Laboratory("test", options_).run({unreachable}), std::invalid_argument);
+  options_.threads = 1;
+  EXPECT_THROW(Laboratory("test", options_).run({unreachable, trial("b", 1), trial("c", 1)}),
+               std::invalid_argument);
+  EXPECT_FALSE(fs::exists(file("b")));
+  EXPECT_FALSE(fs::exists(file("c")));
 }
 
 HandPath circle() { return plan_of("table", "circle", {}).hand; }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
@@ -67,6 +69,74 @@ TEST(Analysis, TakesTheDampingThatIsSet) {
   Parameters p;
   p.damping = 0.035 - p.b_v;  // b = alpha
   EXPECT_NEAR(analyze(test::omni(), rest_pose(test::omni()), p, {}).eta_min, 0.5, 1e-9);
+}
+
+TEST(Analysis, CountsTheProxysInertia) {
+  const ArmDescription arm = test::omni();
+  const Eigen::VectorXd x = Eigen::Vector3d(0.3, 0.8, -0.5);
+  const Arm<kAnyDof> chain(arm);
+  Arm<kAnyDof>::Frames f;
+  Mat<kAnyDof> M;
+  chain.frames(x, f);
+  chain.inertia(f, M);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(M, Eigen::EigenvaluesOnly);
+  Parameters p;
+  p.inertia_ratio = 0.5;
+  p.hand_stiffness = 1000;
+  p.hand_damping = 0;
+  const Analysis a = analyze(arm, x, p, {});
+  ASSERT_EQ(a.w_f.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {  // M_L = M1 + M2 = 1.5 M1
+    const double m = 1.5 * modes.eigenvalues()[static_cast<Eigen::Index>(i)];
+    EXPECT_NEAR(a.w_f[i] * m, 0.035, 1e-12);
+    EXPECT_NEAR(a.w_c[i] * m, 0.024, 1e-12);
+  }
+  // With an undamped grip Routh's limit depends on the inertia, too.
+  Parameters light = p;
+  light.inertia_ratio = 1e-4;
+  EXPECT_GT(std::abs(a.eta_min_grip - analyze(arm, x, light, {}).eta_min_grip), 1e-3);
+}
+
+TEST(Analysis, IsPassiveAtTheLimitItselfAndNotBelow) {
+  Parameters p;  // b_d + b_v = 0.024
+  p.alpha = 0.024;
+  p.eta = 0.5;
+  EXPECT_EQ(analyze(3e-4, test::omni(), p, {}).eta_min, 0.5);
+  EXPECT_TRUE(analyze(3e-4, test::omni(), p, {}).passive);
+  p.eta = std::nextafter(0.5, 0);
+  EXPECT_FALSE(analyze(3e-4, test::omni(), p, {}).passive);
+}
+
+TEST(Analysis, TakesTheWorstOfUnequallyDampedJoints) {
+  ArmDescription arm = test::omni();
+  std::vector<double> dampings{0.3, 0.013, 0.03};
+  for (std::size_t i = 0; i < 3; ++i) arm.joints[i].damping = dampings[i];
+  Parameters p;
+  p.eta = 0.5;
+  const Analysis of_mass = analyze(3e-4, arm, p, {});
+  EXPECT_NEAR(of_mass.b, 0.025, 1e-15);
+  EXPECT_NEAR(of_mass.eta_min, 35.0 / 60, 1e-12);
+  EXPECT_NEAR(of_mass.condition3.device_margin, 0.001, 1e-15);
+  const Analysis of_arm = analyze(arm, rest_pose(arm), p, 2 * kPi * 20);
+  EXPECT_NEAR(of_arm.b, 0.025, 1e-15);
+  EXPECT_NEAR(of_arm.condition3.device_margin, 0.001, 1e-15);
+  // Whichever joint, and so whichever mode, that is.
+  constexpr double w_b = 2 * kPi * 20;
+  for (int turn = 0; turn < 3; ++turn) {
+    std::rotate(dampings.begin(), dampings.begin() + 1, dampings.end());
+    for (std::size_t i = 0; i < 3; ++i) arm.joints[i].damping = dampings[i];
+    const Analysis a = analyze(arm, rest_pose(arm), p, w_b);
+    double worst = 0, worst_in_band = 0, least = 1;
+    for (const LockedMode& mode : a.modes) {
+      worst = std::max(worst, 0.035 / (0.035 + mode.b));
+      least = std::min(least, 0.035 / (0.035 + mode.b));
+      const double w_f = 0.035 / mode.m, w_c = mode.b / mode.m;
+      worst_in_band = std::max(worst_in_band, (w_f - w_c * w_f * w_f / (w_b * w_b)) / (w_c + w_f));
+    }
+    EXPECT_GT(worst, least + 0.05);  // the modes do differ
+    EXPECT_NEAR(a.eta_min, worst, 1e-12);
+    EXPECT_NEAR(*a.eta_min_band, worst_in_band, 1e-12);
+  }
 }
 
 }  // namespace

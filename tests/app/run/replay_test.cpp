@@ -126,5 +126,90 @@ TEST(Replay, LetsTheEstimateActWhereNobodyMeasuredTheHand) {
   EXPECT_LT(error, way / 10);
 }
 
+// A recording of a real device by this plan: nobody measured the hand.
+Session blind(const RunPlan& plan, const std::filesystem::path& out) {
+  Recorder recorder(out, session_info(plan), plan.parameters, false);
+  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+    std::vector<double> copy(row.begin(), row.end());
+    const RowLayout layout(plan.arm.dof());
+    for (double& value : layout.in(std::span(copy), Column::hand_torque)) value = std::nan("");
+    return recorder.push_waiting(copy);
+  });
+  recorder.finish();
+  return read_session(out);
+}
+
+TEST(Replay, LetsEveryRowsOwnEstimateActHoweverLongItIsAndWhateverItsTick) {
+  // k T / T is not k to the last bit; with a tick of 1 ms it falls short from row 2001 on.
+  const test::TempDir dir;
+  for (const double tick : {0.001, 0.0007, 0.003}) {
+    RunPlan plan = test::plan("table.toml", "touch.csv", 0.001);
+    plan.parameters.tick = tick;
+    plan.rows = 4500;
+    const std::string name = "blind-" + std::to_string(tick) + ".h5";
+    const Session session = blind(plan, dir / name.c_str());
+    const auto again = rows_of(replay(session, name, session_parameters(session, name)));
+    ASSERT_EQ(again.size(), 4500u);
+    for (std::size_t k = 0; k < again.size(); ++k) {
+      const auto estimate = session.at(k, Column::hand_torque_estimate);
+      const Eigen::VectorXd acted = again.vec(k, Column::hand_torque);
+      for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(acted[i], estimate[static_cast<std::size_t>(i)]) << tick << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(Replay, TakesTheNearestRecordedEstimateAtAnotherTick) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("free.toml", "touch.csv", 0.001);
+  plan.rows = 900;
+  const Session session = blind(plan, dir / "a.h5");
+  RunPlan faster = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  faster.parameters.tick = 0.0004;
+  faster.force.clear();
+  faster.rows = 2300;
+  const auto rows = rows_of(faster);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    // 0.4 k is never halfway: of every five, at 0, 0.4, 0.8, 1.2, 1.6.
+    const std::size_t nearest[] = {0, 0, 1, 1, 2};
+    const std::size_t row = std::min<std::size_t>(2 * (k / 5) + nearest[k % 5], 899);
+    ASSERT_EQ(rows.at(k, Column::hand_torque), session.at(row, Column::hand_torque_estimate)[0])
+        << k;
+  }
+}
+
+TEST(Replay, HasTickSeedLengthAndStartOfTheRecording) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 0.001);
+  plan.parameters.tick = 0.002;
+  plan.parameters.eta = 0.8;
+  plan.rows = 345;
+  plan.seed = 7654321;
+  const Session session = recorded(plan, dir / "a.h5");
+  EXPECT_EQ(session.info.tick, 0.002);
+  EXPECT_EQ(session.info.seed, 7654321u);
+  EXPECT_EQ(session_parameters(session, "a.h5").tick, 0.002);
+  const RunPlan again = replay(session, "a.h5", Parameters{});  // chosen: the defaults, T = 1 ms
+  EXPECT_EQ(again.parameters.tick, 0.002);
+  EXPECT_EQ(again.parameters.eta, 1);
+  EXPECT_EQ(again.seed, 7654321u);
+  EXPECT_EQ(again.rows, 345u);
+  EXPECT_EQ(again.hand.position.size(), 345u);
+  EXPECT_EQ(again.hand.tick, 0.002);
+  ASSERT_TRUE(again.start);
+  EXPECT_EQ(again.start->x1, rows_of(session).vec(0, Column::device_position));
+  EXPECT_TRUE(again.hand_torque.empty());
+  EXPECT_EQ(session_info(again).seed, 7654321u);
+  EXPECT_EQ(session_info(again).tick, 0.002);
+}
+
+TEST(Replay, TicksAsTheFileSaysEvenIfItsParametersSayOtherwise) {
+  const test::TempDir dir;
+  Session session = recorded(test::plan("table.toml", "touch.csv", 0.05), dir / "a.h5");
+  session.info.tick = 0.004;
+  EXPECT_EQ(session_parameters(session, "a.h5").tick, 0.004);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -159,5 +159,77 @@ TEST(ForceObserver, GoesOnFromTheEstimateItIsGiven) {
   EXPECT_LT((observer.present() - f1).norm(), 1e-12);
 }
 
+// A free body whose positions are sampled, and its velocity estimated from those: between two
+// samples of it lie the middles of two ticks.
+struct SampledBody {
+  explicit SampledBody(Random& random, int n)
+      : M(random.positive_definite(n, 1e-4, 1e-3)), x(random.vector(n, 1)), before(x) {
+    v = Vector::Zero(n);
+  }
+  Vector sample(double T) {
+    const Vector s = (x - before) / T;
+    before = x;
+    return s;
+  }
+  void live(double T, const Vector& torque) {
+    const Vector a = Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(torque));
+    x += T * v + 0.5 * T * T * a;
+    v += T * a;
+  }
+  Matrix M;
+  Vector x, before, v;
+};
+
+TEST(ForceObserver, TakesNoShareOfAMotorThatPushesAtRandomForAHuman) {
+  Random random(84);
+  constexpr double T = 2e-3;
+  constexpr int n = 3;
+  SampledBody body(random, n);
+  const Matrix nothing = Matrix::Zero(n, n);
+  Observer observer(n);
+  observer.applied(random.vector(n, 1));  // of a run before
+  observer.applied(random.vector(n, 1));
+  observer.estimate(0.1, T, body.M, nothing, random.vector(n, 1), Vector::Zero(n));
+  observer.reset(Vector::Zero(n), body.sample(T));
+  for (int k = 0; k < 500; ++k) {
+    if (k > 0) {
+      observer.estimate(0.035, T, body.M, nothing, body.sample(T), Vector::Zero(n));
+      ASSERT_LT(observer.present().norm(), 1e-9) << k;
+    }
+    const Vector tau = random.vector(n, 1);
+    observer.applied(tau);
+    body.live(T, tau);
+  }
+}
+
+TEST(ForceObserver, FollowsItsRecurrenceUnderEverythingAtOnce) {
+  // d_k = M (v_k - v_k-1)/T + C v_k + b_d (v_k + v_k-1)/2 - (tau_k-1 + tau_k-2)/2 through
+  // f_k = f_k-1 + (1 - E)(d_k - f_k-1), E = (1 + A + A^2/2)^-1, A = T alpha M^-1.
+  for (const int n : {1, 3, 5}) {
+    Random random(85);
+    const double T = 3e-3, alpha = 0.21;
+    Observer observer(n);
+    Vector f = random.vector(n, 1), v = random.vector(n, 2);
+    Vector tau = Vector::Zero(n), tau_before = tau;
+    observer.applied(random.vector(n, 1));  // of a run before
+    observer.applied(random.vector(n, 1));
+    observer.reset(f, v);
+    for (int k = 0; k < 100; ++k) {
+      const Eigen::MatrixXd M = random.positive_definite(n, 1e-4, 1e-3);
+      const Eigen::MatrixXd C = random.matrix(n, 1e-2);
+      const Vector next = random.vector(n, 2), b_d = random.vector(n, 0.05);
+      const Vector d =
+          M * (next - v) / T + C * next - (tau + tau_before) / 2 + b_d.cwiseProduct(next + v) / 2;
+      const Eigen::MatrixXd A = T * alpha * M.inverse(), I = Eigen::MatrixXd::Identity(n, n);
+      f += (I - (I + A + A * A / 2).inverse()) * (d - f);
+      v = next;
+      ASSERT_LT((observer.estimate(alpha, T, M, C, next, b_d) - f).norm(), 1e-9 * (1 + f.norm()));
+      tau_before = tau;
+      tau = random.vector(n, 1);
+      observer.applied(tau);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limpid

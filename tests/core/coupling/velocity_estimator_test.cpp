@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -105,6 +109,69 @@ TEST(VelocityEstimator, AdaptiveIsQuieterThanTheRawDifferenceInSlowMotion) {
     adaptive += std::pow(v.estimate()[0] - truth, 2);
   }
   EXPECT_LT(adaptive, raw / 50);  // a window of 16: up to 256 times
+}
+
+TEST(VelocityEstimator, LowPassFollowsTheImplicitRecurrenceAtEveryTick) {
+  // y_k = y_k-1 + wT/(1 + wT) (raw_k - y_k-1), 50 Hz.
+  constexpr double w = 2 * 3.14159265358979323846 * 50;
+  for (const double tick : {1e-4, 1e-3, 1e-2}) {
+    Random random(92);
+    VelocityEstimator<kAnyDof> v(3);
+    Eigen::VectorXd x = random.vector(3, 1), y = Eigen::VectorXd::Zero(3);
+    v.reset(x);
+    for (int k = 0; k < 300; ++k) {
+      const Eigen::VectorXd next = x + random.vector(3, 0.01);
+      const Eigen::VectorXd raw = (next - x) / tick;
+      y += w * tick / (1 + w * tick) * (raw - y);
+      x = next;
+      v.update(x, tick, VelocitySource::lowpass, 0);
+      ASSERT_LT((v.estimate() - y).norm(), 1e-12 * (1 + y.norm())) << tick << ' ' << k;
+    }
+  }
+}
+
+// The longest window of up to 16 ticks, each shorter one included, whose chord passes within a step
+// of every sample; from all there ever were.
+double end_fit(const std::vector<double>& x, double tick, double step) {
+  const auto last = static_cast<int>(x.size()) - 1;
+  const auto at = [&](int ago) { return x[static_cast<std::size_t>(last - ago)]; };
+  int longest = 1;
+  for (int length = 2; length <= std::min(16, last); ++length) {
+    for (int i = 1; i < length; ++i) {
+      const double on_chord = at(0) + (at(length) - at(0)) * i / length;
+      if (std::abs(at(i) - on_chord) > step * (1 + 1e-9))
+        return (at(0) - at(longest)) / longest / tick;
+    }
+    longest = length;
+  }
+  return (at(0) - at(longest)) / longest / tick;
+}
+
+TEST(VelocityEstimator, AdaptiveIsTheLongestChordThatFitsAllSamplesInIt) {
+  constexpr double step = 4e-4;
+  for (const double pace : {0.02, 0.3, 3.0}) {
+    Random random(93);
+    VelocityEstimator<kAnyDof> v(2);
+    std::vector<double> x[2];
+    double place[2] = {0.3, -1.1}, speed[2] = {0, 0};
+    for (int k = 0; k < 600; ++k) {
+      Vector sample(2);
+      for (int i = 0; i < 2; ++i) {
+        if (k % 70 == 0) speed[i] = random.between(-pace, pace);
+        place[i] += T * speed[i];
+        sample[i] = quantised(place[i], step);
+        x[i].push_back(sample[i]);
+      }
+      if (k == 0) {
+        v.reset(sample);
+        continue;
+      }
+      v.update(sample, T, VelocitySource::adaptive, step);
+      for (int i = 0; i < 2; ++i) {
+        ASSERT_NEAR(v.estimate()[i], end_fit(x[i], T, step), 1e-9) << pace << ' ' << k;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -259,5 +259,31 @@ TEST(RestPose, IsTheMiddleOfTheLimits) {
   EXPECT_NEAR(x[1], 0.4, 1e-15);
 }
 
+TEST(Arm, TurnsItsAnglesOnToRoundOff) {
+  Random random(141);
+  for (const double size : {1e-9, 1e-4, 0.01, 0.02, 0.0299, 0.0301, 0.5, 3.0}) {
+    for (int round = 0; round < 200; ++round) {
+      const Vector x = random.vector(5, 3);
+      Vector dx = random.vector(5, size);
+      dx[0] = size;
+      const auto turned = Any::turned(Any::angles(x), dx);
+      for (int i = 0; i < 5; ++i) {
+        // One rounding of each of the sines, products and the sum; the sum x + dx rounds, too.
+        ASSERT_NEAR(turned.sin[i], std::sin(x[i] + dx[i]), 1e-15) << size;
+        ASSERT_NEAR(turned.cos[i], std::cos(x[i] + dx[i]), 1e-15) << size;
+      }
+    }
+  }
+}
+
+TEST(Arm, TurnsExactlyByTheSineOfASmallStep) {
+  // From zero the series stands alone: a last digit of what is small.
+  for (double d = -0.03; d <= 0.03; d += 1.7e-4) {
+    const auto turned = Any::turned(Any::angles(Vector::Zero(1)), Vector::Constant(1, d));
+    ASSERT_NEAR(turned.sin[0], std::sin(d), 4e-16 * std::abs(d));
+    ASSERT_NEAR(turned.cos[0], std::cos(d), 2.3e-16);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

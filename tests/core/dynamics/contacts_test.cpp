@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <memory>
+#include <tuple>
 
-#include "tests/support/random_arm.h"
+#include "tests/support/meshes.h"
 
 namespace limpid {
 namespace {
@@ -262,6 +265,227 @@ TEST(Contacts, HaveRoomForEveryPairAndKnowTheEnergyInThem) {
   for (int i = 0; i < 5; ++i) wanted += 0.5 * 100 * (i + 1) * 0.02 * 0.02;
   ASSERT_EQ(contacts.list().size(), 5u + 1);  // the capsule is out of reach of all
   EXPECT_NEAR(contacts.potential(), wanted, 1e-12);
+}
+
+// The tip of an arm of three joints before a plane, a ball and a sheet that face three ways.
+class TipBeforeThings : public testing::Test {
+ protected:
+  static constexpr double kRadius = 0.005, kTick = 0.001;
+
+  TipBeforeThings() {
+    scene_.tip_radius = kRadius;
+    arm_.frames(x_, frames_);
+    tip_ = arm_.tip(frames_);
+    arm_.point_jacobian(frames_, 2, tip_, J_);
+  }
+
+  // Deep by this much; negative: apart.
+  void add_plane(double deep) {
+    scene_.planes.push_back({"", tip_ - (kRadius - deep) * out_[0], out_[0], 700});
+  }
+  void add_ball(double deep) {
+    scene_.spheres.push_back({"", tip_ - (0.03 + kRadius - deep) * out_[1], 0.03, 800});
+  }
+  void add_sheet(double deep, double scale = 1, double aside = 0) {
+    MeshObstacle sheet = test::obstacle(test::sheet(4, 0.3), 900);
+    sheet.scale = scale;
+    sheet.pose.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), out_[2]).toRotationMatrix();
+    sheet.pose.translation() = tip_ - (kRadius - deep) * out_[2] + aside * out_[2].unitOrthogonal();
+    scene_.meshes.push_back(sheet);
+  }
+  // Where the joints are with the tip there, going straight from x.
+  Vec<kAnyDof> led(Vec<kAnyDof> x, const Vec3& to) const {
+    Arm<kAnyDof>::Frames f;
+    Jacobian<kAnyDof> J;
+    for (int i = 0; i < 200; ++i) {
+      arm_.frames(x, f);
+      const Vec3 left = to - arm_.tip(f);
+      arm_.point_jacobian(f, 2, arm_.tip(f), J);
+      x += Mat3(J).inverse() * (left * std::min(1.0, 2e-4 / (left.norm() + 1e-9)));
+    }
+    return x;
+  }
+  // How the joints move for the tip to move so.
+  Vec<kAnyDof> joints(const Vec3& rate) const { return Mat3(J_).inverse() * rate; }
+  // The tip's rate with these parts along the three normals.
+  Vec3 rate(const Vec3& along) const {
+    Mat3 normals;
+    for (int i = 0; i < 3; ++i) normals.row(i) = out_[i];
+    return normals.inverse() * along;
+  }
+  void find(Contacts<kAnyDof>& contacts, const Vec<kAnyDof>& x) const {
+    Arm<kAnyDof>::Frames f;
+    arm_.frames(x, f);
+    contacts.find(arm_, f, x, kTick);
+  }
+  Contacts<kAnyDof> placed(const Vec<kAnyDof>& x) const {
+    Contacts<kAnyDof> contacts(description_, scene_);
+    Arm<kAnyDof>::Frames f;
+    arm_.frames(x, f);
+    contacts.place(arm_, f, x);
+    return contacts;
+  }
+
+  ArmDescription description_ = random_arm(3, 27);
+  Arm<kAnyDof> arm_{description_};
+  Vec<kAnyDof> x_ = Random(28).vector(3, 2);
+  const Vec3 out_[3] = {Vec3(0.2, 0.1, 0.9).normalized(), Vec3(-0.8, 0.5, 0.1).normalized(),
+                        Vec3(0.3, 0.8, -0.3).normalized()};
+  Arm<kAnyDof>::Frames frames_;
+  Jacobian<kAnyDof> J_;
+  Vec3 tip_;
+  Scene scene_;
+};
+
+TEST_F(TipBeforeThings, TakesNobodyInOnceContactsAreOnlyLetGo) {
+  add_plane(0.003);
+  add_ball(-0.001);
+  add_sheet(-0.001);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  ASSERT_EQ(contacts.list().size(), 2u);
+  ASSERT_TRUE(contacts.list()[0].touching);
+  ASSERT_FALSE(contacts.list()[1].touching);
+  ASSERT_EQ(contacts.meshes()[0].rank, 0);
+  // In half a tick: 4 mm away from the plane, into ball and sheet.
+  const Vec<kAnyDof> vbar = joints(rate(Vec3(8, -8, -8)));
+  EXPECT_TRUE(contacts.reconsider(vbar, kTick, true));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_FALSE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 0);
+  EXPECT_FALSE(contacts.reconsider(vbar, kTick, true));  // so that a tick comes to its end
+  EXPECT_TRUE(contacts.reconsider(vbar, kTick, false));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_TRUE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 1);
+  EXPECT_FALSE(contacts.reconsider(vbar, kTick, false));
+  // And let go again, the sheet as well.
+  EXPECT_TRUE(contacts.reconsider(-vbar, kTick, true));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_FALSE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 0);
+}
+
+TEST_F(TipBeforeThings, SaysWhereAndHowHardItIsPushedUntilItIsLifted) {
+  add_plane(0.003);
+  add_ball(0.002);
+  add_sheet(0.001);
+  Contacts<kAnyDof> contacts = placed(x_);
+  std::array<ContactForce, 8> forces;
+  EXPECT_EQ(contacts.forces(forces), 0u);  // nothing has pushed yet
+  find(contacts, x_);
+  Vec<kAnyDof> f2;
+  EXPECT_TRUE(contacts.push(Vec<kAnyDof>::Zero(3), kTick, f2));
+  ASSERT_EQ(contacts.forces(forces), 3u);
+  const double newtons[] = {700 * 0.003, 800 * 0.002, 900 * 0.001};
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((forces[i].force - newtons[i] * out_[i]).norm(), 1e-5) << i;
+    EXPECT_LT((forces[i].normal - out_[i]).norm(), 1e-5) << i;
+    sum += newtons[i] * out_[i];
+  }
+  // The arm's own things name the middle of the tip, meshes the place on their surface.
+  EXPECT_LT((forces[0].point - tip_).norm(), 1e-12);
+  EXPECT_LT((forces[2].point - (tip_ - 0.004 * out_[2])).norm(), 1e-7);
+  EXPECT_LT((f2 - J_.transpose() * sum).norm(), 1e-6);
+  EXPECT_EQ(contacts.forces(std::span(forces).first(2)), 2u);  // as many as fit
+
+  // 10 mm away from all three.
+  const Vec<kAnyDof> away = led(x_, tip_ + rate(Vec3::Constant(0.01)));
+  find(contacts, away);
+  EXPECT_TRUE(contacts.push(Vec<kAnyDof>::Zero(3), kTick, f2));
+  EXPECT_EQ(contacts.forces(forces), 0u);
+  EXPECT_EQ(f2.norm(), 0);
+}
+
+TEST_F(TipBeforeThings, PushesAtTheMiddleOfAStep) {
+  add_plane(0.003);
+  add_sheet(0.002);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  const Vec3 tip_rate = rate(Vec3(1.5, 0, -2.5));  // [m/s]
+  Vec<kAnyDof> f2;
+  EXPECT_TRUE(contacts.push(joints(tip_rate), kTick, f2));
+  const Vec3 plane = 700 * (0.003 - 0.5 * kTick * 1.5) * out_[0];
+  const Vec3 sheet = 900 * (0.002 + 0.5 * kTick * 2.5) * out_[2];
+  EXPECT_LT((f2 - J_.transpose() * (plane + sheet)).norm(), 1e-6);
+  EXPECT_NEAR(contacts.potential(), 0.5 * 700 * 9e-6 + 0.5 * 900 * 4e-6, 1e-8);
+}
+
+TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
+  // No further can it come within a tick.
+  add_plane(-0.015);
+  add_ball(-0.019);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.list().size(), 2u);
+  EXPECT_EQ(contacts.potential(), 0);
+  scene_ = {};
+  scene_.tip_radius = kRadius;
+  add_plane(-0.021);
+  add_ball(-0.03);
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_TRUE(contacts.list().empty());
+  scene_.joint_contacts.push_back({"", 1, x_[1] + 0.3, 1, 20});  // 0.3 rad before a stop
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.potential(), 0);
+}
+
+// Led through a sheet to 3 mm behind it; who starts anew there is pushed to the other side.
+class TipBehindASheet : public TipBeforeThings {
+ protected:
+  static constexpr double kWay = 0.01;  // from 2 mm before the sheet [m]
+
+  // Where the ball is pulled to, along the sheet's normal [m].
+  double pull(const Contacts<kAnyDof>& contacts) const {
+    const auto& c = contacts.meshes()[0];
+    return out_[2].dot(c.direction.leftCols(c.rank) * c.depth.head(c.rank));
+  }
+  // There, and still there for a tick.
+  double side_after(Contacts<kAnyDof>& contacts) const {
+    find(contacts, behind_);
+    return pull(contacts);
+  }
+  Contacts<kAnyDof> came_through() const {
+    Contacts<kAnyDof> contacts = placed(x_);
+    for (int k = 1; k <= 200; ++k) find(contacts, led(x_, tip_ - k / 200.0 * kWay * out_[2]));
+    return contacts;
+  }
+
+  Vec<kAnyDof> behind_ = led(x_, tip_ - kWay * out_[2]);
+};
+
+TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
+  const auto set = [&](double scale, double aside, double radius) {
+    scene_ = {};
+    scene_.tip_radius = kRadius;
+    add_sheet(-0.002, scale, aside);
+    scene_.tip_radius = radius;
+  };
+  set(1, 0, kRadius);
+  Contacts<kAnyDof> first = came_through();
+  ASSERT_GT(side_after(first), 0.007);  // to where it came from
+  const std::shared_ptr<const TriangleMesh> shape = scene_.meshes[0].shape;
+  const auto taken_over = [&] {
+    Contacts<kAnyDof> next = placed(behind_);
+    next.take_over(first);
+    return side_after(next);
+  };
+  set(1, 0, kRadius);
+  EXPECT_LT(taken_over(), 0) << "another shape, even if it is an equal one";
+  scene_.meshes[0].shape = shape;
+  EXPECT_GT(taken_over(), 0.007);
+  scene_.meshes[0].stiffness = 100;  // may change
+  EXPECT_GT(taken_over(), 0.007);
+  for (const auto& [scale, aside, radius] :
+       {std::tuple(2.0, 0.0, kRadius), {1.0, 0.001, kRadius}, {1.0, 0.0, 0.0051}}) {
+    set(scale, aside, radius);
+    scene_.meshes[0].shape = shape;
+    EXPECT_LT(taken_over(), 0) << scale << ' ' << aside << ' ' << radius;
+  }
 }
 
 }  // namespace

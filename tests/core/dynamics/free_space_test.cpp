@@ -185,5 +185,23 @@ TEST(FreeSpace, HasRoomForSixPlanes) {
   EXPECT_EQ(x, Vec3(1, 2, 3));
 }
 
+TEST(FreeSpace, HasAnOrthonormalBasisOfNearlyParallelPlanes) {
+  Random random(316);
+  for (int round = 0; round < 3000; ++round) {
+    const double askew = std::pow(10.0, random.between(-8, -3));
+    const Vec3 n = random.direction(), side = n.unitOrthogonal();
+    const Vec3 second = (n + askew * side).normalized();
+    const Vec3 third = (n + askew * random.between(0.3, 1) * n.cross(side)).normalized();
+    const FreeSpace space = room({{n, 0}, {second, 0}, {third, 0}});
+    Mat3 e;
+    ASSERT_EQ(space.basis({{0, 1, 2}, 3}, e), 3);
+    ASSERT_LT((e.transpose() * e - Mat3::Identity()).norm(), 1e-14) << askew;
+    // The first column is the first normal, and each turns towards its own plane's.
+    ASSERT_LT((e.col(0) - n).norm(), 1e-15);
+    ASSERT_GT(e.col(1).dot(second), 0);
+    ASSERT_GT(e.col(2).dot(third), 0);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

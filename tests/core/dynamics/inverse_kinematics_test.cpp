@@ -55,6 +55,25 @@ TEST(InverseKinematics, FindsNothingOutOfReach) {
   EXPECT_FALSE(inverse_kinematics(arm, far, Eigen::VectorXd::Zero(3)));
 }
 
+TEST(InverseKinematics, FindsAMicrometreOrNothing) {
+  // Two links in a line that has no more than 0.5 m to give, whatever carries them.
+  ArmDescription arm;
+  arm.joints.resize(2);
+  arm.links.resize(2);
+  arm.joints[0].origin.translation() = Vec3(0.7, -0.4, 0.2);
+  arm.joints[1].origin.translation() = Vec3(0.3, 0, 0);
+  arm.tip.translation() = Vec3(0.2, 0, 0);
+  EXPECT_NEAR(reach(arm), 0.5, 1e-15);
+  const Vec3 base = arm.joints[0].origin.translation(), out = Vec3(3, 4, 0) / 5;
+  const Eigen::VectorXd guess = Eigen::Vector2d(0.3, 0.2);
+  const auto inside = inverse_kinematics(arm, base + 0.499 * out, guess);
+  ASSERT_TRUE(inside);
+  EXPECT_LT((tip_at(arm, *inside) - base - 0.499 * out).norm(), 1e-6);
+  for (const double beyond : {2e-6, 1e-5, 1e-4, 1e-3}) {
+    EXPECT_FALSE(inverse_kinematics(arm, base + (0.5 + beyond) * out, guess)) << beyond;
+  }
+}
+
 TEST(Reach, IsNeverExceeded) {
   const ArmDescription arm = random_arm(3, 8);
   Random random(6);

@@ -283,5 +283,25 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
   }
 }
 
+TEST(Ball, ThroughASheetCouldNotFindItsSideAgain) {
+  // Beyond half its radius the nearest side of an open sheet may be the wrong one; a body's is
+  // known.
+  constexpr double kRadius = 0.004;
+  const auto pressed = [&](const Triangles& triangles, double top, double depth) {
+    MeshTouch touch(test::obstacle(triangles), kRadius);
+    Vec3 c(0.003, 0.007, top + 2 * kRadius);
+    touch.place(c);
+    go(touch, c, Vec3(0.004, 0.006, top + kRadius - depth), 1e-4);
+    EXPECT_FALSE(touch.held());
+    EXPECT_NEAR(pull(touch, c).z(), depth, 1e-8);  // corners are floats
+    return touch.recoverable();
+  };
+  const Triangles sheet = test::sheet(9, 0.2), cube = test::box(Vec3(0.2, 0.2, 0.2));
+  EXPECT_TRUE(pressed(sheet, 0, 0.0019));
+  EXPECT_FALSE(pressed(sheet, 0, 0.0021));
+  EXPECT_FALSE(pressed(sheet, 0, 0.0075));
+  EXPECT_TRUE(pressed(cube, 0.1, 0.0075));
+}
+
 }  // namespace
 }  // namespace limpid

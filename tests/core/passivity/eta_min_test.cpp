@@ -218,5 +218,76 @@ TEST(EnergyBooks, AddUpTheWorkOfBothTorques) {
   EXPECT_NEAR(books.total, commanded - damped, 1e-12);
 }
 
+TEST(LockedModes, AreDampedByTheirShareOfEachJointsDamping) {
+  // u' D u of M's unit eigenvectors: with M diagonal, the joints' own, sorted by mass.
+  const Eigen::Vector3d m(5e-4, 1e-4, 3e-4), b(0.05, 0.01, 0.02);
+  const auto sorted = locked_modes(m.asDiagonal().toDenseMatrix(), b, 0.035);
+  const double masses[] = {1e-4, 3e-4, 5e-4}, dampings[] = {0.01, 0.02, 0.05};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sorted[i].m, masses[i], 1e-18);
+    EXPECT_NEAR(sorted[i].b, dampings[i], 1e-16);
+  }
+  Random random(107);
+  const Eigen::MatrixXd M = random.positive_definite(4, 1e-4, 1e-3);
+  const Eigen::VectorXd unequal = Eigen::Vector4d(0.01, 0.03, 0.02, 0.05);
+  double total = 0;  // the trace does not depend on the basis
+  for (const LockedMode& mode : locked_modes(M, unequal, 0.035)) {
+    EXPECT_GE(mode.b, 0.01);
+    EXPECT_LE(mode.b, 0.05);
+    total += mode.b;
+  }
+  EXPECT_NEAR(total, 0.11, 1e-15);
+}
+
+TEST(GripPoles, SolveTheirEigenvalueProblemWithMatricesThatShareNoModes) {
+  // (M s^2 + D s) x + (1/eta - 1) s-filtered grip force and the grip itself, A of f_hat:
+  // M s^2 x = -D s x + f + (1-eta)/eta f_hat, f_hat (s + alpha M^-1) = alpha M^-1 f, f = -(K + B s)
+  // x.
+  Random random(108);
+  constexpr int n = 3;
+  const Eigen::MatrixXd M = random.positive_definite(n, 1e-4, 1e-3);
+  const Eigen::MatrixXd K = random.positive_definite(n, 5, 80);
+  const Eigen::MatrixXd B = random.positive_definite(n, 0.001, 0.02);
+  const Eigen::VectorXd b = Eigen::Vector3d(0.01, 0.03, 0.05);
+  const double alpha = 0.035, eta = 0.7;
+  const Eigen::VectorXcd poles = grip_poles(M, b, alpha, eta, K, B);
+  ASSERT_EQ(poles.size(), 9);
+  using Complex = Eigen::MatrixXcd;
+  const Complex I = Complex::Identity(n, n), L = (alpha * M.inverse()).cast<std::complex<double>>();
+  for (const std::complex<double> s : poles) {
+    const Complex f = -(K.cast<std::complex<double>>() + s * B);
+    const Complex f_hat = (s * I + L).inverse() * L * f;
+    const Complex D = b.asDiagonal().toDenseMatrix().cast<std::complex<double>>();
+    const Complex Z = s * s * M + s * D - f - (1 - eta) / eta * f_hat;
+    const double smallest = Z.jacobiSvd().singularValues().minCoeff();
+    EXPECT_LT(smallest, 1e-9 * (std::norm(s) * M.norm() + K.norm()));
+  }
+}
+
+TEST(EnergyBooks, TakeEachJointsOwnDamping) {
+  EnergyBooks<3> books;
+  const Eigen::Vector3d tau1(0.3, -0.5, 0.7), dx1(0.01, 0.02, -0.03), b_d(0.1, 0.2, 0.4);
+  const Eigen::Vector3d tau2(-0.2, 0.1, 0.6), dx2(0.02, -0.01, 0.05);
+  books.add(tau1, dx1, tau2, dx2, b_d, 0.5);
+  const double work = (0.003 - 0.010 - 0.021) + (-0.004 - 0.001 + 0.030);
+  EXPECT_NEAR(books.commanded, work, 1e-16);
+  EXPECT_NEAR(books.total, work - 2 * (0.1 * 1e-4 + 0.2 * 4e-4 + 0.4 * 9e-4), 1e-16);
+}
+
+TEST(EnergyBooks, FindThatASpringGaveBackWhatItStored) {
+  // f = -K d along d: pressed from 0.02 to 0.05 and let go to 0.01, midpoint forces.
+  EnergyBooks<1> books;
+  const auto one = [](double x) { return Vec<1>::Constant(x); };
+  const double K = 30;
+  const double depths[] = {0.02, 0.05, 0.03, 0.01};
+  const auto stored = [&](double d) { return K * d * d / 2; };
+  for (int i = 0; i < 3; ++i) {
+    const double middle = (depths[i] + depths[i + 1]) / 2;
+    books.add_contact(one(-K * middle), one(depths[i + 1] - depths[i]));
+    EXPECT_NEAR(books.contact_gain(stored(depths[i + 1]), stored(depths[0])), 0, 1e-16);
+  }
+  EXPECT_NEAR(books.contact, K * (0.02 * 0.02 - 0.01 * 0.01) / 2, 1e-16);
+}
+
 }  // namespace
 }  // namespace limpid

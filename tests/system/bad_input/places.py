@@ -49,4 +49,16 @@ OUTPUT: list[Case] = [
     _record("a place nobody can write", lambda good: "/proc/limpid.h5", "/proc"),
     _record("no name", lambda good: ""),
     _record("a file that exists", lambda good: good.session, "good.h5"),
+    *(
+        Case(
+            f"picture: {name}",
+            lambda good, place=place: good.run("--picture", good.directory / place),
+            [str(place), reason],
+        )
+        for name, place, reason in (
+            ("a folder that is not there", Path("no/a.png"), "No such file or directory"),
+            ("below a file", Path("good/arm3.urdf/a.png"), "Not a directory"),
+            ("a folder", Path("good"), "Is a directory"),
+        )
+    ),
 ]
