@@ -57,19 +57,18 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
   std::vector<double> rows;
   rows.reserve(session.rows.size());
   std::uint64_t count = 0;
-  simulate(plan, {.realtime = false, .stop = &progress.cancel},
-           [&](std::span<const double> row, const Parameters*) {
-             rows.insert(rows.end(), row.begin(), row.end());
-             progress.part = static_cast<double>(++count) / static_cast<double>(plan.rows);
-             return true;
-           });
-  const bool unstable = !rows.empty() && rows.size() < session.rows.size();
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
-  while (unstable && rows.size() < session.rows.size()) {
-    rows.insert(rows.end(), rows.end() - static_cast<std::ptrdiff_t>(stride), rows.end());
-  }
+  const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
+                              [&](std::span<const double> row, const Parameters*) {
+                                rows.insert(rows.end(), row.begin(), row.end());
+                                progress.part =
+                                    static_cast<double>(++count) / static_cast<double>(plan.rows);
+                                return true;
+                              });
+  if (end.stopped || rows.empty()) return {{}, end, history_of(session, {})};
+  const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
+  while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
   History history = history_of(session, rows);
-  return {std::move(rows), unstable, std::move(history)};
+  return {std::move(rows), end, std::move(history)};
 }
 
 }  // namespace
@@ -153,7 +152,11 @@ void Workbench::take_results() {
 }
 
 void Workbench::show_rerun(Rerun again) {
-  if (again.unstable) say("The re-run became unstable; it is shown up to there.", true);
+  if (again.end.diverged) {
+    say(fmt::format("The re-run is unstable from {:.3f} s on: {}. It is shown up to its end.",
+                    again.end.diverged_at, again.end.why),
+        true);
+  }
   playback->rerun = std::move(again.rows);
   playback->stage = std::make_unique<Stage>(playback->arm, playback->scene, playback->models,
                                             std::move(again.history), playback->player.duration());

@@ -21,6 +21,7 @@
 #include "app/desktop/undo_history.h"
 #include "app/live/live_loop.h"
 #include "app/run/analysis.h"
+#include "app/run/simulate.h"
 #include "app/session/background.h"
 #include "app/session/errands.h"
 #include "app/session/player.h"
@@ -34,7 +35,7 @@ class Window;
 // A second run of a recording's hand.
 struct Rerun {
   std::vector<double> rows;  // as many as the session's
-  bool unstable = false;     // then the last good one stands for those that are missing
+  RunEnd end;                // where it diverged the last row stands for those that are missing
   History history;           // of both
 };
 

@@ -10,7 +10,9 @@ void ForceGate::step(ForceWish wish, const Objections& against, double T) noexce
   if (against.gap) take(ArmingEvent::gap);
   if (against.gap || !(state_ == Arming::fading || state_ == Arming::on)) gain_ = 0;
   if (against.fault != ForceState::on) {
-    if (state_ != Arming::tripped) tripped_ = against.fault;
+    // A device that is pulled out falls silent first.
+    const bool better = against.fault == ForceState::lost;
+    if (state_ != Arming::tripped || better) tripped_ = against.fault;
     take(ArmingEvent::trip);
   }
   take(against.hand ? ArmingEvent::hand : ArmingEvent::no_hand);

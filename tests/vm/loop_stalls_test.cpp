@@ -34,7 +34,7 @@ struct StalledLoop : testing::Test {
         largest_step = std::max(largest_step, now - before);
         ASSERT_LE(now - before, kEffort * (std::min(dt, 0.001) + 0.001) / 0.02 + 1e-3) << what;
         if (t > 0.004) {
-          ASSERT_LE(now, 1.5 * full * (t + 0.002) / 0.5 + 1e-3) << what << ", " << t << " s after";
+          ASSERT_LE(now, kEffort * (t + 0.003) / 0.5 + 1e-3) << what << ", " << t << " s after";
         }
       }
       before = now;

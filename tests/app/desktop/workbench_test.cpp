@@ -8,7 +8,9 @@
 #include <fstream>
 #include <thread>
 
+#include "core/dynamics/arm.h"
 #include "render/offscreen.h"
+#include "tests/support/built_in.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -19,7 +21,7 @@ namespace fs = std::filesystem;
 
 // What a fake device says and hears, shared with the test.
 struct Wire {
-  std::atomic<double> angle{0};
+  std::atomic<double> angle{0};  // from where the arm rests [rad]
   std::atomic<bool> here{true};
   std::atomic<std::uint32_t> buttons{0};
   std::atomic<double> torque{0};  // the largest of the newest
@@ -37,11 +39,13 @@ class WiredDevice final : public Device {
     traits_.upper.assign(n, 1);
     traits_.resolution.assign(n, 1e-4);
     traits_.effort.assign(n, 0.5);
+    rest_.assign(n, 0);
+    if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
   }
   ~WiredDevice() override { ++wire_->closed; }
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override {
-    newest.x.fill(wire_->angle);
+    for (std::size_t i = 0; i < rest_.size(); ++i) newest.x[i] = rest_[i] + wire_->angle;
     newest.count = ++count_;
     newest.buttons = wire_->buttons;
     return wire_->here;
@@ -55,6 +59,7 @@ class WiredDevice final : public Device {
 
  private:
   DeviceTraits traits_;
+  std::vector<double> rest_;  // [rad]
   std::shared_ptr<Wire> wire_;
   std::uint64_t count_ = 0;
 };
@@ -104,8 +109,8 @@ struct AWorkbench : testing::Test {
   // A device in the loop, beside a stop that presses against it, armed.
   std::shared_ptr<Wire> pushed() {
     auto wire = plug_in(3);
-    EXPECT_TRUE(until([&] { return bench->live.update() && bench->live.snapshot().connected; }));
-    wire->angle = 0.3;  // pulled away from its proxy, whose coupling pulls back
+    EXPECT_TRUE(until([&] { return bench->live.snapshot().connected; }));
+    wire->angle = 0.1;  // pulled away from its proxy, whose coupling pulls back
     bench->live.arm();
     EXPECT_TRUE(until([&] { return arming() == Arming::on; }));
     return wire;

@@ -167,7 +167,9 @@ TEST(LiveLoop, ForgetsWhatWasAskedBeforeItWasOpened) {
 
 TEST(LiveLoop, TakesItsForceAwayWhenNobodySetsItsControls) {
   LiveLoop loop({});
-  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::FakeDevice>(3));
+  auto device = std::make_unique<test::FakeDevice>(3);
+  Eigen::Map<Eigen::Vector3d>(device->reading.x.data()) = rest_pose(test::omni());
+  loop.open(test::omni(), Scene{}, Parameters{}, std::move(device));
   const auto state = [&] {
     loop.update();
     return loop.snapshot().arming;

@@ -103,10 +103,13 @@ TEST_F(OpenGate, StaysShutAfterAFaultUntilArmedAnew) {
   }
 }
 
-TEST_F(OpenGate, SaysWhatWasWrongFirst) {
+TEST_F(OpenGate, SaysWhatWasWrongFirstUnlessTheDeviceIsGone) {
+  gate.step(ForceWish::as_it_is, {.fault = ForceState::fault}, T);
   gate.step(ForceWish::as_it_is, {.fault = ForceState::stale}, T);
+  EXPECT_EQ(gate.why(), ForceState::fault);
   gate.step(ForceWish::as_it_is, {.fault = ForceState::lost}, T);
-  EXPECT_EQ(gate.why(), ForceState::stale);
+  gate.step(ForceWish::as_it_is, {.fault = ForceState::stale}, T);
+  EXPECT_EQ(gate.why(), ForceState::lost);
 }
 
 TEST_F(OpenGate, WaitsForTheHandAndFadesInAgain) {
