@@ -1,5 +1,6 @@
 #include "devices/files/session.h"
 
+#include <hdf5.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -65,6 +66,7 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
   EXPECT_EQ(session.info.seed, info.seed);
   EXPECT_EQ(session.info.source, info.source);
   EXPECT_EQ(session.info.config, info.config);
+  EXPECT_EQ(session.info.safety, info.safety);
   EXPECT_EQ(session.info.device_urdf, info.device_urdf);
   EXPECT_EQ(session.info.scene, info.scene);
   ASSERT_EQ(session.info.models.size(), info.models.size());
@@ -79,6 +81,17 @@ TEST(Session, MayBeEmpty) {
   const test::TempDir dir;
   SessionWriter(dir / "a.h5", sample_info(), false).close();
   EXPECT_EQ(read_session(dir / "a.h5").size(), 0u);
+}
+
+TEST(Session, OfTheFirstEditionHasNoSafetyLimits) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Adelete(file, "safety_limits"), 0);
+  H5Fclose(file);
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_EQ(session.info.safety, "");
+  EXPECT_EQ(session.size(), 10u);
 }
 
 TEST(Session, SaysWhenItWasMade) {
