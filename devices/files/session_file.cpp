@@ -72,14 +72,11 @@ hdf5::Datatype setting_type() {
   return type;
 }
 
-// A list of rank 1, or a table of rank 2 with rows of `width`. Without a cache and without filling,
-// rows are written where they belong and nowhere else.
+// A list of rank 1, or a table of rank 2 with rows of `width`.
 hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
                              hsize_t chunk) {
   const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  const hdf5::Properties access(H5Pcreate(H5P_DATASET_ACCESS));
   H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
-  H5Pset_chunk_cache(access.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT);
   const std::array<hsize_t, 2> none{0, width};
   const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
   const std::array<hsize_t, 2> chunks{chunk, width};
@@ -88,7 +85,7 @@ hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank,
   H5Pset_create_intermediate_group(links.get(), 1);
   H5Pset_chunk(creation.get(), rank, chunks.data());
   return hdf5::Dataset(
-      H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), access.get()));
+      H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
 }
 
 // Appends `count` rows behind the first `from`.
@@ -136,6 +133,9 @@ void SessionFile::create(const SessionInfo& info) {
   const hdf5::Properties creation = placed_within_pages();
   const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  // Without a cache for them (the file's: starting to write makes HDF5 forget a dataset's own) and
+  // without filling, rows are written where they belong and nowhere else.
+  check(H5Pset_cache(access.get(), 0, 0, 0, 0) >= 0, path_, "cannot create");
   file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   check(static_cast<bool>(file_), path_, "cannot create");
   write_attributes(info);
