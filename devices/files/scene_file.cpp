@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "devices/files/file_error.h"
@@ -101,7 +102,8 @@ Probe probe(const TomlTable& t, const ArmDescription& arm) {
 
 std::string model_file(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
-  const fs::path extension = fs::path(file).extension();
+  std::string extension = fs::path(file).extension();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension != ".glb" && extension != ".gltf") t.refuse("file", "a glTF file (.glb, .gltf)");
   return file;
 }

@@ -88,19 +88,22 @@ hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank,
       H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
 }
 
-// Appends `count` rows behind the first `from`.
-bool append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
-               const void* data) {
+// Appends `count` rows behind the first `from` and flushes them. Errors: FileError naming `file`;
+// asked for at once, as closing any handle makes HDF5 forget them.
+void append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+               const void* data, const std::filesystem::path& file) {
   const std::array<hsize_t, 2> extent{from + count, width};
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, width};
-  if (H5Dset_extent(dataset.get(), extent.data()) < 0) return false;
+  check(H5Dset_extent(dataset.get(), extent.data()) >= 0, file, "cannot write");
   const hdf5::Dataspace in_file(H5Dget_space(dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(in_file.get());
   const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
-  return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
-                             nullptr) >= 0 &&
-         H5Dwrite(dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, data) >= 0;
+  check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
+                            nullptr) >= 0 &&
+            H5Dwrite(dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, data) >= 0 &&
+            H5Dflush(dataset.get()) >= 0,
+        file, "cannot write");
 }
 
 }  // namespace
@@ -243,9 +246,7 @@ void SessionFile::write_check() {
   for (const ColumnInfo& column : kColumnInfo) {
     sums[column_index(column.column)] = column_sum(layout_, pending_, column.column);
   }
-  check(append_to(sums_, flushed_sums_, 1, kColumns, H5T_NATIVE_UINT64, sums.data()) &&
-            H5Dflush(sums_.get()) >= 0,
-        path_, "cannot write");
+  append_to(sums_, flushed_sums_, 1, kColumns, H5T_NATIVE_UINT64, sums.data(), path_);
   ++flushed_sums_;
 }
 
@@ -263,11 +264,9 @@ void SessionFile::write_column(const ColumnInfo& column, std::uint64_t count) {
                    [](double x) { return static_cast<std::uint8_t>(x); });
   }
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers_.data();
-  const hdf5::Dataset& dataset = columns_[column_index(column.column)];
-  check(append_to(dataset, flushed_rows_, count, static_cast<hsize_t>(layout_.width(column.column)),
-                  column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data) &&
-            H5Dflush(dataset.get()) >= 0,
-        path_, "cannot write");
+  append_to(columns_[column_index(column.column)], flushed_rows_, count,
+            static_cast<hsize_t>(layout_.width(column.column)),
+            column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);
 }
 
 void SessionFile::write_changes() {
@@ -280,12 +279,8 @@ void SessionFile::write_changes() {
     settings.resize(rows.size() * kSettingLength, '\0');
   }
   const hdf5::Datatype text = setting_type();
-  check(
-      append_to(event_setting_, flushed_changes_, rows.size(), 1, text.get(), settings.data()) &&
-          H5Dflush(event_setting_.get()) >= 0 &&
-          append_to(event_row_, flushed_changes_, rows.size(), 1, H5T_NATIVE_UINT64, rows.data()) &&
-          H5Dflush(event_row_.get()) >= 0,
-      path_, "cannot write");
+  append_to(event_setting_, flushed_changes_, rows.size(), 1, text.get(), settings.data(), path_);
+  append_to(event_row_, flushed_changes_, rows.size(), 1, H5T_NATIVE_UINT64, rows.data(), path_);
   flushed_changes_ += rows.size();
   changes_.clear();
 }
