@@ -46,7 +46,7 @@ hdf5::File open_as(const fs::path& file, unsigned flags) {
 
 hdf5::File open(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) refuse(file, "no such file");
+  if (const std::string why = why_not_found(file, "no such file"); !why.empty()) refuse(file, why);
   if (!fs::is_regular_file(file, error)) refuse(file, "not a file that can be read");
   if (H5Fis_hdf5(file.c_str()) <= 0) refuse(file, "not an HDF5 file, or cut off");
   hdf5::check_heaps(file);
