@@ -1,5 +1,7 @@
 #include "app/run/recorder.h"
 
+#include <sys/resource.h>
+
 #include <cstring>
 #include <vector>
 
@@ -104,6 +106,48 @@ TEST(Recorder, CountsChangesThatFoundNoRoom) {
   recorder.finish();
   EXPECT_EQ(recorder.dropped(), refused);
   EXPECT_EQ(read_session(dir / "a.h5").changes.size(), kept);
+}
+
+// While it lives, files of this program may not grow beyond `bytes`.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Recorder, LetsTheRunGoOnWhenTheDiskIsFullAndKeepsWhatWasWritten) {
+  const test::TempDir dir;
+  const RowLayout layout(3);
+  std::size_t pushed = 0;
+  std::string said;
+  {
+    const FileSizeLimit limit(8'000'000);
+    Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+    while (recorder.push_waiting(sample_rows(layout, pushed, 1)) && pushed < 200'000) ++pushed;
+    EXPECT_TRUE(recorder.failed());
+    // A loop with a clock never waits for it, nor does it end.
+    for (int k = 0; k < 100'000; ++k) recorder.push(sample_rows(layout, pushed, 1));
+    EXPECT_GT(recorder.dropped(), 0u);
+    EXPECT_THAT(recorder.error(), HasSubstr("File too large"));
+    EXPECT_THAT(recorder.error(), HasSubstr("a.h5.part"));
+    said = test::refusal([&] { recorder.finish(); });
+  }
+  EXPECT_THAT(said, HasSubstr("File too large"));
+  const Session left = read_session(dir / "a.h5.part");
+  EXPECT_GT(left.size(), 8000u);
+  EXPECT_LE(left.size(), pushed);
+  const auto wanted = sample_rows(layout, 0, left.size());
+  EXPECT_EQ(std::memcmp(left.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
+  EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, left.size());
 }
 
 TEST(Recorder, RefusesAtOnceWhatItCannotWrite) {
