@@ -69,7 +69,6 @@ struct Surroundings {
                      });
     if (odd || std::find(relative.begin(), relative.end(), "..") != relative.end())
       refuse(name, what + "; allowed are files in its own folder");
-    if (folder.empty()) refuse(name, what + "; it must contain everything itself");
     std::error_code error;
     const auto home = std::filesystem::canonical(folder, error);
     const auto file = std::filesystem::weakly_canonical(home / relative, error);
@@ -83,6 +82,10 @@ struct Surroundings {
 bool read_other(std::vector<unsigned char>* out, std::string* error, const std::string& uri,
                 void* user) {
   auto& around = *static_cast<Surroundings*>(user);
+  if (around.folder.empty()) {
+    if (error) *error = "it must contain everything itself";
+    return false;
+  }
   const auto file = around.resolve(uri);
   std::error_code none;
   if (!std::filesystem::exists(file, none)) {
@@ -131,6 +134,12 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::si
   file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
   if (!file) refuse(path.string(), "cannot be read");
   return bytes;
+}
+
+std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
+                                         const std::string& name) {
+  const auto text = json_of_text(bytes);
+  return text.empty() ? json_of_glb(bytes, name) : text;
 }
 
 GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,

@@ -18,6 +18,10 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::si
 // Words of a file made fit for a message: no line ends, no control characters, not too long.
 std::string one_line(std::string text);
 
+// The JSON text of a file of either kind. Throws std::runtime_error naming the file.
+std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
+                                         const std::string& name);
+
 struct GltfFile {
   tinygltf::Model gltf;
   // Encoded as they came, one each image of `gltf`; empty: in a buffer view, or missing.
@@ -26,7 +30,8 @@ struct GltfFile {
 };
 
 // Nothing that the file refers to is checked but files, which are read from inside of `folder`
-// only (from nowhere if it is empty). Throws std::runtime_error naming the file.
+// only (from nowhere if it is empty). A buffer that is missing is an error, a picture is not.
+// Throws std::runtime_error naming the file.
 GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,
                          const std::filesystem::path& folder);
 

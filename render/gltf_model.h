@@ -40,7 +40,7 @@ struct LoadCancelled : std::runtime_error {
 Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress = {});
 
 // The same from memory; `name` stands for the file in messages. Other files are read from inside
-// of `folder` only; without one they are refused.
+// of `folder` only; without one all of them are missing: buffers are refused, pictures left out.
 Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
                  const std::filesystem::path& folder = {}, const LoadProgress& progress = {});
 

@@ -4,7 +4,7 @@
 
 #include "core/geometry/triangle_mesh.h"
 #include "devices/files/file_error.h"
-#include "render/glb_writer.h"
+#include "render/gltf_pack.h"
 
 namespace limpid {
 namespace {
@@ -42,14 +42,15 @@ MeshModels build_meshes(Scene& scene, const LoadProgress& progress) {
     try {
       models.push_back(
           std::make_shared<const Model>(parse_gltf(*mesh.source, where(mesh), folder, progress)));
+      // What it refers to is not there any more when a recording is opened; so recordings get one
+      // file.
+      if (auto whole = pack_gltf(*mesh.source, where(mesh), folder); !whole.empty()) {
+        mesh.source = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
+      }
     } catch (const LoadCancelled&) {
       throw;
     } catch (const std::exception& e) {
       throw FileError(e.what());
-    }
-    // With its companions a .gltf is more than one file; recordings want one.
-    if (std::filesystem::path(mesh.path).extension() == ".gltf") {
-      mesh.source = std::make_shared<const std::vector<unsigned char>>(write_glb(*models.back()));
     }
     if (!mesh.shape) mesh.shape = shape_of(*models.back(), where(mesh), progress.cancel);
   }

@@ -14,6 +14,7 @@ namespace limpid {
 using MeshModels = std::vector<std::shared_ptr<const Model>>;
 
 // Reads the source of every mesh and builds its shape, if it has none yet. Equal files share both.
+// A source that refers to other files then has them in it, so that it can be read anywhere.
 // Errors: FileError naming the file; LoadCancelled.
 MeshModels build_meshes(Scene& scene, const LoadProgress& progress = {});
 

@@ -63,9 +63,10 @@ struct MeshObstacle {
   std::string path;              // where that was found; empty: inside a recorded session
   Pose pose = Pose::Identity();  // [m]
   double scale = 1;
-  double stiffness = 600;                                    // [N/m]
-  std::shared_ptr<const std::vector<unsigned char>> source;  // the file's bytes
-  std::shared_ptr<const TriangleMesh> shape;                 // built from them before it is touched
+  double stiffness = 600;  // [N/m]
+  std::shared_ptr<const std::vector<unsigned char>>
+      source;                                 // the file's bytes, with all it refers to
+  std::shared_ptr<const TriangleMesh> shape;  // built from them before it is touched
 };
 
 // Something to look at only.

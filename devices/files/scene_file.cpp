@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "devices/files/file_error.h"
@@ -101,7 +102,8 @@ Probe probe(const TomlTable& t, const ArmDescription& arm) {
 
 std::string model_file(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
-  const fs::path extension = fs::path(file).extension();
+  std::string extension = fs::path(file).extension();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension != ".glb" && extension != ".gltf") t.refuse("file", "a glTF file (.glb, .gltf)");
   return file;
 }
@@ -109,6 +111,9 @@ std::string model_file(const TomlTable& t) {
 fs::path model_path(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
   const fs::path absolute = fs::absolute(base_dir / file).lexically_normal();
   std::error_code error;
+  if (const std::string why = why_not_found(absolute, ""); !why.empty()) {
+    throw FileError(fmt::format("{}: {}", absolute.string(), why));
+  }
   if (!fs::is_regular_file(absolute, error)) {
     t.refuse("file", fmt::format("a file that exists; there is no {}", absolute.string()));
   }
@@ -144,7 +149,8 @@ bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
   const fs::path file = model_file(t);
   out.pose = optional_pose(t);
   out.scale = t.number("scale", kScale).value_or(1);
-  if (base_dir.empty() && file.is_relative()) return false;
+  std::error_code error;
+  if (base_dir.empty() && (file.is_relative() || !fs::is_regular_file(file, error))) return false;
   out.file = model_path(t, file, base_dir).string();
   return true;
 }

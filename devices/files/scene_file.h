@@ -65,7 +65,7 @@ namespace limpid {
 Scene read_scene(const std::filesystem::path& file, const ArmDescription& arm);
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
-// one inside a session) visuals with relative names are left out. Meshes come from `files` if they
+// one inside a session) visuals that are not there are left out. Meshes come from `files` if they
 // are there, else from the folder; their shapes are still to be built.
 Scene parse_scene(const std::string& text, const std::string& where,
                   const std::filesystem::path& base_dir, const ArmDescription& arm,

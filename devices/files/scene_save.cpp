@@ -81,7 +81,9 @@ Scene save_scene(const Scene& scene, const ArmDescription& arm, const fs::path& 
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   std::error_code none;
   if (!fs::is_directory(folder, none)) {
-    throw FileError(fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+    const std::string why = why_not_found(folder, "there is no folder");
+    throw FileError(fmt::format("{}: {}: {}", file.string(), why.empty() ? "not a folder" : why,
+                                folder.string()));
   }
   if (fs::is_directory(file, none)) throw FileError(file.string() + ": is a folder");
   Scene out = scene;

@@ -22,6 +22,7 @@ struct SessionInfo {
   std::uint64_t seed = 0;
   std::string source;       // what the hand was
   std::string config;       // all parameters at row 0 (TOML)
+  std::string safety;       // the safety limits in force (TOML); empty if none were recorded
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
   SceneFiles models;        // that the scene's text names

@@ -59,10 +59,14 @@ void check_place(const fs::path& out, bool force) {
     throw FileError(fmt::format("{}: exists; --force overwrites it", out.string()));
   }
   const fs::path directory = directory_of(out);
-  if (!fs::is_directory(directory, error)) {
-    throw FileError(fmt::format("{}: no such directory: {}", out.string(), directory.string()));
+  if (const std::string why = why_not_found(directory, "no such directory"); !why.empty()) {
+    throw FileError(fmt::format("{}: {}: {}", out.string(), why, directory.string()));
   }
-  if (::access(directory.c_str(), W_OK | X_OK) != 0) fail(out, "cannot write there", errno);
+  if (!fs::is_directory(directory, error)) {
+    throw FileError(fmt::format("{}: not a directory: {}", out.string(), directory.string()));
+  }
+  if (::faccessat(AT_FDCWD, directory.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    fail(out, "cannot write there", errno);
 }
 
 void check_session_info(const SessionInfo& info, const fs::path& file) {

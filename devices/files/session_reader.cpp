@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "devices/files/hdf5_heaps.h"
+#include "devices/files/session_check.h"
 #include "devices/files/session_file.h"
 #include "devices/files/session_models.h"
 #include "devices/files/session_place.h"
@@ -45,7 +46,7 @@ hdf5::File open_as(const fs::path& file, unsigned flags) {
 
 hdf5::File open(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) refuse(file, "no such file");
+  if (const std::string why = why_not_found(file, "no such file"); !why.empty()) refuse(file, why);
   if (!fs::is_regular_file(file, error)) refuse(file, "not a file that can be read");
   if (H5Fis_hdf5(file.c_str()) <= 0) refuse(file, "not an HDF5 file, or cut off");
   hdf5::check_heaps(file);
@@ -83,6 +84,10 @@ SessionInfo read_info(hid_t root, const fs::path& file) {
   info.config = hdf5::read_text(root, "config", file);
   info.device_urdf = hdf5::read_text(root, "device_urdf", file);
   info.scene = hdf5::read_text(root, "scene", file);
+  // Sessions of the first edition have none.
+  if (H5Aexists(root, "safety_limits") > 0) {
+    info.safety = hdf5::read_text(root, "safety_limits", file);
+  }
   info.models = read_models(root, file);
   return info;
 }
@@ -238,11 +243,16 @@ Session read_session(const fs::path& file) {
   session.layout = RowLayout(session.info.dof);
   try {
     read_rows(opened.get(), session, file);
+    const CheckedRows checked = checked_rows(opened.get(), session, file);
+    if (is_leftover(file)) {
+      session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
+    }
     read_changes(opened.get(), session, file);
+    check_rows(session, file);
+    if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
   } catch (const std::bad_alloc&) {
     refuse(file, "larger than this computer's memory");
   }
-  check_rows(session, file);
   return session;
 }
 

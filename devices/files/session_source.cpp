@@ -48,7 +48,9 @@ Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout
   return source;
 }
 
-bool read_block(const Source& source, hsize_t from, hsize_t count, double* out) {
+namespace {
+
+bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void* out) {
   const hdf5::Dataspace in_file(H5Dget_space(source.dataset.get()));
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, source.width};
@@ -56,8 +58,17 @@ bool read_block(const Source& source, hsize_t from, hsize_t count, double* out) 
   const hdf5::Dataspace in_memory(H5Screate_simple(1, &total, nullptr));
   return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                              nullptr) >= 0 &&
-         H5Dread(source.dataset.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(),
-                 H5P_DEFAULT, out) >= 0;
+         H5Dread(source.dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, out) >= 0;
+}
+
+}  // namespace
+
+bool read_block(const Source& source, hsize_t from, hsize_t count, double* out) {
+  return read_as(source, from, count, H5T_NATIVE_DOUBLE, out);
+}
+
+bool read_row(const Source& source, hsize_t row, std::uint64_t* out) {
+  return read_as(source, row, 1, H5T_NATIVE_UINT64, out);
 }
 
 }  // namespace limpid

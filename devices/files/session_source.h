@@ -1,6 +1,7 @@
 // The datasets of a session file, opened with distrust.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -29,5 +30,7 @@ Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout
 
 // `count` rows from row `from` as doubles. False if the file does not give them.
 bool read_block(const Source& source, hsize_t from, hsize_t count, double* out);
+// One row of whole numbers.
+bool read_row(const Source& source, hsize_t row, std::uint64_t* out);
 
 }  // namespace limpid

@@ -57,7 +57,9 @@ void SessionWriter::close() {
 
 Recovered recover_session(const fs::path& part, bool force) {
   const fs::path out = recovered_name(part);
-  if (!fs::exists(part)) throw FileError(fmt::format("{}: no such file", part.string()));
+  if (const std::string why = why_not_found(part, "no such file"); !why.empty()) {
+    throw FileError(fmt::format("{}: {}", part.string(), why));
+  }
   check_place(out, force);
   const WriteLock lock(part, WriteLock::Make::no);
   const Session session = read_session(part);

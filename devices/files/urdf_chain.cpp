@@ -230,10 +230,11 @@ class Chain {
       places_.refuse_link(link.name,
                           fmt::format("mesh '{}': not glTF; needed: .glb or .gltf", name));
     }
-    if (base_dir_.empty() && file.is_relative()) return {};
     const fs::path absolute = fs::absolute(base_dir_ / file).lexically_normal();
     std::error_code error;
-    if (!fs::is_regular_file(absolute, error)) {
+    const bool there = fs::is_regular_file(absolute, error);
+    if (base_dir_.empty() && (file.is_relative() || !there)) return {};
+    if (!there) {
       places_.refuse_link(link.name, fmt::format("mesh '{}': no such file", absolute.string()));
     }
     return absolute.string();

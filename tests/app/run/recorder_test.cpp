@@ -1,5 +1,7 @@
 #include "app/run/recorder.h"
 
+#include <sys/resource.h>
+
 #include <cstring>
 #include <vector>
 
@@ -83,9 +85,69 @@ TEST(Recorder, LeavesAPartThatCanBeRecoveredIfItIsNotFinished) {
   EXPECT_FALSE(std::filesystem::exists(dir / "a.h5"));
   EXPECT_EQ(recover_session(dir / "a.h5.part", false).file, dir / "a.h5");
   const Session session = read_session(dir / "a.h5");
-  EXPECT_GE(session.size(), 1000u);  // at most a second is lost
+  EXPECT_EQ(session.size(), 2000u) << "every block of half a second that was full";
   const auto wanted = sample_rows(layout, 0, session.size());
   EXPECT_EQ(std::memcmp(session.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
+}
+
+// They come faster than the writing thread, which rests between its rounds, takes them.
+TEST(Recorder, CountsChangesThatFoundNoRoom) {
+  const test::TempDir dir;
+  Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+  Parameters p;
+  std::uint64_t refused = 0, kept = 0;
+  for (int i = 0; refused < 10 && i < 10'000'000; ++i) {
+    p.k_vc = 5 + 1e-6 * i;
+    recorder.changed(p) ? ++kept : ++refused;
+  }
+  ASSERT_GE(refused, 10u);
+  EXPECT_EQ(recorder.dropped(), refused);
+  ASSERT_TRUE(recorder.push_waiting(sample_rows(RowLayout(3), 0, 1)));
+  recorder.finish();
+  EXPECT_EQ(recorder.dropped(), refused);
+  EXPECT_EQ(read_session(dir / "a.h5").changes.size(), kept);
+}
+
+// While it lives, files of this program may not grow beyond `bytes`.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Recorder, LetsTheRunGoOnWhenTheDiskIsFullAndKeepsWhatWasWritten) {
+  const test::TempDir dir;
+  const RowLayout layout(3);
+  std::size_t pushed = 0;
+  std::string said;
+  {
+    const FileSizeLimit limit(8'000'000);
+    Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+    while (recorder.push_waiting(sample_rows(layout, pushed, 1)) && pushed < 200'000) ++pushed;
+    EXPECT_TRUE(recorder.failed());
+    // A loop with a clock never waits for it, nor does it end.
+    for (int k = 0; k < 100'000; ++k) recorder.push(sample_rows(layout, pushed, 1));
+    EXPECT_GT(recorder.dropped(), 0u);
+    EXPECT_THAT(recorder.error(), HasSubstr("File too large"));
+    EXPECT_THAT(recorder.error(), HasSubstr("a.h5.part"));
+    said = test::refusal([&] { recorder.finish(); });
+  }
+  EXPECT_THAT(said, HasSubstr("File too large"));
+  const Session left = read_session(dir / "a.h5.part");
+  EXPECT_GT(left.size(), 8000u);
+  EXPECT_LE(left.size(), pushed);
+  const auto wanted = sample_rows(layout, 0, left.size());
+  EXPECT_EQ(std::memcmp(left.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
+  EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, left.size());
 }
 
 TEST(Recorder, RefusesAtOnceWhatItCannotWrite) {

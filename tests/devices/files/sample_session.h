@@ -17,6 +17,7 @@ inline SessionInfo sample_info(int dof = 3) {
   info.seed = 0xFFFF'FFFF'FFFF'FFFFull;
   info.source = "a hand, \xCE\xB7";
   info.config = "coupling.eta = 0.6\n";
+  info.safety = "speed = 2.0\n";
   info.device_urdf = std::string(200000, 'u') + "end";
   info.scene = "title = \"T\"\n";
   const std::vector<unsigned char> model{'g', 'l', 'T', 'F', 0, 255};

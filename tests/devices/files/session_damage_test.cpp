@@ -1,7 +1,9 @@
 // Session files that are cut, scrambled, or made by programs that got them wrong.
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -15,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::refusal;
+using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(DamagedSession, IsRefusedWhereverItIsCut) {
@@ -62,6 +65,61 @@ TEST(DamagedSession, SaysWhichRowsAreScrambled) {
   EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }), HasSubstr("/time"));
   test::write_file(dir / "a.h5.part", bytes);
   EXPECT_LE(read_session(dir / "a.h5.part").size(), 4321u);
+}
+
+// All columns longer by `rows` than what was written into them.
+void extend(const fs::path& file, hsize_t rows) {
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  for (const ColumnInfo& column : kColumnInfo) {
+    const hid_t data = H5Dopen2(opened, column.path, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(data);
+    std::array<hsize_t, 2> extent{};
+    H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+    extent[0] += rows;
+    EXPECT_GE(H5Dset_extent(data, extent.data()), 0) << column.path;
+    H5Sclose(space);
+    H5Dclose(data);
+  }
+  H5Fclose(opened);
+}
+
+TEST(DamagedSession, DoesNotTakeRowsForRealThatWereNeverWritten) {
+  for (const hsize_t rows : {1, 499, 500, 9000}) {
+    const test::TempDir dir;
+    test::write_sample(dir / "a.h5", 1000);
+    extend(dir / "a.h5", rows);
+    fs::copy(dir / "a.h5", dir / "b.h5.part");
+    EXPECT_NE(refusal([&] { read_session(dir / "a.h5"); }), "") << rows;
+    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 1000u) << rows;
+  }
+}
+
+TEST(DamagedSession, IsNoticedByASingleNumberThatIsAnother) {
+  for (const ColumnInfo& column : kColumnInfo) {
+    const test::TempDir dir;
+    test::write_sample(dir / "a.h5", 1200);
+    {
+      const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+      const hid_t data = H5Dopen2(file, column.path, H5P_DEFAULT);
+      const hid_t space = H5Dget_space(data);
+      const hsize_t one = 1;
+      const hid_t memory = H5Screate_simple(1, &one, nullptr);
+      const std::array<hsize_t, 2> at{700, 0};
+      H5Sselect_elements(space, H5S_SELECT_SET, 1, at.data());
+      double value = 0;
+      H5Dread(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value);
+      value = column.byte ? 1 - std::min(value, 1.0) : std::nextafter(value, 10.0);
+      H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value);
+      H5Sclose(memory);
+      H5Sclose(space);
+      H5Dclose(data);
+      H5Fclose(file);
+    }
+    EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }),
+                AllOf(HasSubstr(column.path), HasSubstr("rows 500 to 999")));
+    fs::copy(dir / "a.h5", dir / "b.h5.part");
+    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 500u);
+  }
 }
 
 TEST(Session, RefusesAFileThatIsNotHdf5) {
@@ -196,6 +254,47 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
   }
 }
 
+// The first edition had no checksums of its own: what a killed recording of it had announced but
+// not written reads as a not-a-number that nothing else makes.
+TEST(LeftoverOfTheFirstEdition, EndsWhereAColumnWasNeverWritten) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 1000);
+  const Session whole = read_session(dir / "a.h5");
+  {
+    Vandal vandal(dir / "a.h5");
+    vandal.remove("/check");
+    vandal.remove("/hand/target");
+  }
+  {
+    const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const std::array<hsize_t, 2> extent{1000, 3}, written{500, 3}, none{0, 0};
+    const std::uint64_t never = 0x7ff8'6c69'6d70'6964;
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 2, written.data());
+    H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &never);
+    const hid_t space = H5Screate_simple(2, extent.data(), nullptr);
+    const hid_t data =
+        H5Dcreate2(file, "/hand/target", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    const hid_t memory = H5Screate_simple(2, written.data(), nullptr);
+    std::vector<double> targets;
+    for (std::size_t k = 0; k < 500; ++k) {
+      const auto target = whole.at(k, Column::hand_target);
+      targets.insert(targets.end(), target.begin(), target.end());
+    }
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, none.data(), nullptr, written.data(), nullptr);
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, targets.data());
+    H5Sclose(memory);
+    H5Dclose(data);
+    H5Sclose(space);
+    H5Pclose(creation);
+    H5Fclose(file);
+  }
+  fs::rename(dir / "a.h5", dir / "a.h5.part");
+  const Session left = read_session(dir / "a.h5.part");
+  ASSERT_EQ(left.size(), 500u);
+  EXPECT_TRUE(std::ranges::equal(left.rows, std::span(whole.rows).first(left.rows.size())));
+}
+
 TEST(ForeignSession, NeedNotHaveWhatTheContractDoesNotAskFor) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 50);
@@ -234,7 +333,11 @@ TEST(ForeignSession, MustNotClaimMoreThanItHolds) {
 TEST(Hand, OfASessionMustBeFinite) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 50);
-  { Vandal(dir / "a.h5").number("/hand/target", 9, NAN); }
+  {
+    Vandal vandal(dir / "a.h5");
+    vandal.number("/hand/target", 9, NAN);
+    vandal.remove("/check");
+  }
   EXPECT_THAT(refusal([&] { read_hand(dir / "a.h5"); }), HasSubstr("/hand/target: row 9: nan"));
 }
 

@@ -1,8 +1,10 @@
 #include "devices/files/session.h"
 
+#include <hdf5.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -65,6 +67,7 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
   EXPECT_EQ(session.info.seed, info.seed);
   EXPECT_EQ(session.info.source, info.source);
   EXPECT_EQ(session.info.config, info.config);
+  EXPECT_EQ(session.info.safety, info.safety);
   EXPECT_EQ(session.info.device_urdf, info.device_urdf);
   EXPECT_EQ(session.info.scene, info.scene);
   ASSERT_EQ(session.info.models.size(), info.models.size());
@@ -79,6 +82,17 @@ TEST(Session, MayBeEmpty) {
   const test::TempDir dir;
   SessionWriter(dir / "a.h5", sample_info(), false).close();
   EXPECT_EQ(read_session(dir / "a.h5").size(), 0u);
+}
+
+TEST(Session, OfTheFirstEditionHasNoSafetyLimits) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Adelete(file, "safety_limits"), 0);
+  H5Fclose(file);
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_EQ(session.info.safety, "");
+  EXPECT_EQ(session.size(), 10u);
 }
 
 TEST(Session, SaysWhenItWasMade) {
@@ -153,11 +167,49 @@ TEST(Session, RefusesAPlaceThatIsTakenOrMissing) {
               HasSubstr("/proc/self/a.h5"));
 }
 
+// Nothing is forbidden to root, so these tests are somebody else then.
+class AsAnybody {
+ public:
+  AsAnybody() {
+    if (root_ && seteuid(65534) != 0) throw std::runtime_error("seteuid");
+  }
+  ~AsAnybody() {
+    if (root_ && seteuid(0) != 0) std::abort();
+  }
+  AsAnybody(const AsAnybody&) = delete;
+  AsAnybody& operator=(const AsAnybody&) = delete;
+
+ private:
+  const bool root_ = geteuid() == 0;
+};
+
+TEST(Session, TellsAFolderThatIsClosedFromOneThatIsNotThere) {
+  const test::TempDir dir;
+  fs::create_directories(dir / "closed/folder");
+  test::write_sample(dir / "closed/folder/there.h5", 10);
+  fs::permissions(dir / "", fs::perms::all);
+  fs::permissions(dir / "closed", fs::perms::none);
+  {
+    const AsAnybody nobody;
+    EXPECT_THAT(refusal([&] { SessionWriter(dir / "closed/folder/a.h5", sample_info(), false); }),
+                HasSubstr("Permission denied"));
+    EXPECT_THAT(refusal([&] { read_session(dir / "closed/folder/there.h5"); }),
+                HasSubstr("Permission denied"));
+    EXPECT_THAT(refusal([&] { recover_session(dir / "closed/folder/b.h5.part", false); }),
+                HasSubstr("Permission denied"));
+  }
+  fs::permissions(dir / "closed", fs::perms::owner_all);
+  EXPECT_THAT(refusal([&] { SessionWriter(dir / "closed/none/a.h5", sample_info(), false); }),
+              HasSubstr("no such directory"));
+}
+
 TEST(Session, RefusesAFolderThatIsReadOnly) {
-  if (geteuid() == 0) GTEST_SKIP() << "nothing is read-only for root";
   const test::TempDir dir;
   fs::create_directory(dir / "folder");
-  fs::permissions(dir / "folder", fs::perms::owner_read | fs::perms::owner_exec);
+  fs::permissions(dir / "", fs::perms::all);
+  fs::permissions(dir / "folder", fs::perms::owner_read | fs::perms::owner_exec |
+                                      fs::perms::others_read | fs::perms::others_exec);
+  const AsAnybody nobody;
   EXPECT_THAT(refusal([&] { SessionWriter(dir / "folder/a.h5", sample_info(), false); }),
               HasSubstr("Permission denied"));
 }
@@ -218,6 +270,29 @@ TEST(Session, RefusesATickOrANumberOfJointsThatCannotBe) {
     EXPECT_THAT(refusal([&] { SessionWriter(dir / "a.h5", info, false); }), HasSubstr("dof"));
   }
   EXPECT_FALSE(fs::exists(dir / "a.h5.part"));
+}
+
+TEST(Session, IsAHandThatHoldsUntilTheSampleAtWhichItLetsGo) {
+  const test::TempDir dir;
+  const RowLayout layout(3);
+  std::vector<double> rows = sample_rows(layout, 0, 4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    layout.in(std::span(rows).subspan(k * static_cast<std::size_t>(layout.stride()),
+                                      static_cast<std::size_t>(layout.stride())),
+              Column::hand_grip)[0] = k == 2 ? 0 : 1;
+  }
+  SessionWriter writer(dir / "a.h5", sample_info(), false);
+  writer.append(rows);
+  writer.close();
+  const HandPath path = read_hand(dir / "a.h5");
+  for (const double t : {-1.0, 0.0, 0.0005, 0.001, 0.0019}) EXPECT_EQ(path.grip_at(t), 1) << t;
+  for (const double t : {0.002, 0.0025, 0.0029}) EXPECT_EQ(path.grip_at(t), 0) << t;
+  for (const double t : {0.003, 0.0035, 9.0}) EXPECT_EQ(path.grip_at(t), 1) << t;
+  // A loop of half the tick asks between the samples.
+  constexpr std::array<double, 8> wanted{1, 1, 1, 1, 0, 0, 1, 1};
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    EXPECT_EQ(path.grip_sample(k, 0.0005), wanted[k]) << k;
+  }
 }
 
 TEST(Session, IsAHandToFollowBitForBit) {

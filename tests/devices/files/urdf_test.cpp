@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <array>
+
 #include "devices/files/urdf_file.h"
 #include "test_files.h"
 
@@ -87,6 +91,52 @@ TEST(Urdf, MergesLinksBehindFixedJoints) {
   EXPECT_EQ(arm.frames[1].link, -1);
   EXPECT_EQ(arm.frames[3].name, "c");
   EXPECT_EQ(arm.frames[3].link, 0);
+}
+
+// A point mass m at r has the inertia m (r^2 1 - r r^T). Three of them, in a frame that is askew to
+// the link's, are what their inertia about their own centre, turned and moved, has to be.
+TEST(Urdf, TurnsAnInertiaThatIsGivenInAFrameAskew) {
+  const std::array<double, 3> masses{0.2, 0.5, 0.3};
+  const std::array<Vec3, 3> points{Vec3(0.3, -0.1, 0.2), Vec3(-0.2, 0.4, 0.1),
+                                   Vec3(0.1, 0.2, -0.5)};
+  const auto inertia_of = [&](const std::array<Vec3, 3>& at, const Vec3& about) {
+    Mat3 sum = Mat3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 r = at[i] - about;
+      sum += masses[i] * (r.dot(r) * Mat3::Identity() - r * r.transpose());
+    }
+    return sum;
+  };
+  const auto centre_of = [&](const std::array<Vec3, 3>& at) {
+    return Vec3(0.2 * at[0] + 0.5 * at[1] + 0.3 * at[2]);
+  };
+  const Vec3 centre = centre_of(points);
+  const Mat3 own = inertia_of(points, centre);
+  const std::string inertial = fmt::format(
+      "<inertial><origin xyz='0.1 0.2 0.3' rpy='0.4 -0.7 1.1'/><mass value='1'/>"
+      "<inertia ixx='{:.17g}' ixy='{:.17g}' ixz='{:.17g}' iyy='{:.17g}' iyz='{:.17g}' "
+      "izz='{:.17g}'/></inertial>",
+      own(0, 0), own(0, 1), own(0, 2), own(1, 1), own(1, 2), own(2, 2));
+  const ArmDescription arm = parse(link("a") + joint("a", "b") + link("b", inertial));
+  Pose placed = Pose::Identity();
+  placed.translation() = Vec3(0.1, 0.2, 0.3);
+  placed.linear() = (Eigen::AngleAxisd(1.1, Vec3::UnitZ()) *
+                     Eigen::AngleAxisd(-0.7, Vec3::UnitY()) * Eigen::AngleAxisd(0.4, Vec3::UnitX()))
+                        .toRotationMatrix();
+  std::array<Vec3, 3> there;
+  for (std::size_t i = 0; i < 3; ++i) there[i] = placed * Vec3(points[i] - centre);
+  EXPECT_NEAR(arm.links[0].mass, 1, 1e-15);
+  EXPECT_LT((arm.links[0].com - centre_of(there)).norm(), 1e-15);
+  EXPECT_LT((arm.links[0].inertia - inertia_of(there, centre_of(there))).norm(), 1e-15);
+}
+
+TEST(Urdf, RefusesAJointThatMimicsAnother) {
+  const std::string text =
+      link("a") + joint("a", "b") + link("b") +
+      joint("b", "c", "revolute", std::string(kLimit) + "<mimic joint='a_b' multiplier='2'/>") +
+      link("c");
+  EXPECT_THAT(refusal([&] { parse(text); }),
+              testing::AllOf(HasSubstr("x.urdf"), HasSubstr("b_c"), HasSubstr("mimic")));
 }
 
 TEST(Urdf, ReadsShapesAndMeshes) {
