@@ -26,6 +26,11 @@ int info(const InfoOptions& options) {
   fmt::print("{}\n", options.session);
   fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
   fmt::print("hand                     {}\n", i.source);
+  if (!i.safety.empty()) {
+    std::string limits = i.safety;
+    std::ranges::replace(limits, '\n', ' ');
+    fmt::print("limits of force          {}\n", limits);
+  }
   fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
   fmt::print("{}", summary.text());

@@ -290,8 +290,10 @@ void Workbench::start_recording() {
   hand_scene_over(true);
   plan.hand.source = live.real() ? "device" : "mouse";
   plan.parameters = parameters;
+  SessionInfo about = session_info(plan);
+  if (live.real()) about.safety = limits_text(controls.limits);
   opening_recording_ = file_errands.run(
-      [file = sessions_dir() / name, info = session_info(plan), initial = parameters] {
+      [file = sessions_dir() / name, info = std::move(about), initial = parameters] {
         return std::make_unique<Recorder>(file, info, initial, false);
       });
 }

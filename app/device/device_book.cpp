@@ -46,20 +46,24 @@ DeviceNotes read_notes(const toml::table& t) {
   return notes;
 }
 
+toml::table write_limits(const SafetyLimits& limits) {
+  toml::table table;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    table.insert(info.key, limits.*info.field);
+  }
+  return table;
+}
+
 toml::table write_notes(const DeviceNotes& notes) {
   toml::array axes;
   for (const AxisAdjustment& axis : notes.axes) {
     axes.push_back(
         toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
   }
-  toml::table limits;
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-    limits.insert(info.key, notes.limits.*info.field);
-  }
   return toml::table{{"range", notes.pid.range},
                      {"effort", notes.pid.effort},
                      {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
-                     {"limits", limits},
+                     {"limits", write_limits(notes.limits)},
                      {"checked", notes.checked},
                      {"axis", axes}};
 }
@@ -74,6 +78,12 @@ bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
   }
   notes.checked = true;
   return true;
+}
+
+std::string limits_text(const SafetyLimits& limits) {
+  std::ostringstream text;
+  text << write_limits(limits) << '\n';
+  return text.str();
 }
 
 fs::path device_book_file() { return user_config_dir() / "devices.toml"; }

@@ -26,6 +26,9 @@ struct DeviceNotes {
 // passed.
 bool remember_check(const AxisCheck& check, DeviceNotes& notes);
 
+// As a recording keeps them (TOML).
+std::string limits_text(const SafetyLimits& limits);
+
 struct DeviceBook {
   std::string in_use;  // id of the device; empty: the virtual arm
   std::map<std::string, DeviceNotes> notes;

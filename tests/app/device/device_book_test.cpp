@@ -44,6 +44,32 @@ TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
   EXPECT_EQ(again.pid.reverse, notes.pid.reverse);
 }
 
+TEST(DeviceBook, LowersLimitsAndNeverRaisesThem) {
+  const test::TempDir dir;
+  DeviceBook book;
+  book.notes["id"].limits = {.tip_speed = 0.5, .tip_force = 3, .range = 0.8};
+  const SafetyLimits read = written_and_read(book, dir / "devices.toml").notes["id"].limits;
+  EXPECT_EQ(read.tip_speed, 0.5);
+  EXPECT_EQ(read.tip_force, 3);
+  EXPECT_EQ(read.range, 0.8);
+  EXPECT_EQ(read.joint_speed, 15);
+  std::ofstream(dir / "by_hand.toml") << R"(
+[device.id.limits]
+joint_speed = 100
+tip_speed = nan
+tip_force = -1
+energy = "much"
+range = 2
+)";
+  std::string complaint;
+  const SafetyLimits most = load_device_book(dir / "by_hand.toml", complaint).notes["id"].limits;
+  EXPECT_EQ(most.joint_speed, 15);
+  EXPECT_EQ(most.tip_speed, 2);
+  EXPECT_EQ(most.tip_force, 10);
+  EXPECT_EQ(most.energy, 1.5);
+  EXPECT_EQ(most.range, 1);
+}
+
 // Joints that give way by so much a newton metre.
 AxisCheck checked(const std::vector<double>& give) {
   DeviceTraits traits;
