@@ -45,15 +45,15 @@ inline ArmDescription joystick_arm() { return read_urdf("joystick.urdf"); }
 inline Scene joystick_gate() { return read_scene("joystick.toml", joystick_arm()); }
 
 template <class Model>
-std::unique_ptr<Model> make_model() {
+std::unique_ptr<Model> make_model(double effort = kEffort) {
   if constexpr (std::is_base_of_v<PidJoystickModel, Model>) {
     PidJoystickOptions options = Model::usual_options();
-    options.torque_limit = kEffort;
+    options.torque_limit = effort;
     options.physics = stick_axis(1);
     return std::make_unique<Model>(options);
   } else {
     return std::make_unique<Model>(
-        RawDeviceLayout{.joints = 2, .torque_limit = kEffort, .physics = stick_axis(1)});
+        RawDeviceLayout{.joints = 2, .torque_limit = effort, .physics = stick_axis(1)});
   }
 }
 
@@ -82,8 +82,8 @@ class Desk {
     device = std::make_unique<UhidDevice>(*model);
   }
 
-  static std::unique_ptr<Device> connect() {
-    PidSettings settings{.range = kRange, .effort = kEffort};
+  static std::unique_ptr<Device> connect(double effort = kEffort) {
+    PidSettings settings{.range = kRange, .effort = effort};
     if constexpr (kKind == HidKind::pid_joystick) settings.reverse = Model::kReversed;
     return open_hid_device(find_device(kKind), settings);
   }

@@ -1,18 +1,18 @@
-// Another process that drives the device: this program with the device's kind as its argument.
+// Another process that drives the device: this program with the device's name as its argument.
 #pragma once
 
 #include <spawn.h>
 #include <unistd.h>
 
 #include <string>
-
-#include "devices/hid/device_list.h"
+#include <utility>
 
 namespace limpid::test {
 
-inline pid_t start_driver(HidKind kind) {
+// `name`: kName of its model.
+inline pid_t start_driver(std::string name) {
   std::string program = "/proc/self/exe";
-  std::string word = kind == HidKind::raw ? "drive-raw" : "drive-pid";
+  std::string word = "drive-" + std::move(name);
   char* arguments[] = {program.data(), word.data(), nullptr};
   pid_t child = 0;
   return posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0 ? child

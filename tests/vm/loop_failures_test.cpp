@@ -6,13 +6,14 @@
 
 #include "tests/vm/desk.h"
 #include "tests/vm/driver.h"
+#include "tests/vm/models.h"
 
 namespace limpid::test {
 namespace {
 
 template <class Model>
 struct FailingLoop : testing::Test {
-  static std::string name() { return Desk<Model>::kKind == HidKind::raw ? "raw" : "PID"; }
+  static std::string name() { return kName<Model>; }
   void expect_zero(const std::string& what, std::optional<Time> zero, Time limit) {
     print_time(name() + ": " + what, zero, limit);
     ASSERT_TRUE(zero) << "it still pushes";
@@ -36,7 +37,6 @@ struct FailingLoop : testing::Test {
 
   Desk<Model> desk;
 };
-using Models = testing::Types<PidJoystickModel, RawDeviceModel>;
 TYPED_TEST_SUITE(FailingLoop, Models);
 
 TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceFallsSilent) {
@@ -107,7 +107,7 @@ TYPED_TEST(FailingLoop, EndsForceWhenNoTickComes) {
 // SIGABRT: also what becomes of an exception in the loop.
 TYPED_TEST(FailingLoop, EndsForceWhenTheProcessIsInterruptedOrDies) {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL, SIGSEGV, SIGABRT}) {
-    const pid_t driver = start_driver(this->desk.kKind);
+    const pid_t driver = start_driver(this->name());
     ASSERT_GT(driver, 0);
     ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
     wait(50ms);

@@ -6,6 +6,7 @@
 
 #include "tests/vm/desk.h"
 #include "tests/vm/driver.h"
+#include "tests/vm/models.h"
 
 namespace limpid::test {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::array kStalls{6ms, 9ms, 20ms, 100ms, 1000ms};
 
 template <class Model>
 struct StalledLoop : testing::Test {
-  static std::string name() { return Desk<Model>::kKind == HidKind::raw ? "raw" : "PID"; }
+  static std::string name() { return kName<Model>; }
 
   // From `resumed` on the force may hold what it had for a few reports or be gone, but grows
   // slowly: at each report by the slew's part of the time, and all in all as it fades in.
@@ -48,7 +49,6 @@ struct StalledLoop : testing::Test {
 
   Desk<Model> desk;
 };
-using Models = testing::Types<PidJoystickModel, RawDeviceModel>;
 TYPED_TEST_SUITE(StalledLoop, Models);
 
 TYPED_TEST(StalledLoop, FadesInAgainAfterTheLoopStoodStill) {
@@ -72,7 +72,7 @@ TYPED_TEST(StalledLoop, FadesInAgainAfterTheLoopStoodStill) {
 }
 
 TYPED_TEST(StalledLoop, FadesInAgainAfterTheWholeProgramStoodStill) {
-  const pid_t driver = start_driver(this->desk.kKind);
+  const pid_t driver = start_driver(this->name());
   ASSERT_GT(driver, 0);
   ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
   for (const auto stall : kStalls) {

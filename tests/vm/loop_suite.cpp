@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 
+#include <optional>
+#include <string>
+
 #include "app/interrupt.h"
 #include "tests/vm/desk.h"
+#include "tests/vm/models.h"
 
 namespace {
 
@@ -22,13 +26,23 @@ int drive() {
   return 0;
 }
 
+template <class... Model>
+std::optional<int> drive_named(const std::string& word, testing::Types<Model...>) {
+  std::optional<int> result;
+  const auto try_one = [&]<class One>(One*) {
+    if (word == std::string("drive-") + limpid::test::kName<One>) result = drive<One>();
+  };
+  (try_one(static_cast<Model*>(nullptr)), ...);
+  return result;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   prctl(PR_SET_TIMERSLACK, 1);
-  const std::string word = argc > 1 ? argv[1] : "";
-  if (word == "drive-pid") return drive<limpid::test::PidJoystickModel>();
-  if (word == "drive-raw") return drive<limpid::test::RawDeviceModel>();
+  if (argc > 1) {
+    if (const auto driven = drive_named(argv[1], limpid::test::Models{})) return *driven;
+  }
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }
