@@ -25,6 +25,7 @@ fs::path own_scene(const ArmDescription& arm) {
 }  // namespace
 
 void Workbench::open_device(std::unique_ptr<Device> device) {
+  devices.plugged();
   const DeviceTraits& traits = device->traits();
   if (Plug::guides(traits)) {
     if (live.real()) open(stage->arm(), editor.scene(), editor.models(), nullptr, !editor.dirty());

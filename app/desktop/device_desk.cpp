@@ -88,9 +88,6 @@ void DeviceDesk::take_connected(Workbench& bench) {
     const DeviceTraits traits = (*ready)->traits();
     bench.open_device(std::move(*ready));
     problem_.clear();
-    buttons_.forget();
-    arming_ = Arming::off;
-    plugged_at_ = Clock::now();
     bench.say(traits.pushes
                   ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
                                 traits.name)
@@ -103,6 +100,12 @@ void DeviceDesk::take_connected(Workbench& bench) {
 
 void DeviceDesk::save(Workbench& bench) const {
   if (const std::string error = hub.save(); !error.empty()) bench.say(error, true);
+}
+
+void DeviceDesk::plugged() {
+  buttons_.forget();
+  arming_ = Arming::off;
+  plugged_at_ = Clock::now();
 }
 
 void DeviceDesk::start_check(Workbench& bench) {

@@ -22,6 +22,8 @@ class DeviceDesk {
 
   // Once a frame.
   void update(Workbench& bench);
+  // A device has just been given to the loop.
+  void plugged();
   // Another device; empty: the virtual arm.
   void use(Workbench& bench, const std::string& id);
   // After the notes on the device in use have changed.

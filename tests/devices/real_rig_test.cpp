@@ -339,7 +339,7 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
   go(0, 1);
   ASSERT_EQ(rig.force_state(), ForceState::on);
   const double rate = 1.5 / lever;  // the tip at 1.5 m/s
-  EXPECT_LT(go(3 / lever / 2, rate), -4) << "the hand puts in so many joules";
+  EXPECT_LT(go(2.4, rate), -4) << "the hand puts in so many joules";
   EXPECT_EQ(rig.force_state(), ForceState::on);
   const double given = go(0, rate);
   EXPECT_EQ(rig.force_state(), ForceState::energy);

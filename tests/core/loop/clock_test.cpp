@@ -219,16 +219,33 @@ TEST(Clock, RunsNoTickBackToBackWhereNoneMayBe) {
     TestClock clock(kStart, kT, 0ns, SimulatedTime{&world}, 0);
     for (int k = 0; k < 5; ++k) clock.wait();
     const nanoseconds before = world.now;
-    world.now += stall;
+    world.now += stall;  // in a tick
     const Wake late = clock.wait();
     EXPECT_EQ(late.tick, 5);
-    EXPECT_EQ(late.moment, before + stall) << "at once, and only once";
+    EXPECT_GE(late.moment, before + stall);
+    EXPECT_LE(late.moment, before + stall + kT) << "as soon as one is due again";
     const auto sleeps = world.sleeps.size();
     const Wake next = clock.wait();
     EXPECT_EQ(world.sleeps.size(), sleeps + 1) << "then it waits";
     EXPECT_EQ((next.moment - kStart) % kT, 0ns) << "on the old schedule";
-    EXPECT_LE(next.moment - late.moment, kT);
+    EXPECT_EQ(next.moment - late.moment, kT);
     // So many periods as have passed have been run or given up.
+    EXPECT_EQ(next.tick + clock.counts().slipped, (next.moment - kStart) / kT);
+  }
+}
+
+TEST(Clock, RunsOneTickAtOnceWhenItHasOverslept) {
+  for (const nanoseconds late : {300us, 1'300us, 20'900us}) {
+    World world;
+    TestClock clock(kStart, kT, 0ns, SimulatedTime{&world}, 0);
+    for (int k = 0; k < 5; ++k) clock.wait();
+    world.oversleep = late;
+    const Wake wake = clock.wait();
+    world.oversleep = 0ns;
+    EXPECT_EQ(wake.moment, kStart + 5 * kT + late);
+    const Wake next = clock.wait();
+    EXPECT_EQ((next.moment - kStart) % kT, 0ns);
+    EXPECT_LE(next.moment - wake.moment, kT);
     EXPECT_EQ(next.tick + clock.counts().slipped, (next.moment - kStart) / kT);
   }
 }
