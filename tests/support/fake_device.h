@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "devices/device.h"
+#include "tests/support/device_traits.h"
 
 namespace limpid::test {
 
 class FakeDevice final : public Device {
  public:
-  explicit FakeDevice(int dof) {
-    const auto joints = static_cast<std::size_t>(dof);
-    traits_.dof = dof;
-    traits_.pushes = true;
-    traits_.lower.assign(joints, -1);
-    traits_.upper.assign(joints, 1);
-    traits_.resolution.assign(joints, 1e-4);
-    traits_.effort.assign(joints, 0.5);
-    reading.count = 1;
-  }
+  explicit FakeDevice(int dof) : traits_(pushing(dof)) { reading.count = 1; }
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override {
     newest = reading;

@@ -11,6 +11,7 @@
 #include "core/dynamics/arm.h"
 #include "render/offscreen.h"
 #include "tests/support/built_in.h"
+#include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -30,16 +31,8 @@ struct Wire {
 
 class WiredDevice final : public Device {
  public:
-  WiredDevice(int dof, std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {
-    const auto n = static_cast<std::size_t>(dof);
-    traits_.name = "A device";
-    traits_.dof = dof;
-    traits_.pushes = true;
-    traits_.lower.assign(n, -1);
-    traits_.upper.assign(n, 1);
-    traits_.resolution.assign(n, 1e-4);
-    traits_.effort.assign(n, 0.5);
-    rest_.assign(n, 0);
+  WiredDevice(int dof, std::shared_ptr<Wire> wire)
+      : traits_(test::pushing(dof)), rest_(static_cast<std::size_t>(dof)), wire_(std::move(wire)) {
     if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
   }
   ~WiredDevice() override { ++wire_->closed; }

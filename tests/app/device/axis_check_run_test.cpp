@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "app/device/device_book.h"
+#include "tests/support/device_traits.h"
 
 namespace limpid {
 namespace {
@@ -14,13 +15,8 @@ using namespace std::chrono_literals;
 // Joints that give way by so much a newton metre.
 class Yielding final : public Device {
  public:
-  explicit Yielding(std::vector<double> give) : give_(std::move(give)) {
-    traits_.dof = static_cast<int>(give_.size());
-    traits_.pushes = true;
-    traits_.lower.assign(give_.size(), -0.35);
-    traits_.upper.assign(give_.size(), 0.35);
-    traits_.effort.assign(give_.size(), 0.5);
-  }
+  explicit Yielding(std::vector<double> give)
+      : give_(std::move(give)), traits_(test::pushing(static_cast<int>(give_.size()), 0.35)) {}
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override {
     for (std::size_t i = 0; i < give_.size(); ++i) newest.x[i] = give_[i] * told[i];

@@ -7,6 +7,7 @@
 #include "app/device/device_hub.h"
 #include "devices/files/file_error.h"
 #include "devices/files/urdf_file.h"
+#include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -72,13 +73,7 @@ range = 2
 
 // Joints that give way by so much a newton metre.
 AxisCheck checked(const std::vector<double>& give) {
-  DeviceTraits traits;
-  traits.dof = static_cast<int>(give.size());
-  traits.pushes = true;
-  traits.lower.assign(give.size(), -0.35);
-  traits.upper.assign(give.size(), 0.35);
-  traits.effort.assign(give.size(), 0.5);
-  AxisCheck check(traits);
+  AxisCheck check(test::pushing(static_cast<int>(give.size()), 0.35));
   std::vector<double> x(give.size());
   for (int i = 0; i < 20'000 && !check.done(); ++i) {
     const auto torque = check.step({x, 1e-3, true});
