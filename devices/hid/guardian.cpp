@@ -24,7 +24,7 @@ namespace limpid {
 // the lock's release, marked as such by the kernel.
 struct Guardian::Watch {
   pthread_mutex_t alive;
-  std::atomic<bool> held{false}, dismissed{false};
+  std::atomic<bool> independent{false}, held{false}, dismissed{false};
 
   Watch() {
     pthread_mutexattr_t kind;
@@ -111,6 +111,7 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   if (child_ == 0) {
     become_independent();
     close_all_but(device);
+    watch_->independent = true;
     watch_->wait_for_end(parent);
     if (!watch_->dismissed) stop_device(device, stop_reports);
     _exit(0);
@@ -118,6 +119,8 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   const int error = errno;
   close(device);
   if (child_ > 0) {
+    // Until then whatever kills us with our group, or hangs up our terminal, kills it too.
+    while (!watch_->independent && waitpid(child_, nullptr, WNOHANG) == 0) poll(nullptr, 0, 1);
     watch_->hold();
     return;
   }
