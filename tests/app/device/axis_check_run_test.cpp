@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "tests/support/fake_device.h"
 
 namespace limpid {
@@ -12,6 +14,7 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   test::FakeDevice device(2);
   device.reading.age = 0.006;
   AxisCheckTalk talk;
+  talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
   const AxisCheck check = run_axis_check(device, talk, {});
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
   EXPECT_TRUE(device.stopped);
