@@ -363,8 +363,8 @@ TEST_F(RealRig, ObeysLowerLimits) {
 // tip store some joules.
 TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackAtOnce) {
   ArmDescription arm = test::random_arm(1, 52);
-  arm.joints[0].lower = -3;
-  arm.joints[0].upper = 3;
+  arm.joints[0].lower = -4;
+  arm.joints[0].upper = 4;
   arm.joints[0].effort = 20;
   arm.tip.translation() *= 4;
   const double lever = reach(arm);
