@@ -145,6 +145,7 @@ void LiveLoop::start_over(const Parameters& p) {
   home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
   rig_->start(p, home_);
   hand_.reset(home_.target);
+  led_ = false;  // else the guide would pull it back
 }
 
 void LiveLoop::tick(const TickTiming& timing) {

@@ -97,6 +97,11 @@ Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Vec
   against.hand = health.hand;
   against.gap = health.gap;
   if (against.fault == ForceState::on) against.fault = fault_of(health);
+  if (health.gap && against.fault == ForceState::stale) {
+    // Whoever stood still has no new reading yet: that is not the device's silence.
+    against.fault = ForceState::on;
+    against.hand = false;
+  }
   const auto gone = [](double limit) { return SafetyLimits::kFade * limit; };
   fade(against, ForceState::too_fast, v_.cwiseAbs().maxCoeff(), limits_.joint_speed,
        gone(limits_.joint_speed));

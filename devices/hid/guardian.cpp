@@ -24,7 +24,7 @@ namespace limpid {
 // the lock's release, marked as such by the kernel.
 struct Guardian::Watch {
   pthread_mutex_t alive;
-  std::atomic<bool> held{false}, dismissed{false}, ready{false};
+  std::atomic<bool> independent{false}, held{false}, dismissed{false};
 
   Watch() {
     pthread_mutexattr_t kind;
@@ -47,8 +47,7 @@ struct Guardian::Watch {
 
 namespace {
 
-constexpr int kTries = 3;     // of each report
-constexpr int kReady = 1000;  // until it stands on its own feet [ms]
+constexpr int kTries = 3;  // of each report
 
 int open_locked(const std::string& path) {
   const int device = open(path.c_str(), O_RDWR | O_CLOEXEC);
@@ -112,7 +111,7 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   if (child_ == 0) {
     become_independent();
     close_all_but(device);
-    watch_->ready = true;
+    watch_->independent = true;
     watch_->wait_for_end(parent);
     if (!watch_->dismissed) stop_device(device, stop_reports);
     _exit(0);
@@ -120,9 +119,9 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   const int error = errno;
   close(device);
   if (child_ > 0) {
+    // Until then whatever kills us with our group, or hangs up our terminal, kills it too.
+    while (!watch_->independent && waitpid(child_, nullptr, WNOHANG) == 0) poll(nullptr, 0, 1);
     watch_->hold();
-    // From then on nothing that ends us ends it.
-    for (int i = 0; i < kReady && !watch_->ready; ++i) poll(nullptr, 0, 1);
     return;
   }
   if (watch_ != nullptr) munmap(watch_, sizeof(Watch));

@@ -65,10 +65,11 @@ PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& 
   for (int i = 0; i < kMostAxes; ++i) {
     const ReportField* position = find_position(descriptor, i);
     if (!position || !reports_.drives(i)) continue;
+    const std::size_t joint = axes_.size();
     Axis& axis = axes_.emplace_back();
     axis.number = i;
     axis.position = *position;
-    axis.sign = settings.reverse[static_cast<std::size_t>(i)] ? -1 : 1;
+    axis.sign = settings.reverse[joint] ? -1 : 1;
     const auto steps = static_cast<double>(position->logical_max - position->logical_min);
     traits_.resolution.push_back(2 * settings.range / steps);
   }

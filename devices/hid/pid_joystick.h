@@ -16,12 +16,12 @@ namespace limpid {
 
 // What PID does not say and only the owner of the device knows.
 struct PidSettings {
-  double range = 0.349;     // an axis goes from -range to range: +-20 degrees [rad]
-  double effort = 0.5;      // torque at full force [N m]
-  double duration = 0.010;  // of an effect that is not started again, at most 0.1 [s]
-  double restart = 0.004;   // after so long it is started again, less than the duration [s]
-  std::array<bool, 2>
-      reverse{};  // X, Y: the device pushes the wrong way; products differ, axis_check.h finds it
+  double range = 0.349;           // an axis goes from -range to range: +-20 degrees [rad]
+  double effort = 0.5;            // torque at full force [N m]
+  double duration = 0.010;        // of an effect that is not started again, at most 0.1 [s]
+  double restart = 0.004;         // after so long it is started again, less than the duration [s]
+  std::array<bool, 2> reverse{};  // of each joint: the device pushes the wrong way; products
+                                  // differ, axis_check.h finds it
 };
 
 // Joints: X (positive to the right) and Y (positive towards the user), or X alone.

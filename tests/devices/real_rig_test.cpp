@@ -202,6 +202,24 @@ TEST_F(RealRig, StartsFromNothingWhenTheDeviceWasWithoutTorque) {
   EXPECT_LE(std::abs(device.told[0]), 0.25 * full);
 }
 
+// Whatever it counted before: what the new one heard nobody knows.
+TEST_F(RealRig, StartsFromNothingWithAnotherDevice) {
+  push();
+  const double full = std::abs(device.told[0]);
+  test::FakeDevice another = device;
+  rig.plug(&another);
+  EXPECT_EQ(step(), ForceState::stalled);
+  EXPECT_LE(std::abs(another.told[0]), 0.003 * full);
+}
+
+TEST_F(RealRig, StaysWhereItWasWhenTheDeviceIsLost) {
+  push();
+  device.here = false;
+  device.reading.x[0] += 0.3;
+  step();
+  EXPECT_EQ(rows.vec(rows.size() - 1, Column::device_position)[0], x0[0]);
+}
+
 TEST_F(RealRig, GoesOnAfterAGapOfFourMilliseconds) {
   push();
   const double full = std::abs(device.told[0]);
@@ -233,6 +251,46 @@ TEST_F(RealRig, SaysAfterAStallThatItIsAtRest) {
   EXPECT_EQ(rows.vec(last, Column::measured_velocity).norm(), 0);
   EXPECT_EQ(rows.vec(last, Column::hand_torque_estimate).norm(), 0);
   EXPECT_NEAR(rows.at(last, Column::time) - rows.at(last - 1, Column::time), 0.02, 1e-12);
+}
+
+// The way through a stall is nobody's work.
+TEST_F(RealRig, BooksNoEnergyForTheTimeOfAStall) {
+  Parameters p;
+  p.damping = 0.1;
+  const auto tick = [&] {
+    ++device.reading.count;
+    input.hand = {rig.tip(), 1};
+    rig.step(p, input, rows.add());
+  };
+  for (int i = 0; i < 5; ++i) tick();
+  device.reading.x[1] += 0.3;
+  input.dt = 0.02;
+  input.periods = 20;
+  tick();
+  const std::size_t last = rows.size() - 1;
+  EXPECT_NEAR(rows.at(last, Column::energy_total), rows.at(last - 1, Column::energy_total), 1e-6);
+}
+
+// What the proxy did meanwhile did not happen: it goes on as if there had been one tick.
+TEST_F(RealRig, MovesItsProxyByOneTickHoweverLongAStallWas) {
+  const auto moved_after = [&](int periods) {
+    for (int i = 0; i < 200; ++i) {
+      device.reading.x[1] += 1e-3;  // 1 rad/s
+      step();
+    }
+    input.dt = 0.02;
+    input.periods = periods;
+    step();
+    input.dt = 0;
+    input.periods = 1;
+    step();
+    const std::size_t last = rows.size() - 1;
+    return rows.vec(last, Column::proxy_position)[1] -
+           rows.vec(last - 1, Column::proxy_position)[1];
+  };
+  const double one = moved_after(1);
+  EXPECT_GT(one, 1e-5);
+  EXPECT_NEAR(moved_after(20), one, 0.05 * one);
 }
 
 // Two ticks that come right after one another move it no further than the time between them does.
@@ -305,8 +363,8 @@ TEST_F(RealRig, ObeysLowerLimits) {
 // tip store some joules.
 TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackAtOnce) {
   ArmDescription arm = test::random_arm(1, 52);
-  arm.joints[0].lower = -3;
-  arm.joints[0].upper = 3;
+  arm.joints[0].lower = -4;
+  arm.joints[0].upper = 4;
   arm.joints[0].effort = 20;
   arm.tip.translation() *= 4;
   const double lever = reach(arm);

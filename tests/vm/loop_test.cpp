@@ -59,7 +59,7 @@ TEST(PidLoop, PushesAStickThatSaysNothingWhileItRests) {
   Desk<PidJoystickModel> desk(std::make_unique<PidJoystickModel>(options));
   desk.open();
   ASSERT_TRUE(desk.push());
-  wait(1s);
+  wait(2s);
   const int sent = desk.device->counts().sent;
   const Time before = steady_now();
   wait(500ms);

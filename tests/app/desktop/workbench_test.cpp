@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "app/run/replay.h"
 #include "core/dynamics/arm.h"
 #include "render/offscreen.h"
 #include "tests/support/built_in.h"
@@ -109,9 +110,17 @@ struct AWorkbench : testing::Test {
   bool armed() {
     return until_on([&] { bench->live.arm(); });
   }
+  // However late the loop's first tick with it is: a desk that did not connect it gives it no time.
+  void await_device() {
+    while (!bench->live.snapshot().connected) {
+      std::this_thread::sleep_for(1ms);
+      bench->live.update();
+    }
+  }
   std::shared_ptr<Wire> plug_in(int dof) {
     auto wire = std::make_shared<Wire>();
     bench->open_device(std::make_unique<WiredDevice>(dof, wire));
+    await_device();
     return wire;
   }
   // A device in the loop, beside a stop that presses against it, armed.
@@ -202,6 +211,7 @@ TEST_F(AWorkbench, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
   auto wire = std::make_shared<Wire>();
   wire->buttons = 2;
   bench->open_device(std::make_unique<WiredDevice>(3, wire));
+  await_device();
   frames(120);  // also beyond the time in which a device settles
   EXPECT_EQ(arming(), Arming::off);
   wire->buttons = 0;
@@ -280,6 +290,40 @@ TEST_F(AWorkbench, SaysThatItCannotRecordAndGoesOn) {
   EXPECT_TRUE(until([&] { return bench->live.status().ticks > ticks + 50; }));
 }
 
+// With the device in the loop that it was recorded with.
+TEST_F(AWorkbench, HoldsADeviceToItsLimitsAndRecordsThem) {
+  bench->devices.hub.use("device");
+  bench->devices.hub.notes("device").limits.tip_force = 1.25;
+  plug_in(3);
+  frames(2);
+  EXPECT_EQ(bench->controls.limits.tip_force, 1.25);
+  record_something();
+  bench->toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  ASSERT_EQ(recordings().size(), 1u);
+  EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
+}
+
+TEST_F(AWorkbench, ChangesNoDeviceInARecording) {
+  record_something();
+  bench->devices.use(*bench, "another");
+  EXPECT_EQ(bench->devices.hub.in_use(), "");
+  EXPECT_TRUE(said("Stop the recording"));
+}
+
+TEST_F(AWorkbench, OffersToPlayWhatItHasRecovered) {
+  const fs::path sessions = dir / "data/limpid/sessions";
+  fs::create_directories(sessions);
+  RunPlan plan;
+  plan.arm = test::omni();
+  plan.hand.source = "mouse";
+  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+  ASSERT_TRUE(fs::exists(sessions / "cut.h5.part"));
+  bench->recover_leftovers();
+  EXPECT_TRUE(said("Recovered cut.h5"));
+  EXPECT_EQ(bench->last_recording, sessions / "cut.h5");
+}
+
 TEST_F(AWorkbench, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
   bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
   ASSERT_TRUE(bench->editor.dirty());
@@ -304,6 +348,18 @@ TEST_F(AWorkbench, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
   EXPECT_TRUE(bench->editor.dirty());
   EXPECT_EQ(bench->scene_file, file);
   EXPECT_EQ(bench->unsaved_set_aside(), nullptr);
+}
+
+// Only what the user had open is put aside, not what a device brought.
+TEST_F(AWorkbench, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
+  const std::string file = bench->scene_file;
+  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
+  plug_in(2);
+  plug_in(3);
+  bench->close_device();
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(bench->editor.dirty());
+  EXPECT_EQ(bench->scene_file, file);
 }
 
 TEST_F(AWorkbench, KeepsASceneWhoseFileHasVanished) {

@@ -6,6 +6,7 @@
 
 #include "app/device/device_book.h"
 #include "tests/support/device_traits.h"
+#include "tests/support/fake_device.h"
 
 namespace limpid {
 namespace {
@@ -93,6 +94,16 @@ TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
   const AxisCheck check = checked(device, talk, true);
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::interrupted);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
+}
+
+TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
+  test::FakeDevice device(2);
+  device.reading.age = 0.006;
+  AxisCheckTalk talk;
+  talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const AxisCheck check = run_axis_check(device, talk, {});
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+  EXPECT_TRUE(device.stopped);
 }
 
 }  // namespace

@@ -148,6 +148,24 @@ TEST(DeviceBook, SaysWhyAFileIsNotRead) {
   EXPECT_NE(complaint.find(file.string()), std::string::npos);
 }
 
+TEST(DeviceHub, WantsAJoystickCheckedBeforeItPushes) {
+  const test::TempDir dir;
+  DeviceHub hub(dir / "devices.toml", {});
+  FoundDevice joystick, mouse;
+  joystick.place.id = "joystick";
+  joystick.kind = HidKind::pid_joystick;
+  mouse.place.id = "mouse";
+  mouse.kind = HidKind::space_mouse;
+  hub.take({joystick, mouse});
+  EXPECT_FALSE(hub.needs_check()) << "none is in use";
+  hub.use("mouse");
+  EXPECT_FALSE(hub.needs_check());
+  hub.use("joystick");
+  EXPECT_TRUE(hub.needs_check());
+  hub.notes("joystick").checked = true;
+  EXPECT_FALSE(hub.needs_check());
+}
+
 DeviceTraits joints(int count, double effort) {
   DeviceTraits traits;
   traits.name = "a device";

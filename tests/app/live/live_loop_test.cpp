@@ -1,7 +1,9 @@
 // The loop behind the window: what it records while controls change comes again bit for bit.
 #include "app/live/live_loop.h"
 
+#include <atomic>
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -151,6 +153,126 @@ TEST(LiveLoop, KeepsTheForceOfTheVirtualArmInAnotherScene) {
   EXPECT_TRUE(armed());
   open();
   EXPECT_TRUE(armed());
+}
+
+TEST(LiveLoop, KeepsTheForceOfTheVirtualArmWhileARealDeviceTakesItsPlace) {
+  LiveLoop loop({});
+  loop.open(test::omni(), Scene{}, Parameters{}, kHome);
+  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::FakeDevice>(3));
+  let_live(loop, 10);
+  loop.update();
+  EXPECT_EQ(loop.snapshot().arming, Arming::off);
+  loop.open(test::omni(), Scene{}, Parameters{}, kHome);
+  let_live(loop, 10);
+  loop.update();
+  EXPECT_EQ(loop.snapshot().arming, Arming::on);
+}
+
+// Whoever starts over does not thereby arm what an instability has switched off.
+TEST(LiveLoop, StaysOffWhenItStartsOverAfterAnInstability) {
+  LiveLoop loop({});
+  Controls controls;
+  loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+  let_live(loop, 5);
+  controls.parameters.k_vc = std::numeric_limits<double>::infinity();
+  loop.set(controls);
+  do {
+    let_live(loop, 1);
+    loop.update();
+  } while (!loop.snapshot().diverged);
+  controls.parameters = {};
+  controls.resets = 1;
+  loop.set(controls);
+  let_live(loop, 20);
+  loop.update();
+  EXPECT_FALSE(loop.snapshot().diverged);
+  EXPECT_EQ(loop.snapshot().arming, Arming::off);
+}
+
+// Closing it may take long; until then it must not go on pushing.
+TEST(LiveLoop, StopsADeviceThatIsReplaced) {
+  std::vector<bool> stopped;
+  LiveLoop loop({}, [&](std::unique_ptr<Device> device) {
+    stopped.push_back(static_cast<test::FakeDevice&>(*device).stopped);
+  });
+  loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<test::FakeDevice>(3));
+  let_live(loop, 10);
+  loop.plug(std::make_unique<test::FakeDevice>(3));
+  while (stopped.empty()) {
+    let_live(loop, 1);
+    loop.update();
+  }
+  EXPECT_TRUE(stopped[0]);
+}
+
+// A SpaceMouse that leads the hand of the virtual arm.
+class Cap final : public Device {
+ public:
+  explicit Cap(std::shared_ptr<std::atomic<double>> push) : push_(std::move(push)) {
+    traits_.dof = 6;
+  }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    newest.x[0] = *push_;  // to the right
+    newest.count = ++count_;
+    return true;
+  }
+  void write(std::span<const double>) noexcept override {}
+  void stop() noexcept override {}
+
+ private:
+  DeviceTraits traits_;
+  std::shared_ptr<std::atomic<double>> push_;
+  std::uint64_t count_ = 0;
+};
+
+struct LedLoop : testing::Test {
+  LedLoop() {
+    loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+    loop.plug(std::make_unique<Cap>(push));
+  }
+  void live(int ticks) {
+    loop.set(controls);
+    let_live(loop, ticks);
+    loop.update();
+  }
+  // Of the arm from where it rests, the largest of its joints [rad].
+  double away() const {
+    const auto row = std::span<const double>(loop.snapshot().row);
+    const auto x = RowLayout(3).in(row, Column::device_position);
+    return (Eigen::Map<const Eigen::Vector3d>(x.data()) - rest_at(test::omni(), kHome).x1)
+        .cwiseAbs()
+        .maxCoeff();
+  }
+  Controls controls;
+  std::shared_ptr<std::atomic<double>> push = std::make_shared<std::atomic<double>>(0);
+  LiveLoop loop{{}};
+};
+
+// The mouse wanted the tip 3 cm away, with a hand too weak to bring it there.
+TEST_F(LedLoop, IsTakenHoldOfWhereTheTipIs) {
+  controls.grab = true;
+  controls.goal = kHome + Vec3(0, 0.03, 0);
+  controls.parameters.hand_stiffness = 1e-3;
+  live(100);
+  controls.grab = false;
+  live(100);
+  const double before = away();
+  controls.parameters = {};
+  *push = 0.07;  // hardly
+  live(500);
+  EXPECT_NEAR(away(), before, 0.02);
+}
+
+TEST_F(LedLoop, RestsWhenItIsStartedOver) {
+  *push = 1;
+  live(300);
+  ASSERT_GT(away(), 0.1);
+  *push = 0;
+  live(20);
+  controls.resets = 1;
+  live(300);
+  EXPECT_LT(away(), 0.001);
 }
 
 TEST(LiveLoop, ForgetsWhatWasAskedBeforeItWasOpened) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <csignal>
+#include <thread>
 #include <vector>
 
 namespace limpid {
@@ -211,6 +214,27 @@ TEST(MonotonicTime, NeverWakesBeforeTheMomentAskedFor) {
     EXPECT_GE(time.now(), moment);
   }
   time.sleep_until(time.now() - 1s);
+}
+
+TEST(MonotonicTime, SleepsOnWhenASignalComesMeanwhile) {
+  struct sigaction old {
+  }, ignore{};
+  ignore.sa_handler = [](int) {};
+  sigaction(SIGUSR1, &ignore, &old);
+  std::atomic<bool> done = false;
+  std::thread sleeper([&] {
+    const MonotonicTime time;
+    const nanoseconds moment = time.now() + 100ms;
+    time.sleep_until(moment);
+    EXPECT_GE(time.now(), moment);
+    done = true;
+  });
+  while (!done) {
+    pthread_kill(sleeper.native_handle(), SIGUSR1);
+    std::this_thread::sleep_for(1ms);
+  }
+  sleeper.join();
+  sigaction(SIGUSR1, &old, nullptr);
 }
 
 TEST(Clock, RunsNoTickBackToBackWhereNoneMayBe) {

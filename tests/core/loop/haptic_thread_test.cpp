@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <future>
@@ -150,6 +153,29 @@ TEST(HapticThread, ReportsTheSchedulingItReallyHas) {
   EXPECT_EQ(report.realtime(), policy == SCHED_FIFO || policy == SCHED_RR);
   EXPECT_EQ(report.priority, priority);
   EXPECT_FALSE(report.explanation.empty());
+}
+
+// Whoever is not privileged has to ask, and is granted nothing without a limit of its time.
+TEST(BecomeRealtime, LimitsItsTimeBeforeItAsks) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0}, endless{RLIM_INFINITY, RLIM_INFINITY};
+    setrlimit(RLIMIT_RTTIME, &endless);
+    setrlimit(RLIMIT_RTPRIO, &none);
+    if (geteuid() == 0 && setuid(65534) != 0) _exit(2);
+    bool limited = false;
+    const RealtimeReport report = become_realtime([&](pid_t, int) {
+      rlimit limit{};
+      getrlimit(RLIMIT_RTTIME, &limit);
+      limited = limit.rlim_cur <= 200'000;
+      return true;
+    });
+    _exit(limited && report.scheduling == Scheduling::rtkit ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(YieldToHaptics, PutsTheCallingThreadAndItsChildrenBehindAllOthers) {

@@ -82,6 +82,15 @@ TEST(MotorStage, BoundsTheRateOfRealMotorsInTheTimeThatPassed) {
   }
 }
 
+TEST(MotorStage, SwitchesACouplingOfRealMotorsAsSlowlyAsOfOthers) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(1, 1, 1), command = three(0.5, 0.5, 0.5);
+  for (int k = 0; k < 100; ++k) motors.pass(command, limit, 1, T, 0.02);
+  motors.begin_slew();
+  const Vector tau = motors.pass(-command, limit, 1, T, 0.02);
+  EXPECT_LE((tau - command).cwiseAbs().maxCoeff(), T / kSlew + 1e-12);
+}
+
 TEST(MotorStage, GivesNoTorqueForACommandThatIsNotFinite) {
   const Vector limit = three(1, 1, 1);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -std::nan("")}) {

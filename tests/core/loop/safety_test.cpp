@@ -154,12 +154,61 @@ TEST_F(SafeArm, FadesWhenTheWindowIsSilentAndThenTrips) {
   expect_trips(ForceState::unwatched);
 }
 
+TEST_F(SafeArm, WaitsForAReadingRightAfterAGap) {
+  health.age = 0.1;
+  health.gap = true;
+  EXPECT_EQ(judge(), ForceState::on);
+  EXPECT_FALSE(against.hand) << "nothing to push by yet";
+  health.gap = false;
+  expect_trips(ForceState::stale);
+}
+
 TEST_F(SafeArm, ForgetsItsOldSpeedAtAGap) {
   v[0] = 1000;
   judge(100);
   v[0] = 0;
   health.gap = true;
   EXPECT_EQ(judge(), ForceState::on);
+}
+
+TEST_F(SafeArm, ForgetsSpeedAndEnergyWhenItStarts) {
+  v[0] = 1000;
+  put_out = 2.3 * T;
+  expect_trips(ForceState::on);
+  judge(5000);
+  EXPECT_EQ(against.fault, ForceState::energy);
+  safety->start();
+  v[0] = put_out = 0;
+  EXPECT_EQ(judge(), ForceState::on);
+  EXPECT_EQ(against.ceiling, 1);
+}
+
+TEST_F(SafeArm, IsHeldBackByTheStrictestOfItsLimits) {
+  J.setZero();
+  v[0] = 21;           // of 15 to 22.5 rad/s: a fifth is left
+  put_out = 1.65 * T;  // of 1.5 to 2.25 J: four fifths are
+  EXPECT_EQ(judge(5000), ForceState::too_fast);
+  EXPECT_NEAR(against.ceiling, 0.2, 1e-3);
+}
+
+TEST_F(SafeArm, HoldsOneJointToItsRangeBesideAnotherWithoutAny) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  for (const int free : {0, 1}) {
+    ArmDescription half = arm;
+    half.joints[static_cast<std::size_t>(free)].lower = -kNone;
+    half.joints[static_cast<std::size_t>(free)].upper = kNone;
+    safety = std::make_unique<Safety<kAnyDof>>(half);
+    safety->limit({.range = 0.5});
+    for (const double beyond : {-0.55, 0.55}) {  // of 0.5 to 0.6 rad
+      x.setZero();
+      x[1 - free] = beyond;
+      EXPECT_EQ(judge(), ForceState::too_far) << free;
+      EXPECT_NEAR(against.ceiling, 0.5, 1e-9);
+    }
+    x[1 - free] = 0;
+    x[free] = 1000;
+    EXPECT_EQ(judge(), ForceState::on) << free;
+  }
 }
 
 TEST_F(SafeArm, DoesNotJudgeAVirtualDevice) {

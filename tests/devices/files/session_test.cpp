@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "devices/files/hand_file.h"
+#include "devices/files/session_check.h"
 #include "sample_session.h"
 #include "test_files.h"
 
@@ -82,6 +83,33 @@ TEST(Session, MayBeEmpty) {
   const test::TempDir dir;
   SessionWriter(dir / "a.h5", sample_info(), false).close();
   EXPECT_EQ(read_session(dir / "a.h5").size(), 0u);
+}
+
+// Worked out by another program: recordings of other editions have these sums.
+TEST(Session, KeepsTheSumsOfItsColumns) {
+  const RowLayout layout(1);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  std::vector<double> rows(3 * stride, 0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    layout.in(std::span(rows).subspan(k * stride, stride), Column::time)[0] =
+        0.001 * static_cast<double>(k);
+  }
+  EXPECT_EQ(column_sum(layout, rows, Column::time), 0x9f0d'5535'0614'3067u);
+}
+
+// The last block was full and is written already; a change comes after it.
+TEST(Session, KeepsAChangeAfterItsLastBlock) {
+  const test::TempDir dir;
+  const SessionInfo info = sample_info();
+  const auto block = static_cast<std::size_t>(std::lround(0.5 / info.tick));
+  SessionWriter writer(dir / "a.h5", info, false);
+  writer.append(sample_rows(RowLayout(info.dof), 0, block));
+  writer.append(SettingChange{block - 1, "coupling.eta = 1.5"});
+  writer.close();
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_EQ(session.size(), block);
+  ASSERT_EQ(session.changes.size(), 1u);
+  EXPECT_EQ(session.changes[0].setting, "coupling.eta = 1.5");
 }
 
 TEST(Session, OfTheFirstEditionHasNoSafetyLimits) {

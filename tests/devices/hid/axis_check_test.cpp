@@ -183,6 +183,15 @@ TEST(AxisCheck, GivesUpADeviceThatRunsOn) {
   EXPECT_LT(x[0], 0.16);
 }
 
+// By more than a hundredth of its way before it felt a fiftieth of the torque: its motor is too
+// strong, or that was something else.
+TEST(AxisCheck, GivesUpADeviceThatMovesAtOnce) {
+  AxisCheck check(traits(1));
+  Springs springs{{10}};
+  springs.run(check);
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::too_far);
+}
+
 TEST(AxisCheck, NeedsMotorsAndARange) {
   DeviceTraits mouse = traits(3);
   mouse.pushes = false;

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "devices/hid/hid_error.h"
 #include "devices/hid/raw_protocol.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/raw_reports.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -20,10 +23,11 @@ struct LiveRawDevice : testing::Test {
   LiveRawDevice() { fake->features[0] = sealed(test::raw_feature(2)); }
   ~LiveRawDevice() override { freeze(); }
 
-  std::unique_ptr<HidDevice> connect() {
+  // `path`: of the file that a guardian writes to; none: nobody guards the device.
+  std::unique_ptr<HidDevice> connect(const std::string& path = "") {
     return std::make_unique<HidDevice>(std::make_unique<test::FakeTransport>(fake, true),
                                        std::make_unique<RawProtocol>(),
-                                       HidPlace{"A device", "1209:4c50:1", ""});
+                                       HidPlace{"A device", "1209:4c50:1", path});
   }
   void play() {
     player = std::thread([this] {
@@ -97,6 +101,24 @@ TEST_F(LiveRawDevice, IsLostWhenUnplugged) {
   EXPECT_TRUE(device->lost());
   device->write(std::vector<double>{0.25, 0});
   device->stop();
+}
+
+TEST_F(LiveRawDevice, IsStoppedByItsGuardianIfItTakesNoStopFromUs) {
+  const test::TempDir dir;
+  const std::string path = (dir / "device").string();
+  for (const bool refuses : {false, true}) {
+    std::ofstream(path, std::ios::trunc).flush();
+    auto device = connect(path);
+    fake->refuse_writes(refuses);
+    device.reset();
+    EXPECT_EQ(std::filesystem::file_size(path) > 0, refuses);
+  }
+}
+
+TEST_F(LiveRawDevice, IsStoppedIfNobodyCanGuardIt) {
+  EXPECT_THROW(connect("/nonexistent/hidraw0"), HidError);
+  ASSERT_FALSE(fake->received().empty());
+  EXPECT_EQ(raw_command(fake->received().back()).mode, 0);
 }
 
 TEST_F(LiveRawDevice, IsRefusedIfItDoesNotSayWhatItIs) {

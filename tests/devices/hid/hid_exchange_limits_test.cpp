@@ -30,11 +30,12 @@ class OneByte final : public HidProtocol {
     const std::array<std::uint8_t, 1> report{static_cast<std::uint8_t>(torque[0] > 0 ? 1 : 0)};
     send(report);
   }
-  const std::vector<Report>& stop_reports() const override { return none_; }
+  const std::vector<Report>& stop_reports() const override { return stops; }
+
+  std::vector<Report> stops;
 
  private:
   DeviceTraits traits_;
-  std::vector<Report> none_;
 };
 
 // Sends as much as anybody reads, if it floods; takes writes as it is told.
@@ -88,6 +89,15 @@ TEST_F(ExchangeLimits, ForgivesFailuresOnceAWriteGetsThrough) {
   }
   fail(10);
   EXPECT_TRUE(exchange.lost());
+}
+
+// One that does not understand the first may understand another.
+TEST_F(ExchangeLimits, EndsWithEveryStopReportWhicheverFails) {
+  protocol.stops = {{0}, {1}, {2}};
+  transport.accepts = false;
+  EXPECT_FALSE(exchange.finish());
+  EXPECT_EQ(transport.writes, 3);
+  EXPECT_EQ(transport.newest, 2);
 }
 
 // Else whoever floods the bus would keep the force on for ever.

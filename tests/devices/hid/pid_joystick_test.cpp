@@ -216,6 +216,28 @@ TEST(PidJoystick, CanBeTurnedRound) {
   EXPECT_EQ(first, (Report{5, 1, 255, 0}));
 }
 
+// What its check finds and stores is counted in joints.
+TEST(PidJoystick, CanBeTurnedRoundWhereOnlyYCanBePushed) {
+  const Bytes enable_x{0x09, 0x55, 0xA1, 0x02, 0x05, 0x01, 0x09, 0x30};
+  Bytes descriptor = parts::whole();
+  const auto at =
+      std::search(descriptor.begin(), descriptor.end(), enable_x.begin(), enable_x.end());
+  ASSERT_NE(at, descriptor.end());
+  at[7] = 0x36;
+  for (const bool reverse : {false, true}) {
+    PidDevice device;
+    PidJoystick joystick(parse_report_descriptor(descriptor),
+                         {.effort = 1, .reverse = {reverse, false}});
+    ASSERT_EQ(joystick.traits().dof, 1);
+    joystick.open(device);
+    Report first;
+    joystick.encode(std::vector<double>{1.0}, {}, [&](auto report) {
+      if (first.empty()) first.assign(report.begin(), report.end());
+    });
+    EXPECT_EQ(first, reverse ? (Report{5, 1, 0x01, 0xFF}) : (Report{5, 1, 255, 0}));
+  }
+}
+
 std::string complaint(PidDevice& device) {
   try {
     PidJoystick joystick(whole());

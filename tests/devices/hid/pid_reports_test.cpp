@@ -159,6 +159,15 @@ TEST(PidDirection, IsAnAngleInTheRangeOfTheDevice) {
   }
 }
 
+// -360 to 0 degrees: from the right is a quarter of the way, from the far side is the end.
+TEST(PidDirection, IsAnAngleInARangeThatIsNegative) {
+  const PidReports reports =
+      with_effect(kDirections, {0x15, 0x00, 0x26, 0xFF, 0x00, 0x37, 0x60, 0x73, 0xFF, 0xFF, 0x45,
+                                0x00, 0x75, 0x08, 0x95, 0x02});
+  EXPECT_EQ(tail(reports.set_effect(1, 0, 0.01)), (Bytes{4, 64, 64}));
+  EXPECT_EQ(tail(reports.set_effect(1, 1, 0.01)), (Bytes{4, 255, 255}));
+}
+
 // The second of three may be that of a third axis.
 TEST(PidDirection, IsOnlyTheFirstOfThree) {
   Bytes three = kDirections;
