@@ -30,8 +30,8 @@ ForceState ForceGate::reason(const Objections& against) const noexcept {
   if (state_ == Arming::tripped) return tripped_;
   if (against.fault != ForceState::on) return against.fault;
   if (state_ == Arming::off) return ForceState::off;
-  if (state_ == Arming::waiting) return ForceState::no_hand;
   if (against.gap) return ForceState::stalled;
+  if (state_ == Arming::waiting) return ForceState::no_hand;
   return against.limited;
 }
 

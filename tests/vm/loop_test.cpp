@@ -133,8 +133,9 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
       ASSERT_EQ(session.at(k, Column::motor_torque)[0], 0) << k;
     }
   }
-  // A stale tick may come before the loss is noticed.
+  // A tick that says that something stands still may come before the loss is noticed.
   std::erase(states, static_cast<int>(ForceState::stale));
+  std::erase(states, static_cast<int>(ForceState::stalled));
   const auto number = [](ForceState state) { return static_cast<int>(state); };
   EXPECT_EQ(states,
             (std::vector{number(ForceState::off), number(ForceState::on), number(ForceState::lost),
