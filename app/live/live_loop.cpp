@@ -47,6 +47,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   row_.assign(stride, 0.0);
   home_ = rebase_ = std::move(start);
   parameters_ = p;
+  limits_ = {};  // as a new rig has them; the first tick lowers them again
   rig_->start(p, home_);
   hand_.reset(home_.target);
   guided_.reset(home_.target);
