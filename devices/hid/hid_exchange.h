@@ -30,7 +30,7 @@ using ReadClock = std::function<nanoseconds()>;
 class HidExchange {
  public:
   // With the turn in which it is noticed, less than 10 ms.
-  static constexpr nanoseconds kTorqueLife = std::chrono::milliseconds(8);
+  static constexpr nanoseconds kTorqueLife = std::chrono::milliseconds(7);
   static constexpr nanoseconds kSendPeriod = std::chrono::milliseconds(1);
   // Devices drop their force by themselves after 10 ms; a PID effect may be 4 ms old already.
   static constexpr nanoseconds kSendGap = std::chrono::milliseconds(5);

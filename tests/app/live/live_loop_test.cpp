@@ -205,6 +205,38 @@ TEST(LiveLoop, StopsADeviceThatIsReplaced) {
   EXPECT_TRUE(stopped[0]);
 }
 
+// It goes on answering, from the middle of its joints' ranges but 0.9 rad at the first.
+class Turned final : public Device {
+ public:
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    newest.x = {0.9, -0.785, 1.57};
+    newest.count = ++count_;
+    return true;
+  }
+  void write(std::span<const double>) noexcept override {}
+  void stop() noexcept override {}
+
+ private:
+  DeviceTraits traits_ = test::pushing(3);
+  std::uint64_t count_ = 0;
+};
+
+TEST(LiveLoop, HoldsADeviceThatIsOpenedAgainToItsLowerLimits) {
+  LiveLoop loop({});
+  Controls controls;
+  controls.limits.range = 0.5;  // of about 1 rad each way, and 0.1 until force is gone
+  loop.set(controls);
+  for (int opened = 0; opened < 2; ++opened) {
+    loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<Turned>());
+    let_live(loop, 5);
+    loop.arm();
+    let_live(loop, 50);
+    loop.update();
+    EXPECT_EQ(loop.snapshot().force_state, ForceState::too_far);
+  }
+}
+
 // A SpaceMouse that leads the hand of the virtual arm.
 class Cap final : public Device {
  public:
