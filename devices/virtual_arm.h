@@ -4,8 +4,8 @@
 #include <span>
 
 #include "core/dynamics/arm.h"
-#include "core/loop/parameters.h"
-#include "core/loop/tick.h"
+#include "core/tick/parameters.h"
+#include "core/tick/tick.h"
 #include "devices/device.h"
 
 namespace limpid {

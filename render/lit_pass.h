@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "render/gpu_model.h"
+#include "render/gl/gpu_model.h"
+#include "render/gl/shader_program.h"
 #include "render/quality.h"
-#include "render/shader_program.h"
 #include "render/shadow_map.h"
 
 namespace limpid {

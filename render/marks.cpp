@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/glm_door.h"
+#include "render/gl/glm_door.h"
 
 namespace limpid {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/camera.h"
-#include "render/line_batch.h"
+#include "render/gl/line_batch.h"
 #include "render/palette.h"
 #include "render/view_state.h"
 

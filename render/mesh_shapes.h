@@ -1,7 +1,7 @@
 // The simple solids the view needs besides glTF: meshes centred on their own frame.
 #pragma once
 
-#include "render/model.h"
+#include "render/model/model.h"
 
 namespace limpid {
 

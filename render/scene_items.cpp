@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "render/gltf_model.h"
 #include "render/mesh_shapes.h"
+#include "render/model/gltf_model.h"
 
 namespace limpid {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 #include "render/camera.h"
-#include "render/model.h"
+#include "render/model/model.h"
 
 namespace limpid {
 

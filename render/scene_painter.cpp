@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/frustum.h"
-#include "render/glm_door.h"
+#include "render/gl/glm_door.h"
 #include "render/mesh_shapes.h"
 
 namespace limpid {

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "render/camera.h"
-#include "render/gpu_model.h"
-#include "render/line_batch.h"
+#include "render/gl/gpu_model.h"
+#include "render/gl/line_batch.h"
+#include "render/gl/shader_program.h"
 #include "render/lit_pass.h"
 #include "render/marks.h"
 #include "render/mood.h"
 #include "render/palette.h"
 #include "render/quality.h"
 #include "render/scene_items.h"
-#include "render/shader_program.h"
 #include "render/shadow_map.h"
 
 namespace limpid {

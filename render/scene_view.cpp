@@ -5,8 +5,8 @@
 #include <iterator>
 #include <map>
 
-#include "render/frame_target.h"
-#include "render/glm_door.h"
+#include "render/gl/frame_target.h"
+#include "render/gl/glm_door.h"
 #include "render/scene_painter.h"
 
 namespace limpid {

@@ -14,9 +14,9 @@
 #include <span>
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 #include "render/camera.h"
-#include "render/model.h"
+#include "render/model/model.h"
 #include "render/quality.h"
 #include "render/view_state.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/glm_door.h"
+#include "render/gl/glm_door.h"
 
 namespace limpid {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "render/camera.h"
-#include "render/gl_names.h"
+#include "render/gl/gl_names.h"
 
 namespace limpid {
 

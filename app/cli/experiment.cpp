@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
-#include "app/interrupt.h"
 
 namespace limpid {
 namespace {

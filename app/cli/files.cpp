@@ -7,8 +7,8 @@
 
 #include "app/cli/commands.h"
 #include "app/run/summary.h"
-#include "devices/files/session.h"
-#include "devices/files/session_csv.h"
+#include "devices/files/session/session.h"
+#include "devices/files/session/session_csv.h"
 
 namespace limpid {
 namespace {

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
 #include "core/dynamics/inverse_kinematics.h"
-#include "devices/files/config_file.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/config/config_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 namespace {
@@ -53,9 +53,8 @@ CLI::Validator whole_number() {
 
 // As the help says it.
 std::string allowed_values(const ParameterInfo& info) {
-  if (std::holds_alternative<CouplingKind Parameters::*>(info.field)) return "standard, proposed";
-  if (std::holds_alternative<VelocitySource Parameters::*>(info.field)) {
-    return "raw, lowpass, adaptive";
+  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    return fmt::format("{}", fmt::join(choice->words, ", "));
   }
   if (std::holds_alternative<bool Parameters::*>(info.field)) return "true, false";
   const std::string unit = std::string(info.unit) == "-" ? "" : std::string(" ") + info.unit;

@@ -1,9 +1,9 @@
 #include "app/cli/picture.h"
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/view/mesh_pictures.h"
 #include "app/view/row_view.h"
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 
 namespace limpid {

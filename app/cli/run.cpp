@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/cli/progress.h"
-#include "app/interrupt.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/summary.h"

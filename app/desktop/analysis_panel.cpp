@@ -79,7 +79,7 @@ void AnalysisPanel::draw_nyquist(const Parameters& p) const {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, 150 * current_scale());
   ImDrawList* draw = ImGui::GetWindowDrawList();
   draw->AddRectFilled(at, {at.x + size.x, at.y + size.y}, colour(colours.frame, 0.5f), 3);
-  const double eta = p.kind == CouplingKind::proposed ? p.eta : 1;
+  const double eta = info(p.kind).scales_inertia ? p.eta : 1;
   double left = -0.1, right = 0.1, low = -0.1;
   std::vector<std::vector<std::complex<double>>> curves;
   for (const LockedMode& mode : analysis_.modes) {

@@ -12,7 +12,7 @@ namespace {
 
 // What is broken, by how much, and what would mend it; empty while the promise holds.
 std::string eta_broken(const Parameters& p, const Analysis& a) {
-  if (p.kind == CouplingKind::standard || a.passive) return {};
+  if (!info(p.kind).scales_inertia || a.passive) return {};
   return fmt::format(
       "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
       "{:.3f}, lower alpha, or raise b_v.",
@@ -42,23 +42,20 @@ void slider(Workbench& bench, const char* key, const std::string& broken = {}) {
 void kind_buttons(Workbench& bench) {
   const Palette& colours = palette(current_theme());
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 size((ImGui::GetContentRegionAvail().x - gap) / 2, ImGui::GetFrameHeight() * 1.2f);
-  for (const CouplingKind kind : {CouplingKind::standard, CouplingKind::proposed}) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 size((width - gap * (kLaws - 1)) / kLaws, ImGui::GetFrameHeight() * 1.2f);
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
     const bool chosen = bench.parameters.kind == kind;
-    if (kind == CouplingKind::proposed) ImGui::SameLine();
+    if (i > 0) ImGui::SameLine();
     if (chosen) {
       ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(colours.accent));
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(colours.accent));
       ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.panel));
     }
-    if (ImGui::Button(kind == CouplingKind::standard ? "Standard" : "Proposed", size)) {
-      bench.parameters.kind = kind;
-    }
+    if (ImGui::Button(info(kind).label, size)) bench.parameters.kind = kind;
     if (chosen) ImGui::PopStyleColor(3);
-    tooltip(kind == CouplingKind::standard
-                ? "Spring and damper alone, (1)-(2). C switches."
-                : "With feedforward of the observed human force and the contact force, (14)-(15). "
-                  "C switches.");
+    tooltip(info(kind).tooltip);
   }
 }
 
@@ -73,17 +70,21 @@ void draw_coupling_panel(Workbench& bench, const ScreenRect& rect) {
   const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(a);
   const std::string proxy = proxy_broken(a);
-  slider(bench, "coupling.eta", eta);
-  slider(bench, "observer.alpha");
-  slider(bench, "coupling.k_vc", device);
-  slider(bench, "coupling.b_vc", device);
-  slider(bench, "coupling.b_v", proxy);
+  for (const char* key : info(p.kind).sliders) {
+    const std::string_view name = key;
+    const bool of_device = name == "coupling.k_vc" || name == "coupling.b_vc";
+    slider(bench, key,
+           name == "coupling.eta"   ? eta
+           : name == "coupling.b_v" ? proxy
+           : of_device              ? device
+                                    : std::string());
+  }
 
   heading("Passivity");
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "alpha / m over the modes of the inertia at the rest pose, (18)");
-  const bool standard = p.kind == CouplingKind::standard;
+  const bool standard = !info(p.kind).scales_inertia;
   read_out("\xCE\xB7_min, all frequencies",
            fmt::format("{:.3f}{}", a.eta_min,
                        standard    ? ""

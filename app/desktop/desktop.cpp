@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/base/interrupt.h"
 #include "app/desktop/experiments_panel.h"
 #include "app/desktop/guard.h"
 #include "app/desktop/keys.h"
@@ -14,8 +15,7 @@
 #include "app/desktop/panels.h"
 #include "app/desktop/scene_dialogs.h"
 #include "app/desktop/unsaved.h"
-#include "app/interrupt.h"
-#include "app/rtkit.h"
+#include "app/live/rtkit.h"
 #include "app/style/theme.h"
 
 namespace limpid {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/loop/parameters.h"
+#include "core/tick/parameters.h"
 
 namespace limpid {
 

@@ -1,11 +1,11 @@
 // The workbench's actions on devices.
 #include <fmt/format.h>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/workbench.h"
+#include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 namespace {

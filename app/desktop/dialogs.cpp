@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/keys.h"
 #include "app/desktop/modal.h"
 #include "app/desktop/panels.h"

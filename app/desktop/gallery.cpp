@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/modal.h"
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/panels.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
-#include "devices/files/config_file.h"
+#include "devices/files/config/config_file.h"
 
 namespace limpid {
 namespace {
@@ -153,8 +153,7 @@ std::vector<StatusPart> status_parts(Workbench& bench) {
   const bool recorded = bench.playing_back();
   const auto row = bench.row();
   const RowLayout& layout = bench.shown().channels().layout();
-  const bool proposed =
-      recorded ? layout.in(row, Column::kind)[0] != 0 : p.kind == CouplingKind::proposed;
+  const auto kind = recorded ? static_cast<CouplingKind>(layout.in(row, Column::kind)[0]) : p.kind;
   const double eta = recorded ? layout.in(row, Column::eta)[0] : p.eta;
   const bool stopped = !loop.running;
   std::vector<StatusPart> parts;
@@ -169,8 +168,10 @@ std::vector<StatusPart> status_parts(Workbench& bench) {
                    fmt::format("{} ticks missed: they began after the next one was due.\n{} began "
                                "more than 0.2 ms late, {} slipped: given up after a stall.",
                                loop.missed, loop.late, loop.slipped)});
-  parts.push_back({proposed ? fmt::format("PROPOSED \xCE\xB7 {:.2f}", eta) : "STANDARD",
-                   colours.text, "C switches"});
+  std::string law = info(kind).label;
+  std::ranges::transform(law, law.begin(), [](unsigned char c) { return std::toupper(c); });
+  if (info(kind).scales_inertia) law += fmt::format(" \xCE\xB7 {:.2f}", eta);
+  parts.push_back({law, colours.text, "C switches"});
   return parts;
 }
 

@@ -8,9 +8,9 @@
 
 #include "app/desktop/panels.h"
 #include "app/style/parameter_slider.h"
-#include "core/geometry/triangle_mesh.h"
+#include "core/touch/triangle_mesh.h"
 #include "devices/files/rpy.h"
-#include "devices/files/scene_limits.h"
+#include "devices/files/scene/scene_limits.h"
 
 namespace limpid {
 namespace {

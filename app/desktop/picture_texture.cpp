@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "render/image_texture.h"
+#include "render/gl/image_texture.h"
 
 namespace limpid {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 #include "render/camera.h"
 
 namespace limpid {

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/workbench.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/config_file.h"
-#include "devices/files/session_csv.h"
+#include "devices/files/config/config_file.h"
+#include "devices/files/session/session_csv.h"
 
 namespace limpid {
 

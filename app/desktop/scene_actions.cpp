@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/workbench.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
-#include "core/geometry/triangle_mesh.h"
-#include "devices/files/scene_writer.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/modal.h"
 #include "app/desktop/panels.h"
 #include "app/style/theme.h"

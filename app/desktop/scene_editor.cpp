@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "devices/files/rpy.h"
-#include "devices/files/scene_limits.h"
+#include "devices/files/scene/scene_limits.h"
 #include "render/scene_items.h"
 
 namespace limpid {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/run/scene_meshes.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 
 namespace limpid {
 

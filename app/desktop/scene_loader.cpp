@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "core/geometry/triangle_mesh.h"
+#include "core/touch/triangle_mesh.h"
 #include "devices/files/file_error.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/scene_limits.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {

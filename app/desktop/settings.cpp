@@ -5,9 +5,9 @@
 
 #include <sstream>
 
-#include "app/user_dirs.h"
+#include "app/base/user_dirs.h"
 #include "devices/files/atomic_file.h"
-#include "devices/files/config_file.h"
+#include "devices/files/config/config_file.h"
 
 namespace limpid {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/loop/parameters.h"
+#include "core/tick/parameters.h"
 #include "render/theme.h"
 
 namespace limpid {
@@ -23,7 +23,11 @@ struct Settings {
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
   // A first start shows the standard coupling: its flaw is what C then mends.
-  Parameters parameters{.kind = CouplingKind::standard};
+  Parameters parameters = [] {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    return p;
+  }();
 };
 
 // $XDG_CONFIG_HOME/limpid/settings.toml. What cannot be read is left at its default; `complaint`

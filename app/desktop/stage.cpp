@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/view/mesh_pictures.h"
 
 namespace limpid {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "devices/files/scene_writer.h"
+#include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 
 namespace limpid {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "app/style/theme.h"
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 
 namespace limpid {

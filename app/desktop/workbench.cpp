@@ -5,12 +5,12 @@
 
 #include <ctime>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/desktop/window.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 namespace {
@@ -201,10 +201,7 @@ void Workbench::follow_parameters() {
   analysis = analyze(arm, rest_pose(arm), parameters, std::nullopt);
 }
 
-void Workbench::toggle_coupling() {
-  parameters.kind =
-      parameters.kind == CouplingKind::standard ? CouplingKind::proposed : CouplingKind::standard;
-}
+void Workbench::toggle_coupling() { parameters.kind = next(parameters.kind); }
 
 bool Workbench::force_armed() const {
   const Arming now = live.snapshot().arming;

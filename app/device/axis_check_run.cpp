@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "core/loop/haptic_thread.h"
-#include "core/loop/safety.h"
+#include "core/realtime/haptic_thread.h"
+#include "core/tick/safety.h"
 
 namespace limpid {
 namespace {

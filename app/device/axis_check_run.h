@@ -5,7 +5,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "core/loop/realtime.h"
+#include "core/realtime/realtime.h"
 #include "devices/hid/axis_check.h"
 
 namespace limpid {

@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "app/user_dirs.h"
+#include "app/base/user_dirs.h"
 #include "devices/files/atomic_file.h"
 
 namespace limpid {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/loop/safety.h"
+#include "core/tick/safety.h"
 #include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
-#include "devices/hid/pid_joystick.h"
+#include "devices/hid/protocols/pid_joystick.h"
 
 namespace limpid {
 

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <optional>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
+#include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
-#include "devices/files/urdf_file.h"
 #include "devices/hid/hid_error.h"
 
 namespace limpid {

@@ -10,7 +10,7 @@
 #include "app/device/axis_check_run.h"
 #include "app/device/device_book.h"
 #include "core/dynamics/arm_description.h"
-#include "devices/hid/device_list.h"
+#include "devices/registry/device_list.h"
 
 namespace limpid {
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <random>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 

@@ -1,5 +1,7 @@
 #include "app/experiments/grip_limit.h"
 
+#include <Eigen/Eigenvalues>
+
 namespace limpid {
 namespace {
 

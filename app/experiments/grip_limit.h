@@ -1,8 +1,8 @@
 // The smallest stable eta in a grip where the proxy is held by the coupling's spring, not rigidly.
 #pragma once
 
-#include "core/loop/parameters.h"
 #include "core/math/sizes.h"
+#include "core/tick/parameters.h"
 
 namespace limpid {
 

@@ -1,6 +1,7 @@
 // Section 3.1: how fast the human force observer is, for every gain.
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/experiments/excitation.h"
-#include "devices/files/session.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/base/markup.h"
 #include "app/experiments/experiment.h"
-#include "app/markup.h"
 
 namespace limpid {
 namespace {

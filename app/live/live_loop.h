@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "app/run/recorder.h"
-#include "core/loop/hand_over.h"
-#include "core/loop/haptic_thread.h"
-#include "core/loop/triple_buffer.h"
-#include "devices/guided_hand.h"
-#include "devices/mouse_hand.h"
-#include "devices/rig.h"
+#include "core/realtime/hand_over.h"
+#include "core/realtime/haptic_thread.h"
+#include "core/realtime/triple_buffer.h"
+#include "devices/hands/guided_hand.h"
+#include "devices/hands/mouse_hand.h"
+#include "devices/rig/rig.h"
 
 namespace limpid {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/plot/ticks.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {

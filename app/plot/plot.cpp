@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/plot/ticks.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {

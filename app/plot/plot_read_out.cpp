@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "app/plot/plot_frame.h"
-#include "app/plot/ticks.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {

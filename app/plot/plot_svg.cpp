@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "app/markup.h"
+#include "app/base/markup.h"
 #include "app/plot/plot_export.h"
-#include "app/plot/ticks.h"
 #include "app/plot/trace.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {

@@ -28,7 +28,7 @@ Analysis of_modes(std::vector<LockedMode> modes, const std::vector<double>& b_d,
     if (w_b) a.eta_min_band = std::max(a.eta_min_band.value_or(0), eta_min_band(mode, *w_b));
   }
   a.modes = std::move(modes);
-  a.condition3 = condition3(p, b_d);
+  a.condition3 = condition3(p, p.tick, b_d);
   a.passive = p.eta >= a.eta_min;
   return a;
 }

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/coupling/coupling.h"
+#include "core/coupling/spring_damper.h"
 #include "core/dynamics/arm_description.h"
-#include "core/loop/parameters.h"
 #include "core/passivity/eta_min.h"
+#include "core/tick/parameters.h"
 
 namespace limpid {
 

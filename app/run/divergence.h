@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/loop/row.h"
+#include "core/tick/row.h"
 
 namespace limpid {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <thread>
 
-#include "core/loop/parameters.h"
-#include "core/loop/trace_ring.h"
-#include "devices/files/session.h"
+#include "core/realtime/trace_ring.h"
+#include "core/tick/parameters.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/run/scene_meshes.h"
-#include "devices/files/config_file.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/config/config_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 

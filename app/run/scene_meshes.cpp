@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "core/geometry/triangle_mesh.h"
+#include "core/touch/triangle_mesh.h"
 #include "devices/files/file_error.h"
-#include "render/gltf_pack.h"
+#include "render/model/gltf_pack.h"
 
 namespace limpid {
 namespace {

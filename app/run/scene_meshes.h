@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/scene.h"
-#include "render/gltf_model.h"
+#include "core/touch/scene.h"
+#include "render/model/gltf_model.h"
 
 namespace limpid {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "app/run/divergence.h"
-#include "core/loop/haptic_thread.h"
-#include "devices/files/config_file.h"
+#include "core/realtime/haptic_thread.h"
+#include "devices/files/config/config_file.h"
 
 namespace limpid {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "app/run/scene_meshes.h"
-#include "core/loop/parameters.h"
-#include "devices/files/hand_file.h"
-#include "devices/files/session.h"
-#include "devices/rig.h"
+#include "core/tick/parameters.h"
+#include "devices/files/hand/hand_file.h"
+#include "devices/files/session/session.h"
+#include "devices/rig/rig.h"
 
 namespace limpid {
 

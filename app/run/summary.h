@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/run/divergence.h"
-#include "core/loop/row.h"
+#include "core/tick/row.h"
 
 namespace limpid {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "devices/files/session.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
 

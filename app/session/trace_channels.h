@@ -6,7 +6,7 @@
 
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
-#include "core/loop/row.h"
+#include "core/tick/row.h"
 
 namespace limpid {
 

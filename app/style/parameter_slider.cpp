@@ -13,8 +13,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "app/plot/ticks.h"
 #include "app/style/theme.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {
@@ -241,10 +241,9 @@ void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered)
 }
 
 // Radio buttons side by side, of which one is pressed in.
-template <class Enum>
-bool choices(const ParameterInfo& info, Enum& value, Enum last) {
+bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parameters& p) {
   ImGui::TextUnformatted(info.label);
-  const int count = static_cast<int>(last) + 1;
+  const int count = static_cast<int>(choice.words.size());
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
@@ -252,16 +251,17 @@ bool choices(const ParameterInfo& info, Enum& value, Enum last) {
                                             ImGui::GetStyle().FrameRounding);
   bool changed = false;
   for (int i = 0; i < count; ++i) {
-    const auto choice = static_cast<Enum>(i);
+    const char* word = choice.words[static_cast<std::size_t>(i)];
+    const bool chosen = choice.get(p) == i;
     const float left = std::round(size.x * static_cast<float>(i) / static_cast<float>(count));
     const float right = std::round(size.x * static_cast<float>(i + 1) / static_cast<float>(count));
     ImGui::SetCursorScreenPos({at.x + left, at.y});
-    if (ImGui::InvisibleButton(name(choice), {right - left, size.y})) {
-      changed = value != choice;
-      value = choice;
+    if (ImGui::InvisibleButton(word, {right - left, size.y})) {
+      changed = !chosen;
+      choice.set(p, static_cast<std::uint8_t>(i));
     }
     const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
-    draw_choice(box, name(choice), value == choice, ImGui::IsItemHovered());
+    draw_choice(box, word, choice.get(p) == i, ImGui::IsItemHovered());
   }
   return changed;
 }
@@ -284,21 +284,6 @@ double slider_value(const ParameterInfo& info, double place) {
   return is_int(info) ? std::round(value) : value;
 }
 
-double parameter_number(const Parameters& parameters, const ParameterInfo& info) {
-  return std::visit([&](auto field) { return static_cast<double>(parameters.*field); }, info.field);
-}
-
-void set_parameter_number(Parameters& parameters, const ParameterInfo& info, double number) {
-  const double allowed = std::clamp(number, info.minimum, info.maximum);  // kFromArm passes
-  std::visit(
-      [&](auto field) {
-        using Value = std::remove_reference_t<decltype(parameters.*field)>;
-        parameters.*field =
-            static_cast<Value>(std::is_same_v<Value, double> ? allowed : std::round(allowed));
-      },
-      info.field);
-}
-
 bool value_slider(const ParameterInfo& info, double& value, double usual) {
   ImGui::PushID(info.key);
   const bool changed = number_slider(info, value, usual, false);
@@ -316,10 +301,8 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * current_scale(), 2 * current_scale()});
     changed = ImGui::Checkbox(info.label, &(parameters.**flag));
     ImGui::PopStyleVar();
-  } else if (const auto* kind = std::get_if<CouplingKind Parameters::*>(&info.field)) {
-    changed = choices(info, parameters.**kind, CouplingKind::proposed);
-  } else if (const auto* source = std::get_if<VelocitySource Parameters::*>(&info.field)) {
-    changed = choices(info, parameters.**source, VelocitySource::adaptive);
+  } else if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    changed = choices(info, *choice, parameters);
   } else {
     double value = parameter_number(parameters, info);
     changed = number_slider(info, value, paper_value, broken != nullptr);

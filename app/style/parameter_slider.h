@@ -1,7 +1,7 @@
 // One parameter as a slider, a check box or a row of choices.
 #pragma once
 
-#include "core/loop/parameters.h"
+#include "core/tick/parameters.h"
 
 namespace limpid {
 
@@ -21,10 +21,5 @@ bool value_slider(const ParameterInfo& info, double& value, double usual);
 // A logarithmic slider whose range begins at zero begins at a millionth of its end.
 double slider_place(const ParameterInfo& info, double value);
 double slider_value(const ParameterInfo& info, double place);
-
-// A parameter as a number, the way `paper_value` is: enumerations by their place, bool as 0 or 1.
-double parameter_number(const Parameters& parameters, const ParameterInfo& info);
-// Inverse of it; held within the allowed range.
-void set_parameter_number(Parameters& parameters, const ParameterInfo& info, double number);
 
 }  // namespace limpid

@@ -1,5 +1,7 @@
 #include "app/view/row_view.h"
 
+#include <Eigen/Cholesky>
+
 namespace limpid {
 namespace {
 

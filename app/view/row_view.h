@@ -5,8 +5,8 @@
 #include <span>
 
 #include "core/dynamics/arm.h"
-#include "core/loop/row.h"
-#include "devices/rig.h"
+#include "core/tick/row.h"
+#include "devices/rig/rig.h"
 #include "render/view_state.h"
 
 namespace limpid {

@@ -1,5 +1,6 @@
 #include "core/dynamics/inverse_kinematics.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -4,7 +4,8 @@
 // extra; any other n up to kMaxDof runs the same code on storage of bounded size.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace limpid {
 

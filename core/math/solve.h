@@ -5,6 +5,7 @@
 // three.
 #pragma once
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "core/math/sizes.h"

@@ -1,5 +1,6 @@
 #include "core/passivity/eta_min.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 

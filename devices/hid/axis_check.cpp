@@ -40,7 +40,7 @@ const char* explain(AxisVerdict verdict) {
              "was said, or it does not obey: it cannot be used as an arm.";
     case AxisVerdict::restless:
       return "It moved by itself. Let go of it, or hold it still, and try again.";
-    case AxisVerdict::interrupted: return "The check was interrupted; nothing is stored.";
+    case AxisVerdict::given_up: return "The check was interrupted; nothing is stored.";
   }
   return "";
 }
@@ -98,7 +98,7 @@ std::span<const double> AxisCheck::step(const Tick& in) noexcept {
   const auto joints = static_cast<std::size_t>(dof_);
   bool sound = in.well && in.T > 0 && in.x.size() >= joints;
   for (std::size_t i = 0; sound && i < joints; ++i) sound = std::isfinite(in.x[i]);
-  if (!done_ && !sound) end(AxisVerdict::interrupted);
+  if (!done_ && !sound) end(AxisVerdict::given_up);
   if (!done_) {
     std::copy_n(in.x.begin(), joints, x_.begin());
     if (!started_) start_ = x_;

@@ -34,7 +34,7 @@ enum class AxisVerdict : std::uint8_t {
   nothing_moved,  // or not both ways: no arm, or held too firmly
   too_far,        // it moved further or faster than so little force should move it
   restless,       // it moved by itself
-  interrupted,    // cancelled, or the device was not well
+  given_up,       // cancelled, or the device was not well
 };
 
 enum class AxisStage : std::uint8_t { resting, pushing, done };
@@ -61,7 +61,7 @@ class AxisCheck {
   // The torque to be held until the next tick [N m]. Allocates nothing.
   std::span<const double> step(const Tick& in) noexcept;
   // No torque from the next step on.
-  void cancel() noexcept { end(AxisVerdict::interrupted); }
+  void cancel() noexcept { end(AxisVerdict::given_up); }
 
   int dof() const { return dof_; }
   int axis() const { return axis_; }  // being pushed, or the last that was

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/loop/clock.h"
+#include "core/realtime/clock.h"
 #include "devices/hid/guardian.h"
 #include "devices/hid/hid_error.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "core/loop/realtime.h"
+#include "core/realtime/realtime.h"
 #include "devices/device.h"
 #include "devices/hid/hid_exchange.h"
 

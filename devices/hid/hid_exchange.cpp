@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/loop/clock.h"
+#include "core/realtime/clock.h"
 
 namespace limpid {
 namespace {

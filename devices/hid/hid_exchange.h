@@ -17,7 +17,7 @@
 #include <functional>
 #include <span>
 
-#include "core/loop/triple_buffer.h"
+#include "core/realtime/triple_buffer.h"
 #include "devices/device.h"
 #include "devices/hid/hid_protocol.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 
 namespace limpid::bench {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "core/dynamics/inverse_kinematics.h"
-#include "core/geometry/triangle_mesh.h"
-#include "core/loop/tick.h"
+#include "core/tick/tick.h"
+#include "core/touch/triangle_mesh.h"
 #include "tests/bench/bench_arm.h"
 #include "tests/bench/sample_times.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/dynamics/arm_description.h"
-#include "core/dynamics/scene.h"
+#include "core/touch/scene.h"
 #include "tests/bench/sample_times.h"
 
 namespace limpid::bench {

@@ -9,9 +9,9 @@
 #include <ctime>
 #include <numbers>
 
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
+#include "render/model/simplify.h"
 #include "render/scene_view.h"
-#include "render/simplify.h"
 
 namespace limpid {
 namespace {

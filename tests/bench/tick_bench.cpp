@@ -10,12 +10,12 @@
 #include <filesystem>
 #include <string_view>
 
-#include "app/assets.h"
+#include "app/base/assets.h"
 #include "app/run/recorder.h"
 #include "app/run/simulate.h"
-#include "devices/files/config_file.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/config/config_file.h"
+#include "devices/files/scene/scene_file.h"
 #include "tests/bench/bench_arm.h"
 #include "tests/bench/mujoco_step.h"
 #include "tests/bench/sample_times.h"

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "render/gltf_model.h"
-#include "render/simplify.h"
+#include "render/model/gltf_model.h"
+#include "render/model/simplify.h"
 
 namespace {
 

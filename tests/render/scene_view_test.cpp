@@ -8,8 +8,8 @@
 #include <fstream>
 #include <optional>
 
+#include "render/gl/offscreen.h"
 #include "render/mesh_shapes.h"
-#include "render/offscreen.h"
 
 namespace limpid {
 namespace {

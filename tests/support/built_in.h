@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "devices/files/hand_file.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/hand/hand_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid::test {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/dynamics/scene.h"
-#include "core/geometry/triangle_mesh.h"
+#include "core/touch/scene.h"
+#include "core/touch/triangle_mesh.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid::test {

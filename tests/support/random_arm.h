@@ -1,6 +1,7 @@
 // Arms without symmetries: no axis parallel to another, nothing at an origin, no two links alike.
 #pragma once
 
+#include <Eigen/QR>
 #include <cmath>
 #include <random>
 #include <string>

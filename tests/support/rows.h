@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/loop/row.h"
 #include "core/math/sizes.h"
+#include "core/tick/row.h"
 
 namespace limpid::test {
 

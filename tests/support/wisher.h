@@ -1,7 +1,7 @@
 // From "armed or not" at each tick to what is asked for at it.
 #pragma once
 
-#include "core/loop/arming.h"
+#include "core/tick/arming.h"
 
 namespace limpid::test {
 

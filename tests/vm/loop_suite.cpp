@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "app/interrupt.h"
+#include "app/base/interrupt.h"
 #include "tests/vm/desk.h"
 #include "tests/vm/models.h"
 

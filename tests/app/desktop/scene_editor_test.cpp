@@ -2,10 +2,10 @@
 
 #include <numbers>
 
-#include "core/geometry/triangle_mesh.h"
+#include "core/touch/triangle_mesh.h"
 #include "devices/files/rpy.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/scene_writer.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_writer.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/random_arm.h"
 

@@ -2,8 +2,8 @@
 
 #include <thread>
 
-#include "core/geometry/triangle_mesh.h"
-#include "devices/files/urdf_file.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/arm/urdf_file.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {

@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "app/assets.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "app/base/assets.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 namespace {

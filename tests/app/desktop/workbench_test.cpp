@@ -10,7 +10,7 @@
 
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
 #include "tests/support/built_in.h"
 #include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"

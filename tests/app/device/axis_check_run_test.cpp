@@ -82,7 +82,7 @@ TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
   const AxisCheck check = checked(device, talk);
   hand.join();
   EXPECT_FALSE(check.passed());
-  EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::interrupted);
+  EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
   DeviceNotes notes;
   EXPECT_FALSE(remember_check(check, notes));
@@ -92,7 +92,7 @@ TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
   Yielding device({1e-9, 1e-9});  // it would push for seconds
   AxisCheckTalk talk;
   const AxisCheck check = checked(device, talk, true);
-  EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::interrupted);
+  EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
 }
 
@@ -102,7 +102,7 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   AxisCheckTalk talk;
   talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
   const AxisCheck check = run_axis_check(device, talk, {});
-  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
   EXPECT_TRUE(device.stopped);
 }
 

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "app/device/device_hub.h"
+#include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
-#include "devices/files/urdf_file.h"
 #include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"
 

@@ -11,7 +11,7 @@
 #include "app/plot/autoscale.h"
 #include "app/plot/plot_group.h"
 #include "app/plot/plot_menu.h"
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
 
 namespace limpid {
 namespace {

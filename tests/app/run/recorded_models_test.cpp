@@ -8,9 +8,9 @@
 #include "app/run/replay.h"
 #include "app/view/mesh_pictures.h"
 #include "app/view/row_view.h"
-#include "render/offscreen.h"
+#include "render/gl/offscreen.h"
 #include "tests/devices/files/test_files.h"
-#include "tests/render/gltf_builder.h"
+#include "tests/render/model/gltf_builder.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {

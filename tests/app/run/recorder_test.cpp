@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "tests/devices/files/sample_session.h"
+#include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/rows.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/devices/files/sample_session.h"
+#include "tests/devices/files/session/sample_session.h"
 
 namespace limpid {
 namespace {

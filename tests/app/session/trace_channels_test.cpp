@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tests/devices/files/sample_session.h"
+#include "tests/devices/files/session/sample_session.h"
 #include "tests/support/rows.h"
 
 namespace limpid {

@@ -1,10 +1,11 @@
-#include "core/coupling/coupling.h"
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "core/coupling/laws.h"
+#include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -18,28 +19,26 @@ constexpr std::array kPaperDamping{0.012, 0.012, 0.012};
 
 TEST(Condition3, HoldsWithThePapersGainsWhichStandOnItsEdge) {
   // b_d = 0.012 = 2 * 0.001 + 10 * 0.001, to round-off; b_v = 0.012 > 0.005.
-  const Condition3 c = condition3(Parameters{}, kPaperDamping);
+  const Condition3 c = condition3(SpringDamper{}, 0.001, kPaperDamping);
   EXPECT_TRUE(c.holds);
   EXPECT_NEAR(c.device_margin, 0, 1e-17);
   EXPECT_NEAR(c.proxy_margin, 0.007, 1e-17);
 }
 
 TEST(Condition3, BreaksJustBeyondTheEdge) {
-  Parameters p;
+  SpringDamper p;
+  EXPECT_FALSE(condition3(p, 0.00100001, kPaperDamping).holds);
   p.k_vc = 10 * (1 + 1e-9);
-  EXPECT_FALSE(condition3(p, kPaperDamping).holds);
-  p = {};
-  p.tick = 0.00100001;
-  EXPECT_FALSE(condition3(p, kPaperDamping).holds);
+  EXPECT_FALSE(condition3(p, 0.001, kPaperDamping).holds);
   p = {};
   p.b_v = 0.00499;
-  const Condition3 c = condition3(p, kPaperDamping);
+  const Condition3 c = condition3(p, 0.001, kPaperDamping);
   EXPECT_FALSE(c.holds);
   EXPECT_NEAR(c.proxy_margin, -1e-5, 1e-15);
 }
 
 TEST(Condition3, CountsTheLeastDampedJoint) {
-  const Condition3 c = condition3(Parameters{}, std::array{0.5, 0.011, 0.02});
+  const Condition3 c = condition3(SpringDamper{}, 0.001, std::array{0.5, 0.011, 0.02});
   EXPECT_FALSE(c.holds);
   EXPECT_NEAR(c.device_margin, -0.001, 1e-15);
 }
@@ -63,23 +62,47 @@ struct Random2 {
 class CouplingOfJoints : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Arms, CouplingOfJoints, testing::Values(1, 2, 3, 7, 32));
 
-TEST_P(CouplingOfJoints, StandardAddsNothingToSpringAndDamper) {
-  const Random2 r(GetParam(), 70);
-  Parameters p;
-  p.kind = CouplingKind::standard;
-  p.eta = 0.3;
-  const auto ff = feedforward<kAnyDof>(p, {r.one, r.two}, r.f1);
-  EXPECT_EQ(ff.tau1.norm() + ff.tau2.norm() + ff.from_f2_1.norm() + ff.from_f2_2.norm(), 0);
+// Whatever eta is and whoever pushes.
+TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
+  const int n = GetParam();
+  Random2 r(n, 70);
+  Proxy<kAnyDof> proxy(test::random_arm(n, 70), Scene{});
+  for (int i = 0; i < 20; ++i) {
+    const Vector x1 = r.random.vector(n, 1), x2 = r.random.vector(n, 1);
+    const Vector v1 = r.random.vector(n, 1), vbar2 = r.random.vector(n, 1);
+    proxy.place(x2, r.two.v, 0.1);
+    LawSettings p;
+    p.k_vc = 7;
+    p.b_vc = 0.3;
+    p.eta = 0.3;
+    Coupling<kAnyDof> coupling;
+    const Vec<kAnyDof> x = x1, v = v1, f1 = r.f1, vbar = vbar2;
+    const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001};
+    const Vector tau = coupling.step(CouplingKind::standard, p, in, proxy);
+    const Vector on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
+    EXPECT_LT((tau - on_device).norm(), 1e-13);
+    const Vector mean = proxy.vbar();
+    const Vector on_proxy = 0.3 * (v1 - mean) - 7 * (x2 + 0.001 / 2 * mean - x1) - p.b_v * mean;
+    EXPECT_LT((proxy.tau() - on_proxy).norm(), 1e-12 * (1 + on_proxy.norm()));
+  }
+}
+
+TEST(Laws, AreKnownByTheirKeysAndTakenByTurns) {
+  EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed"));
+  CouplingKind kind = CouplingKind::standard;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    EXPECT_STREQ(info(kind).key, kLawKeys[i]);
+    kind = next(kind);
+  }
+  EXPECT_EQ(kind, CouplingKind::standard);
 }
 
 TEST_P(CouplingOfJoints, ProposedAddsFourteenAndFifteen) {
   const int n = GetParam();
   const Random2 r(n, 71);
   for (const double eta : {0.3, 0.6, 1.0, 5.0}) {
-    Parameters p;
-    p.eta = eta;
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
     const Matrix I = Matrix::Identity(n, n);
     const Matrix phi_T = (r.two.M * (r.one.M + r.two.M).inverse()).eval();  // M symmetric
     const Vector sum = r.f1 + r.f2;
@@ -97,10 +120,8 @@ TEST_P(CouplingOfJoints, ProposedScalesWhatReachesTheLockedSystem) {
   const int n = GetParam();
   const Random2 r(n, 72);
   for (const double eta : {0.5, 1.0, 3.0}) {
-    Parameters p;
-    p.eta = eta;
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
     const Vector both = ff.tau1 + ff.from_f2_1 * r.f2 + ff.tau2 + ff.from_f2_2 * r.f2;
     const Vector wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + d.C_LE * d.v_E;
     EXPECT_LT((both - wanted).norm(), 1e-12 * (1 + wanted.norm()));
@@ -113,10 +134,8 @@ TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
   const int n = GetParam();
   const Random2 r(n, 73);
   for (const double eta : {0.5, 1.0, 3.0}) {
-    Parameters p;
-    p.eta = eta;
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const auto ff = feedforward<kAnyDof>(p, d, r.f1);
+    const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
     const Vector tau1 = ff.tau1 + ff.from_f2_1 * r.f2;
     const Vector tau2 = ff.tau2 + ff.from_f2_2 * r.f2;
     const Vector f_E = d.phi.transpose() * (r.f1 + r.f2) - r.f2;
@@ -131,10 +150,8 @@ TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
   Random2 r(n, 74);
   r.one.v.setZero();
   r.two.v.setZero();
-  Parameters p;
-  p.eta = 1;
   const Decomposition<kAnyDof> d(r.one, r.two);
-  const auto ff = feedforward<kAnyDof>(p, d, Vec<kAnyDof>::Zero(n));
+  const auto ff = feedforward<kAnyDof>(1, d, Vec<kAnyDof>::Zero(n));
   EXPECT_LT(ff.tau1.norm() + ff.tau2.norm(), 1e-15);
   const Vector device = ff.from_f2_1 * r.f2;
   const Vector proxy = r.f2 + ff.from_f2_2 * r.f2;
@@ -142,19 +159,6 @@ TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
   // Both then accelerate alike.
   const Vector a1 = r.one.M.inverse() * device, a2 = r.two.M.inverse() * proxy;
   EXPECT_LT((a1 - a2).norm(), 1e-10 * a1.norm());
-}
-
-TEST(DeviceTorque, IsSpringAndDamperToTheProxy) {
-  Random random(75);
-  const Vec<kAnyDof> x1 = random.vector(3, 1), x2 = random.vector(3, 1);
-  const Vec<kAnyDof> v1 = random.vector(3, 1), vbar2 = random.vector(3, 1);
-  Parameters p;
-  p.k_vc = 7;
-  p.b_vc = 0.3;
-  const Vector tau = device_torque<kAnyDof>(p, x1, v1, x2, vbar2);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(tau[i], -0.3 * (v1[i] - vbar2[i]) - 7 * (x1[i] - x2[i]), 1e-14);
-  }
 }
 
 }  // namespace

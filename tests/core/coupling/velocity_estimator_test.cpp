@@ -27,8 +27,10 @@ TEST(VelocityEstimator, OfARampIsItsSlopeWithEverySource) {
     v.reset(x0);
     // A low-pass of 50 Hz has forgotten the start after thirty time constants.
     for (int k = 1; k <= 200; ++k) v.update(x0 + k * T * slope, T, source, 0);
-    EXPECT_LT((v.raw() - slope).norm(), 1e-11) << name(source);
-    EXPECT_LT((v.estimate() - slope).norm(), 1e-11) << name(source);
+    EXPECT_LT((v.raw() - slope).norm(), 1e-11)
+        << kVelocitySources[static_cast<std::size_t>(source)];
+    EXPECT_LT((v.estimate() - slope).norm(), 1e-11)
+        << kVelocitySources[static_cast<std::size_t>(source)];
   }
 }
 

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
-#include "core/passivity/energy_books.h"
+#include "core/tick/energy_books.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

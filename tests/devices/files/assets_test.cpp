@@ -1,12 +1,13 @@
 // The arms, scenes and hands that come with the program.
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "devices/files/hand_file.h"
-#include "devices/files/scene_file.h"
-#include "devices/files/urdf_file.h"
-#include "test_files.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/hand/hand_file.h"
+#include "devices/files/scene/scene_file.h"
+#include "tests/devices/files/test_files.h"
 
 namespace limpid {
 namespace {

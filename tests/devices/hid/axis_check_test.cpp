@@ -100,7 +100,7 @@ TEST(AxisCheck, IsWithoutTorqueOnceCancelled) {
   check.cancel();
   EXPECT_TRUE(check.done());
   EXPECT_FALSE(check.passed());
-  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
   for (int i = 0; i < 10; ++i) springs.tick(check);
   EXPECT_EQ(springs.x, (std::vector<double>{0, 0}));
 }
@@ -120,7 +120,7 @@ TEST(AxisCheck, IsWithoutTorqueAsSoonAsTheDeviceIsNotWell) {
     const auto torque = check.step(ill);
     EXPECT_EQ(torque[0], 0);
     EXPECT_EQ(torque[1], 0);
-    EXPECT_EQ(check.finding(0).verdict, AxisVerdict::interrupted);
+    EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
     springs.run(check);
     EXPECT_FALSE(check.passed()) << "it does not go on by itself";
   }
@@ -205,7 +205,7 @@ TEST(AxisCheck, NeedsMotorsAndARange) {
 }
 
 TEST(AxisCheck, HasAWordForEverything) {
-  for (int i = 0; i <= static_cast<int>(AxisVerdict::interrupted); ++i) {
+  for (int i = 0; i <= static_cast<int>(AxisVerdict::given_up); ++i) {
     EXPECT_GT(std::string(explain(static_cast<AxisVerdict>(i))).size(), 10u);
   }
   EXPECT_NE(std::string(what_to_do(AxisStage::resting)), what_to_do(AxisStage::pushing));

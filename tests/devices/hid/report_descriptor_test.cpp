@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devices/hid/hid_error.h"
-#include "devices/hid/pid_usages.h"
+#include "devices/hid/protocols/pid_usages.h"
 #include "devices/hid/report_fields.h"
 #include "tests/support/hid_descriptors.h"
 

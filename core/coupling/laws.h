@@ -1,0 +1,90 @@
+// The coupling laws there are. A new one is a file like proposed.h, and its line here.
+#pragma once
+
+#include <array>
+#include <tuple>
+
+#include "core/coupling/proposed.h"
+#include "core/coupling/standard.h"
+
+namespace limpid {
+
+// Numbered in the order of Laws: the number is what recordings keep.
+enum class CouplingKind : std::uint8_t { standard, proposed };
+using Laws = std::tuple<StandardLaw, ProposedLaw>;
+
+namespace detail {
+
+template <class... Law>
+struct Listed {
+  struct Settings : Law::Settings... {};
+  static constexpr std::array<const LawInfo*, sizeof...(Law)> kInfos{&Law::kInfo...};
+  static constexpr std::array<const char*, sizeof...(Law)> kKeys{Law::kInfo.key...};
+  template <int N>
+  using Instances = std::tuple<typename Law::template Of<N>...>;
+};
+template <class... Law>
+Listed<Law...> listed(std::tuple<Law...>*);
+using AllLaws = decltype(listed(static_cast<Laws*>(nullptr)));
+
+template <class P, std::size_t... Size>
+constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
+  std::array<Setting<P>, (Size + ...)> all{};
+  std::size_t at = 0;
+  ((std::copy(parts.begin(), parts.end(), all.begin() + at), at += Size), ...);
+  return all;
+}
+
+}  // namespace detail
+
+// Of all laws: a law finds its own among them.
+using LawSettings = detail::AllLaws::Settings;
+
+// What describes them, law by law, for an owner that inherits them.
+template <class P>
+constexpr auto law_settings() {
+  return std::apply(
+      [](auto... law) {
+        return detail::joined<P>(decltype(law)::Settings::template settings<P>()...);
+      },
+      Laws{});
+}
+
+inline const LawInfo& info(CouplingKind kind) {
+  return *detail::AllLaws::kInfos[static_cast<std::size_t>(kind)];
+}
+// The law to switch to: all of them by turns.
+inline CouplingKind next(CouplingKind kind) {
+  const auto i = static_cast<std::size_t>(kind) + 1;
+  return static_cast<CouplingKind>(i % detail::AllLaws::kInfos.size());
+}
+inline constexpr auto& kLawKeys = detail::AllLaws::kKeys;
+inline constexpr std::uint8_t kLaws = kLawKeys.size();
+
+// All laws, of which one at a time ties device and proxy together.
+template <int N>
+class Coupling {
+ public:
+  void start() {
+    std::apply([](auto&... law) { (law.start(), ...); }, laws_);
+  }
+  // Steps the proxy over the tick; returns the torque that the motors are asked for [N m].
+  template <class P>
+  Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
+    Vec<N> torque;
+    std::uint8_t i = 0;
+    std::apply(
+        [&](auto&... law) {
+          ((i++ == static_cast<std::uint8_t>(kind) ? void(torque = law.step(p, in, proxy))
+                                                   : void()),
+           ...);
+        },
+        laws_);
+    return torque;
+  }
+
+ private:
+  detail::AllLaws::Instances<N> laws_;
+};
+
+}  // namespace limpid

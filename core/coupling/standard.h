@@ -1,0 +1,29 @@
+// The standard coupling: spring and damper alone, (1)-(2).
+#pragma once
+
+#include "core/coupling/spring_damper.h"
+
+namespace limpid {
+
+struct StandardLaw {
+  static constexpr LawInfo kInfo{
+      .key = "standard",
+      .label = "Standard",
+      .tooltip = "Spring and damper alone, (1)-(2). C switches.",
+      .meaning = "spring and damper alone, (1)-(2).",
+      .scales_inertia = false,
+      .sliders = kPaperSliders,
+  };
+
+  using Settings = SpringDamper;
+
+  template <int N>
+  struct Of {
+    void start() {}
+    Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy) {
+      return couple<N>(p, in, Feedforward<N>::none(in.x1.size()), proxy);
+    }
+  };
+};
+
+}  // namespace limpid

@@ -1,0 +1,38 @@
+#include "core/tick/arming.h"
+
+#include <algorithm>
+
+namespace limpid {
+
+void ForceGate::step(ForceWish wish, const Objections& against, double T) noexcept {
+  if (wish == ForceWish::arm) take(ArmingEvent::arm);
+  if (wish == ForceWish::cut) take(ArmingEvent::cut);
+  if (against.gap) take(ArmingEvent::gap);
+  if (against.gap || !(state_ == Arming::fading || state_ == Arming::on)) gain_ = 0;
+  if (against.fault != ForceState::on) {
+    // A device that is pulled out falls silent first.
+    const bool better = against.fault == ForceState::lost;
+    if (state_ != Arming::tripped || better) tripped_ = against.fault;
+    take(ArmingEvent::trip);
+  }
+  take(against.hand ? ArmingEvent::hand : ArmingEvent::no_hand);
+  if (state_ == Arming::fading || state_ == Arming::on) {
+    gain_ = against.ceiling > 0 ? std::min({1.0, against.ceiling, gain_ + T / kFade}) : 0;
+    take(gain_ < 1 ? ArmingEvent::held_back : ArmingEvent::full);
+  } else {
+    gain_ = 0;
+  }
+  why_ = reason(against);
+}
+
+// What is wrong is said of a device without force too: it is why arming would not help.
+ForceState ForceGate::reason(const Objections& against) const noexcept {
+  if (state_ == Arming::tripped) return tripped_;
+  if (against.fault != ForceState::on) return against.fault;
+  if (state_ == Arming::off) return ForceState::off;
+  if (against.gap) return ForceState::stalled;
+  if (state_ == Arming::waiting) return ForceState::no_hand;
+  return against.limited;
+}
+
+}  // namespace limpid

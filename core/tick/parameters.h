@@ -1,0 +1,65 @@
+// Everything a person can set, with the paper's values as defaults.
+//
+// One table describes the parameters once, for the command line, configuration files, sliders,
+// tooltips and help: key, unit, range and meaning.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/coupling/force_observer.h"
+#include "core/coupling/laws.h"
+
+namespace limpid {
+
+// Not a number stands for "as the arm's file says".
+inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
+
+struct Parameters : LawSettings, ObserverSettings {
+  CouplingKind kind = CouplingKind::proposed;
+  double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
+  double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]
+  double hand_stiffness = 300;  // [N/m]
+  double hand_damping = 2;      // [N s/m]
+  double tick = 0.001;          // T [s]
+  int substeps = 20;
+  double encoder_step = 0;         // [rad]
+  double friction = kFromArm;      // Coulomb, every joint [N m]
+  double damping = kFromArm;       // b_d, every joint [N m s/rad]
+  double torque_limit = kFromArm;  // every joint [N m]
+
+  friend bool operator==(const Parameters& a, const Parameters& b);
+};
+
+using ParameterInfo = Setting<Parameters>;
+
+std::span<const ParameterInfo> parameter_table();
+const ParameterInfo* find_parameter(std::string_view key);
+
+inline const char* name(CouplingKind kind) { return info(kind).key; }
+inline const char* name(VelocitySource source) {
+  return kVelocitySources[static_cast<std::size_t>(source)];
+}
+
+// A value as configuration files and `--set` give it.
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
+
+// Thrown for a key that does not exist or a value that is not allowed; what() names the key, what
+// was found and what is allowed.
+struct ParameterError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void set_parameter(Parameters& p, std::string_view key, const ParameterValue& value);
+// As a number: choices by their place, bool as 0 or 1, kFromArm for the arm's own.
+double parameter_number(const Parameters& p, const ParameterInfo& info);
+// Inverse of it; held within the allowed range.
+void set_parameter_number(Parameters& p, const ParameterInfo& info, double number);
+// As TOML would spell it; empty where the value is left to the arm.
+std::string parameter_text(const Parameters& p, const ParameterInfo& info);
+
+}  // namespace limpid

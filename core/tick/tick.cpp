@@ -1,0 +1,187 @@
+#include "core/tick/tick.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/subnormals.h"
+
+namespace limpid {
+namespace {
+
+template <int N>
+Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
+  Vec<N> values = Vec<N>::Zero(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) values[i] = arm.joints[static_cast<std::size_t>(i)].*field;
+  return values;
+}
+
+}  // namespace
+
+template <int N>
+Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
+    : layout_(arm.dof()),
+      arm_(arm),
+      arm_damping_(of_joints<N>(arm, &Joint::damping)),
+      arm_limit_(of_joints<N>(arm, &Joint::effort)),
+      velocity_(arm.dof()),
+      observer_(arm.dof()),
+      proxy_(arm, scene),
+      motors_(arm.dof()),
+      safety_(arm),
+      J_(Jacobian<N>::Zero(3, arm.dof())) {
+  start(Parameters{}, Start<N>::at_rest(Vec<N>::Zero(arm.dof())));
+}
+
+template <int N>
+void Tick<N>::start(const Parameters& p, const Start<N>& start) {
+  rebase(p, start);
+  motors_.start();
+  safety_.start();
+  gate_.start(start.armed);
+}
+
+template <int N>
+void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
+  const Vec<N> zero = Vec<N>::Zero(start.x1.size());
+  proxy_.place(start.x2, start.v2, p.inertia_ratio);
+  velocity_.reset(start.x1);
+  observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
+  books_ = {};
+  x1_before_ = start.x1;
+  f1_hat_ = start.f1_hat;
+  tau1_ = vbar2_ = zero;
+  b_d_ = resolve<N>(p.damping, arm_damping_);
+  kind_ = p.kind;
+  coupling_.start();
+  k_ = period_ = 0;
+  diverged_ = false;
+}
+
+template <int N>
+void Tick<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
+  proxy_.exchange(contacts);
+  motors_.begin_slew();
+}
+
+template <int N>
+const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish wish,
+                           std::span<double> row) {
+  const NoSubnormals fast_at_rest;
+  const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
+  if (in.health.gap) begin_after_gap(in);
+  const int periods = k_ > 0 && !in.health.gap ? in.periods : 1;
+  const double T = periods * p.tick;
+  if (k_ > 0) period_ += static_cast<std::uint64_t>(in.periods);
+  if (k_ > 0) close_books(in, T);
+  proxy_.set_ratio(p.inertia_ratio);
+  if (p.kind != kind_) motors_.begin_slew();
+  kind_ = p.kind;
+  b_d_ = resolve<N>(p.damping, arm_damping_);
+
+  // The device, (5), as the controller believes it to be.
+  if (k_ > 0 && !in.health.gap) {
+    velocity_.update(in.measured, T, p.velocity, p.encoder_step);
+  } else {
+    velocity_.reset(in.measured);
+  }
+  device_.v = velocity_.estimate();
+  arm_.frames(in.measured, frames_);
+  arm_.inertia_coriolis(frames_, device_.v, device_.M, device_.C);
+  device_.M *= p.inertia_error;
+  device_.C *= p.inertia_error;
+  const Vec<N>& v1 = velocity_.raw();
+
+  // Human force, (16)-(18).
+  f1_hat_ = k_ > 0 && !in.health.gap
+                ? observer_.estimate(p.alpha, T, device_.M, device_.C, device_.v, b_d_)
+                : observer_.present();
+
+  // The coupling, (1)-(2), (7)-(15), and with it the proxy, (4).
+  x2_ = proxy_.x();
+  v2_ = proxy_.v();
+  kinetic_ = proxy_.kinetic_energy();
+  command_ =
+      coupling_.step(p.kind, p, LawInput<N>{in.measured, v1, device_, f1_hat_, vbar2_, T}, proxy_);
+  potential_ = proxy_.contact_potential();
+  if (k_ == 0) first_potential_ = potential_;
+  vbar2_ = proxy_.vbar();
+
+  diverged_ = diverged_ || !command_.allFinite();
+  pass_on(p, in, wish, put_out, T);
+  observer_.applied(p.anti_windup ? tau1_ : command_);
+  write_row(p, in, row);
+  x1_before_ = in.x;
+  ++k_;
+  return tau1_;
+}
+
+// Nobody knows what the device did meanwhile, but that it was without torque: it starts as one
+// found at rest does.
+template <int N>
+void Tick<N>::begin_after_gap(const Reading<N>& in) {
+  velocity_.reset(in.measured);
+  f1_hat_.setZero();
+  observer_.reset(f1_hat_, f1_hat_);
+  tau1_.setZero();
+  motors_.start();
+  x1_before_ = in.x;
+}
+
+// The command on its way to the motors.
+template <int N>
+void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
+                      double T) {
+  const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
+  if (in.health.real) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
+  const Objections against =
+      safety_.judge(in.health, diverged_, in.measured, device_.v, J_, put_out, T);
+  // As much time as really passed, and no more than a tick's.
+  const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
+  gate_.step(wish, against, dt);
+  const bool real = in.health.real && !diverged_;
+  tau1_ = motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit,
+                       gate_.gain(), dt, real ? SafetyLimits::kSlew : 0);
+}
+
+template <int N>
+void Tick<N>::close_books(const Reading<N>& in, double T) {
+  const Vec<N> dx1 = in.x - x1_before_;
+  const Vec<N> dx2 = proxy_.x() - x2_;
+  books_.add(tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
+  books_.add_contact(proxy_.f(), dx2);
+}
+
+template <int N>
+void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const {
+  const auto put = [&](Column c, const Vec<N>& values) {
+    std::copy_n(values.data(), values.size(), layout_.in(row, c).begin());
+  };
+  const auto set = [&](Column c, double value) { layout_.in(row, c)[0] = value; };
+  set(Column::time, static_cast<double>(period_) * p.tick);
+  put(Column::device_position, in.x);
+  put(Column::device_velocity, in.v);
+  put(Column::measured_position, in.measured);
+  put(Column::measured_velocity, velocity_.estimate());
+  put(Column::commanded_torque, command_);
+  put(Column::motor_torque, tau1_);
+  put(Column::proxy_position, x2_);
+  put(Column::proxy_velocity, v2_);
+  put(Column::proxy_torque, proxy_.tau());
+  put(Column::contact_torque, proxy_.f());
+  put(Column::hand_torque_estimate, f1_hat_);
+  set(Column::force_wanted, gate_.armed() ? 1 : 0);
+  set(Column::force_state, static_cast<double>(gate_.why()));
+  set(Column::kind, static_cast<double>(p.kind));
+  set(Column::eta, p.eta);
+  set(Column::alpha, p.alpha);
+  set(Column::energy_total, books_.total);
+  set(Column::energy_commanded, books_.commanded);
+  set(Column::proxy_kinetic, kinetic_);
+  set(Column::contact_potential, potential_);
+  set(Column::contact_gain, books_.contact_gain(potential_, first_potential_));
+}
+
+template class Tick<3>;
+template class Tick<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,117 @@
+// One tick of the loop: the paper from the reading of a device to the torque of its motors.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/coupling/force_observer.h"
+#include "core/coupling/laws.h"
+#include "core/coupling/velocity_estimator.h"
+#include "core/tick/energy_books.h"
+#include "core/tick/motor_stage.h"
+#include "core/tick/parameters.h"
+#include "core/tick/row.h"
+#include "core/tick/safety.h"
+#include "core/touch/proxy.h"
+
+namespace limpid {
+
+// What a device says at t_k.
+template <int N>
+struct Reading {
+  Vec<N> measured;  // x1_k as the encoders give it [rad]
+  Vec<N> x, v;      // true state if it is known, else as measured [rad, rad/s]
+  DeviceHealth health{};
+  int periods = 1;  // since the reading before, in ticks; more than 1 after a late one
+  double dt = 0;    // the same as it really passed [s]; 0: as long as it should be
+};
+
+// Where a loop starts.
+template <int N>
+struct Start {
+  Vec<N> x1, v1;      // device [rad, rad/s]
+  Vec<N> x2, v2;      // proxy
+  Vec<N> f1_hat;      // estimate of the human torque [N m]
+  bool armed = true;  // at full force from the first tick on; not for real motors
+
+  static Start at_rest(const Vec<N>& x) {
+    const Vec<N> zero = Vec<N>::Zero(x.size());
+    return {x, zero, x, zero, zero, true};
+  }
+};
+
+// Everything between two ticks, and the tick itself. Allocates when constructed, never after.
+template <int N>
+class Tick {
+ public:
+  Tick(const ArmDescription& arm, const Scene& scene);
+
+  void start(const Parameters& p, const Start<N>& start);
+  // The same, but for the force: it goes on as it is.
+  void rebase(const Parameters& p, const Start<N>& start);
+  void limit(const SafetyLimits& limits) { safety_.limit(limits); }
+
+  // Runs tick k and writes its row, except for what only the device and the clock know (hand,
+  // timing). Returns the motor torque to be held until t_k+1 [N m].
+  const Vec<N>& run(const Parameters& p, const Reading<N>& in, ForceWish wish,
+                    std::span<double> row);
+
+  // Another scene, between two ticks: takes `contacts` in and gives the old ones out. Allocates
+  // nothing; the torque gets to what it now is at a bounded rate.
+  void exchange(std::unique_ptr<Contacts<N>>& contacts);
+
+  const Proxy<N>& proxy() const { return proxy_; }
+  const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
+  Vec3 tip() const { return arm_.tip(frames_); }      // of the device as measured [m]
+  // No force is fading, no coupling being switched, and the contacts remember nothing that a new
+  // start here would not find.
+  bool steady() const {
+    return gate_.steady() && motors_.steady() && proxy_.contacts().recoverable();
+  }
+  // The command was not finite: the loop is unstable, force is off.
+  bool diverged() const { return diverged_; }
+  const ForceGate& force() const { return gate_; }
+  const RowLayout& layout() const { return layout_; }
+
+ private:
+  void begin_after_gap(const Reading<N>& in);
+  void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
+  void close_books(const Reading<N>& in, double T);
+  void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
+
+  RowLayout layout_;
+  Arm<N> arm_;
+  Vec<N> arm_damping_, arm_limit_;  // of the arm's file
+  typename Arm<N>::Frames frames_;
+  Dynamics<N> device_;
+  VelocityEstimator<N> velocity_;
+  ForceObserver<N> observer_;
+  Proxy<N> proxy_;
+  Coupling<N> coupling_;
+  MotorStage<N> motors_;
+  Safety<N> safety_;
+  ForceGate gate_;
+  Jacobian<N> J_;  // of the device's tip
+  EnergyBooks<N> books_;
+
+  // At the present tick's start, for the row:
+  Vec<N> x2_, v2_, f1_hat_, command_;
+  double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
+  // Of the last tick, for the books and for the delayed terms of (1):
+  Vec<N> x1_before_, tau1_, vbar2_, b_d_;
+  CouplingKind kind_ = CouplingKind::standard;
+  std::uint64_t k_ = 0;       // ticks run
+  std::uint64_t period_ = 0;  // of the present tick; the same unless ticks were given up
+  bool diverged_ = false;
+};
+
+extern template class Tick<3>;
+extern template class Tick<kAnyDof>;
+
+// A joint value given for all joints, or the arm's own where it is left to the arm.
+template <int N>
+Vec<N> resolve(double setting, const Vec<N>& of_arm) {
+  return std::isnan(setting) ? of_arm : Vec<N>::Constant(of_arm.size(), setting);
+}
+
+}  // namespace limpid

@@ -1,0 +1,266 @@
+#include "core/touch/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+// Further apart than this nothing touches within one tick [m].
+constexpr double kReach = 0.02;
+// Balls in a capsule's place: this many radii apart, but no more than so many.
+constexpr double kSpacing = 0.75;
+constexpr int kMostBalls = 24;
+
+}  // namespace
+
+template <int N>
+Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene) : scene_(scene) {
+  const Vec3 tip = arm.tip.translation();
+  probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
+  probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
+  const std::size_t obstacles = scene.planes.size() + scene.spheres.size() + scene.boxes.size();
+  Contact<N> empty;
+  empty.gradient = Vec<N>::Zero(arm.dof());
+  contacts_.assign(obstacles * probes_.size() + scene.joint_contacts.size(), empty);
+  add_mesh_contacts(arm);
+}
+
+template <int N>
+void Contacts<N>::add_mesh_contacts(const ArmDescription& arm) {
+  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    const MeshObstacle& mesh = scene_.meshes[m];
+    for (const Probe& probe : probes_) {
+      const double length = (probe.to - probe.from).norm();
+      const double apart = std::max(kSpacing * probe.radius, length / (kMostBalls - 1));
+      const int balls = length > 0 ? 1 + static_cast<int>(std::ceil(length / apart)) : 1;
+      for (int i = 0; i < balls; ++i) {
+        const double part = balls > 1 ? static_cast<double>(i) / (balls - 1) : 0;
+        MeshContact<N> contact(mesh, probe.radius, arm.dof());
+        contact.mesh = static_cast<int>(m);
+        contact.link = probe.link;
+        contact.on_link = probe.from + part * (probe.to - probe.from);
+        meshes_.push_back(std::move(contact));
+      }
+    }
+  }
+}
+
+template <int N>
+void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x) {
+  for (MeshContact<N>& contact : meshes_) {
+    contact.center = Arm<N>::point(f, contact.link, contact.on_link);
+    contact.touch.place(contact.center);
+    contact.force.setZero();
+  }
+  find(arm, f, x, 0);
+  for (Contact<N>& contact : contacts_) contact.force = 0;
+}
+
+template <int N>
+void Contacts<N>::take_over(const Contacts& other) {
+  for (MeshContact<N>& mine : meshes_) {
+    const MeshObstacle& mesh = scene_.meshes[static_cast<std::size_t>(mine.mesh)];
+    for (const MeshContact<N>& theirs : other.meshes_) {
+      const MeshObstacle& before = other.scene_.meshes[static_cast<std::size_t>(theirs.mesh)];
+      if (mesh.shape != before.shape || mesh.scale != before.scale ||
+          mesh.pose.matrix() != before.pose.matrix() || mine.link != theirs.link ||
+          mine.on_link != theirs.on_link || mine.touch.radius() != theirs.touch.radius()) {
+        continue;
+      }
+      mine.touch.take_over(theirs.touch);
+      mine.center = theirs.center;
+    }
+  }
+}
+
+template <int N>
+bool Contacts<N>::recoverable() const {
+  return std::ranges::all_of(meshes_,
+                             [](const MeshContact<N>& c) { return c.touch.recoverable(); });
+}
+
+template <int N>
+void Contacts<N>::add(double depth, double stiffness, const Vec3& point, const Vec3& normal,
+                      int link, const Arm<N>& arm, const typename Arm<N>::Frames& f) {
+  Contact<N>& c = contacts_[count_++];
+  c.depth = depth;
+  c.stiffness = stiffness;
+  c.point = point;
+  c.normal = normal;
+  c.touching = depth > 0;
+  Jacobian<N> J;
+  arm.point_jacobian(f, link, point, J);
+  c.gradient.noalias() = -J.transpose() * normal;
+}
+
+template <int N>
+void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x,
+                       double T) {
+  count_ = 0;
+  for (const Probe& probe : probes_) {
+    const Vec3 from = Arm<N>::point(f, probe.link, probe.from);
+    const Vec3 to = Arm<N>::point(f, probe.link, probe.to);
+    const auto touch = [&](const auto& obstacle) {
+      const Vec3 point = from == to ? from : nearest_on_segment(obstacle, from, to);
+      const Surface s = distance_to(obstacle, point);
+      const double depth = probe.radius - s.distance;
+      if (depth > -kReach) {
+        add(depth, obstacle.stiffness, point, s.normal, probe.link, arm, f);
+      }
+    };
+    for (const Plane& plane : scene_.planes) touch(plane);
+    for (const Sphere& sphere : scene_.spheres) touch(sphere);
+    for (const Box& box : scene_.boxes) touch(box);
+  }
+  for (const JointContact& stop : scene_.joint_contacts) {
+    Contact<N>& c = contacts_[count_++];
+    c.depth = stop.direction * (x[stop.joint] - stop.angle);
+    c.gradient.setZero();
+    c.gradient[stop.joint] = stop.direction;
+    c.stiffness = stop.stiffness;
+    c.point = f.p[static_cast<std::size_t>(stop.joint)];
+    c.normal.setZero();
+    c.touching = c.depth > 0;
+  }
+  for (MeshContact<N>& contact : meshes_) {
+    const Vec3 before = contact.center;
+    contact.center = Arm<N>::point(f, contact.link, contact.on_link);
+    // Planes that are right in the middle of the tick take and give alike over it.
+    contact.touch.follow(contact.center + 0.5 * (contact.center - before), T);
+    look(contact, arm, f);
+  }
+}
+
+// Who pushes on the centre where it now is.
+template <int N>
+void Contacts<N>::look(MeshContact<N>& contact, const Arm<N>& arm,
+                       const typename Arm<N>::Frames& f) {
+  contact.rank = 0;
+  contact.active = {};
+  if (!contact.touch.near()) return;
+  arm.point_jacobian(f, contact.link, contact.center, contact.J);
+  if (contact.touch.held()) {
+    contact.rank = 3;
+    contact.direction.setIdentity();
+    contact.depth = contact.touch.anchor() - contact.center;
+    return;
+  }
+  Vec3 x;
+  contact.touch.space().project(contact.center, x, contact.active);
+  aim(contact);
+}
+
+// The directions of the planes that push, and how deep the centre is along them.
+template <int N>
+void Contacts<N>::aim(MeshContact<N>& contact) {
+  const FreeSpace& space = contact.touch.space();
+  contact.rank = space.basis(contact.active, contact.direction);
+  contact.depth =
+      contact.direction.transpose() * (space.onto(contact.center, contact.active) - contact.center);
+}
+
+template <int N>
+void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const Mat<N>& from_f2) const {
+  const auto spring = [&](double stiffness, double depth, const Vec<N>& gradient) {
+    Vec<N> answer = stiffness * gradient;  // of tau2 + f2 to a deeper contact, negative
+    answer += from_f2 * answer.eval();
+    A.noalias() += (0.5 * T) * answer * gradient.transpose();
+    b -= depth * answer;
+  };
+  for (const Contact<N>& c : list()) {
+    if (c.touching) spring(c.stiffness, c.depth, c.gradient);
+  }
+  for (const MeshContact<N>& c : meshes_) {
+    for (int i = 0; i < c.rank; ++i) {
+      const Vec<N> gradient = -c.J.transpose() * c.direction.col(i);
+      spring(c.stiffness, c.depth[i], gradient);
+    }
+  }
+}
+
+template <int N>
+bool Contacts<N>::push(const Vec<N>& vbar, double T, Vec<N>& f2) {
+  f2 = Vec<N>::Zero(vbar.size());
+  bool settled = true;
+  for (Contact<N>& c : std::span(contacts_.data(), count_)) {
+    const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar);
+    c.force = c.touching ? c.stiffness * depth : 0;
+    f2 -= c.force * c.gradient;
+    settled = settled && (depth > 0) == c.touching;
+  }
+  for (MeshContact<N>& c : meshes_) {
+    c.force.setZero();
+    if (!c.touch.near()) continue;
+    const Vec3 moved = 0.5 * T * (c.J * vbar);
+    for (int i = 0; i < c.rank; ++i) {
+      const Vec3 e = c.direction.col(i);
+      c.force += c.stiffness * (c.depth[i] - e.dot(moved)) * e;
+    }
+    if (c.rank > 0) f2.noalias() += c.J.transpose() * c.force;
+    if (c.touch.held()) continue;
+    FreeSpace::Active active;
+    Vec3 x;
+    settled = settled && c.touch.space().project(c.center + moved, x, active) && active == c.active;
+  }
+  return settled;
+}
+
+template <int N>
+bool Contacts<N>::reconsider(const Vec<N>& vbar, double T, bool only_let_go) {
+  bool changed = false;
+  for (Contact<N>& c : std::span(contacts_.data(), count_)) {
+    const bool deep = c.depth + 0.5 * T * c.gradient.dot(vbar) > 0;
+    if (deep == c.touching || (deep && only_let_go)) continue;
+    c.touching = deep;
+    changed = true;
+  }
+  for (MeshContact<N>& c : meshes_) {
+    if (!c.touch.near() || c.touch.held()) continue;
+    FreeSpace::Active active;
+    Vec3 x;
+    c.touch.space().project(c.center + 0.5 * T * (c.J * vbar), x, active);
+    if (active == c.active || (only_let_go && active.count >= c.active.count)) continue;
+    c.active = active;
+    aim(c);
+    changed = true;
+  }
+  return changed;
+}
+
+template <int N>
+std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
+  std::size_t count = 0;
+  for (const Contact<N>& c : list()) {
+    if (c.force > 0 && count < into.size()) into[count++] = {c.point, c.force * c.normal, c.normal};
+  }
+  for (const MeshContact<N>& c : meshes_) {
+    const double force = c.force.norm();
+    if (force == 0 || count == into.size()) continue;
+    const Vec3 normal = c.force / force;
+    into[count++] = {c.touch.anchor() - c.touch.radius() * normal, c.force, normal};
+  }
+  return count;
+}
+
+template <int N>
+double Contacts<N>::potential() const {
+  double U = 0;
+  for (const Contact<N>& c : list()) {
+    const double d = std::max(c.depth, 0.0);
+    U += 0.5 * c.stiffness * d * d;
+  }
+  for (const MeshContact<N>& c : meshes_) {
+    if (!c.touch.near()) continue;
+    Vec3 x = c.touch.anchor();
+    FreeSpace::Active active;
+    if (!c.touch.held()) c.touch.space().project(c.center, x, active);
+    U += 0.5 * c.stiffness * (x - c.center).squaredNorm();
+  }
+  return U;
+}
+
+template class Contacts<3>;
+template class Contacts<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,118 @@
+// Where the arm touches the scene, how deep, and what comes of it within a tick.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/dynamics/arm.h"
+#include "core/touch/mesh_touch.h"
+#include "core/touch/scene.h"
+
+namespace limpid {
+
+// One possible contact, linear in the configuration around x2: penetration
+// d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
+template <int N>
+struct Contact {
+  double depth = 0;            // [m], or [rad] in joint space; negative: apart
+  Vec<N> gradient;             // of the depth [m/rad] or [-]
+  double stiffness = 0;        // [N/m] or [N m/rad]
+  Vec3 point = Vec3::Zero();   // on the arm [m]
+  Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
+  bool touching = false;
+  double force = 0;  // over the last tick [N] or [N m]
+};
+
+// A ball of the arm against a mesh: its centre c(x2 + dx) = center + J dx is pulled by K (x - c) to
+// the nearest x that the mesh leaves free, within a tick a room of planes.
+template <int N>
+struct MeshContact {
+  MeshContact(const MeshObstacle& obstacle, double radius, Eigen::Index dof)
+      : touch(obstacle, radius), stiffness(obstacle.stiffness), J(Jacobian<N>::Zero(3, dof)) {}
+
+  MeshTouch touch;
+  int mesh = 0, link = 0;             // indices
+  Vec3 on_link = Vec3::Zero();        // the ball's centre, in the link's frame [m]
+  double stiffness = 0;               // [N/m]
+  Vec3 center = Vec3::Zero();         // [m]
+  Jacobian<N> J;                      // of the centre
+  FreeSpace::Active active;           // planes that push
+  Mat3 direction = Mat3::Identity();  // columns: orthonormal, along which it pushes
+  int rank = 0;                       // columns used
+  Vec3 depth = Vec3::Zero();          // along each of them at x2 [m]
+  Vec3 force = Vec3::Zero();          // over the last tick [N]
+};
+
+// Where something touches and how hard it pushes on the proxy.
+struct ContactForce {
+  Vec3 point;   // [m]
+  Vec3 force;   // [N]; zero in joint space
+  Vec3 normal;  // out of the material, unit; zero in joint space
+};
+
+// Finds what is near enough to touch within a tick, and keeps account of what does. Storage for
+// every pair of an obstacle and a probe is set aside beforehand.
+template <int N>
+class Contacts {
+ public:
+  // Every mesh has its shape. A capsule meets meshes as a row of balls.
+  Contacts(const ArmDescription& arm, const Scene& scene);
+
+  // Forgets what it remembers of sides, and looks anew at configuration x, frames f.
+  void place(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x);
+  // Looks at configuration x, frames f, before a tick of length T [s].
+  void find(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x, double T);
+  // Remembers the sides that another scene's contacts are on, as far as meshes are the same.
+  void take_over(const Contacts& other);
+  // Starting anew here would find the same sides.
+  bool recoverable() const;
+
+  // The contacts' part in the midpoint step (Proxy): with those thought to push,
+  //     A += (1 + from_f2) K T/2 G G^T,   b -= (1 + from_f2) K depth G,   G the gradients.
+  void add_to(Mat<N>& A, Vec<N>& b, double T, const Mat<N>& from_f2) const;
+  // The forces at the midpoint of a step with this velocity, their torque f2, and whether those
+  // thought to push are those that do.
+  bool push(const Vec<N>& vbar, double T, Vec<N>& f2);
+  // Thinks again who pushes after such a step; `only_let_go`: nobody new. False: nothing changed.
+  bool reconsider(const Vec<N>& vbar, double T, bool only_let_go);
+
+  std::span<const Contact<N>> list() const { return {contacts_.data(), count_}; }
+  std::size_t capacity() const { return contacts_.size(); }
+  std::span<const MeshContact<N>> meshes() const { return meshes_; }
+  // Copies what pushed over the last tick, as many as fit; returns how many.
+  std::size_t forces(std::span<ContactForce> into) const;
+  double potential() const;  // of all springs, K d^2 / 2 [J]
+
+ private:
+  void add(double depth, double stiffness, const Vec3& point, const Vec3& normal, int link,
+           const Arm<N>& arm, const typename Arm<N>::Frames& f);
+  void add_mesh_contacts(const ArmDescription& arm);
+  void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
+  static void aim(MeshContact<N>& contact);
+
+  Scene scene_;
+  std::vector<Probe> probes_;  // the tip first
+  std::vector<Contact<N>> contacts_;
+  std::size_t count_ = 0;
+  std::vector<MeshContact<N>> meshes_;
+};
+
+extern template class Contacts<3>;
+extern template class Contacts<kAnyDof>;
+
+// Signed distance of a point to the surface, negative inside, and the outward normal there.
+struct Surface {
+  double distance;  // [m]
+  Vec3 normal;
+};
+Surface distance_to(const Plane& plane, const Vec3& point);
+Surface distance_to(const Sphere& sphere, const Vec3& point);
+Surface distance_to(const Box& box, const Vec3& point);
+
+// The point of the segment from-to nearest to the obstacle.
+Vec3 nearest_on_segment(const Plane& plane, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Sphere& sphere, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Box& box, const Vec3& from, const Vec3& to);
+
+}  // namespace limpid

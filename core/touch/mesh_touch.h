@@ -1,0 +1,71 @@
+// One ball against one mesh: where the surface lets its centre be.
+#pragma once
+
+#include "core/touch/free_space.h"
+#include "core/touch/scene.h"
+#include "core/touch/triangle_mesh.h"
+
+namespace limpid {
+
+// A free point g follows the ball's centre c as near as the surface lets it (after Zilles and
+// Salisbury's god object): it never crosses the mesh, so that it knows the side, of a sheet without
+// thickness as well. The planes that hold g there are the room c is pulled back to: on a face, one;
+// in a groove, two; in a corner, three. Over a convex edge the ball rolls, as long as it is pressed
+// in by less than its radius. Pressed deeper it slips off some edges; the anchor of the force then
+// follows at a bounded speed, so that the force never jumps, and slipping only takes energy away.
+class MeshTouch {
+ public:
+  MeshTouch(const MeshObstacle& mesh, double radius);  // [m]
+
+  // Starts anew at c [m]. A centre inside of a closed mesh belongs outside, at the nearest place;
+  // one behind a sheet stays there.
+  void place(const Vec3& c);
+  // To c [m] within a tick of length T [s].
+  void follow(const Vec3& c, double T);
+  // Takes over where another one is; it must be of the same mesh, place, scale and radius.
+  void take_over(const MeshTouch& other);
+
+  // Near enough to touch within a tick.
+  bool near() const { return near_; }
+  // A spring to one point, anchor(), instead of to the room.
+  bool held() const { return held_; }
+  const FreeSpace& space() const { return world_; }
+  const Vec3& anchor() const { return anchor_; }  // [m]
+  // Starting anew here would find the same side again.
+  bool recoverable() const;
+  double radius() const { return radius_; }
+
+ private:
+  Vec3 to_mesh(const Vec3& world) const;
+  Vec3 to_world(const Vec3& local) const;
+  bool advance(const Vec3& p);
+  enum class Guess { none, near, right };
+  Guess guess(const Vec3& p, Vec3& t);
+  bool keep_only(const MeshPoint& at, const Vec3& from, const Vec3& p, Vec3& t);
+  bool keep_also(const MeshPoint& at, const Vec3& out, const Vec3& p, Vec3& t);
+  bool step_to(const MeshPoint& at, const Vec3& out);
+  Vec3 out_of(const MeshPoint& at, const Vec3& from) const;
+  void settle_at(const Vec3& g, const MeshPoint& near);
+  void let_go(const Vec3& p, double clearance);
+  void publish();
+
+  std::shared_ptr<const TriangleMesh> shape_;
+  bool closed_;
+  Pose pose_;
+  double scale_, radius_;
+
+  // In mesh units, around its middle:
+  double r_ = 0, skin_ = 0, tolerance_ = 0, look_ = 0;
+  Vec3 g_ = Vec3::Zero(), p_ = Vec3::Zero();
+  double distance_ = 0;   // from g to the mesh, at least
+  double clearance_ = 0;  // from the ball to the mesh, at least
+  std::uint32_t hint_ = MeshPoint::kNone;
+  FreeSpace space_;
+
+  // In the world:
+  FreeSpace world_;
+  Vec3 anchor_ = Vec3::Zero();
+  bool near_ = false, held_ = false, lost_ = false;
+};
+
+}  // namespace limpid

@@ -1,0 +1,115 @@
+#include "core/touch/proxy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/solve.h"
+
+namespace limpid {
+
+template <int N>
+Proxy<N>::Proxy(const ArmDescription& arm, const Scene& scene)
+    : arm_(arm), contacts_(std::make_unique<Contacts<N>>(arm, scene)) {
+  place(Vec<N>::Zero(arm.dof()), Vec<N>::Zero(arm.dof()), ratio_);
+}
+
+template <int N>
+void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
+  ratio_ = ratio;
+  x_ = x;
+  tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
+  update_inertia();
+  nu_ = L_.transpose() * v;
+  v_ = v;  // to the last bit: a recording's first row is a starting point
+  update_skew();
+  contacts_->place(arm_, frames_, x_);
+}
+
+template <int N>
+void Proxy<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
+  contacts->place(arm_, frames_, x_);
+  contacts->take_over(*contacts_);
+  contacts_.swap(contacts);
+}
+
+template <int N>
+void Proxy<N>::set_ratio(double ratio) {
+  if (ratio == ratio_) return;
+  nu_ *= std::sqrt(ratio / ratio_);
+  ratio_ = ratio;
+  update_inertia();
+  update_velocity();
+}
+
+// M and L where it now is.
+template <int N>
+void Proxy<N>::update_inertia() {
+  arm_.frames(x_, frames_);
+  arm_.inertia(frames_, bodies_, M_);
+  M_ *= ratio_;
+  L_ = cholesky<N>(M_);
+}
+
+// C, and S = C - L Ldot^T, where Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew: half of it says
+// all.
+template <int N>
+void Proxy<N>::update_skew() {
+  arm_.coriolis(frames_, bodies_, v_, C_);
+  C_ *= ratio_;
+  const Mat<N> Ldot = cholesky_rate<N>(L_, C_ + C_.transpose());
+  const Eigen::Index n = C_.rows();
+  S_ = C_;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k <= j; ++k) {
+      for (Eigen::Index i = j + 1; i < n; ++i) S_(i, j) -= L_(i, k) * Ldot(j, k);
+    }
+    S_(j, j) = 0;
+    for (Eigen::Index i = j + 1; i < n; ++i) S_(j, i) = -S_(i, j);
+  }
+}
+
+// The velocity of nu where it now is.
+template <int N>
+void Proxy<N>::update_velocity() {
+  v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  update_skew();
+}
+
+template <int N>
+void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
+  contacts_->find(arm_, frames_, x_, T);
+  // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
+  // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
+  // none ever pulls.
+  constexpr int kRounds = 4;
+  for (int round = 0; !solve_step(T, drive); ++round) {
+    if (!contacts_->reconsider(vbar_, T, round >= kRounds)) break;
+  }
+  // The torque as it acted, from the momentum it made: the balance then holds to round-off.
+  const Vec<N> nu_before = nu_;
+  nu_ = 2 * (L_.transpose() * vbar_) - nu_before;
+  const Vec<N> impulse = L_ * (nu_ - nu_before) / T;
+  tau_ = impulse + S_ * vbar_ - f_;
+  x_ += T * vbar_;
+  update_inertia();
+  update_velocity();
+}
+
+// Solves for vbar with the contacts now thought to touch. True if they are the ones that are deep
+// at the midpoint.
+template <int N>
+bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
+  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
+  // f2 - K T/2 vbar the contacts' force.
+  Mat<N> A = 2 / T * M_ + S_;
+  A.diagonal().array() += drive.damping;
+  Vec<N> b = 2 / T * (L_ * nu_) + drive.constant;
+  contacts_->add_to(A, b, T, drive.from_f2);
+  vbar_ = solve<N>(A, b);
+  return contacts_->push(vbar_, T, f_);
+}
+
+template class Proxy<3>;
+template class Proxy<kAnyDof>;
+
+}  // namespace limpid

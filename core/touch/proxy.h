@@ -1,0 +1,79 @@
+// The virtual proxy: robot dynamics (6) integrated passively in discrete time, (4).
+#pragma once
+
+#include <memory>
+
+#include "core/dynamics/arm.h"
+#include "core/touch/contacts.h"
+
+namespace limpid {
+
+// What acts on the proxy over one tick, with vbar = (x_k+1 - x_k) / T unknown:
+//     tau = constant - damping vbar + from_f2 f2,
+// and the contacts' f2 besides.
+template <int N>
+struct ProxyDrive {
+  Vec<N> constant;  // [N m]
+  double damping;   // b_v + b_vc + k_vc T / 2 [N m s/rad]
+  Mat<N> from_f2;   // [-]
+};
+
+// Non-iterative passive integration. With M2 = L L^T and nu = L^T v the motion (6) reads
+//     nu' = L^-1 (tau + f - S L^-T nu),   S = C - L Ldot^T skew,
+// and the midpoint rule, with L and S held at x_k and vbar = L^-T (nu_k + nu_k+1) / 2,
+//     (2/T M + S) vbar = 2/T L nu_k + tau + f,   x_k+1 = x_k + T vbar,
+// gives (|nu_k+1|^2 - |nu_k|^2) / 2 = (tau + f) . (x_k+1 - x_k): kinetic energy balances work in
+// every step, whatever T, M(x) and forces are. Springs, dampers and contacts enter at the midpoint,
+// linearly in vbar, so that one solve is all, and no inertia is too small.
+template <int N>
+class Proxy {
+ public:
+  Proxy(const ArmDescription& arm, const Scene& scene);
+
+  // Takes a state [rad, rad/s], with inertia ratio * M(x) [-].
+  void place(const Vec<N>& x, const Vec<N>& v, double ratio);
+  // A changed ratio keeps the velocity.
+  void set_ratio(double ratio);
+
+  // One tick of length T [s].
+  void advance(double T, const ProxyDrive<N>& drive);
+
+  const Vec<N>& x() const { return x_; }
+  const Vec<N>& v() const { return v_; }
+  const Mat<N>& M() const { return M_; }
+  const Mat<N>& C() const { return C_; }
+  double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }    // [J]
+  double contact_potential() const { return contacts_->potential(); }  // [J]
+
+  // Of the last tick:
+  const Vec<N>& tau() const { return tau_; }    // tau2 as it acted [N m]
+  const Vec<N>& f() const { return f_; }        // f2 as it acted [N m]
+  const Vec<N>& vbar() const { return vbar_; }  // [rad/s]
+  const Contacts<N>& contacts() const { return *contacts_; }
+
+  // At the present position:
+  const Arm<N>& arm() const { return arm_; }
+  const typename Arm<N>::Frames& frames() const { return frames_; }
+  // Another scene: takes `contacts` in and gives the old ones out. Nothing is allocated.
+  void exchange(std::unique_ptr<Contacts<N>>& contacts);
+
+ private:
+  void update_inertia();
+  void update_velocity();
+  void update_skew();
+  bool solve_step(double T, const ProxyDrive<N>& drive);
+
+  Arm<N> arm_;
+  std::unique_ptr<Contacts<N>> contacts_;
+  double ratio_ = 1e-4;
+  typename Arm<N>::Frames frames_;
+  typename Arm<N>::Bodies bodies_;
+  Vec<N> x_, v_, nu_;
+  Mat<N> M_, C_, L_, S_;
+  Vec<N> tau_, f_, vbar_;
+};
+
+extern template class Proxy<3>;
+extern template class Proxy<kAnyDof>;
+
+}  // namespace limpid

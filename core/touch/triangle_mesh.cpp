@@ -1,0 +1,293 @@
+#include "core/touch/triangle_mesh.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace limpid {
+namespace {
+
+// Embree's tree rounds to floats: searches reach further by this part of the mesh's radius.
+constexpr double kRounding = 1e-6;
+// A triangle lower than this part of its longest edge has no direction.
+constexpr double kSliver = 1e-9;
+
+std::string counted(std::size_t n, const char* what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+}  // namespace
+
+// Embree's own, and what it asks for while it builds.
+struct TriangleMesh::Tree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  const std::atomic<bool>* cancel = nullptr;
+  std::atomic<std::ptrdiff_t> bytes{0};
+  std::vector<std::uint32_t> indices;
+
+  // One thread: building goes on beside the haptic loop.
+  Tree() : device(rtcNewDevice("threads=1,set_affinity=0")) {
+    if (device == nullptr) throw std::runtime_error("Embree cannot be started");
+    rtcSetDeviceMemoryMonitorFunction(
+        device,
+        [](void* tree, ssize_t change, bool) {
+          static_cast<Tree*>(tree)->bytes += change;
+          return true;
+        },
+        this);
+    scene = rtcNewScene(device);
+  }
+  ~Tree() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  Tree(const Tree&) = delete;
+  Tree& operator=(const Tree&) = delete;
+
+  void build(const std::vector<Eigen::Vector3f>& corners) {
+    indices.resize(corners.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // The corners carry one more at the end, for Embree reads four numbers at a time.
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               corners.data(), 0, sizeof(Eigen::Vector3f), corners.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(),
+                               0, 3 * sizeof(std::uint32_t), indices.size() / 3);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneProgressMonitorFunction(
+        scene,
+        [](void* tree, double) {
+          const auto* stop = static_cast<Tree*>(tree)->cancel;
+          return stop == nullptr || !stop->load(std::memory_order_relaxed);
+        },
+        this);
+    rtcCommitScene(scene);
+    if (cancel != nullptr && cancel->load()) throw std::runtime_error("cancelled");
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
+      throw std::runtime_error("no search tree can be built for the mesh: out of memory");
+    }
+  }
+};
+
+std::string MeshHealth::text() const {
+  std::string out;
+  const auto add = [&](std::string part) { out += (out.empty() ? "" : ", ") + part; };
+  if (degenerate > 0) add(counted(degenerate, "triangle") + " without an area left out");
+  if (odd_edges > 0) add(counted(odd_edges, "edge") + " where the surface branches or turns over");
+  if (open_edges > 0) add(counted(open_edges, "open edge") + ": touched as a sheet, on both sides");
+  return out;
+}
+
+// Its areas by cross products, not by products of lengths: the thinnest triangles keep their
+// digits.
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const Vec3 n = ab.cross(ac);
+  const double w = n.dot(ab.cross(ap));
+  if (d1 >= 0 && d3 <= 0 && w <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double v = n.dot(ap.cross(ac));
+  if (d2 >= 0 && d6 <= 0 && v <= 0) return a + d2 / (d2 - d6) * ac;
+  if (d4 - d3 >= 0 && d5 - d6 >= 0 && n.dot(bp.cross(cp)) <= 0) {
+    return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  }
+  const double sum = n.squaredNorm();
+  return a + v / sum * ab + w / sum * ac;
+}
+
+TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
+                           std::span<const std::uint32_t> indices,
+                           const std::atomic<bool>* cancel) {
+  const auto began = std::chrono::steady_clock::now();
+  keep_triangles(vertices, indices);
+  examine_edges();
+  tree_ = std::make_unique<Tree>();
+  tree_->cancel = cancel;
+  tree_->build(corners_);
+  tree_->cancel = nullptr;
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+TriangleMesh::~TriangleMesh() = default;
+
+void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
+                                  std::span<const std::uint32_t> indices) {
+  if (indices.size() % 3 != 0) throw std::invalid_argument("indices do not make whole triangles");
+  if (indices.size() / 3 > kMostTriangles) {
+    throw std::invalid_argument(std::to_string(indices.size() / 3) + " triangles; at most " +
+                                std::to_string(kMostTriangles));
+  }
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t i : indices) {
+    if (i >= vertices.size()) {
+      throw std::invalid_argument("index " + std::to_string(i) + " of " +
+                                  counted(vertices.size(), "vertice"));
+    }
+    if (!vertices[i].allFinite() || vertices[i].cwiseAbs().maxCoeff() > 1e9f) {
+      throw std::invalid_argument("a corner that is not finite, or beyond 1e9");
+    }
+    box.extend(vertices[i].cast<double>());
+  }
+  if (!box.isEmpty()) middle_ = box.center();
+  corners_.reserve(indices.size() + 2);
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    std::array<Eigen::Vector3f, 3> t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      t[k] = (vertices[indices[i + k]].cast<double>() - middle_).cast<float>();
+    }
+    const Vec3 a = t[0].cast<double>(), ab = t[1].cast<double>() - a, ac = t[2].cast<double>() - a;
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    if (!(ab.cross(ac).norm() > kSliver * longest) || longest < 1e-30) {
+      ++health_.degenerate;
+      continue;
+    }
+    corners_.insert(corners_.end(), t.begin(), t.end());
+    for (const Eigen::Vector3f& v : t) radius_ = std::max(radius_, v.cast<double>().norm());
+  }
+  if (corners_.empty()) {
+    throw std::invalid_argument(health_.degenerate == 0 ? "no triangles"
+                                                        : "no triangle with an area");
+  }
+}
+
+// Two triangles meet in an edge where the bits of its two ends agree.
+void TriangleMesh::examine_edges() {
+  const std::size_t count = corners_.size();
+  std::vector<std::uint32_t> order(count), name(count);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint32_t>(i);
+  const auto less = [&](std::uint32_t i, std::uint32_t j) {
+    return std::lexicographical_compare(corners_[i].data(), corners_[i].data() + 3,
+                                        corners_[j].data(), corners_[j].data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  std::uint32_t names = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0 && less(order[i - 1], order[i])) ++names;
+    name[order[i]] = names;
+  }
+  std::vector<std::uint64_t> edges;  // ends, the lower first; the last bit: which way
+  edges.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t from = name[i], to = name[i % 3 == 2 ? i - 2 : i + 1];
+    edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | (from < to ? 1 : 0));
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < count;) {
+    std::size_t end = i + 1;
+    while (end < count && edges[end] >> 1 == edges[i] >> 1) ++end;
+    if (end - i == 1) ++health_.open_edges;
+    if (end - i > 2 || (end - i == 2 && edges[i] == edges[i + 1])) ++health_.odd_edges;
+    i = end;
+  }
+}
+
+std::size_t TriangleMesh::bytes() const {
+  return corners_.capacity() * sizeof(Eigen::Vector3f) +
+         tree_->indices.capacity() * sizeof(std::uint32_t) +
+         static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, tree_->bytes.load()));
+}
+
+bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
+                           MeshPoint& out) const noexcept {
+  struct Search {
+    const TriangleMesh& mesh;
+    Vec3 at, point;
+    double best2, margin;
+    std::uint32_t triangle = MeshPoint::kNone;
+
+    bool consider(std::uint32_t t) {
+      const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
+      // Most are in a plane that is too far away, rounding granted.
+      const Vec3 n = (b - a).cross(c - a);
+      const double height = n.dot(at - a);
+      if (height * height > (1 + 1e-7) * best2 * n.squaredNorm()) return false;
+      const Vec3 q = nearest_on_triangle(at, a, b, c);
+      const double d2 = (q - at).squaredNorm();
+      if (!(d2 < best2)) return false;
+      best2 = d2;
+      point = q;
+      triangle = t;
+      return true;
+    }
+  };
+  Search search{*this, at, Vec3::Zero(), within * within, kRounding * (radius_ + at.norm())};
+  if (hint < triangles()) search.consider(hint);
+  RTCPointQuery query;
+  query.x = static_cast<float>(at.x());
+  query.y = static_cast<float>(at.y());
+  query.z = static_cast<float>(at.z());
+  query.time = 0;
+  query.radius = static_cast<float>(std::sqrt(search.best2) + search.margin);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(
+      tree_->scene, &query, &context,
+      [](RTCPointQueryFunctionArguments* args) {
+        auto& s = *static_cast<Search*>(args->userPtr);
+        if (!s.consider(args->primID)) return false;
+        args->query->radius = static_cast<float>(std::sqrt(s.best2) + s.margin);
+        return true;
+      },
+      &search);
+  if (search.triangle == MeshPoint::kNone) return false;
+  const Vec3 a = corner(search.triangle, 0);
+  out.point = search.point;
+  out.normal = (corner(search.triangle, 1) - a).cross(corner(search.triangle, 2) - a).normalized();
+  out.distance = std::sqrt(search.best2);
+  out.triangle = search.triangle;
+  return true;
+}
+
+bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) const noexcept {
+  RTCRayHit ray;
+  const Eigen::Vector3f org = from.cast<float>(), dir = (to - from).cast<float>();
+  if (!(dir.squaredNorm() > 0)) return false;
+  std::memset(&ray, 0, sizeof ray);
+  ray.ray.org_x = org.x(), ray.ray.org_y = org.y(), ray.ray.org_z = org.z();
+  ray.ray.dir_x = dir.x(), ray.ray.dir_y = dir.y(), ray.ray.dir_z = dir.z();
+  ray.ray.tfar = 1;
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(tree_->scene, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const std::uint32_t t = ray.hit.primID;
+  const Vec3 a = corner(t, 0);
+  out.normal = (corner(t, 1) - a).cross(corner(t, 2) - a).normalized();
+  out.distance = static_cast<double>(ray.ray.tfar) * (to - from).norm();
+  out.point = from + static_cast<double>(ray.ray.tfar) * (to - from);
+  out.point -= out.normal.dot(out.point - a) * out.normal;  // onto the triangle, in doubles
+  out.triangle = t;
+  return true;
+}
+
+// What is seen first on the way to the middle of the nearest triangle turns its face or its back.
+bool TriangleMesh::behind(const Vec3& at) const noexcept {
+  MeshPoint near;
+  if (!nearest(at, std::numeric_limits<float>::max(), MeshPoint::kNone, near)) return false;
+  const std::uint32_t t = near.triangle;
+  const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+  MeshPoint seen;
+  if (!crossing(at, at + 1.001 * (middle - at), seen)) seen = near;
+  return seen.normal.dot(middle - at) > 0;
+}
+
+}  // namespace limpid

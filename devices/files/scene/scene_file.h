@@ -1,0 +1,74 @@
+// Scenes from TOML files. Lengths in metres, angles in radians, in the device base frame.
+//
+//     title = "A table"
+//     about = "One sentence for people."
+//     tip_radius = 0.0             # the tip is always a probe; 0 a point
+//
+//     [[plane]]                    # any number of each of these
+//     name = "table top"
+//     point = [0.2, 0.0, -0.04]    # on the surface
+//     normal = [0.0, 0.0, 1.0]     # out of the material, any length
+//     stiffness = 600.0            # N/m
+//
+//     [[sphere]]
+//     name = "ball"
+//     center = [0.2, 0.0, 0.0]
+//     radius = 0.02
+//     stiffness = 600.0
+//
+//     [[box]]
+//     name = "block"
+//     center = [0.2, 0.0, 0.0]
+//     size = [0.04, 0.04, 0.02]    # full edges
+//     rpy = [0.0, 0.0, 0.5]        # optional; roll, pitch, yaw as in URDF
+//     stiffness = 600.0
+//
+//     [[mesh]]                     # a model of triangles
+//     name = "gear"
+//     file = "gear.glb"            # glTF, from the scene file's folder
+//     position = [0.2, 0.0, 0.0]   # optional, as rpy and scale
+//     rpy = [0.0, 0.0, 0.5]
+//     scale = 1.0
+//     stiffness = 600.0
+//
+//     [[joint_contact]]
+//     name = "stop"
+//     joint = "shoulder"           # URDF name, or 1 for the first
+//     angle = -0.9
+//     side = "below"               # touched when the joint goes below the angle; or "above"
+//     stiffness = 20.0             # N m/rad
+//
+//     [[probe]]                    # a part of the arm that touches, besides the tip
+//     name = "forearm"
+//     link = "forearm"             # URDF name of a link that moves
+//     from = [0.0, 0.0, 0.0]       # in that link's frame
+//     to = [0.1, 0.0, 0.0]         # optional: a sphere without it
+//     radius = 0.01
+//
+//     [[visual]]                   # to look at only
+//     file = "table.glb"           # glTF, from the scene file's folder
+//     position = [0.0, 0.0, 0.0]   # optional, as rpy and scale
+//     rpy = [0.0, 0.0, 0.0]
+//     scale = 1.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/dynamics/arm_description.h"
+#include "core/touch/scene.h"
+
+namespace limpid {
+
+// Errors: FileError "FILE:LINE: KEY: found; allowed". Unknown keys are errors, a file without any
+// contact is not (free space). Pairs of a contact and a probe, tip included, are at most 64 x 64.
+Scene read_scene(const std::filesystem::path& file, const ArmDescription& arm);
+
+// `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
+// one inside a session) visuals that are not there are left out. Meshes come from `files` if they
+// are there, else from the folder; their shapes are still to be built.
+Scene parse_scene(const std::string& text, const std::string& where,
+                  const std::filesystem::path& base_dir, const ArmDescription& arm,
+                  const SceneFiles& files = {});
+
+}  // namespace limpid

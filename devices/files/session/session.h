@@ -1,0 +1,88 @@
+// Session files: recorded ticks as HDF5, readable while being written, recoverable when killed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/tick/row.h"
+#include "core/touch/scene.h"
+#include "devices/files/file_error.h"
+
+namespace limpid {
+
+struct SessionInfo {
+  double tick = 0.001;  // T [s]
+  int dof = 3;
+  std::string created;  // ISO 8601; filled in by the writer if empty
+  std::string app_version;
+  std::uint64_t seed = 0;
+  std::string source;       // what the hand was
+  std::string config;       // all parameters at row 0 (TOML)
+  std::string safety;       // the safety limits in force (TOML); empty if none were recorded
+  std::string device_urdf;  // whole text
+  std::string scene;        // whole text (TOML)
+  SceneFiles models;        // that the scene's text names
+};
+
+// A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.
+struct SettingChange {
+  std::uint64_t row = 0;
+  std::string setting;  // at most 120 characters; no value: back to the arm's own
+
+  std::string_view key() const { return std::string_view(setting).substr(0, setting.find(' ')); }
+};
+
+struct Session {
+  SessionInfo info;
+  RowLayout layout{3};
+  std::vector<double> rows;  // N x layout.stride(), row-major
+  std::vector<SettingChange> changes;
+
+  std::size_t size() const { return rows.size() / static_cast<std::size_t>(layout.stride()); }
+  std::span<const double> row(std::size_t k) const {
+    const auto stride = static_cast<std::size_t>(layout.stride());
+    return std::span(rows).subspan(k * stride, stride);
+  }
+  std::span<const double> at(std::size_t k, Column c) const { return layout.in(row(k), c); }
+};
+
+// Writes OUT.h5.part while running (SWMR: readable live) and renames it to OUT.h5 when closed.
+// Rows reach the disk at least every half second of ticks. Not for the haptic thread.
+// Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a write
+// fails (disk full); after a failed write the .part keeps what had been flushed.
+class SessionWriter {
+ public:
+  SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force);
+  ~SessionWriter();  // without close(): leaves the .part, as a killed program would
+  SessionWriter(const SessionWriter&) = delete;
+  SessionWriter& operator=(const SessionWriter&) = delete;
+
+  void append(std::span<const double> rows);  // any whole number of rows
+  void append(const SettingChange& change);
+  void close();                        // flush, close, rename
+  std::uint64_t rows_written() const;  // handed over so far
+  const std::filesystem::path& part() const;
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+// Reads OUT.h5, or the .part of a recording that is running or was killed (the rows that are
+// complete in every column). Errors: FileError for a file that is missing, not HDF5, not a
+// session, of another version, of inconsistent shapes, or with times that are not finite.
+Session read_session(const std::filesystem::path& file);
+
+// Makes OUT.h5 of OUT.h5.part (through a clean copy) and removes the .part. Returns the new path
+// and the rows saved. Errors: as read_session; FileError if OUT.h5 exists and not `force`.
+struct Recovered {
+  std::filesystem::path file;
+  std::uint64_t rows = 0;
+};
+Recovered recover_session(const std::filesystem::path& part, bool force);
+
+}  // namespace limpid

@@ -1,0 +1,90 @@
+#include "devices/files/session/session_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include "devices/files/session/session_source.h"
+
+namespace limpid {
+namespace {
+
+constexpr hsize_t kMostColumns = 256;
+constexpr unsigned long long kMostBlockRows = 1 << 20;
+
+// Which columns the sums are over; none: one that this program does not know.
+std::vector<std::optional<Column>> columns_in(const std::string& paths) {
+  std::vector<std::optional<Column>> columns;
+  for (std::size_t at = 0; at < paths.size();) {
+    const std::size_t end = std::min(paths.find('\n', at), paths.size());
+    const std::string path = paths.substr(at, end - at);
+    const auto known =
+        std::ranges::find_if(kColumnInfo, [&](const auto& c) { return c.path == path; });
+    columns.push_back(known == kColumnInfo.end() ? std::nullopt : std::optional(known->column));
+    at = end + 1;
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column) {
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  const bool byte = kColumnInfo[static_cast<std::size_t>(column)].byte;
+  std::uint64_t sum = rows.size() / stride;
+  for (std::size_t at = 0; at < rows.size(); at += stride) {
+    for (const double value : layout.in(rows.subspan(at, stride), column)) {
+      const double x = byte ? static_cast<std::uint8_t>(value) : value;  // as it is stored
+      sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
+      sum ^= sum >> 32;
+    }
+  }
+  return sum;
+}
+
+std::string check_columns() {
+  std::string paths;
+  for (const ColumnInfo& column : kColumnInfo) paths += std::string(column.path) + "\n";
+  return paths;
+}
+
+CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file) {
+  if (!exists(root, kCheckPath)) return {session.size(), ""};
+  const hdf5::Dataset sums(H5Dopen2(root, kCheckPath, H5P_DEFAULT));
+  if (!sums) refuse(file, fmt::format("{}: not a dataset that can be read", kCheckPath));
+  const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
+  const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));
+  if (block < 1 || block > kMostBlockRows || columns.empty() || columns.size() > kMostColumns) {
+    refuse(file,
+           fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns.size()));
+  }
+  const Source source = open_source(root, kCheckPath, columns.size(), file);
+  const hdf5::Datatype type(H5Dget_type(sums.get()));
+  if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 8) {
+    refuse(file, fmt::format("{}: of another type; needed: uint64", kCheckPath));
+  }
+
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  std::vector<std::uint64_t> wanted(columns.size());
+  for (std::size_t from = 0; from < session.size(); from += block) {
+    const std::size_t count = std::min<std::size_t>(block, session.size() - from);
+    const std::string rows = fmt::format("rows {} to {}", from, from + count - 1);
+    if (from / block >= source.rows || !read_row(source, from / block, wanted.data())) {
+      return {from, fmt::format("{} were never written", rows)};
+    }
+    const auto values = std::span(session.rows).subspan(from * stride, count * stride);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (!columns[i] || column_sum(session.layout, values, *columns[i]) == wanted[i]) continue;
+      const char* path = kColumnInfo[static_cast<std::size_t>(*columns[i])].path;
+      if (!exists(root, path)) continue;  // a column that somebody left out
+      return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
+                                "another program (which then has to delete /check)",
+                                path, rows)};
+    }
+  }
+  return {session.size(), ""};
+}
+
+}  // namespace limpid

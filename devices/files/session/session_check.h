@@ -1,0 +1,38 @@
+// What tells rows that were recorded from rows that a killed program had only announced, or that
+// were damaged since: a sum over each column, for every block of rows that is written at once.
+//
+// /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
+// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each. Sessions
+// of other programs, and of the first edition, have none.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/session.h"
+
+namespace limpid {
+
+inline constexpr const char* kCheckPath = "/check/sums";
+inline constexpr const char* kCheckRows = "rows";
+inline constexpr const char* kCheckColumns = "columns";
+
+// Over the values of `rows` in that column: h <- (h ^ bits) * odd, and a shift. Each step can be
+// undone, so a single value that changes always changes the sum.
+std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column);
+
+// The columns in the order of their sums.
+std::string check_columns();
+
+// How many rows from the first are as they were recorded, and why the next one is not.
+struct CheckedRows {
+  std::size_t rows = 0;
+  std::string why;  // empty if all are
+};
+// Errors: FileError for sums that are not laid out as above.
+CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file);
+
+}  // namespace limpid

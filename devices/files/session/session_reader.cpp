@@ -1,0 +1,259 @@
+// Reads session files, trusting nothing in them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "devices/files/session/hdf5_heaps.h"
+#include "devices/files/session/session_check.h"
+#include "devices/files/session/session_file.h"
+#include "devices/files/session/session_models.h"
+#include "devices/files/session/session_place.h"
+#include "devices/files/session/session_source.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBlockRows = 4096;  // rows of a column read at once
+// No compression HDF5 has packs zeros tighter; what claims more rows than this is broken.
+constexpr double kMostBytesPerByte = 2000;
+
+// What foreign programs need not write, and what it then is.
+std::optional<double> default_of(Column column) {
+  switch (column) {
+    case Column::hand_grip: return 1.0;
+    case Column::force_wanted: return 1.0;
+    case Column::force_state: return 0.0;
+    case Column::contact_potential: return 0.0;
+    case Column::contact_gain: return 0.0;
+    default: return std::nullopt;
+  }
+}
+
+bool is_leftover(const fs::path& file) { return file.extension() == ".part"; }
+
+hdf5::File open_as(const fs::path& file, unsigned flags) {
+  const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
+  // A broken leftover would keep HDF5 rereading it for ever.
+  if (flags & H5F_ACC_SWMR_READ) H5Pset_metadata_read_attempts(access.get(), 5);
+  return hdf5::File(H5Fopen(file.c_str(), flags, access.get()));
+}
+
+hdf5::File open(const fs::path& file) {
+  std::error_code error;
+  if (const std::string why = why_not_found(file, "no such file"); !why.empty()) refuse(file, why);
+  if (!fs::is_regular_file(file, error)) refuse(file, "not a file that can be read");
+  if (H5Fis_hdf5(file.c_str()) <= 0) refuse(file, "not an HDF5 file, or cut off");
+  hdf5::check_heaps(file);
+  if (is_leftover(file)) {
+    hdf5::File opened = open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ);
+    if (!opened) refuse(file, "no row was recorded before it was killed, or the file is damaged");
+    return opened;
+  }
+  hdf5::File opened = open_as(file, H5F_ACC_RDONLY);
+  if (opened) return opened;
+  const std::string reason = hdf5::last_error();
+  if (open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ)) {
+    refuse(file, "was never closed; rename it to end in .part and use `limpid recover`");
+  }
+  refuse(file, "cannot open: " + reason);
+}
+
+SessionInfo read_info(hid_t root, const fs::path& file) {
+  const std::string format = hdf5::read_text(root, "format", file);
+  if (format != kSessionFormat) {
+    refuse(file, fmt::format("format \"{:.40}\"; needed: \"{}\"", format, kSessionFormat));
+  }
+  const auto version = hdf5::read_count(root, "version", file);
+  if (version != kSessionVersion) {
+    refuse(file, fmt::format("version {}; this program reads {}", version, kSessionVersion));
+  }
+  SessionInfo info;
+  info.tick = hdf5::read_number(root, "tick", file);
+  info.dof = static_cast<int>(std::min(hdf5::read_count(root, "dof", file), 1000000ULL));
+  check_session_info(info, file);
+  info.seed = hdf5::read_count(root, "seed", file);
+  info.created = hdf5::read_text(root, "created", file);
+  info.app_version = hdf5::read_text(root, "app_version", file);
+  info.source = hdf5::read_text(root, "source", file);
+  info.config = hdf5::read_text(root, "config", file);
+  info.device_urdf = hdf5::read_text(root, "device_urdf", file);
+  info.scene = hdf5::read_text(root, "scene", file);
+  // Sessions of the first edition have none.
+  if (H5Aexists(root, "safety_limits") > 0) {
+    info.safety = hdf5::read_text(root, "safety_limits", file);
+  }
+  info.models = read_models(root, file);
+  return info;
+}
+
+// Copies a column into the rows. Returns how many rows were there and whole; fewer than asked for
+// only of a leftover.
+std::size_t read_column(const Source& source, Session& session, Column column,
+                        const fs::path& file) {
+  const std::size_t rows = session.size();
+  const auto width = static_cast<std::size_t>(source.width);
+  std::vector<double> block(kBlockRows * width);
+  for (std::size_t from = 0; from < rows; from += kBlockRows) {
+    const std::size_t count = std::min(kBlockRows, rows - from);
+    if (!read_block(source, from, count, block.data())) {
+      if (is_leftover(file)) return from;
+      refuse(file, fmt::format("{}: rows {} to {} cannot be read: {}", source.path, from,
+                               from + count - 1, hdf5::last_error()));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (std::bit_cast<std::uint64_t>(block[k * width]) == kNeverWritten) return from + k;
+      const auto row = std::span(session.rows)
+                           .subspan((from + k) * static_cast<std::size_t>(session.layout.stride()),
+                                    static_cast<std::size_t>(session.layout.stride()));
+      std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(k * width), width,
+                  session.layout.in(row, column).begin());
+    }
+  }
+  return rows;
+}
+
+std::size_t agreed_rows(const std::vector<Source>& sources, const RowLayout& layout,
+                        const fs::path& file) {
+  hsize_t rows = sources.front().rows;
+  for (const Source& source : sources) {
+    if (source.rows != rows && !is_leftover(file)) {
+      refuse(file, fmt::format("{} has {} rows, {} has {}; needed: the same", source.path,
+                               source.rows, sources.front().path, sources.front().rows));
+    }
+    rows = std::min(rows, source.rows);
+  }
+  const double claimed = static_cast<double>(rows) * layout.stride() * sizeof(double);
+  if (claimed > kMostBytesPerByte * static_cast<double>(fs::file_size(file))) {
+    refuse(file, fmt::format("claims {} rows, more than a file of its size can hold", rows));
+  }
+  return static_cast<std::size_t>(rows);
+}
+
+void read_rows(hid_t root, Session& session, const fs::path& file) {
+  std::vector<Source> sources;
+  std::vector<Column> columns;
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (!exists(root, column.path)) {
+      if (default_of(column.column)) continue;
+      refuse(file, fmt::format("{}: missing", column.path));
+    }
+    sources.push_back(open_column(root, column, session.layout, file));
+    columns.push_back(column.column);
+  }
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  std::size_t whole = agreed_rows(sources, session.layout, file);
+  session.rows.resize(whole * stride);
+  for (const ColumnInfo& column : kColumnInfo) {
+    const auto value = default_of(column.column);
+    if (!value) continue;
+    const auto offset = static_cast<std::size_t>(session.layout.offset(column.column));
+    for (std::size_t k = 0; k < whole; ++k) session.rows[k * stride + offset] = *value;
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    whole = std::min(whole, read_column(sources[i], session, columns[i], file));
+  }
+  session.rows.resize(whole * stride);
+}
+
+void check_rows(const Session& session, const fs::path& file) {
+  double before = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const double time = session.at(k, Column::time)[0];
+    const double kind = session.at(k, Column::kind)[0];
+    const double wanted = session.at(k, Column::force_wanted)[0];
+    if (!std::isfinite(time) || time <= before) {
+      refuse(file, fmt::format("/time: row {}: {}; needed: finite and increasing", k, time));
+    }
+    if (kind > 1 || wanted > 1) {
+      refuse(file, fmt::format("{}: row {}: {}; allowed: 0, 1",
+                               kind > 1 ? "/coupling/kind" : "/device/force_wanted", k,
+                               kind > 1 ? kind : wanted));
+    }
+    before = time;
+  }
+}
+
+std::vector<std::uint64_t> read_event_rows(const Source& source, const fs::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  std::vector<std::uint64_t> rows(source.rows);
+  if (H5Tget_class(type.get()) != H5T_INTEGER ||
+      (!rows.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL,
+                                H5P_DEFAULT, rows.data()) < 0)) {
+    refuse(file, fmt::format("{}: cannot be read as row numbers", source.path));
+  }
+  return rows;
+}
+
+std::vector<std::string> read_event_settings(const Source& source, const fs::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  const std::size_t length = H5Tget_size(type.get());
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 ||
+      length > kSettingLength) {
+    refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, kSettingLength));
+  }
+  std::string all(source.rows * length, '\0');
+  if (!all.empty() &&
+      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
+    refuse(file, fmt::format("{}: cannot be read", source.path));
+  }
+  std::vector<std::string> settings;
+  for (std::size_t at = 0; at < all.size(); at += length) {
+    const std::string setting = all.substr(at, length);
+    settings.emplace_back(setting.c_str(), std::min(setting.find('\0'), length));
+  }
+  return settings;
+}
+
+void read_changes(hid_t root, Session& session, const fs::path& file) {
+  if (!exists(root, kEventRowPath) || !exists(root, kEventSettingPath)) return;
+  const Source row_source = open_source(root, kEventRowPath, 1, file);
+  const Source setting_source = open_source(root, kEventSettingPath, 1, file);
+  if (static_cast<double>(std::max(row_source.rows, setting_source.rows)) >
+      kMostBytesPerByte * static_cast<double>(fs::file_size(file))) {
+    refuse(file, "/events: more than a file of its size can hold");
+  }
+  const auto rows = read_event_rows(row_source, file);
+  const auto settings = read_event_settings(setting_source, file);
+  if (rows.size() != settings.size() && !is_leftover(file)) {
+    refuse(file, "/events/row and /events/setting differ in length; needed: the same");
+  }
+  for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
+    if (is_leftover(file) && rows[i] >= session.size()) break;
+    if (rows[i] > session.size() || (i > 0 && rows[i] < rows[i - 1])) {
+      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
+                               rows[i], session.size()));
+    }
+    session.changes.push_back({rows[i], settings[i]});
+  }
+}
+
+}  // namespace
+
+Session read_session(const fs::path& file) {
+  const hdf5::Quiet quiet;
+  const hdf5::File opened = open(file);
+  Session session;
+  session.info = read_info(opened.get(), file);
+  session.layout = RowLayout(session.info.dof);
+  try {
+    read_rows(opened.get(), session, file);
+    const CheckedRows checked = checked_rows(opened.get(), session, file);
+    if (is_leftover(file)) {
+      session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
+    }
+    read_changes(opened.get(), session, file);
+    check_rows(session, file);
+    if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
+  } catch (const std::bad_alloc&) {
+    refuse(file, "larger than this computer's memory");
+  }
+  return session;
+}
+
+}  // namespace limpid

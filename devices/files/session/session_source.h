@@ -1,0 +1,36 @@
+// The datasets of a session file, opened with distrust.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/tick/row.h"
+#include "devices/files/session/hdf5_handles.h"
+
+namespace limpid {
+
+// One dataset with its shape checked: rows, or rows x width.
+struct Source {
+  hdf5::Dataset dataset;
+  std::string path;
+  hsize_t rows = 0;
+  hsize_t width = 1;
+};
+
+// Throws FileError "FILE: WHY".
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
+
+bool exists(hid_t root, const std::string& path);
+
+// Errors: FileError for what is no dataset or of another shape (or, for a column, type).
+Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file);
+Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
+                   const std::filesystem::path& file);
+
+// `count` rows from row `from` as doubles. False if the file does not give them.
+bool read_block(const Source& source, hsize_t from, hsize_t count, double* out);
+// One row of whole numbers.
+bool read_row(const Source& source, hsize_t row, std::uint64_t* out);
+
+}  // namespace limpid

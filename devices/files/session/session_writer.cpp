@@ -1,0 +1,84 @@
+// Where a session may be written, and how it gets its name when it is complete.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "devices/files/session/session_file.h"
+#include "devices/files/session/session_place.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+struct SessionWriter::File {
+  fs::path out;
+  fs::path part;
+  bool force;
+  std::optional<WriteLock> lock;
+  std::optional<SessionFile> session;
+};
+
+SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
+    : file_(std::make_unique<File>()) {
+  check_session_info(info, out);
+  file_->out = std::move(out);
+  file_->part = part_of(file_->out);
+  file_->force = force;
+  check_place(file_->out, force);
+  if (!force && fs::exists(file_->part)) {
+    throw FileError(fmt::format(
+        "{0}: left by a recording that was not closed; `limpid recover {0}` saves it, --force "
+        "overwrites it",
+        file_->part.string()));
+  }
+  file_->lock.emplace(file_->part, WriteLock::Make::yes);
+  try {
+    file_->session.emplace(file_->part, info);
+  } catch (const FileError&) {
+    std::error_code ignored;
+    fs::remove(file_->part, ignored);  // it holds nothing yet
+    throw;
+  }
+}
+
+SessionWriter::~SessionWriter() = default;
+
+void SessionWriter::append(std::span<const double> rows) { file_->session->append(rows); }
+void SessionWriter::append(const SettingChange& change) { file_->session->append(change); }
+std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
+const fs::path& SessionWriter::part() const { return file_->part; }
+
+void SessionWriter::close() {
+  if (!file_->lock) return;
+  file_->session->close();
+  publish(file_->part, file_->out, file_->force);
+  file_->lock.reset();
+}
+
+Recovered recover_session(const fs::path& part, bool force) {
+  const fs::path out = recovered_name(part);
+  if (const std::string why = why_not_found(part, "no such file"); !why.empty()) {
+    throw FileError(fmt::format("{}: {}", part.string(), why));
+  }
+  check_place(out, force);
+  const WriteLock lock(part, WriteLock::Make::no);
+  const Session session = read_session(part);
+
+  fs::path copy = out;
+  copy += ".recovering";
+  try {
+    SessionFile file(copy, session.info);
+    for (const SettingChange& change : session.changes) file.append(change);
+    file.append(session.rows);
+    file.close();
+    publish(copy, out, force);
+  } catch (const FileError&) {
+    std::error_code ignored;
+    fs::remove(copy, ignored);
+    throw;
+  }
+  fs::remove(part);
+  return {out, session.size()};
+}
+
+}  // namespace limpid

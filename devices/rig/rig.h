@@ -1,0 +1,110 @@
+// A device, virtual or real, the loop that drives it and the hand that holds it: one step is one
+// tick of all three.
+//
+// Live threads, headless runs, re-runs and tests all call the same step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/tick/tick.h"
+#include "devices/virtual_arm.h"
+
+namespace limpid {
+
+// What reaches the loop from outside in one tick.
+struct RigInput {
+  HandInput hand;
+  ForceWish force = ForceWish::as_it_is;
+  int periods = 1;     // since the step before, in ticks
+  double dt = 0;       // the same as it really passed [s]; 0: as long as it should be
+  double silence = 0;  // since the window last answered [s]
+};
+
+// A starting point of any size, e.g. the first row of a recording.
+struct RigStart {
+  Eigen::VectorXd x1, v1, x2, v2;  // [rad, rad/s]
+  Eigen::VectorXd f1_hat;          // [N m]
+  Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
+  bool armed = true;               // at full force at once; a real device never is
+};
+
+// What a rig's arm can touch, ready to be taken in by a running loop.
+class TouchWorld {
+ public:
+  // Not for the haptic thread. Every mesh of the scene has its shape.
+  TouchWorld(const ArmDescription& arm, const Scene& scene);
+
+ private:
+  friend class Rig;
+  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<kAnyDof>>> contacts_;
+};
+
+class Rig {
+ public:
+  // `real`: the arm is a real device's, to be plugged in; until then it counts as lost.
+  Rig(const ArmDescription& arm, const Scene& scene, bool real = false);
+
+  // From the next step on; null: unplugged. Of a rig for a real device. The caller keeps it.
+  void plug(Device* device) noexcept;
+  bool real() const;
+  // What the real device said at the last step; false if it was not there.
+  bool device_reading(DeviceReading& newest) const;
+
+  int dof() const { return layout().dof(); }
+  const RowLayout& layout() const;
+
+  // Force of a real device is off then, until it is armed.
+  void start(const Parameters& p, const RigStart& start);
+  // Where it stands now, as a starting point. `into` has vectors of this size already: nothing is
+  // allocated.
+  void present(RigStart& into) const;
+  // Begins anew from where it stands, the force as it is: so does a recording of a running loop.
+  // `scratch` as in present(); `target` is the hand's [m].
+  void rebase(const Parameters& p, RigStart& scratch, const Vec3& target);
+  void limit(const SafetyLimits& limits);
+  // Between two steps: takes in what can be touched from now on, made for the same arm, and gives
+  // out what could be until now. Contacts with meshes that stay remember their sides.
+  void exchange(TouchWorld& world) noexcept;
+  // Reads the device, runs the tick, lives through it; writes the row (not its timing). Allocates
+  // nothing.
+  void step(const Parameters& p, const RigInput& input, std::span<double> row) noexcept;
+
+  Vec3 tip() const;       // of the device [m]
+  bool steady() const;    // nothing fades, no coupling is being switched
+  bool diverged() const;  // the loop went unstable; force is off
+  const ForceGate& force() const;
+  ForceState force_state() const { return force().why(); }
+  // Copies where the proxy is touched, as many as fit; returns how many.
+  std::size_t contacts(std::span<ContactForce> into) const noexcept;
+
+ private:
+  template <int N>
+  struct Of {
+    Of(const ArmDescription& description, const Scene& scene, bool is_real)
+        : tick(description, scene), virtual_device(description), real(is_real) {}
+    Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
+    Reading<N> read_real(const Parameters& p, const RigInput& now) noexcept;
+
+    Tick<N> tick;
+    VirtualDevice<N> virtual_device;
+    bool real;
+    Device* plugged = nullptr;
+    bool here = false;  // it answered
+    DeviceReading reading;
+    Vec<N> x_before, v_real;              // of a real device
+    std::optional<std::uint32_t> lapses;  // that are known of
+    RigInput input;
+  };
+  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;
+};
+
+// At rest, the tip on `target`. Throws std::invalid_argument if it cannot be reached.
+RigStart rest_at(const ArmDescription& arm, const Vec3& target);
+// What the first row of a recording says.
+RigStart start_of(const RowLayout& layout, std::span<const double> row);
+
+}  // namespace limpid

@@ -1,0 +1,147 @@
+#include "render/model/gltf_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+float unit(double value) {
+  return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : 0.0f;
+}
+
+double number(const tinygltf::Value& object, const char* key, double otherwise) {
+  const auto& value = object.Get(key);
+  const double read = value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+  return std::isfinite(read) ? read : otherwise;
+}
+
+Eigen::Vector2f pair(const tinygltf::Value& object, const char* key, float otherwise) {
+  const auto& value = object.Get(key);
+  Eigen::Vector2f out = Eigen::Vector2f::Constant(otherwise);
+  for (int i = 0; value.IsArray() && value.ArrayLen() == 2 && i < 2; ++i)
+    out[i] = static_cast<float>(value.Get(i).IsNumber() ? value.Get(i).GetNumberAsDouble() : 0);
+  return out.allFinite() && out.cwiseAbs().maxCoeff() < 1e6f ? out
+                                                             : Eigen::Vector2f::Constant(otherwise);
+}
+
+// KHR_texture_transform.
+Eigen::Affine2f move_of(const tinygltf::Value& extension) {
+  const double turn = number(extension, "rotation", 0);
+  const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
+  Eigen::Affine2f move = Eigen::Affine2f::Identity();
+  move.linear() << c, s, -s, c;
+  move.linear() *= pair(extension, "scale", 1).asDiagonal();
+  move.translation() = pair(extension, "offset", 0);
+  return move;
+}
+
+Image::Wrap wrap_of(int gl) {
+  return gl == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Image::Wrap::clamp
+         : gl == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Image::Wrap::mirror
+                                                       : Image::Wrap::repeat;
+}
+
+}  // namespace
+
+void add_warning(Model& model, const std::string& what) {
+  constexpr std::size_t kMost = 20;
+  auto& list = model.warnings;
+  if (list.size() < kMost && std::find(list.begin(), list.end(), what) == list.end())
+    list.push_back(what);
+}
+
+void GltfMaterials::warn(const std::string& what) { add_warning(model_, what); }
+
+const GltfMaterial& GltfMaterials::at(int index) {
+  const auto found = known_.find(index);
+  if (found != known_.end()) return found->second;
+  GltfMaterial made;
+  if (index >= 0) made = read(file_.at(source_.gltf.materials, index, "material"));
+  return known_.emplace(index, made).first->second;
+}
+
+GltfMaterial GltfMaterials::read(const tinygltf::Material& from) {
+  GltfMaterial to;
+  bool placed = false;  // whether a texture has said where its coordinates are
+  const auto& pbr = from.pbrMetallicRoughness;
+  if (pbr.baseColorFactor.size() == 4) {
+    for (int i = 0; i < 3; ++i)
+      to.color[i] = unit(pbr.baseColorFactor[static_cast<std::size_t>(i)]);
+    to.opacity = unit(pbr.baseColorFactor[3]);
+  }
+  to.surface = {unit(pbr.metallicFactor), unit(pbr.roughnessFactor)};
+  to.material.color = texture(pbr.baseColorTexture, true, to, placed);
+  to.material.surface = texture(pbr.metallicRoughnessTexture, false, to, placed);
+  to.material.normal = texture(from.normalTexture, false, to, placed);
+  to.material.emission = texture(from.emissiveTexture, true, to, placed);
+  if (to.material.normal >= 0 && std::isfinite(from.normalTexture.scale))
+    to.material.bump = static_cast<float>(std::clamp(from.normalTexture.scale, -10.0, 10.0));
+  if (from.emissiveFactor.size() == 3)
+    for (std::size_t i = 0; i < 3; ++i) to.material.glow[i] = unit(from.emissiveFactor[i]);
+  to.material.two_sided = from.doubleSided;
+  if (from.alphaMode == "MASK") {
+    to.material.alpha = Material::Alpha::mask;
+    to.material.cutoff = unit(from.alphaCutoff);
+  } else if (from.alphaMode == "BLEND") {
+    to.material.alpha = Material::Alpha::blend;
+  } else {
+    to.opacity = 1;
+  }
+  return to;
+}
+
+// One set of coordinates is kept: the one of the material's first texture.
+template <class Info>
+int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& placed) {
+  if (info.index < 0) return -1;
+  int set = info.texCoord;
+  Eigen::Affine2f move = Eigen::Affine2f::Identity();
+  const auto extension = info.extensions.find("KHR_texture_transform");
+  if (extension != info.extensions.end() && extension->second.IsObject()) {
+    move = move_of(extension->second);
+    set = static_cast<int>(std::clamp(number(extension->second, "texCoord", set), -1.0, 99.0));
+  }
+  if (placed && (set != to.uv_set || !move.matrix().isApprox(to.uv_move.matrix()))) {
+    warn("a texture with coordinates of its own is left out");
+    return -1;
+  }
+  const auto& texture = file_.at(source_.gltf.textures, info.index, "texture");
+  if (texture.source < 0) {
+    warn("a texture of an unknown kind is left out");
+    return -1;
+  }
+  file_.at(source_.gltf.images, texture.source, "image");
+  tinygltf::Sampler sampler;
+  if (texture.sampler >= 0) sampler = file_.at(source_.gltf.samplers, texture.sampler, "sampler");
+  const int image = picture(texture.source, srgb, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT));
+  if (image < 0) return -1;
+  placed = true;
+  to.uv_set = set;
+  to.uv_move = move;
+  return image;
+}
+
+int GltfMaterials::picture(int source, bool srgb, Image::Wrap wrap_u, Image::Wrap wrap_v) {
+  const auto [place, is_new] = pictures_.try_emplace({source, srgb, wrap_u, wrap_v}, -1);
+  if (!is_new) return place->second;
+  const auto& from = source_.gltf.images[static_cast<std::size_t>(source)];
+  const auto bytes = from.bufferView >= 0
+                         ? file_.view(from.bufferView)
+                         : std::span(source_.pictures[static_cast<std::size_t>(source)]);
+  auto image = images_.decode(bytes, name_);
+  if (!image) {
+    warn("image " + std::to_string(source) +
+         (from.uri.empty() ? "" : " (\"" + one_line(from.uri) + "\")") +
+         (bytes.empty() ? " is missing" : " is no PNG or JPEG that can be read") +
+         ", it is left out");
+    return -1;
+  }
+  image->srgb = srgb;
+  image->wrap_u = wrap_u;
+  image->wrap_v = wrap_v;
+  model_.images.push_back(std::move(*image));
+  return place->second = static_cast<int>(model_.images.size()) - 1;
+}
+
+}  // namespace limpid

@@ -1,0 +1,54 @@
+// Materials of a glTF file, with the pictures they use.
+#pragma once
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "render/model/gltf_accessor.h"
+#include "render/model/gltf_file.h"
+#include "render/model/gltf_image.h"
+#include "render/model/model.h"
+
+namespace limpid {
+
+// A material as the vertices and the part of a model take it.
+struct GltfMaterial {
+  Material material;
+  Eigen::Vector3f color = Vertex{}.color;  // linear
+  float opacity = 1;
+  Eigen::Vector2f surface = Vertex{}.surface;  // metallic, roughness
+  int uv_set = 0;
+  Eigen::Affine2f uv_move = Eigen::Affine2f::Identity();
+};
+
+class GltfMaterials {
+ public:
+  // Pictures are added to model.images, what is left out to model.warnings.
+  GltfMaterials(const GltfFile& source, const GltfAccessor& file, const std::string& name,
+                Model& model)
+      : source_(source), file_(file), name_(name), model_(model) {}
+
+  // Decodes the pictures of a material that is new. -1: none, plain grey.
+  const GltfMaterial& at(int index);
+
+ private:
+  GltfMaterial read(const tinygltf::Material& from);
+  template <class Info>
+  int texture(const Info& info, bool srgb, GltfMaterial& to, bool& placed);
+  int picture(int source, bool srgb, Image::Wrap wrap_u, Image::Wrap wrap_v);
+  void warn(const std::string& what);
+
+  const GltfFile& source_;
+  const GltfAccessor& file_;
+  const std::string& name_;
+  Model& model_;
+  GltfImages images_;
+  std::map<int, GltfMaterial> known_;
+  std::map<std::tuple<int, bool, Image::Wrap, Image::Wrap>, int> pictures_;
+};
+
+// Adds a line unless it is there already or there are many.
+void add_warning(Model& model, const std::string& what);
+
+}  // namespace limpid

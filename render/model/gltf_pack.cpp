@@ -1,0 +1,143 @@
+#include "render/model/gltf_pack.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "render/model/gltf_file.h"
+
+namespace limpid {
+namespace {
+
+using nlohmann::json;
+using Bytes = std::vector<unsigned char>;
+
+constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+
+// The list of that name; an empty one if there is none.
+json& list(json& gltf, const char* key) {
+  json& found = gltf[key];
+  if (!found.is_array()) found = json::array();
+  return found;
+}
+
+bool lies_outside(const json& object) {
+  const auto uri = object.is_object() ? object.find("uri") : object.end();
+  return object.is_object() && uri != object.end() && uri->is_string() &&
+         !uri->get_ref<const std::string&>().starts_with("data:");
+}
+
+bool any_outside(const json& gltf, const char* key) {
+  const auto found = gltf.find(key);
+  return found != gltf.end() && found->is_array() &&
+         std::any_of(found->begin(), found->end(), lies_outside);
+}
+
+void fill_up(Bytes& bytes, unsigned char filler) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+}
+
+void put(Bytes& out, std::size_t number) {
+  const auto bytes =
+      std::bit_cast<std::array<unsigned char, 4>>(static_cast<std::uint32_t>(number));
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+// Where a view, or an extension of one, says which bytes of which buffer it stands for.
+void move_into_first(json& view, const std::vector<std::size_t>& starts) {
+  if (!view.is_object() || !view.contains("buffer") || !view["buffer"].is_number_unsigned()) return;
+  const auto buffer = view["buffer"].get<std::size_t>();
+  if (buffer >= starts.size()) return;
+  const json offset = view.value("byteOffset", json(0u));
+  view["buffer"] = 0;
+  view["byteOffset"] =
+      starts[buffer] + (offset.is_number_unsigned() ? offset.get<std::size_t>() : 0);
+}
+
+// One buffer in place of all of them.
+Bytes join_buffers(json& gltf, const GltfFile& file) {
+  Bytes all;
+  std::vector<std::size_t> starts;
+  for (const auto& buffer : file.gltf.buffers) {
+    starts.push_back(all.size());
+    all.insert(all.end(), buffer.data.begin(), buffer.data.end());
+    fill_up(all, 0);
+  }
+  for (json& view : list(gltf, "bufferViews")) {
+    move_into_first(view, starts);
+    if (!view.is_object() || !view.contains("extensions")) continue;
+    for (json& extension : view["extensions"]) move_into_first(extension, starts);
+  }
+  return all;
+}
+
+const char* kind_of(const Bytes& picture) {
+  return picture.front() == 0xFF  ? "image/jpeg"
+         : picture.front() == 'R' ? "image/webp"
+                                  : "image/png";
+}
+
+void bring_in_pictures(json& gltf, const GltfFile& file, Bytes& all) {
+  json& images = list(gltf, "images");
+  json& views = list(gltf, "bufferViews");
+  std::map<std::string, std::size_t> known;  // views of pictures by where they lie
+  for (std::size_t i = 0; i < std::min(images.size(), file.pictures.size()); ++i) {
+    const Bytes& picture = file.pictures[i];
+    if (!lies_outside(images[i]) || picture.empty()) continue;
+    const auto [place, is_new] =
+        known.try_emplace(images[i]["uri"].get<std::string>(), views.size());
+    if (is_new) {
+      views.push_back({{"buffer", 0}, {"byteOffset", all.size()}, {"byteLength", picture.size()}});
+      all.insert(all.end(), picture.begin(), picture.end());
+      fill_up(all, 0);
+    }
+    images[i].erase("uri");
+    images[i]["bufferView"] = place->second;
+    if (!images[i].contains("mimeType")) images[i]["mimeType"] = kind_of(picture);
+  }
+  if (images.empty()) gltf.erase("images");  // a list must not be empty
+}
+
+Bytes binary_file(const json& gltf, const Bytes& data) {
+  const std::string dumped = gltf.dump();
+  Bytes text(dumped.begin(), dumped.end());
+  fill_up(text, ' ');
+  Bytes out;
+  put(out, kMagic);
+  put(out, 2);
+  put(out, 12 + 8 + text.size() + 8 + data.size());
+  put(out, text.size());
+  put(out, kJson);
+  out.insert(out.end(), text.begin(), text.end());
+  put(out, data.size());
+  put(out, kBinary);
+  out.insert(out.end(), data.begin(), data.end());
+  return out;
+}
+
+}  // namespace
+
+std::vector<unsigned char> pack_gltf(std::span<const unsigned char> bytes, const std::string& name,
+                                     const std::filesystem::path& folder) {
+  const auto text = gltf_json(bytes, name);
+  json gltf = json::parse(text.begin(), text.end(), nullptr, false);
+  if (!gltf.is_object()) throw std::runtime_error(name + ": is not valid JSON");
+  if (!any_outside(gltf, "buffers") && !any_outside(gltf, "images")) return {};
+  const GltfFile file = parse_gltf_file(bytes, name, folder);
+  Bytes all = join_buffers(gltf, file);
+  bring_in_pictures(gltf, file, all);
+  if (all.empty()) return {};
+  gltf["buffers"] = json::array({{{"byteLength", all.size()}}});
+  Bytes out = binary_file(gltf, all);
+  if (out.size() > kLargestGltf) {
+    throw std::runtime_error(name + ": is, with the files it refers to, larger than the " +
+                             std::to_string(kLargestGltf >> 20) + " MiB that are read");
+  }
+  return out;
+}
+
+}  // namespace limpid

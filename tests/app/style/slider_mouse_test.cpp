@@ -1,0 +1,109 @@
+// What the mouse does to a slider, frame by frame.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/style/parameter_slider.h"
+#include "tests/app/plot/imgui_frames.h"
+
+namespace limpid {
+namespace {
+
+constexpr float kLeft = 100, kTop = 50, kWidth = 400, kTrack = 75;  // [px], of a slider drawn here
+
+class SliderMouse : public ImGuiFrames {
+ protected:
+  void draw(float seconds = 0.02f) {
+    frame(
+        [&] {
+          ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+          ImGui::SetNextWindowPos({kLeft, kTop});
+          ImGui::SetNextWindowSize({kWidth, 100});
+          ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
+          if (parameter_slider(*find_parameter("coupling.eta"), parameters, 1)) ++changes;
+          ImGui::End();
+          ImGui::PopStyleVar();
+        },
+        seconds);
+  }
+  void move(float x) {
+    ImGui::GetIO().MousePos = {x, kTrack};
+    draw();
+  }
+  void button(bool down) {
+    ImGui::GetIO().MouseDown[0] = down;
+    draw();
+  }
+  void click(float x) {
+    move(x);
+    button(true);
+    button(false);
+  }
+  void wait(double seconds) {
+    for (double t = 0; t < seconds; t += 0.05) draw(0.05f);
+  }
+  void key(int which) {
+    for (const bool down : {true, false}) {
+      ImGui::GetIO().KeysDown[which] = down;
+      draw();
+    }
+  }
+
+  Parameters parameters;  // eta 1, in the middle of a slider from 0.1 to 10
+  int changes = 0;
+};
+
+TEST_F(SliderMouse, DoubleClickToTypeLeavesTheValueAlone) {
+  click(kLeft + 0.9f * kWidth);
+  click(kLeft + 0.9f * kWidth);
+  wait(1);
+  EXPECT_EQ(parameters.eta, 1);
+  EXPECT_EQ(changes, 0) << "every change would be a step of undo";
+  ImGui::GetIO().AddInputCharactersUTF8("0.25");
+  draw();
+  EXPECT_EQ(parameters.eta, 1) << "not while it is being typed";
+  key(GLFW_KEY_ENTER);
+  EXPECT_EQ(parameters.eta, 0.25);
+  EXPECT_EQ(changes, 1);
+}
+
+TEST_F(SliderMouse, EscapeEndsTypingWithTheValueAsItWas) {
+  click(kLeft + 0.9f * kWidth);
+  click(kLeft + 0.9f * kWidth);
+  ImGui::GetIO().AddInputCharactersUTF8("7");
+  draw();
+  key(GLFW_KEY_ESCAPE);
+  wait(1);
+  EXPECT_EQ(parameters.eta, 1);
+  EXPECT_EQ(changes, 0);
+}
+
+TEST_F(SliderMouse, SingleClickMovesTheValueOnceNoSecondOneHasCome) {
+  click(kLeft + 0.75f * kWidth);
+  EXPECT_EQ(parameters.eta, 1);
+  wait(0.6);
+  EXPECT_NEAR(parameters.eta, std::sqrt(10), 0.1) << "three quarters of 0.1 to 10";
+  EXPECT_EQ(changes, 1);
+}
+
+TEST_F(SliderMouse, DragMovesTheValueAtOnce) {
+  move(kLeft + 0.5f * kWidth);
+  button(true);
+  move(kLeft + 0.75f * kWidth);
+  EXPECT_NEAR(parameters.eta, std::sqrt(10), 0.1);
+  move(kLeft + 0.25f * kWidth);
+  EXPECT_NEAR(parameters.eta, 1 / std::sqrt(10), 0.01);
+  button(false);
+  wait(1);
+  EXPECT_NEAR(parameters.eta, 1 / std::sqrt(10), 0.01);
+}
+
+TEST_F(SliderMouse, HeldStillOnTheTrackMovesTheValueThere) {
+  move(kLeft + 0.75f * kWidth);
+  button(true);
+  wait(0.6);
+  EXPECT_NEAR(parameters.eta, std::sqrt(10), 0.1);
+}
+
+}  // namespace
+}  // namespace limpid

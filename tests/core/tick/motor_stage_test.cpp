@@ -1,0 +1,121 @@
+#include "core/tick/motor_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Vector = Vec<kAnyDof>;
+constexpr double T = 1e-3;
+constexpr double kSlew = 0.1;  // from no torque to the limit [s]
+
+Vector three(double a, double b, double c) { return Vec3(a, b, c); }
+
+TEST(MotorStage, PassesWhatIsWithinTheLimitsAndClampsTheRest) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(0.5, 0.6, 0.7);
+  EXPECT_EQ(motors.pass(three(0.1, -0.6, 0.69), limit, 1, T), three(0.1, -0.6, 0.69));
+  EXPECT_EQ(motors.pass(three(9, -9, 0.7), limit, 1, T), three(0.5, -0.6, 0.7));
+  EXPECT_EQ(motors.pass(three(0.4, -0.2, 0.8), limit, 0.25, T), three(0.1, -0.05, 0.175));
+}
+
+TEST(MotorStage, NeverJumpsWhileACouplingIsBeingSwitched) {
+  Random random(110);
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(0.5, 0.6, 0.7);
+  Vector before = motors.pass(three(0.5, -0.6, 0.1), limit, 1, T);
+  motors.begin_slew();
+  EXPECT_FALSE(motors.steady());
+  for (int k = 0; k < 400; ++k) {
+    const Vector command = three(-0.4, 0.5, -0.6) + random.vector(3, 0.02);
+    const Vector tau = motors.pass(command, limit, 1, T);
+    if (motors.steady()) break;
+    const Vector step = (tau - before).cwiseAbs();
+    ASSERT_TRUE((step.array() <= limit.array() * T / kSlew * (1 + 1e-9)).all()) << k;
+    before = tau;
+  }
+}
+
+TEST(MotorStage, ArrivesAtTheNewCommandAndFollowsItFromThenOn) {
+  MotorStage<kAnyDof> motors(1);
+  const Vector limit = Vector::Constant(1, 0.5);
+  motors.pass(Vector::Constant(1, 0.5), limit, 1, T);
+  motors.begin_slew();
+  int ticks = 0;
+  while (!motors.steady() && ticks < 1000) {
+    motors.pass(Vector::Constant(1, -0.5), limit, 1, T);
+    ++ticks;
+  }
+  EXPECT_NEAR(ticks * T, 2 * kSlew, 2 * T);  // from limit to limit
+  EXPECT_EQ(motors.pass(Vector::Constant(1, 0.5), limit, 1, T)[0], 0.5);
+}
+
+TEST(MotorStage, IsZeroAtOnceWhenForceIsCutAndHasForgottenItsSlewThen) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(1, 1, 1), command = three(0.3, -0.4, 0.5);
+  motors.pass(command, limit, 1, T);
+  motors.begin_slew();
+  motors.pass(-command, limit, 1, T);
+  EXPECT_EQ(motors.pass(command, limit, 0, T).norm(), 0);
+  EXPECT_TRUE(motors.steady());
+  EXPECT_EQ(motors.pass(command, limit, 0.5, T), 0.5 * command);
+}
+
+// The rate holds in wall time: a tick that comes a tenth of a period after the one before it may
+// move the torque by a tenth of a step.
+TEST(MotorStage, BoundsTheRateOfRealMotorsInTheTimeThatPassed) {
+  Random random(112);
+  MotorStage<kAnyDof> motors(2);
+  Vector limit(2), before = Vector::Zero(2);
+  limit << 0.5, 2;
+  for (int k = 0; k < 20000; ++k) {
+    const double dt = random.between(1e-5, T);
+    const Vector command = random.vector(2, 3);
+    const Vector tau = motors.pass(command, limit, 1, dt, 0.02);
+    ASSERT_TRUE(((tau - before).array().abs() <= limit.array() * dt / 0.02 + 1e-12).all()) << k;
+    before = tau;
+  }
+}
+
+TEST(MotorStage, SwitchesACouplingOfRealMotorsAsSlowlyAsOfOthers) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(1, 1, 1), command = three(0.5, 0.5, 0.5);
+  for (int k = 0; k < 100; ++k) motors.pass(command, limit, 1, T, 0.02);
+  motors.begin_slew();
+  const Vector tau = motors.pass(-command, limit, 1, T, 0.02);
+  EXPECT_LE((tau - command).cwiseAbs().maxCoeff(), T / kSlew + 1e-12);
+}
+
+TEST(MotorStage, GivesNoTorqueForACommandThatIsNotFinite) {
+  const Vector limit = three(1, 1, 1);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -std::nan("")}) {
+    MotorStage<kAnyDof> motors(3);
+    EXPECT_EQ(motors.pass(three(0.1, bad, 0.2), limit, 1, T), three(0, 0, 0));
+    EXPECT_EQ(motors.pass(three(bad, 0.1, 0.2), limit, 1, T), three(0, 0, 0));
+    EXPECT_EQ(motors.pass(three(0.1, 0.1, 0.2), limit, bad, T), three(0, 0, 0));
+  }
+}
+
+TEST(MotorStage, IsFiniteAndWithinLimitsWhateverComes) {
+  Random random(111);
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(0.5, 0.6, 0.7);
+  for (int k = 0; k < 20000; ++k) {
+    Vector command = random.vector(3, 3);
+    const double dice = random.between(0, 100);
+    if (dice < 1) command[1] = std::numeric_limits<double>::infinity();
+    if (dice > 99) command[0] = std::numeric_limits<double>::quiet_NaN();
+    if (dice > 40 && dice < 41) motors.begin_slew();
+    const Vector& tau = motors.pass(command, limit, (k / 700) % 3 != 2 ? 1 : 0, T);
+    ASSERT_TRUE(tau.allFinite());
+    ASSERT_TRUE((tau.cwiseAbs().array() <= limit.array()).all());
+  }
+}
+
+}  // namespace
+}  // namespace limpid

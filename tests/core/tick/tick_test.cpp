@@ -1,0 +1,312 @@
+// The tick: its rows against the paper's equations written out from the rows alone.
+#include "core/tick/tick.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/support/random_arm.h"
+#include "tests/support/rows.h"
+#include "tests/support/wisher.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using test::random_arm;
+using test::Rows;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+// A device that is led along a path whatever the motors do.
+Vector led(int n, std::size_t k, double T) {
+  Vector x(n);
+  const double t = static_cast<double>(k) * T;
+  for (int i = 0; i < n; ++i) x[i] = 0.4 + 0.3 * i + 0.25 * std::sin((3 + 0.7 * i) * t + i);
+  return x;
+}
+
+Rows run(const ArmDescription& arm, const Scene& scene, const Parameters& p, std::size_t ticks) {
+  const int n = arm.dof();
+  Tick<kAnyDof> tick(arm, scene);
+  tick.start(p, Start<kAnyDof>::at_rest(led(n, 0, p.tick)));
+  Rows rows(tick.layout());
+  for (std::size_t k = 0; k < ticks; ++k) {
+    const Vec<kAnyDof> x = led(n, k, p.tick);
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(n)}, ForceWish::as_it_is, rows.add());
+  }
+  return rows;
+}
+
+// A stop that the first joint meets on its way.
+Scene stop() {
+  Scene scene;
+  scene.joint_contacts.push_back({"", 0, 0.5, 1, 20});
+  return scene;
+}
+
+struct Model {
+  Matrix M, C;
+};
+Model model(const ArmDescription& description, const Vector& x, const Vector& v, double factor) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames f;
+  Mat<kAnyDof> M, C;
+  arm.frames(x, f);
+  arm.inertia_coriolis(f, v, M, C);
+  return {factor * M, factor * C};
+}
+
+class TickOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, TickOfJoints, testing::Values(1, 2, 3, 7));
+
+TEST_P(TickOfJoints, CouplesByOneAndTwoOrFourteenAndFifteen) {
+  const int n = GetParam();
+  const ArmDescription arm = random_arm(n, 120);
+  for (const CouplingKind kind : {CouplingKind::standard, CouplingKind::proposed}) {
+    Parameters p;
+    p.kind = kind;
+    p.eta = 0.7;
+    p.inertia_ratio = 0.02;
+    p.inertia_error = 1.3;
+    p.torque_limit = 100;
+    const double T = p.tick;
+    const Rows rows = run(arm, stop(), p, 1500);
+    int touched = 0;
+    for (std::size_t k = 2; k + 1 < rows.size(); ++k) {
+      const Vector x1 = rows.vec(k, Column::measured_position);
+      const Vector v1 = (x1 - rows.vec(k - 1, Column::measured_position)) / T;
+      const Vector x2 = rows.vec(k, Column::proxy_position);
+      const Vector next2 = rows.vec(k + 1, Column::proxy_position);
+      const Vector vbar2 = (next2 - x2) / T, xbar2 = (next2 + x2) / 2;
+      const Vector last2 = (x2 - rows.vec(k - 1, Column::proxy_position)) / T;
+      const Vector f2 = rows.vec(k, Column::contact_torque);
+      touched += f2.norm() > 0 ? 1 : 0;
+      Vector tau1 = -p.b_vc * (v1 - last2) - p.k_vc * (x1 - x2);
+      Vector tau2 = -p.b_v * vbar2 - p.b_vc * (vbar2 - v1) - p.k_vc * (xbar2 - x1);
+      if (kind == CouplingKind::proposed) {
+        const Vector vm = rows.vec(k, Column::measured_velocity);
+        const Vector v2 = rows.vec(k, Column::proxy_velocity);
+        const Model one = model(arm, x1, vm, p.inertia_error);
+        const Model two = model(arm, x2, v2, p.inertia_ratio);
+        const Matrix I = Matrix::Identity(n, n);
+        const Matrix M_L = one.M + two.M;
+        const Matrix phi = M_L.inverse() * two.M;
+        const Vector v_L = M_L.inverse() * (one.M * vm + two.M * v2), v_E = vm - v2;
+        const Matrix C_EL = phi.transpose() * one.C + (phi.transpose() - I) * two.C;
+        const Matrix C_LE = -C_EL.transpose();
+        const Vector f = rows.vec(k, Column::hand_torque_estimate) + f2;
+        const Matrix scale = (1 - p.eta) / p.eta * I - phi.transpose() / p.eta;
+        tau1 += C_EL * v_L + (I - phi.transpose()) * C_LE * v_E + scale * f + f2;
+        tau2 += -C_EL * v_L + phi.transpose() * C_LE * v_E + phi.transpose() / p.eta * f - f2;
+      }
+      ASSERT_LT((rows.vec(k, Column::commanded_torque) - tau1).norm(), 1e-10 * (1 + tau1.norm()))
+          << "tick " << k;
+      ASSERT_LT((rows.vec(k, Column::proxy_torque) - tau2).norm(), 1e-8 * (1 + tau2.norm()))
+          << "tick " << k;
+    }
+    EXPECT_GT(touched, 200);
+  }
+}
+
+TEST_P(TickOfJoints, KeepsTheEnergyBooksOfTheContract) {
+  const int n = GetParam();
+  const ArmDescription arm = random_arm(n, 121);
+  Parameters p;
+  p.damping = 0.02;
+  const Rows rows = run(arm, stop(), p, 1000);
+  double total = 0, commanded = 0;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    ASSERT_NEAR(rows.at(k, Column::energy_total), total, 1e-12);
+    ASSERT_NEAR(rows.at(k, Column::energy_commanded), commanded, 1e-12);
+    const auto moved = [&](Column c) { return Vector(rows.vec(k + 1, c) - rows.vec(k, c)); };
+    const Vector dx1 = moved(Column::device_position), dx2 = moved(Column::proxy_position);
+    const Vector tau2 = rows.vec(k, Column::proxy_torque);
+    const double work = rows.vec(k, Column::motor_torque).dot(dx1) + tau2.dot(dx2);
+    commanded += work;
+    total += work - 0.02 / p.tick * dx1.dot(dx1);
+    const double gained = rows.at(k + 1, Column::proxy_kinetic) - rows.at(k, Column::proxy_kinetic);
+    const double given = (tau2 + rows.vec(k, Column::contact_torque)).dot(dx2);
+    ASSERT_NEAR(gained, given, 1e-14 + 1e-10 * rows.at(k, Column::proxy_kinetic)) << k;
+  }
+}
+
+TEST(Tick, ClampsTheCommandToTheArmsOwnLimitOrTheOneThatIsSet) {
+  const ArmDescription arm = random_arm(3, 122);
+  Parameters p;
+  p.k_vc = 1000;
+  for (const double limit : {kFromArm, 0.2}) {
+    p.torque_limit = limit;
+    const Rows rows = run(arm, stop(), p, 800);
+    int clamped = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Vector command = rows.vec(k, Column::commanded_torque);
+      const Vector motor = rows.vec(k, Column::motor_torque);
+      for (int i = 0; i < 3; ++i) {
+        const double most =
+            std::isnan(limit) ? arm.joints[static_cast<std::size_t>(i)].effort : limit;
+        ASSERT_EQ(motor[i], std::clamp(command[i], -most, most));
+        clamped += motor[i] != command[i] ? 1 : 0;
+      }
+    }
+    EXPECT_GT(clamped, 10);
+  }
+}
+
+TEST(Tick, SwitchesTheCouplingWithoutAJumpOfTheMotors) {
+  const ArmDescription arm = random_arm(3, 123);
+  Parameters p;
+  Tick<3> tick(arm, stop());
+  tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+  Rows rows(tick.layout());
+  bool slewed = false;
+  for (std::size_t k = 0; k < 1500; ++k) {
+    p.kind = k / 300 % 2 ? CouplingKind::standard : CouplingKind::proposed;
+    const Vec<3> x = led(3, k, p.tick);
+    tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+    if (k == 0 || tick.steady()) continue;
+    slewed = true;
+    const Vector jump = rows.vec(k, Column::motor_torque) - rows.vec(k - 1, Column::motor_torque);
+    for (int i = 0; i < 3; ++i) {
+      const double limit = arm.joints[static_cast<std::size_t>(i)].effort;
+      ASSERT_LE(std::abs(jump[i]), limit * p.tick / 0.1 * (1 + 1e-9)) << "tick " << k;
+    }
+  }
+  EXPECT_TRUE(slewed);
+}
+
+TEST(Tick, GivesNoTorqueWhileForceIsOffAndSaysSo) {
+  const ArmDescription arm = random_arm(3, 124);
+  const Parameters p;
+  Tick<3> tick(arm, stop());
+  test::Wisher wisher(true);
+  tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+  Rows rows(tick.layout());
+  for (std::size_t k = 0; k < 300; ++k) {
+    const Vec<3> x = led(3, k, p.tick);
+    const bool force = k < 100 || k >= 200;
+    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, wisher.at(force), rows.add());
+    ASSERT_EQ(rows.at(k, Column::force_wanted), force ? 1 : 0);
+    ASSERT_EQ(tau, rows.vec(k, Column::motor_torque));
+    if (!force) {
+      ASSERT_EQ(tau.norm(), 0);
+      ASSERT_GT(rows.vec(k, Column::commanded_torque).norm(), 0);
+    }
+  }
+}
+
+TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
+  const ArmDescription arm = random_arm(3, 125);
+  const Parameters p;
+  Tick<3> tick(arm, stop());
+  tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+  Rows rows(tick.layout());
+  for (std::size_t k = 0; k < 100; ++k) {
+    Vec<3> x = led(3, k, p.tick);
+    if (k == 50) x[1] = std::numeric_limits<double>::quiet_NaN();
+    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+    ASSERT_EQ(tick.diverged(), k >= 50);
+    ASSERT_TRUE(tau.allFinite());
+    if (k >= 50) {
+      ASSERT_EQ(tau.norm(), 0);
+    }
+  }
+  // Starting over forgets it.
+  tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+  EXPECT_FALSE(tick.diverged());
+  const Vec<3> x = led(3, 0, p.tick);
+  tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+  EXPECT_FALSE(tick.diverged());
+}
+
+TEST(Tick, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
+  const ArmDescription arm = random_arm(3, 126);
+  const Parameters p;
+  Tick<3> fixed(arm, stop());
+  Tick<kAnyDof> any(arm, stop());
+  fixed.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+  any.start(p, Start<kAnyDof>::at_rest(led(3, 0, p.tick)));
+  Rows a(fixed.layout()), b(any.layout());
+  for (std::size_t k = 0; k < 500; ++k) {
+    const Vec<3> x = led(3, k, p.tick);
+    fixed.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, a.add());
+    any.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, b.add());
+    for (std::size_t i = 0; i < a.row(k).size(); ++i) {
+      ASSERT_NEAR(a.row(k)[i], b.row(k)[i], 1e-7 * (1 + std::abs(a.row(k)[i]))) << k << ", " << i;
+    }
+  }
+}
+
+// First order, implicit, 50 Hz: v += g (raw - v), g = T w / (1 + T w).
+TEST(Tick, WritesTheVelocityThatTheObserverUsed) {
+  const ArmDescription arm = random_arm(3, 127);
+  Parameters p;
+  p.velocity = VelocitySource::lowpass;
+  const Rows rows = run(arm, stop(), p, 400);
+  const double w = 2 * 3.14159265358979323846 * 50;
+  const double g = p.tick * w / (1 + p.tick * w);
+  Vector v = Vector::Zero(3);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const Vector raw =
+        (rows.vec(k, Column::measured_position) - rows.vec(k - 1, Column::measured_position)) /
+        p.tick;
+    v += g * (raw - v);
+    ASSERT_LT((rows.vec(k, Column::measured_velocity) - v).norm(), 1e-10) << k;
+  }
+}
+
+// What the stop has stored at first was not gained.
+TEST(Tick, CountsWhatContactsGainFromWhereItStarts) {
+  const ArmDescription arm = random_arm(3, 128);
+  const Parameters p;
+  Scene scene;
+  scene.joint_contacts.push_back({"", 0, led(3, 0, p.tick)[0] - 0.2, 1, 20});
+  const Rows rows = run(arm, scene, p, 600);
+  EXPECT_EQ(rows.at(0, Column::contact_gain), 0);
+  EXPECT_NEAR(rows.at(0, Column::contact_potential), 0.5 * 20 * 0.04, 0.02);
+  double work = 0;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    const double stored =
+        rows.at(k, Column::contact_potential) - rows.at(0, Column::contact_potential);
+    ASSERT_NEAR(rows.at(k, Column::contact_gain), work + stored, 1e-12) << k;
+    ASSERT_NEAR(rows.at(k, Column::contact_gain), 0, 1e-9) << k;
+    work += rows.vec(k, Column::contact_torque)
+                .dot(rows.vec(k + 1, Column::proxy_position) - rows.vec(k, Column::proxy_position));
+  }
+}
+
+TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
+  const ArmDescription arm = random_arm(3, 129);
+  Parameters p;
+  p.damping = 0.02;
+  Tick<kAnyDof> tick(arm, stop());
+  tick.start(p, Start<kAnyDof>::at_rest(led(3, 0, p.tick)));
+  Rows rows(tick.layout());
+  const auto damping = [](std::size_t k) { return k < 300 ? 0.02 : k < 301 ? 0.4 : 0.05; };
+  const auto ratio = [](std::size_t k) { return k < 250 ? 1e-4 : 3e-2; };
+  for (std::size_t k = 0; k < 600; ++k) {
+    p.damping = damping(k);
+    p.inertia_ratio = ratio(k);
+    const Vec<kAnyDof> x = led(3, k, p.tick);
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, rows.add());
+  }
+  double lost = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double own = rows.at(k, Column::energy_commanded) - rows.at(k, Column::energy_total);
+    ASSERT_NEAR(own, lost, 1e-12) << k;
+    const Vector x2 = rows.vec(k, Column::proxy_position);
+    const Vector v2 = rows.vec(k, Column::proxy_velocity);
+    const Model two = model(arm, x2, v2, ratio(k));
+    ASSERT_NEAR(rows.at(k, Column::proxy_kinetic), 0.5 * v2.dot(two.M * v2),
+                1e-9 * (1e-9 + v2.dot(two.M * v2)))
+        << k;
+    if (k + 1 == rows.size()) break;
+    const Vector dx = led(3, k + 1, p.tick) - led(3, k, p.tick);
+    lost += damping(k) / p.tick * dx.dot(dx);
+  }
+}
+
+}  // namespace
+}  // namespace limpid

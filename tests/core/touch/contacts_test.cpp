@@ -1,0 +1,492 @@
+// Distances against brute force, contacts against differences of their depth.
+#include "core/touch/contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <tuple>
+
+#include "tests/support/meshes.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using test::random_arm;
+
+Plane some_plane() { return {"", Vec3(0.1, -0.2, 0.3), Vec3(1, 2, -3).normalized(), 600}; }
+Sphere some_sphere() { return {"", Vec3(0.1, -0.2, 0.3), 0.07, 600}; }
+Box some_box() {
+  Random random(3);
+  Box box;
+  box.pose.linear() = random.rotation();
+  box.pose.translation() = Vec3(0.1, -0.2, 0.3);
+  box.size = Vec3(0.11, 0.23, 0.17);
+  return box;
+}
+
+// Distance to the nearest of a grid of points on the box's six faces.
+double distance_to_grid(const Box& box, const Vec3& point, int cells) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-0.5, 0.5}) {
+      for (int i = 0; i <= cells; ++i) {
+        for (int j = 0; j <= cells; ++j) {
+          Vec3 p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = static_cast<double>(i) / cells - 0.5;
+          p[(axis + 2) % 3] = static_cast<double>(j) / cells - 0.5;
+          least = std::min(least, (box.pose * p.cwiseProduct(box.size) - point).norm());
+        }
+      }
+    }
+  }
+  return least;
+}
+
+bool inside(const Box& box, const Vec3& point) {
+  const Vec3 p = box.pose.inverse() * point;
+  return (p.cwiseAbs().array() < box.size.array() / 2).all();
+}
+
+// The normal of a surface is the gradient of the distance to it.
+template <class Obstacle>
+void expect_gradient(const Obstacle& obstacle, const Vec3& point) {
+  constexpr double h = 1e-6;
+  Vec3 slope;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 step = h * Vec3::Unit(i);
+    slope[i] = (distance_to(obstacle, point + step).distance -
+                distance_to(obstacle, point - step).distance) /
+               (2 * h);
+  }
+  const Vec3 normal = distance_to(obstacle, point).normal;
+  EXPECT_NEAR(normal.norm(), 1, 1e-12);
+  EXPECT_LT((normal - slope).norm(), 1e-6);
+}
+
+TEST(Distance, ToAPlaneIsSignedAndAlongItsNormal) {
+  const Plane plane = some_plane();
+  EXPECT_NEAR(distance_to(plane, plane.point).distance, 0, 1e-15);
+  EXPECT_NEAR(distance_to(plane, plane.point + 0.2 * plane.normal).distance, 0.2, 1e-15);
+  const Vec3 within = plane.normal.unitOrthogonal();
+  EXPECT_NEAR(distance_to(plane, plane.point - 0.1 * plane.normal + within).distance, -0.1, 1e-15);
+  expect_gradient(plane, Vec3(0.3, 0.1, -0.2));
+}
+
+TEST(Distance, ToASphereIsFromItsCentreLessTheRadius) {
+  const Sphere sphere = some_sphere();
+  Random random(1);
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 direction = random.direction();
+    const double r = random.between(0.01, 0.2);
+    const Vec3 point = sphere.center + r * direction;
+    EXPECT_NEAR(distance_to(sphere, point).distance, r - sphere.radius, 1e-15);
+    expect_gradient(sphere, point);
+  }
+  const Surface centre = distance_to(sphere, sphere.center);
+  EXPECT_EQ(centre.distance, -sphere.radius);
+  EXPECT_NEAR(centre.normal.norm(), 1, 1e-15);
+}
+
+TEST(Distance, ToABoxIsToTheNearestOfItsPoints) {
+  const Box box = some_box();
+  constexpr int kCells = 60;
+  const double spacing = box.size.maxCoeff() / kCells;
+  Random random(2);
+  int within = 0;
+  for (int round = 0; round < 60; ++round) {
+    const Vec3 point = box.pose.translation() + random.point(0.15);
+    const double sampled = distance_to_grid(box, point, kCells);
+    const Surface surface = distance_to(box, point);
+    EXPECT_EQ(surface.distance < 0, inside(box, point));
+    EXPECT_LE(std::abs(surface.distance), sampled + 1e-15);
+    EXPECT_GE(std::abs(surface.distance), sampled - spacing);
+    within += inside(box, point) ? 1 : 0;
+    expect_gradient(box, point);
+    // One step along the normal lands on the surface.
+    const Vec3 foot = point - surface.distance * surface.normal;
+    EXPECT_NEAR(distance_to(box, foot).distance, 0, 1e-12);
+  }
+  EXPECT_GT(within, 5);
+}
+
+template <class Obstacle>
+void expect_nearest(const Obstacle& obstacle, Random& random) {
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 from = Vec3(0.1, -0.2, 0.3) + random.point(0.3);
+    const Vec3 to = Vec3(0.1, -0.2, 0.3) + random.point(0.3);
+    const Vec3 found = nearest_on_segment(obstacle, from, to);
+    const Vec3 along = to - from;
+    const double s = along.dot(found - from) / along.squaredNorm();
+    EXPECT_LT((from + s * along - found).norm(), 1e-12);
+    EXPECT_GE(s, -1e-12);
+    EXPECT_LE(s, 1 + 1e-12);
+    const double least = distance_to(obstacle, found).distance;
+    for (int i = 0; i <= 500; ++i) {
+      EXPECT_GE(distance_to(obstacle, from + i / 500.0 * along).distance, least - 1e-9);
+    }
+  }
+}
+
+TEST(NearestOnSegment, IsNoFurtherThanAnyOtherPointOfIt) {
+  Random random(4);
+  expect_nearest(some_plane(), random);
+  expect_nearest(some_sphere(), random);
+  expect_nearest(some_box(), random);
+}
+
+// An arm of n joints with one capsule in its middle, and where they are.
+struct World {
+  explicit World(int n)
+      : description(random_arm(n, 21)), arm(description), x(Random(22).vector(n, 2)) {
+    const int link = n / 2;
+    scene.probes.push_back({"", link, Vec3(0.01, 0.02, -0.03), Vec3(0.05, -0.02, 0.04), 0.012});
+    arm.frames(x, frames);
+    from = Arm<kAnyDof>::point(frames, link, scene.probes[0].from);
+    to = Arm<kAnyDof>::point(frames, link, scene.probes[0].to);
+  }
+
+  std::vector<Contact<kAnyDof>> contacts_at(const Vec<kAnyDof>& at) {
+    Contacts<kAnyDof> contacts(description, scene);
+    Arm<kAnyDof>::Frames f;
+    arm.frames(at, f);
+    contacts.find(arm, f, at, 0.001);
+    return {contacts.list().begin(), contacts.list().end()};
+  }
+
+  void expect_gradient() {
+    constexpr double h = 1e-6;
+    const auto here = contacts_at(x);
+    ASSERT_FALSE(here.empty());
+    for (int k = 0; k < x.size(); ++k) {
+      Vec<kAnyDof> ahead = x, behind = x;
+      ahead[k] += h;
+      behind[k] -= h;
+      const auto a = contacts_at(ahead), b = contacts_at(behind);
+      ASSERT_EQ(a.size(), here.size());
+      ASSERT_EQ(b.size(), here.size());
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        EXPECT_NEAR(here[i].gradient[k], (a[i].depth - b[i].depth) / (2 * h), 1e-6);
+      }
+    }
+  }
+
+  ArmDescription description;
+  Arm<kAnyDof> arm;
+  Vec<kAnyDof> x;
+  Scene scene;
+  Arm<kAnyDof>::Frames frames;
+  Vec3 from, to;  // of the capsule
+};
+
+class ContactsOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, ContactsOfJoints, testing::Values(1, 2, 3, 7, 32));
+
+TEST_P(ContactsOfJoints, OfACapsuleOnABallAreAsDeepAsTheirSurfacesOverlap) {
+  World w(GetParam());
+  const Vec3 side = (w.to - w.from).unitOrthogonal();
+  const Vec3 middle = 0.6 * w.from + 0.4 * w.to;
+  w.scene.spheres.push_back({"", middle + 0.049 * side, 0.04, 700});
+  const auto contacts = w.contacts_at(w.x);
+  ASSERT_FALSE(contacts.empty());
+  const Contact<kAnyDof>& c = contacts.back();
+  EXPECT_NEAR(c.depth, 0.012 + 0.04 - 0.049, 1e-12);
+  EXPECT_LT((c.point - middle).norm(), 1e-9);
+  EXPECT_LT((c.normal + side).norm(), 1e-9);
+  EXPECT_EQ(c.stiffness, 700);
+  w.expect_gradient();
+}
+
+TEST_P(ContactsOfJoints, OfACapsuleOnAPlaneHaveTheGradientOfTheirDepth) {
+  World w(GetParam());
+  const Vec3 normal = Vec3(0.3, -0.5, 0.8).normalized();
+  const Vec3 low = normal.dot(w.to - w.from) < 0 ? w.to : w.from;
+  w.scene.planes.push_back({"", low + 0.004 * normal, normal, 600});
+  const auto contacts = w.contacts_at(w.x);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_NEAR(contacts.back().depth, 0.012 + 0.004, 1e-12);
+  w.expect_gradient();
+}
+
+TEST_P(ContactsOfJoints, OfTheTipInABoxHaveTheGradientOfTheirDepth) {
+  World w(GetParam());
+  w.scene.tip_radius = 0.005;
+  w.scene.probes.clear();
+  Box box = some_box();
+  // The middle of a face 3 mm above the tip.
+  const Vec3 face(0.01, 0.02, box.size.z() / 2);
+  box.pose.translation() = w.arm.tip(w.frames) - box.pose.linear() * (face - Vec3(0, 0, 0.003));
+  w.scene.boxes.push_back(box);
+  const auto contacts = w.contacts_at(w.x);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].depth, 0.005 + 0.003, 1e-12);
+  EXPECT_LT((contacts[0].normal - box.pose.linear().col(2)).norm(), 1e-12);
+  w.expect_gradient();
+}
+
+TEST_P(ContactsOfJoints, OfAJointAreAsDeepAsItIsBeyond) {
+  World w(GetParam());
+  w.scene.probes.clear();
+  const int joint = GetParam() / 2;
+  w.scene.joint_contacts.push_back({"", joint, w.x[joint] - 0.1, 1, 20});
+  w.scene.joint_contacts.push_back({"", joint, w.x[joint] - 0.1, -1, 30});
+  const auto contacts = w.contacts_at(w.x);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_NEAR(contacts[0].depth, 0.1, 1e-15);
+  EXPECT_NEAR(contacts[1].depth, -0.1, 1e-15);
+  EXPECT_EQ(contacts[1].stiffness, 30);
+  EXPECT_EQ(contacts[0].normal, Vec3::Zero());
+  w.expect_gradient();
+}
+
+TEST(Contacts, ThatAreFarAwayAreLeftOut) {
+  World w(3);
+  w.scene.spheres.push_back({"", Vec3(5, 5, 5), 0.1, 600});
+  w.scene.planes.push_back({"", Vec3(0, 0, -9), Vec3::UnitZ(), 600});
+  EXPECT_TRUE(w.contacts_at(w.x).empty());
+}
+
+TEST(Contacts, HaveRoomForEveryPairAndKnowTheEnergyInThem) {
+  World w(3);
+  const Vec3 tip = w.arm.tip(w.frames);
+  for (int i = 0; i < 5; ++i) {
+    w.scene.spheres.push_back(
+        {"", tip + 0.01 * Random(static_cast<unsigned>(i)).direction(), 0.03, 100.0 * (i + 1)});
+  }
+  w.scene.joint_contacts.push_back({"", 1, w.x[1] - 0.2, 1, 20});
+  Contacts<kAnyDof> contacts(w.description, w.scene);
+  EXPECT_EQ(contacts.capacity(), 5u * 2 + 1);
+  contacts.find(w.arm, w.frames, w.x, 0.001);
+  double wanted = 0.5 * 20 * 0.2 * 0.2;
+  for (int i = 0; i < 5; ++i) wanted += 0.5 * 100 * (i + 1) * 0.02 * 0.02;
+  ASSERT_EQ(contacts.list().size(), 5u + 1);  // the capsule is out of reach of all
+  EXPECT_NEAR(contacts.potential(), wanted, 1e-12);
+}
+
+// The tip of an arm of three joints before a plane, a ball and a sheet that face three ways.
+class TipBeforeThings : public testing::Test {
+ protected:
+  static constexpr double kRadius = 0.005, kTick = 0.001;
+
+  TipBeforeThings() {
+    scene_.tip_radius = kRadius;
+    arm_.frames(x_, frames_);
+    tip_ = arm_.tip(frames_);
+    arm_.point_jacobian(frames_, 2, tip_, J_);
+  }
+
+  // Deep by this much; negative: apart.
+  void add_plane(double deep) {
+    scene_.planes.push_back({"", tip_ - (kRadius - deep) * out_[0], out_[0], 700});
+  }
+  void add_ball(double deep) {
+    scene_.spheres.push_back({"", tip_ - (0.03 + kRadius - deep) * out_[1], 0.03, 800});
+  }
+  void add_sheet(double deep, double scale = 1, double aside = 0) {
+    MeshObstacle sheet = test::obstacle(test::sheet(4, 0.3), 900);
+    sheet.scale = scale;
+    sheet.pose.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), out_[2]).toRotationMatrix();
+    sheet.pose.translation() = tip_ - (kRadius - deep) * out_[2] + aside * out_[2].unitOrthogonal();
+    scene_.meshes.push_back(sheet);
+  }
+  // Where the joints are with the tip there, going straight from x.
+  Vec<kAnyDof> led(Vec<kAnyDof> x, const Vec3& to) const {
+    Arm<kAnyDof>::Frames f;
+    Jacobian<kAnyDof> J;
+    for (int i = 0; i < 200; ++i) {
+      arm_.frames(x, f);
+      const Vec3 left = to - arm_.tip(f);
+      arm_.point_jacobian(f, 2, arm_.tip(f), J);
+      x += Mat3(J).inverse() * (left * std::min(1.0, 2e-4 / (left.norm() + 1e-9)));
+    }
+    return x;
+  }
+  // How the joints move for the tip to move so.
+  Vec<kAnyDof> joints(const Vec3& rate) const { return Mat3(J_).inverse() * rate; }
+  // The tip's rate with these parts along the three normals.
+  Vec3 rate(const Vec3& along) const {
+    Mat3 normals;
+    for (int i = 0; i < 3; ++i) normals.row(i) = out_[i];
+    return normals.inverse() * along;
+  }
+  void find(Contacts<kAnyDof>& contacts, const Vec<kAnyDof>& x) const {
+    Arm<kAnyDof>::Frames f;
+    arm_.frames(x, f);
+    contacts.find(arm_, f, x, kTick);
+  }
+  Contacts<kAnyDof> placed(const Vec<kAnyDof>& x) const {
+    Contacts<kAnyDof> contacts(description_, scene_);
+    Arm<kAnyDof>::Frames f;
+    arm_.frames(x, f);
+    contacts.place(arm_, f, x);
+    return contacts;
+  }
+
+  ArmDescription description_ = random_arm(3, 27);
+  Arm<kAnyDof> arm_{description_};
+  Vec<kAnyDof> x_ = Random(28).vector(3, 2);
+  const Vec3 out_[3] = {Vec3(0.2, 0.1, 0.9).normalized(), Vec3(-0.8, 0.5, 0.1).normalized(),
+                        Vec3(0.3, 0.8, -0.3).normalized()};
+  Arm<kAnyDof>::Frames frames_;
+  Jacobian<kAnyDof> J_;
+  Vec3 tip_;
+  Scene scene_;
+};
+
+TEST_F(TipBeforeThings, TakesNobodyInOnceContactsAreOnlyLetGo) {
+  add_plane(0.003);
+  add_ball(-0.001);
+  add_sheet(-0.001);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  ASSERT_EQ(contacts.list().size(), 2u);
+  ASSERT_TRUE(contacts.list()[0].touching);
+  ASSERT_FALSE(contacts.list()[1].touching);
+  ASSERT_EQ(contacts.meshes()[0].rank, 0);
+  // In half a tick: 4 mm away from the plane, into ball and sheet.
+  const Vec<kAnyDof> vbar = joints(rate(Vec3(8, -8, -8)));
+  EXPECT_TRUE(contacts.reconsider(vbar, kTick, true));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_FALSE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 0);
+  EXPECT_FALSE(contacts.reconsider(vbar, kTick, true));  // so that a tick comes to its end
+  EXPECT_TRUE(contacts.reconsider(vbar, kTick, false));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_TRUE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 1);
+  EXPECT_FALSE(contacts.reconsider(vbar, kTick, false));
+  // And let go again, the sheet as well.
+  EXPECT_TRUE(contacts.reconsider(-vbar, kTick, true));
+  EXPECT_FALSE(contacts.list()[0].touching);
+  EXPECT_FALSE(contacts.list()[1].touching);
+  EXPECT_EQ(contacts.meshes()[0].rank, 0);
+}
+
+TEST_F(TipBeforeThings, SaysWhereAndHowHardItIsPushedUntilItIsLifted) {
+  add_plane(0.003);
+  add_ball(0.002);
+  add_sheet(0.001);
+  Contacts<kAnyDof> contacts = placed(x_);
+  std::array<ContactForce, 8> forces;
+  EXPECT_EQ(contacts.forces(forces), 0u);  // nothing has pushed yet
+  find(contacts, x_);
+  Vec<kAnyDof> f2;
+  EXPECT_TRUE(contacts.push(Vec<kAnyDof>::Zero(3), kTick, f2));
+  ASSERT_EQ(contacts.forces(forces), 3u);
+  const double newtons[] = {700 * 0.003, 800 * 0.002, 900 * 0.001};
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((forces[i].force - newtons[i] * out_[i]).norm(), 1e-5) << i;
+    EXPECT_LT((forces[i].normal - out_[i]).norm(), 1e-5) << i;
+    sum += newtons[i] * out_[i];
+  }
+  // The arm's own things name the middle of the tip, meshes the place on their surface.
+  EXPECT_LT((forces[0].point - tip_).norm(), 1e-12);
+  EXPECT_LT((forces[2].point - (tip_ - 0.004 * out_[2])).norm(), 1e-7);
+  EXPECT_LT((f2 - J_.transpose() * sum).norm(), 1e-6);
+  EXPECT_EQ(contacts.forces(std::span(forces).first(2)), 2u);  // as many as fit
+
+  // 10 mm away from all three.
+  const Vec<kAnyDof> away = led(x_, tip_ + rate(Vec3::Constant(0.01)));
+  find(contacts, away);
+  EXPECT_TRUE(contacts.push(Vec<kAnyDof>::Zero(3), kTick, f2));
+  EXPECT_EQ(contacts.forces(forces), 0u);
+  EXPECT_EQ(f2.norm(), 0);
+}
+
+TEST_F(TipBeforeThings, PushesAtTheMiddleOfAStep) {
+  add_plane(0.003);
+  add_sheet(0.002);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  const Vec3 tip_rate = rate(Vec3(1.5, 0, -2.5));  // [m/s]
+  Vec<kAnyDof> f2;
+  EXPECT_TRUE(contacts.push(joints(tip_rate), kTick, f2));
+  const Vec3 plane = 700 * (0.003 - 0.5 * kTick * 1.5) * out_[0];
+  const Vec3 sheet = 900 * (0.002 + 0.5 * kTick * 2.5) * out_[2];
+  EXPECT_LT((f2 - J_.transpose() * (plane + sheet)).norm(), 1e-6);
+  EXPECT_NEAR(contacts.potential(), 0.5 * 700 * 9e-6 + 0.5 * 900 * 4e-6, 1e-8);
+}
+
+TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
+  // No further can it come within a tick.
+  add_plane(-0.015);
+  add_ball(-0.019);
+  Contacts<kAnyDof> contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.list().size(), 2u);
+  EXPECT_EQ(contacts.potential(), 0);
+  scene_ = {};
+  scene_.tip_radius = kRadius;
+  add_plane(-0.021);
+  add_ball(-0.03);
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_TRUE(contacts.list().empty());
+  scene_.joint_contacts.push_back({"", 1, x_[1] + 0.3, 1, 20});  // 0.3 rad before a stop
+  contacts = placed(x_);
+  find(contacts, x_);
+  EXPECT_EQ(contacts.potential(), 0);
+}
+
+// Led through a sheet to 3 mm behind it; who starts anew there is pushed to the other side.
+class TipBehindASheet : public TipBeforeThings {
+ protected:
+  static constexpr double kWay = 0.01;  // from 2 mm before the sheet [m]
+
+  // Where the ball is pulled to, along the sheet's normal [m].
+  double pull(const Contacts<kAnyDof>& contacts) const {
+    const auto& c = contacts.meshes()[0];
+    return out_[2].dot(c.direction.leftCols(c.rank) * c.depth.head(c.rank));
+  }
+  // There, and still there for a tick.
+  double side_after(Contacts<kAnyDof>& contacts) const {
+    find(contacts, behind_);
+    return pull(contacts);
+  }
+  Contacts<kAnyDof> came_through() const {
+    Contacts<kAnyDof> contacts = placed(x_);
+    for (int k = 1; k <= 200; ++k) find(contacts, led(x_, tip_ - k / 200.0 * kWay * out_[2]));
+    return contacts;
+  }
+
+  Vec<kAnyDof> behind_ = led(x_, tip_ - kWay * out_[2]);
+};
+
+TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
+  const auto set = [&](double scale, double aside, double radius) {
+    scene_ = {};
+    scene_.tip_radius = kRadius;
+    add_sheet(-0.002, scale, aside);
+    scene_.tip_radius = radius;
+  };
+  set(1, 0, kRadius);
+  Contacts<kAnyDof> first = came_through();
+  ASSERT_GT(side_after(first), 0.007);  // to where it came from
+  const std::shared_ptr<const TriangleMesh> shape = scene_.meshes[0].shape;
+  const auto taken_over = [&] {
+    Contacts<kAnyDof> next = placed(behind_);
+    next.take_over(first);
+    return side_after(next);
+  };
+  set(1, 0, kRadius);
+  EXPECT_LT(taken_over(), 0) << "another shape, even if it is an equal one";
+  scene_.meshes[0].shape = shape;
+  EXPECT_GT(taken_over(), 0.007);
+  scene_.meshes[0].stiffness = 100;  // may change
+  EXPECT_GT(taken_over(), 0.007);
+  for (const auto& [scale, aside, radius] :
+       {std::tuple(2.0, 0.0, kRadius), {1.0, 0.001, kRadius}, {1.0, 0.0, 0.0051}}) {
+    set(scale, aside, radius);
+    scene_.meshes[0].shape = shape;
+    EXPECT_LT(taken_over(), 0) << scale << ' ' << aside << ' ' << radius;
+  }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,96 @@
+// What is said of meshes that are not whole, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <utility>
+
+#include "core/touch/triangle_mesh.h"
+#include "tests/support/meshes.h"
+
+namespace limpid {
+namespace {
+
+using test::Triangles;
+
+TEST(Health, OfClosedBodiesIsSpotless) {
+  for (const Triangles& body : {test::icosphere(2), test::torus(12, 7, 1, 0.3),
+                                test::box(Vec3(1, 2, 3)), test::box(Vec3(0.1, 0.1, 0.01), 9)}) {
+    const auto mesh = body.mesh();
+    EXPECT_TRUE(mesh->health().closed());
+    EXPECT_EQ(mesh->health().text(), "");
+    EXPECT_EQ(mesh->triangles(), body.count());
+    EXPECT_GT(mesh->bytes(), body.count() * 36);
+    EXPECT_GE(mesh->build_seconds(), 0);
+  }
+}
+
+TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
+  EXPECT_EQ(test::sheet(4, 1).mesh()->health().open_edges, 16u);
+
+  Triangles missing = test::icosphere(1);
+  missing.indices.resize(missing.indices.size() - 3);
+  EXPECT_EQ(missing.mesh()->health().open_edges, 3u);
+  EXPECT_EQ(missing.mesh()->health().text(), "3 open edges: touched as a sheet, on both sides");
+
+  Triangles turned = test::icosphere(1);
+  std::swap(turned.indices[0], turned.indices[1]);
+  EXPECT_EQ(turned.mesh()->health().odd_edges, 3u);
+  EXPECT_FALSE(turned.mesh()->health().closed());
+
+  Triangles fin = test::icosphere(0);  // a third triangle on an edge
+  fin.vertices.emplace_back(5.0f, 5.0f, 5.0f);
+  fin.add(0, 11, 12);
+  EXPECT_EQ(fin.mesh()->health().odd_edges, 1u);
+  EXPECT_EQ(fin.mesh()->health().open_edges, 2u);
+
+  Triangles poor = test::icosphere(0);
+  poor.add(3, 3, 4);
+  poor.vertices.push_back((poor.vertices[0] + poor.vertices[1]) / 2);
+  poor.add(0, 12, 1);
+  const auto mesh = poor.mesh();
+  EXPECT_EQ(mesh->health().degenerate, 2u);
+  EXPECT_TRUE(mesh->health().closed());
+  EXPECT_EQ(mesh->health().text(), "2 triangles without an area left out");
+  EXPECT_EQ(mesh->triangles(), 20u);
+}
+
+void expect_refused(const Triangles& triangles, const std::string& why) {
+  try {
+    triangles.mesh();
+    ADD_FAILURE() << "not refused: " << why;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(why));
+  }
+}
+
+TEST(TriangleMesh, RefusesWhatIsNoMesh) {
+  expect_refused({}, "no triangles");
+  Triangles body = test::icosphere(0);
+  body.indices.pop_back();
+  expect_refused(body, "whole triangles");
+  body = test::icosphere(0);
+  body.indices[7] = 12;
+  expect_refused(body, "index 12 of 12 vertices");
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2e9f}) {
+    body = test::icosphere(0);
+    body.vertices[3].y() = bad;
+    expect_refused(body, "not finite, or beyond 1e9");
+  }
+  body = test::icosphere(0);
+  for (Eigen::Vector3f& v : body.vertices) v.z() = v.x() = 0;
+  expect_refused(body, "no triangle with an area");
+  body.indices.assign(3 * (TriangleMesh::kMostTriangles + 1), 0);
+  expect_refused(body, "6000001 triangles; at most 6000000");
+}
+
+TEST(TriangleMesh, IsNotBuiltOnceCancelled) {
+  const Triangles body = test::icosphere(5);
+  const std::atomic<bool> cancel{true}, go_on{false};
+  EXPECT_THROW(TriangleMesh(body.vertices, body.indices, &cancel), std::runtime_error);
+  EXPECT_EQ(TriangleMesh(body.vertices, body.indices, &go_on).triangles(), body.count());
+}
+
+}  // namespace
+}  // namespace limpid

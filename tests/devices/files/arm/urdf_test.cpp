@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "devices/files/arm/urdf_file.h"
+#include "tests/devices/files/test_files.h"
+
+namespace limpid {
+namespace {
+
+using test::refusal;
+using testing::HasSubstr;
+
+constexpr const char* kInertial =
+    "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>"
+    "</inertial>";
+constexpr const char* kLimit = "<limit lower='-1' upper='1' effort='2' velocity='1'/>";
+
+std::string link(const std::string& name, const std::string& inside = kInertial) {
+  return "<link name='" + name + "'>" + inside + "</link>\n";
+}
+
+std::string joint(const std::string& parent, const std::string& child,
+                  const std::string& type = "revolute", const std::string& inside = kLimit) {
+  return "<joint name='" + parent + "_" + child + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/>" + inside + "</joint>\n";
+}
+
+std::string robot(const std::string& inside) {
+  return "<robot name='r'>\n" + inside + "</robot>\n";
+}
+
+ArmDescription parse(const std::string& inside) {
+  return parse_urdf(robot(inside), "x.urdf", "/tmp");
+}
+
+TEST(Urdf, ReadsEveryNumberOfAJoint) {
+  const ArmDescription arm =
+      parse(link("a") +
+            joint("a", "b", "revolute",
+                  "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='0 3 4'/>"
+                  "<limit lower='-0.5' upper='1.5' effort='2' velocity='1'/>"
+                  "<dynamics damping='0.1' friction='0.2'/>") +
+            link("b"));
+  ASSERT_EQ(arm.dof(), 1);
+  const Joint& j = arm.joints[0];
+  EXPECT_EQ(j.name, "a_b");
+  EXPECT_EQ(j.lower, -0.5);
+  EXPECT_EQ(j.upper, 1.5);
+  EXPECT_EQ(j.effort, 2);
+  EXPECT_EQ(j.damping, 0.1);
+  EXPECT_EQ(j.friction, 0.2);
+  EXPECT_LT((j.axis - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_LT((j.origin * Vec3(1, 0, 0) - Vec3(1, 3, 3)).norm(), 1e-15);
+}
+
+TEST(Urdf, TurnsRollPitchYawInThatOrderAboutFixedAxes) {
+  const ArmDescription arm =
+      parse(link("a") +
+            joint("a", "b", "continuous",
+                  "<origin rpy='0.3 -0.4 0.5'/><limit effort='1' velocity='1'/>") +
+            link("b"));
+  const Mat3 wanted =
+      (Eigen::AngleAxisd(0.5, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.4, Vec3::UnitY()) *
+       Eigen::AngleAxisd(0.3, Vec3::UnitX()))
+          .toRotationMatrix();
+  EXPECT_LT((arm.joints[0].origin.linear() - wanted).norm(), 1e-15);
+  EXPECT_EQ(arm.joints[0].upper, std::numeric_limits<double>::infinity());
+}
+
+// Two rods of mass m and length l, fixed end to end, are one rod of 2 m and 2 l.
+TEST(Urdf, MergesLinksBehindFixedJoints) {
+  const std::string rod =
+      "<inertial><origin xyz='0.5 0 0'/><mass value='3'/>"
+      "<inertia ixx='0' ixy='0' ixz='0' iyy='0.25' iyz='0' izz='0.25'/></inertial>";
+  const ArmDescription arm = parse(
+      link("world") + joint("world", "a", "fixed", "<origin xyz='0 0 7'/>") + link("a") +
+      joint("a", "b", "revolute", std::string("<axis xyz='0 1 0'/>") + kLimit) + link("b", rod) +
+      joint("b", "c", "fixed", "<origin xyz='1 0 0' rpy='0.7 0 0'/>") + link("c", rod) +
+      joint("c", "d", "fixed", "<origin xyz='1 0 0' rpy='0 0 1'/>") + link("d", ""));
+  ASSERT_EQ(arm.dof(), 1);
+  EXPECT_LT((arm.joints[0].origin.translation() - Vec3(0, 0, 7)).norm(), 1e-15);
+  EXPECT_NEAR(arm.links[0].mass, 6, 1e-15);
+  EXPECT_LT((arm.links[0].com - Vec3(1, 0, 0)).norm(), 1e-15);
+  const double about_com = 6 * 2 * 2 / 12.0;
+  EXPECT_LT((arm.links[0].inertia - Mat3(Vec3(0, about_com, about_com).asDiagonal())).norm(),
+            1e-14);
+  EXPECT_LT((arm.tip.translation() - Vec3(2, 0, 0)).norm(), 1e-15);
+  ASSERT_EQ(arm.frames.size(), 5u);
+  EXPECT_EQ(arm.frames[1].name, "a");
+  EXPECT_EQ(arm.frames[1].link, -1);
+  EXPECT_EQ(arm.frames[3].name, "c");
+  EXPECT_EQ(arm.frames[3].link, 0);
+}
+
+// A point mass m at r has the inertia m (r^2 1 - r r^T). Three of them, in a frame that is askew to
+// the link's, are what their inertia about their own centre, turned and moved, has to be.
+TEST(Urdf, TurnsAnInertiaThatIsGivenInAFrameAskew) {
+  const std::array<double, 3> masses{0.2, 0.5, 0.3};
+  const std::array<Vec3, 3> points{Vec3(0.3, -0.1, 0.2), Vec3(-0.2, 0.4, 0.1),
+                                   Vec3(0.1, 0.2, -0.5)};
+  const auto inertia_of = [&](const std::array<Vec3, 3>& at, const Vec3& about) {
+    Mat3 sum = Mat3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 r = at[i] - about;
+      sum += masses[i] * (r.dot(r) * Mat3::Identity() - r * r.transpose());
+    }
+    return sum;
+  };
+  const auto centre_of = [&](const std::array<Vec3, 3>& at) {
+    return Vec3(0.2 * at[0] + 0.5 * at[1] + 0.3 * at[2]);
+  };
+  const Vec3 centre = centre_of(points);
+  const Mat3 own = inertia_of(points, centre);
+  const std::string inertial = fmt::format(
+      "<inertial><origin xyz='0.1 0.2 0.3' rpy='0.4 -0.7 1.1'/><mass value='1'/>"
+      "<inertia ixx='{:.17g}' ixy='{:.17g}' ixz='{:.17g}' iyy='{:.17g}' iyz='{:.17g}' "
+      "izz='{:.17g}'/></inertial>",
+      own(0, 0), own(0, 1), own(0, 2), own(1, 1), own(1, 2), own(2, 2));
+  const ArmDescription arm = parse(link("a") + joint("a", "b") + link("b", inertial));
+  Pose placed = Pose::Identity();
+  placed.translation() = Vec3(0.1, 0.2, 0.3);
+  placed.linear() = (Eigen::AngleAxisd(1.1, Vec3::UnitZ()) *
+                     Eigen::AngleAxisd(-0.7, Vec3::UnitY()) * Eigen::AngleAxisd(0.4, Vec3::UnitX()))
+                        .toRotationMatrix();
+  std::array<Vec3, 3> there;
+  for (std::size_t i = 0; i < 3; ++i) there[i] = placed * Vec3(points[i] - centre);
+  EXPECT_NEAR(arm.links[0].mass, 1, 1e-15);
+  EXPECT_LT((arm.links[0].com - centre_of(there)).norm(), 1e-15);
+  EXPECT_LT((arm.links[0].inertia - inertia_of(there, centre_of(there))).norm(), 1e-15);
+}
+
+TEST(Urdf, RefusesAJointThatMimicsAnother) {
+  const std::string text =
+      link("a") + joint("a", "b") + link("b") +
+      joint("b", "c", "revolute", std::string(kLimit) + "<mimic joint='a_b' multiplier='2'/>") +
+      link("c");
+  EXPECT_THAT(refusal([&] { parse(text); }),
+              testing::AllOf(HasSubstr("x.urdf"), HasSubstr("b_c"), HasSubstr("mimic")));
+}
+
+TEST(Urdf, ReadsShapesAndMeshes) {
+  const test::TempDir dir;
+  test::write_file(dir / "m.glb", "");
+  const std::string text = robot(
+      link("a", "<visual><origin xyz='0 0 1'/><geometry><box size='1 2 3'/></geometry></visual>") +
+      joint("a", "b") +
+      link("b", std::string(kInertial) +
+                    "<visual><geometry><cylinder radius='1' length='2'/></geometry></visual>"
+                    "<visual><geometry><sphere radius='3'/></geometry></visual>"
+                    "<visual><geometry><mesh filename='m.glb' scale='1 1 2'/></geometry>"
+                    "</visual>"));
+  test::write_file(dir / "x.urdf", text);
+  const ArmDescription arm = read_urdf(dir / "x.urdf");
+  ASSERT_EQ(arm.visuals.size(), 4u);
+  EXPECT_EQ(arm.visuals[0].link, -1);
+  EXPECT_EQ(arm.visuals[0].size, Vec3(1, 2, 3));
+  EXPECT_EQ(arm.visuals[0].origin.translation(), Vec3(0, 0, 1));
+  EXPECT_EQ(arm.visuals[1].size.head<2>(), Eigen::Vector2d(1, 2));
+  EXPECT_EQ(arm.visuals[2].size[0], 3);
+  EXPECT_EQ(arm.visuals[3].mesh, (dir / "m.glb").string());
+  EXPECT_EQ(arm.visuals[3].size, Vec3(1, 1, 2));
+  EXPECT_EQ(arm.urdf, text);
+  EXPECT_EQ(parse_urdf(text, "session", "").visuals.size(), 3u) << "a text without a folder";
+}
+
+TEST(Urdf, RefusesWhatIsNoArm) {
+  struct Case {
+    std::string inside;
+    std::vector<std::string> said;
+  };
+  const std::string two = link("a") + link("b");
+  const auto visual = [](const std::string& mesh) {
+    return link("a", "<visual><geometry><mesh filename='" + mesh + "'/></geometry></visual>") +
+           joint("a", "b") + link("b");
+  };
+  std::string long_chain = link("l0");
+  for (int i = 0; i < 33; ++i) {
+    const std::string from = "l" + std::to_string(i);
+    const std::string to = "l" + std::to_string(i + 1);
+    long_chain += joint(from, to) + link(to);
+  }
+  const Case cases[] = {
+      {"", {"x.urdf"}},
+      {link("a"), {"x.urdf", "no joint"}},
+      {two + joint("a", "b", "fixed", ""), {"x.urdf", "no joint"}},
+      {two + joint("a", "b", "prismatic"), {"x.urdf:4", "a_b", "revolute, continuous, fixed"}},
+      {two + joint("a", "b", "floating", ""), {"x.urdf:4", "a_b", "revolute"}},
+      {two + joint("a", "b", "wobbly", ""), {"x.urdf", "wobbly"}},
+      {two + link("c") + joint("a", "b") + joint("a", "c"), {"x.urdf:2", "'a'", "2 joints"}},
+      {two + link("c") + joint("a", "b"), {"x.urdf", "root"}},
+      {two + joint("a", "b") + joint("b", "a"), {"x.urdf"}},
+      {two + joint("a", "nobody"), {"x.urdf", "nobody"}},
+      {two + joint("a", "b", "revolute", ""), {"x.urdf", "a_b", "limits"}},
+      {two + joint("a", "b", "revolute", std::string("<axis xyz='0 0 0'/>") + kLimit),
+       {"x.urdf:4", "a_b", "axis"}},
+      {two + joint("a", "b", "revolute", std::string("<axis xyz='0 nan 0'/>") + kLimit),
+       {"x.urdf"}},
+      {two + joint("a", "b", "revolute", std::string("<axis xyz='0 1'/>") + kLimit), {"x.urdf"}},
+      {two + joint("a", "b", "revolute", std::string("<origin xyz='0 inf 0'/>") + kLimit),
+       {"x.urdf"}},
+      {two + joint("a", "b", "revolute", "<limit lower='1' upper='-1' effort='1' velocity='1'/>"),
+       {"x.urdf:4", "a_b", "limits from 1 to -1"}},
+      {two + joint("a", "b", "revolute", "<limit lower='-1' upper='1' effort='0' velocity='1'/>"),
+       {"x.urdf:4", "a_b", "effort 0"}},
+      {two + joint("a", "b", "revolute", "<limit lower='-1' upper='1' effort='-2' velocity='1'/>"),
+       {"x.urdf:4", "a_b", "effort -2"}},
+      {two + joint("a", "b", "continuous", ""), {"x.urdf:4", "a_b", "effort"}},
+      {two + joint("a", "b", "revolute", std::string("<dynamics damping='-1'/>") + kLimit),
+       {"x.urdf:4", "a_b", "damping -1"}},
+      {two + joint("a", "b", "revolute", std::string("<dynamics friction='-1'/>") + kLimit),
+       {"x.urdf:4", "a_b", "friction -1"}},
+      {link("a") + joint("a", "b") + link("b", ""), {"x.urdf:4", "'b'", "inertia 0"}},
+      {link("a") + joint("a", "b") +
+           link("b",
+                "<inertial><mass value='-1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+                "iyz='0' izz='1'/></inertial>"),
+       {"x.urdf:4", "'b'", "mass -1"}},
+      {link("a") + joint("a", "b") +
+           link("b",
+                "<inertial><mass value='1'/><inertia ixx='1' ixy='2' ixz='0' iyy='1' "
+                "iyz='0' izz='1'/></inertial>"),
+       {"x.urdf:4", "'b'", "negative moment"}},
+      {link("a") + joint("a", "b") + link("b", "<inertial><mass value='1'/></inertial>"),
+       {"x.urdf"}},
+      {long_chain, {"x.urdf", "l32_l33", "at most 32"}},
+      {visual("missing.glb"), {"x.urdf:2", "missing.glb", "no such file"}},
+      {visual("package://arm/a.glb"), {"x.urdf:2", "package://arm/a.glb"}},
+      {visual("a.stl"), {"x.urdf:2", "a.stl", "glTF"}},
+      {two + two, {"x.urdf", "unique"}},
+  };
+  for (const Case& c : cases) {
+    testing::internal::CaptureStderr();
+    const std::string said = refusal([&] { parse(c.inside); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << c.inside;
+    for (const std::string& part : c.said) EXPECT_THAT(said, HasSubstr(part)) << c.inside;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+}
+
+TEST(Urdf, RefusesWhatIsNotXml) {
+  const auto said = [](const std::string& text) {
+    return refusal([&] { parse_urdf(text, "x.urdf", ""); });
+  };
+  EXPECT_THAT(said(""), HasSubstr("x.urdf"));
+  EXPECT_THAT(said("hello"), HasSubstr("x.urdf:1"));
+  EXPECT_THAT(said("<robot>\n<link name=>\n</robot>"), HasSubstr("x.urdf:3"));
+  EXPECT_THAT(said("<sdf/>"), HasSubstr("<robot>"));
+  EXPECT_THAT(said("<robot>\n<link name='a'>"), HasSubstr("x.urdf:"));
+  std::string deep;
+  for (int i = 0; i < 1000000; ++i) deep += "<a>";
+  EXPECT_THAT(said(deep), HasSubstr("nested"));
+  EXPECT_THAT(refusal([] { read_urdf("/nowhere.urdf"); }), HasSubstr("/nowhere.urdf"));
+}
+
+TEST(Urdf, TakesThirtyTwoJoints) {
+  std::string chain = link("l0");
+  for (int i = 0; i < 32; ++i) {
+    const std::string to = "l" + std::to_string(i + 1);
+    chain += joint("l" + std::to_string(i), to) + link(to);
+  }
+  EXPECT_EQ(parse(chain).dof(), 32);
+}
+
+}  // namespace
+}  // namespace limpid

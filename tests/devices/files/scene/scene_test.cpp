@@ -1,0 +1,155 @@
+#include "devices/files/scene/scene_file.h"
+#include "tests/devices/files/test_files.h"
+
+namespace limpid {
+namespace {
+
+using test::refusal;
+using testing::HasSubstr;
+
+ArmDescription arm() {
+  ArmDescription a;
+  a.joints = {{"turn"}, {"lift"}};
+  a.links = {{"one"}, {"two"}};
+  a.frames = {{"base", -1, Pose::Identity()},
+              {"one", 0, Pose::Identity()},
+              {"two", 1, Pose::Identity()},
+              {"tool", 1, Pose(Eigen::Translation3d(0.5, 0, 0))}};
+  return a;
+}
+
+Scene parse(const std::string& text) { return parse_scene(text, "x.toml", "/tmp", arm()); }
+
+TEST(Scene, MayBeEmpty) {
+  const Scene scene = parse("");
+  EXPECT_TRUE(scene.planes.empty());
+  EXPECT_EQ(scene.tip_radius, 0);
+}
+
+TEST(Scene, ReadsEveryKindOfThing) {
+  const Scene s = parse(R"(
+title = "T"
+about = "A."
+tip_radius = 0.003
+[[plane]]
+name = "p"
+point = [0, 0, -0.1]
+normal = [0, 3, 4]
+stiffness = 100
+[[sphere]]
+name = "s"
+center = [1, 2, 3]
+radius = 0.5
+stiffness = 200
+[[box]]
+name = "b"
+center = [1, 0, 0]
+size = [0.1, 0.2, 0.3]
+rpy = [0, 0, 1.5707963267948966]
+stiffness = 300
+[[joint_contact]]
+name = "j"
+joint = "lift"
+angle = 0.5
+side = "above"
+stiffness = 20
+[[joint_contact]]
+name = "k"
+joint = 1
+angle = -0.5
+side = "below"
+stiffness = 10
+[[probe]]
+name = "q"
+link = "tool"
+from = [0.1, 0, 0]
+radius = 0.01
+)");
+  EXPECT_EQ(s.title, "T");
+  EXPECT_EQ(s.tip_radius, 0.003);
+  EXPECT_LT((s.planes.at(0).normal - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(s.spheres.at(0).center, Vec3(1, 2, 3));
+  EXPECT_LT((s.boxes.at(0).pose * Vec3(0.05, 0, 0) - Vec3(1, 0.05, 0)).norm(), 1e-15);
+  EXPECT_EQ(s.joint_contacts.at(0).joint, 1);
+  EXPECT_EQ(s.joint_contacts.at(0).direction, 1);
+  EXPECT_EQ(s.joint_contacts.at(1).joint, 0);
+  EXPECT_EQ(s.joint_contacts.at(1).direction, -1);
+  EXPECT_EQ(s.probes.at(0).link, 1);
+  EXPECT_EQ(s.probes.at(0).from, Vec3(0.6, 0, 0)) << "moved with the link it is fixed to";
+  EXPECT_EQ(s.probes.at(0).to, s.probes.at(0).from);
+}
+
+TEST(Scene, RefusesWithFileLineKeyFoundAndAllowed) {
+  struct Case {
+    std::string text;
+    std::vector<std::string> said;
+  };
+  const auto plane = [](const std::string& rest) {
+    return "[[plane]]\nname = \"p\"\npoint = [0, 0, 0]\n" + rest;
+  };
+  const Case cases[] = {
+      {"tipradius = 1\n", {"x.toml:1:", "tipradius", "tip_radius"}},
+      {"title = 3\n", {"x.toml:1:", "title", "3", "text"}},
+      {"tip_radius = -1\n", {"x.toml:1:", "tip_radius", "-1"}},
+      {"plane = 3\n", {"x.toml:1:", "plane", "[[plane]]"}},
+      {"[plane]\nname = \"p\"\n", {"x.toml:1:", "plane", "[[plane]]"}},
+      {plane("normal = [0, 0, 0]\nstiffness = 1\n"), {"x.toml:4:", "plane.normal", "zero"}},
+      {plane("normal = [0, 1]\nstiffness = 1\n"), {"x.toml:4:", "plane.normal", "[0, 1]", "3"}},
+      {plane("normal = [0, 1, nan]\nstiffness = 1\n"), {"x.toml:4:", "plane.normal", "nan"}},
+      {plane("normal = [0, 1, \"z\"]\nstiffness = 1\n"), {"x.toml:4:", "plane.normal"}},
+      {plane("normal = [0, 0, 1]\nstiffness = 0\n"), {"x.toml:5:", "plane.stiffness", "0"}},
+      {plane("normal = [0, 0, 1]\nstiffness = 2e6\n"), {"x.toml:5:", "stiffness", "1000000"}},
+      {plane("normal = [0, 0, 1]\nstiffness = inf\n"), {"x.toml:5:", "stiffness", "inf"}},
+      {plane("normal = [0, 0, 1]\n"), {"x.toml:1:", "plane.stiffness", "missing"}},
+      {plane("normal = [0, 0, 1]\nstiffness = 1\ncolor = 1\n"), {"x.toml:6:", "plane.color"}},
+      {"[[sphere]]\nname = \"s\"\ncenter = [0, 0, 0]\nradius = 0\nstiffness = 1\n",
+       {"x.toml:4:", "sphere.radius", "0"}},
+      {"[[box]]\nname = \"s\"\ncenter = [0, 0, 0]\nsize = [1, -1, 1]\nstiffness = 1\n",
+       {"x.toml:4:", "box.size", "-1"}},
+      {"[[joint_contact]]\nname = \"j\"\njoint = \"knee\"\nangle = 0\nside = \"above\"\n"
+       "stiffness = 1\n",
+       {"x.toml:3:", "joint_contact.joint", "knee", "turn, lift"}},
+      {"[[joint_contact]]\nname = \"j\"\njoint = 3\nangle = 0\nside = \"above\"\nstiffness = 1\n",
+       {"x.toml:3:", "joint_contact.joint", "3", "1 to 2"}},
+      {"[[joint_contact]]\nname = \"j\"\njoint = 1\nangle = 0\nside = \"left\"\nstiffness = 1\n",
+       {"x.toml:5:", "joint_contact.side", "left", "above"}},
+      {"[[probe]]\nname = \"q\"\nlink = \"base\"\nfrom = [0, 0, 0]\nradius = 0.1\n",
+       {"x.toml:3:", "probe.link", "base", "one, two, tool"}},
+      {"[[visual]]\nfile = \"nothing.glb\"\n", {"x.toml:2:", "visual.file", "nothing.glb"}},
+      {"[[visual]]\nfile = \"a.obj\"\n", {"x.toml:2:", "visual.file", "glTF"}},
+      {"[[visual]]\nscale = 1\n", {"x.toml:1:", "visual.file", "missing"}},
+      {"[[plane\n", {"x.toml:1:", "not TOML"}},
+  };
+  for (const Case& c : cases) {
+    const std::string said = refusal([&] { parse(c.text); });
+    for (const std::string& part : c.said) EXPECT_THAT(said, HasSubstr(part)) << c.text;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+}
+
+TEST(Scene, HoldsAtMost64ContactsAnd63ProbesBesidesTheTip) {
+  const auto spheres = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+      text += "[[sphere]]\nname = \"s\"\ncenter = [0, 0, 0]\nradius = 1\nstiffness = 1\n";
+    }
+    return text;
+  };
+  const auto probes = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+      text += "[[probe]]\nname = \"q\"\nlink = \"one\"\nfrom = [0, 0, 0]\nradius = 1\n";
+    }
+    return text;
+  };
+  EXPECT_EQ(parse(spheres(64) + probes(63)).spheres.size(), 64u);
+  EXPECT_THAT(refusal([&] { parse(spheres(65)); }), HasSubstr("65"));
+  EXPECT_THAT(refusal([&] { parse(probes(64)); }), HasSubstr("64"));
+}
+
+TEST(Scene, LeavesOutRelativeFilesOfATextWithoutAFolder) {
+  EXPECT_TRUE(parse_scene("[[visual]]\nfile = \"a.glb\"\n", "session", "", arm()).visuals.empty());
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,316 @@
+#include "devices/files/scene/scene_writer.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/rpy.h"
+#include "devices/files/scene/scene_file.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using test::refusal;
+using testing::HasSubstr;
+
+void expect_same(const Pose& a, const Pose& b) { EXPECT_EQ(a.matrix(), b.matrix()); }
+
+// Bit for bit, except where `files` moved.
+void expect_same(const Scene& a, const Scene& b) {
+  EXPECT_EQ(a.title, b.title);
+  EXPECT_EQ(a.about, b.about);
+  EXPECT_EQ(a.tip_radius, b.tip_radius);
+  ASSERT_EQ(a.planes.size(), b.planes.size());
+  for (std::size_t i = 0; i < a.planes.size(); ++i) {
+    EXPECT_EQ(a.planes[i].name, b.planes[i].name);
+    EXPECT_EQ(a.planes[i].point, b.planes[i].point);
+    EXPECT_EQ(a.planes[i].normal, b.planes[i].normal);
+    EXPECT_EQ(a.planes[i].stiffness, b.planes[i].stiffness);
+  }
+  ASSERT_EQ(a.spheres.size(), b.spheres.size());
+  for (std::size_t i = 0; i < a.spheres.size(); ++i) {
+    EXPECT_EQ(a.spheres[i].name, b.spheres[i].name);
+    EXPECT_EQ(a.spheres[i].center, b.spheres[i].center);
+    EXPECT_EQ(a.spheres[i].radius, b.spheres[i].radius);
+    EXPECT_EQ(a.spheres[i].stiffness, b.spheres[i].stiffness);
+  }
+  ASSERT_EQ(a.boxes.size(), b.boxes.size());
+  for (std::size_t i = 0; i < a.boxes.size(); ++i) {
+    EXPECT_EQ(a.boxes[i].name, b.boxes[i].name);
+    expect_same(a.boxes[i].pose, b.boxes[i].pose);
+    EXPECT_EQ(a.boxes[i].size, b.boxes[i].size);
+    EXPECT_EQ(a.boxes[i].stiffness, b.boxes[i].stiffness);
+  }
+  ASSERT_EQ(a.meshes.size(), b.meshes.size());
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+    EXPECT_EQ(a.meshes[i].name, b.meshes[i].name);
+    expect_same(a.meshes[i].pose, b.meshes[i].pose);
+    EXPECT_EQ(a.meshes[i].scale, b.meshes[i].scale);
+    EXPECT_EQ(a.meshes[i].stiffness, b.meshes[i].stiffness);
+    EXPECT_EQ(*a.meshes[i].source, *b.meshes[i].source);
+  }
+  ASSERT_EQ(a.joint_contacts.size(), b.joint_contacts.size());
+  for (std::size_t i = 0; i < a.joint_contacts.size(); ++i) {
+    EXPECT_EQ(a.joint_contacts[i].name, b.joint_contacts[i].name);
+    EXPECT_EQ(a.joint_contacts[i].joint, b.joint_contacts[i].joint);
+    EXPECT_EQ(a.joint_contacts[i].angle, b.joint_contacts[i].angle);
+    EXPECT_EQ(a.joint_contacts[i].direction, b.joint_contacts[i].direction);
+    EXPECT_EQ(a.joint_contacts[i].stiffness, b.joint_contacts[i].stiffness);
+  }
+  ASSERT_EQ(a.probes.size(), b.probes.size());
+  for (std::size_t i = 0; i < a.probes.size(); ++i) {
+    EXPECT_EQ(a.probes[i].name, b.probes[i].name);
+    EXPECT_EQ(a.probes[i].link, b.probes[i].link);
+    EXPECT_EQ(a.probes[i].from, b.probes[i].from);
+    EXPECT_EQ(a.probes[i].to, b.probes[i].to);
+    EXPECT_EQ(a.probes[i].radius, b.probes[i].radius);
+  }
+  ASSERT_EQ(a.visuals.size(), b.visuals.size());
+  for (std::size_t i = 0; i < a.visuals.size(); ++i) {
+    expect_same(a.visuals[i].pose, b.visuals[i].pose);
+    EXPECT_EQ(a.visuals[i].scale, b.visuals[i].scale);
+  }
+}
+
+std::shared_ptr<const std::vector<unsigned char>> bytes(const std::string& text) {
+  return std::make_shared<const std::vector<unsigned char>>(text.begin(), text.end());
+}
+
+std::string odd_name(test::Random& random) {
+  const std::string letters = "aZ 09\"\\'#=[]{}\n\t\x01\x7f";
+  std::string name;
+  const int length = static_cast<int>(random.between(1, 12));
+  for (int i = 0; i < length; ++i) {
+    name += letters[static_cast<std::size_t>(random.between(0, 17.999))];
+  }
+  return name + "\xCE\xB7";
+}
+
+Pose random_pose(test::Random& random) {
+  Pose pose = Pose::Identity();
+  pose.translation() = random.point(1);
+  pose.linear() = rotation((random.point(3) * 1e9).array().round() / 1e9);
+  return pose;
+}
+
+// As read from a file: normals are what normalizing leaves, rotations come from written angles.
+Scene random_scene(const ArmDescription& arm, unsigned seed, SceneFiles& files) {
+  test::Random random(seed);
+  const auto count = [&] { return static_cast<int>(random.between(0, 4)); };
+  const auto stiffness = [&] { return std::exp(random.between(-3, 9)); };
+  Scene scene;
+  scene.title = odd_name(random);
+  scene.about = odd_name(random);
+  scene.tip_radius = random.between(0, 0.01);
+  for (int i = count(); i > 0; --i) {
+    scene.planes.push_back(
+        {odd_name(random), random.point(1), random.point(1).normalized(), stiffness()});
+  }
+  for (int i = count(); i > 0; --i) {
+    scene.spheres.push_back(
+        {odd_name(random), random.point(1), random.between(1e-4, 1), stiffness()});
+  }
+  for (int i = count(); i > 0; --i) {
+    scene.boxes.push_back({odd_name(random), random_pose(random),
+                           Vec3::Constant(1.2) + random.point(1), stiffness()});
+  }
+  for (int i = count(); i > 0; --i) {
+    MeshObstacle mesh;
+    mesh.name = odd_name(random);
+    mesh.file = "models/" + std::to_string(i) + " \"of\" \xCE\xB7.glb";
+    mesh.pose = random_pose(random);
+    mesh.scale = random.between(1e-3, 5);
+    mesh.stiffness = stiffness();
+    mesh.source = files[mesh.file] = bytes("model " + std::to_string(i));
+    scene.meshes.push_back(mesh);
+  }
+  for (int i = count(); i > 0; --i) {
+    scene.joint_contacts.push_back({odd_name(random),
+                                    static_cast<int>(random.between(0, arm.dof() - 0.001)),
+                                    random.between(-3, 3), i % 2 == 0 ? 1.0 : -1.0, stiffness()});
+  }
+  for (int i = count(); i > 0; --i) {
+    const Vec3 from = random.point(0.2);
+    scene.probes.push_back({odd_name(random),
+                            static_cast<int>(random.between(0, arm.dof() - 0.001)), from,
+                            i % 2 == 0 ? from : random.point(0.2), random.between(0, 0.02)});
+  }
+  return scene;
+}
+
+TEST(SceneText, GivesEveryShippedSceneBack) {
+  const ArmDescription arm = read_urdf((test::assets() / "devices/omni.urdf").string());
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(test::assets() / "scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    SCOPED_TRACE(entry.path());
+    const Scene scene = read_scene(entry.path(), arm);
+    const fs::path folder = entry.path().parent_path();
+    const std::string text = scene_text(scene, arm, folder);
+    const Scene again = parse_scene(text, "again", folder, arm);
+    expect_same(scene, again);
+    for (std::size_t i = 0; i < scene.visuals.size(); ++i) {
+      EXPECT_EQ(scene.visuals[i].file, again.visuals[i].file);
+    }
+    EXPECT_EQ(text, scene_text(again, arm, folder));
+    ++count;
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST(SceneText, GivesAnySceneBackToTheLastBit) {
+  for (unsigned seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    const ArmDescription arm = test::random_arm(1 + static_cast<int>(seed) % 5, seed);
+    SceneFiles files;
+    const Scene scene = random_scene(arm, seed, files);
+    expect_same(scene, parse_scene(scene_text(scene, arm), "again", "", arm, files));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(SceneText, WritesAnglesAsAPersonWould) {
+  const Vec3 simple[] = {{0, 0, 0.4}, {0.1, -0.2, 3}, {1.25, 0, 0}, {0, 0.7, -0.003}};
+  for (const Vec3& rpy : simple) EXPECT_EQ(rpy_of(rotation(rpy)), rpy);
+}
+
+TEST(SceneText, SettlesAnyRotationOnOneThatAnglesGiveBack) {
+  test::Random random(5);
+  for (int i = 0; i < 1000; ++i) {
+    Vec3 rpy = random.point(3.1);
+    if (i % 5 == 0) rpy.y() = (i % 2 == 0 ? 0.5 : -0.5) * std::numbers::pi;
+    const Mat3 R = rotation(rpy);
+    EXPECT_LT((rotation(rpy_of(R)) - R).norm(), 1e-14) << rpy.transpose();
+    const Mat3 fixed = settled(R);
+    EXPECT_LT((fixed - R).norm(), 5e-9) << rpy.transpose();
+    EXPECT_EQ(rotation(rpy_of(fixed)), fixed) << rpy.transpose();
+    EXPECT_EQ(settled(fixed), fixed) << rpy.transpose();
+  }
+}
+
+TEST(SceneText, NamesTheSecondOfTwoJointsOfOneNameByItsNumber) {
+  ArmDescription arm = test::random_arm(2, 1);
+  arm.joints[1].name = arm.joints[0].name = "turn";
+  Scene scene;
+  scene.joint_contacts.push_back({"stop", 1, 0.5, 1, 20});
+  EXPECT_EQ(parse_scene(scene_text(scene, arm), "again", "", arm).joint_contacts.at(0).joint, 1);
+}
+
+class SavedScene : public testing::Test {
+ protected:
+  SavedScene() {
+    fs::create_directories(elsewhere_ / "deep");
+    fs::create_directories(folder_ / "parts");
+  }
+
+  // A scene with one mesh of a file that lies there.
+  Scene with_mesh(const fs::path& model, const std::string& content) {
+    test::write_file(model, content);
+    Scene scene;
+    MeshObstacle mesh;
+    mesh.name = "gear";
+    mesh.file = mesh.path = model.string();
+    mesh.source = bytes(content);
+    scene.meshes.push_back(mesh);
+    return scene;
+  }
+
+  test::TempDir dir_;
+  fs::path folder_ = dir_ / "here", elsewhere_ = dir_ / "there";
+  fs::path file_ = folder_ / "scene.toml";
+  ArmDescription arm_ = test::random_arm(2, 3);
+};
+
+TEST_F(SavedScene, IsReadBackAsItWas) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SceneFiles files;
+    const Scene scene = random_scene(arm_, seed, files);
+    const Scene saved = save_scene(scene, arm_, file_);
+    expect_same(scene, read_scene(file_, arm_));
+    expect_same(scene, saved);
+    EXPECT_EQ(saved.toml, test::file_bytes(file_));
+  }
+}
+
+TEST_F(SavedScene, NamesModelsOfItsFolderRelativeToIt) {
+  const fs::path model = folder_ / "parts/gear.glb";
+  const Scene saved = save_scene(with_mesh(model, "gear"), arm_, file_);
+  EXPECT_EQ(saved.meshes[0].file, "parts/gear.glb");
+  EXPECT_EQ(read_scene(file_, arm_).meshes.at(0).path, model.string());
+}
+
+TEST_F(SavedScene, TakesModelsFromElsewhereAlong) {
+  const Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  save_scene(scene, arm_, file_);
+  fs::remove(elsewhere_ / "gear.glb");
+  EXPECT_EQ(read_scene(file_, arm_).meshes.at(0).path, (folder_ / "gear.glb").string());
+  EXPECT_EQ(test::file_bytes(folder_ / "gear.glb"), "gear");
+}
+
+TEST_F(SavedScene, CopiesAModelOnceHoweverOftenItIsThere) {
+  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  scene.meshes.push_back(scene.meshes[0]);
+  save_scene(scene, arm_, file_);
+  save_scene(scene, arm_, folder_ / "again.toml");
+  const auto models = std::count_if(
+      fs::directory_iterator(folder_), {},
+      [](const fs::directory_entry& entry) { return entry.path().extension() == ".glb"; });
+  EXPECT_EQ(models, 1);
+}
+
+TEST_F(SavedScene, NeverOverwritesAnotherModel) {
+  test::write_file(folder_ / "gear.glb", "somebody else's");
+  test::write_file(folder_ / "gear-2.glb", "and this, too");
+  const Scene saved = save_scene(with_mesh(elsewhere_ / "gear.glb", "gear"), arm_, file_);
+  EXPECT_EQ(saved.meshes[0].file, "gear-3.glb");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear.glb"), "somebody else's");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear-2.glb"), "and this, too");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear-3.glb"), "gear");
+}
+
+TEST_F(SavedScene, TellsModelsOfOneNameApart) {
+  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  scene.meshes.push_back(with_mesh(elsewhere_ / "deep/gear.glb", "another").meshes[0]);
+  save_scene(scene, arm_, file_);
+  const Scene again = read_scene(file_, arm_);
+  EXPECT_EQ(*again.meshes.at(0).source, *bytes("gear"));
+  EXPECT_EQ(*again.meshes.at(1).source, *bytes("another"));
+}
+
+TEST_F(SavedScene, LeavesModelsOfSeveralFilesWhereTheyAre) {
+  const fs::path model = elsewhere_ / "gear.gltf";
+  const Scene saved = save_scene(with_mesh(model, "{}"), arm_, file_);
+  EXPECT_EQ(saved.meshes[0].file, model.string());
+  EXPECT_FALSE(fs::exists(folder_ / "gear.gltf"));
+}
+
+TEST_F(SavedScene, WritesModelsOutOfASessionBesideIt) {
+  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  scene.meshes[0].path.clear();
+  scene.meshes[0].file = "parts/wheel.glb";
+  EXPECT_EQ(save_scene(scene, arm_, file_).meshes[0].file, "wheel.glb");
+  EXPECT_EQ(test::file_bytes(folder_ / "wheel.glb"), "gear");
+}
+
+TEST_F(SavedScene, LeavesEverythingAsItWasWhereItCannotBeWritten) {
+  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  EXPECT_THAT(refusal([&] { save_scene(scene, arm_, dir_ / "nowhere/scene.toml"); }),
+              HasSubstr("there is no folder"));
+  EXPECT_THAT(refusal([&] { save_scene(scene, arm_, folder_ / "parts"); }),
+              HasSubstr("is a folder"));
+
+  test::write_file(file_, "title = \"before\"\n");
+  scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
+  EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
+  EXPECT_EQ(test::file_bytes(file_), "title = \"before\"\n");
+  EXPECT_FALSE(fs::exists(folder_ / "gear.glb"));
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    EXPECT_NE(entry.path().extension(), ".new");
+  }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,217 @@
+// What a glTF file may hold, and what becomes of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render/model/gltf_model.h"
+#include "tests/render/model/gltf_builder.h"
+
+namespace limpid {
+namespace {
+
+std::string refusal(const Bytes& bytes) {
+  try {
+    parse_gltf(bytes, "part.glb");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Twice the area of all triangles that face +z.
+float area(const Model& model) {
+  float sum = 0;
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return model.vertices[model.indices[i + k]].position; };
+    const float z = (at(1) - at(0)).cross(at(2) - at(0)).z();
+    EXPECT_GT(z, 0);
+    sum += z;
+  }
+  return sum;
+}
+
+TEST(GltfContent, TakesAStripApart) {
+  GltfBuilder file;
+  file.positions(kSquare);
+  file.primitive = R"(,"mode":5)";
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 2);
+}
+
+TEST(GltfContent, TakesAFanApart) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  file.primitive = R"(,"mode":6)";
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 2);
+}
+
+TEST(GltfContent, LeavesPointsAndLinesOutAndSaysSo) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const std::string primitive = R"({"attributes":{"POSITION":0})";
+  file.mesh = primitive + R"(,"mode":0},)" + primitive + R"(,"mode":1},)" + primitive + "}";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.indices.size(), 3u);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_EQ(model.warnings[0], "points and lines are left out");
+}
+
+TEST(GltfContent, KeepsOnlyTheVerticesThatAPrimitiveUses) {
+  GltfBuilder file;
+  file.positions({9, 9, 9, 0, 0, 0, 9, 9, 9, 1, 0, 0, 0, 1, 0});
+  const int indices =
+      file.accessor(file.view(std::vector<std::uint16_t>{1, 3, 4}), 5123, "SCALAR", 3);
+  file.primitive = R"(,"indices":)" + std::to_string(indices);
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.vertices.size(), 3u);
+  EXPECT_FLOAT_EQ(area(model), 1);
+}
+
+TEST(GltfContent, AppliesTheExceptionsOfASparseAccessor) {
+  GltfBuilder file;
+  const int positions = file.view(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int which = file.view(std::vector<std::uint8_t>{2});
+  const int values = file.view(std::vector<float>{0, 3, 0});
+  const std::string sparse =
+      R"(,"sparse":{"count":1,"indices":{"bufferView":)" + std::to_string(which) +
+      R"(,"componentType":5121},"values":{"bufferView":)" + std::to_string(values) + "}}";
+  file.attribute("POSITION", file.accessor(positions, 5126, "VEC3", 3, sparse));
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 3);
+}
+
+TEST(GltfContent, RefusesASparseAccessorThatChangesWhatIsNotThere) {
+  GltfBuilder file;
+  const int which = file.view(std::vector<std::uint8_t>{3});
+  const int values = file.view(std::vector<float>{0, 3, 0});
+  const std::string sparse =
+      R"(,"sparse":{"count":1,"indices":{"bufferView":)" + std::to_string(which) +
+      R"(,"componentType":5121},"values":{"bufferView":)" + std::to_string(values) + "}}";
+  file.attribute("POSITION", file.accessor(-1, 5126, "VEC3", 3, sparse));
+  EXPECT_NE(refusal(file.binary()).find("does not exist"), std::string::npos);
+}
+
+TEST(GltfContent, ReadsQuantizedPositions) {
+  GltfBuilder file;
+  const int view = file.view(std::vector<std::int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, 0, -32767, 0, 0},
+                             R"(,"byteStride":8)");
+  file.attribute("POSITION", file.accessor(view, 5122, "VEC3", 3, R"(,"normalized":true)"));
+  file.more = R"(,"extensionsRequired":["KHR_mesh_quantization"])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_TRUE(model.vertices[2].position.isApprox(Eigen::Vector3f(0, -1, 0)));
+}
+
+TEST(GltfContent, MultipliesVertexColoursOfEveryKindWithTheMaterial) {
+  for (const bool bytes : {true, false}) {
+    GltfBuilder file;
+    file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int colors =
+        bytes ? file.accessor(file.view(Bytes{255, 0, 51, 51, 255, 0, 51, 51, 255, 0, 51, 51}),
+                              5121, "VEC4", 3, R"(,"normalized":true)")
+              : file.accessor(file.view(std::vector<float>{1, 0, 0.2f, 1, 0, 0.2f, 1, 0, 0.2f}),
+                              5126, "VEC3", 3);
+    file.attribute("COLOR_0", colors);
+    file.primitive = R"(,"material":0)";
+    file.more = R"(,"materials":[{"alphaMode":"BLEND",)"
+                R"("pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,0.5]}}])";
+    const Model model = parse_gltf(file.binary(), "part.glb");
+    EXPECT_TRUE(model.vertices[1].color.isApprox(Eigen::Vector3f(0.5f, 0, 0.2f), 1e-5f));
+    EXPECT_NEAR(model.vertices[1].opacity, bytes ? 0.1 : 0.5, 1e-6);
+    EXPECT_EQ(model.parts[0].material.alpha, Material::Alpha::blend);
+  }
+}
+
+GltfBuilder textured_square() {
+  GltfBuilder file;
+  file.positions(kSquare);
+  file.attribute("TEXCOORD_0", file.accessor(file.view(std::vector<float>{0, 1, 1, 1, 0, 0, 1, 0}),
+                                             5126, "VEC2", 4));
+  const int picture = file.view(kRedPng);
+  file.primitive = R"(,"mode":5,"material":0)";
+  file.more = R"(,"images":[{"mimeType":"image/png","bufferView":)" + std::to_string(picture) +
+              R"(}],"samplers":[{"wrapS":33071}],"textures":[{"source":0,"sampler":0}])";
+  return file;
+}
+
+TEST(GltfContent, ReadsAMaterialWithItsTextures) {
+  GltfBuilder file = textured_square();
+  file.more += R"(,"materials":[{"doubleSided":true,"alphaMode":"MASK","alphaCutoff":0.25,)"
+               R"("emissiveFactor":[0.1,0.2,0.3],"emissiveTexture":{"index":0},)"
+               R"("normalTexture":{"index":0,"scale":2},"pbrMetallicRoughness":{)"
+               R"("baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}}}])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_TRUE(model.warnings.empty());
+  ASSERT_EQ(model.parts.size(), 1u);
+  const Material& m = model.parts[0].material;
+  EXPECT_TRUE(m.two_sided);
+  EXPECT_EQ(m.alpha, Material::Alpha::mask);
+  EXPECT_FLOAT_EQ(m.cutoff, 0.25f);
+  EXPECT_FLOAT_EQ(m.glow[2], 0.3f);
+  EXPECT_FLOAT_EQ(m.bump, 2);
+  // Once as colours, once as numbers.
+  ASSERT_EQ(model.images.size(), 2u);
+  EXPECT_EQ(m.color, m.emission);
+  EXPECT_EQ(m.surface, m.normal);
+  const Image& colors = model.images[static_cast<std::size_t>(m.color)];
+  EXPECT_TRUE(colors.srgb);
+  EXPECT_FALSE(model.images[static_cast<std::size_t>(m.normal)].srgb);
+  EXPECT_EQ(colors.wrap_u, Image::Wrap::clamp);
+  EXPECT_EQ(colors.wrap_v, Image::Wrap::repeat);
+  EXPECT_EQ(colors.rgba, (Bytes{255, 0, 0, 255}));
+}
+
+TEST(GltfContent, MovesTextureCoordinates) {
+  GltfBuilder file = textured_square();
+  file.more += R"(,"extensionsRequired":["KHR_texture_transform"],"materials":[{)"
+               R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{)"
+               R"("KHR_texture_transform":{"offset":[0.5,0.25],"scale":[2,4],)"
+               R"("rotation":1.57079632679}}}}}])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  // (1, 1), scaled to (2, 4), turned against the clock where v points down, then moved.
+  EXPECT_TRUE(model.vertices[1].uv.isApprox(Eigen::Vector2f(4.5f, -1.75f), 1e-5f));
+}
+
+TEST(GltfContent, DrawsWithoutAPictureThatCannotBeRead) {
+  GltfBuilder file = textured_square();
+  const std::string compressed = "IDAT";
+  *(std::search(file.data.begin(), file.data.end(), compressed.begin(), compressed.end()) + 4) = 0;
+  file.more += R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.parts[0].material.color, -1);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("image 0"), std::string::npos);
+}
+
+TEST(GltfContent, ReadsAFileWithoutAScene) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  std::string json = file.json();
+  const std::string scenes = R"("scenes":[{"nodes":[0]}],)";
+  json.replace(json.find(scenes), scenes.size(), "");
+  EXPECT_EQ(parse_gltf(glb(json, file.data), "part.glb").indices.size(), 3u);
+}
+
+TEST(GltfContent, MakesACoarseVersionOfALargeModel) {
+  constexpr std::uint32_t kSide = 400;
+  std::vector<float> xyz;
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t y = 0; y <= kSide; ++y)
+    for (std::uint32_t x = 0; x <= kSide; ++x)
+      xyz.insert(xyz.end(), {static_cast<float>(x), static_cast<float>(y), 0.0f});
+  for (std::uint32_t y = 0; y < kSide; ++y)
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const std::uint32_t a = y * (kSide + 1) + x, b = a + kSide + 1;
+      indices.insert(indices.end(), {a, a + 1, b, a + 1, b + 1, b});
+    }
+  GltfBuilder file;
+  file.positions(xyz);
+  file.primitive = R"(,"indices":)" + std::to_string(file.accessor(file.view(indices), 5125,
+                                                                   "SCALAR", indices.size()));
+  Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_GT(model.coarse.size() / 3, 10'000u);
+  EXPECT_LT(model.coarse.size() / 3, 100'000u);
+  // A flat sheet stays one without holes, but for half a cell at its edges.
+  model.indices = model.coarse;
+  EXPECT_NEAR(area(model) / (2.0f * kSide * kSide), 1, 0.02);
+}
+
+}  // namespace
+}  // namespace limpid
