@@ -103,11 +103,11 @@ TEST_F(RawExchange, DoesNotPushBeforeTheFirstReadingOrTheFirstTick) {
 
 TEST_F(RawExchange, HoldsATorqueForLessThanTenMilliseconds) {
   push();  // written at the start of a turn of 1 ms
-  for (int i = 2; i <= 8; ++i) {
+  for (int i = 2; i <= 7; ++i) {
     reading_arrives();
     EXPECT_TRUE(turn().pushes()) << i;
   }
-  for (int i = 10; i < 30; ++i) {
+  for (int i = 9; i < 30; ++i) {
     reading_arrives();
     EXPECT_FALSE(turn().pushes()) << i;
   }
