@@ -14,7 +14,6 @@ Arrows = dict[str, set[str]]  # folder: the folders that it includes from
 
 _INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 _RAW_STRING = re.compile(r'R"(\w*)\(.*?\)\1"', re.S)
-_SCOPE = re.compile(r"(inline )?(namespace|class|struct|enum|union|extern)\b")
 _FUNCTION_END = re.compile(r"(\)|\}|\bconst|\bnoexcept|\boverride|\bfinal|\bmutable|-> [^()]*)$")
 
 
@@ -133,7 +132,7 @@ def _header_start(lines: list[str], at: int) -> int:
 
 def _opens_function(header: str) -> bool:
     before = header.removesuffix("{").rstrip()
-    if before == header or "(" not in before or _SCOPE.match(before):
+    if before == header or "(" not in before:
         return False
     return bool(_FUNCTION_END.search(before))
 

@@ -125,12 +125,18 @@ class ARuleIsSeenBroken(unittest.TestCase):
                 self.write("core/f.cpp", head.format(body + "    x();\n"))
                 self.assert_broken_once("61 lines")
 
+    def test_a_brace_in_a_raw_string_ends_no_function(self) -> None:
+        rows = 60 * "    x();\n"
+        self.write("core/f.cpp", f'void f() {{\n  x(R"(\n}}\n)");\n{rows}}}\n')
+        self.assert_broken_once("65 lines")
+
     def test_tables_and_classes_are_no_functions(self) -> None:
         rows = 100 * "    f(1),\n"
-        self.write("core/table.cpp", f"const T kTable = {{\n{rows}}};\n")
+        self.write("core/table.cpp", f"const T kTable = make({{\n{rows}}});\n")
         members = 100 * "  int f();\n"
-        self.write("core/class.cpp", f"class A : B<decltype(f())> {{\n{members}}};\n")
+        self.write("core/class.cpp", f"class A final {{\n{members}}};\n")
         self.assertEqual(self.broken(), [])
+
 
 
 if __name__ == "__main__":
