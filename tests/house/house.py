@@ -143,3 +143,14 @@ def headers_without_guard(root: Path) -> list[str]:
         for path in sources(root)
         if path.suffix == ".h" and "#pragma once\n" not in path.read_text()
     ]
+
+
+def named_files_that_are_missing(root: Path, page: str) -> list[str]:
+    """Of a page of text: what it quotes as a path of the tree; NAME stands for any name."""
+    text = (root / page).read_text()
+    named = re.findall(rf"`((?:{'|'.join(ROOMS)}|assets|tests|\.ci)/[^`\s]*)`", text)
+    return [
+        f"{page}: {name} is no file of the tree"
+        for name in named
+        if "NAME" not in name and not any(root.glob(name))
+    ]

@@ -37,6 +37,10 @@ class TheHouse(unittest.TestCase):
     def test_headers_are_guarded(self) -> None:
         self.assert_kept(house.headers_without_guard(ROOT))
 
+    def test_pages_name_files_that_are_there(self) -> None:
+        for page in ("README.md", "CONTRIBUTING.md"):
+            self.assert_kept(house.named_files_that_are_missing(ROOT, page))
+
 
 class ARuleIsSeenBroken(unittest.TestCase):
     """On a tree of two folders, app on core, with one fault each."""
@@ -103,6 +107,11 @@ class ARuleIsSeenBroken(unittest.TestCase):
         self.assertEqual(self.broken(), [])
         self.write("core/long.cpp", 301 * "int x;\n")
         self.assert_broken_once("301")
+
+    def test_a_page_that_names_what_is_gone(self) -> None:
+        self.write("page.md", "`core/tick.h`, `core/NAME.h`, `core/gone.h`, `NAME.h5`")
+        broken = house.named_files_that_are_missing(self.root, "page.md")
+        self.assertEqual(broken, ["page.md: core/gone.h is no file of the tree"])
 
     def test_a_header_without_guard(self) -> None:
         self.write("core/none.h", "// #pragma twice\n")
