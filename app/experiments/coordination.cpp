@@ -96,11 +96,7 @@ void add_scatter(FigurePanel& panel, const Session& s, const std::string& label,
                           {{0, 0}, {reach, 1e3 * rise * reach}}});
 }
 
-}  // namespace
-
-Outcome coordination(Laboratory& lab) {
-  Parameters standard, proposed;
-  standard.kind = CouplingKind::standard;
+std::vector<Trial> all_trials(const Parameters& standard, const Parameters& proposed) {
   std::vector<Trial> trials{{"standard", plan_of("proximal", "proximal", standard)},
                             {"proposed", plan_of("proximal", "proximal", proposed)}};
   for (const double error : kInertiaErrors) {
@@ -109,12 +105,14 @@ Outcome coordination(Laboratory& lab) {
     trials.push_back(
         {fmt::format("inertia-error-{}", error), plan_of("proximal", "proximal", wrong)});
   }
-  const std::vector<TrialResult> results = lab.run(trials);
+  return trials;
+}
+
+// `results` as all_trials() lists them.
+Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed) {
   const Session& a = results[0].session;
   const Session& b = results[1].session;
-
-  Outcome outcome;
-  Figure& figure = outcome.figure;
+  Figure figure;
   figure.title = "Coordination of device and proxy in contact";
   figure.caption = fmt::format(
       "Three contacts on the proximal link (20 N m/rad), then three at the tip (600 N/m), the same "
@@ -147,9 +145,14 @@ Outcome coordination(Laboratory& lab) {
   wrong.series.push_back(added_error(results[2].session, b, "half the inertia", kProxyInk));
   wrong.series.push_back(added_error(results[3].session, b, "twice the inertia", kEnergyInk));
   figure.panels.insert(figure.panels.end(), {force, error, scatter, wrong});
+  return figure;
+}
 
-  const double ideal = 1 / standard.k_vc;
-  outcome.checks = {
+// `ideal`: the standard coupling's slope by (1) [rad/(N m)].
+std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) {
+  const Session& a = results[0].session;
+  const Session& b = results[1].session;
+  std::vector<Check> checks = {
       at_least("contacts made with the standard coupling", lasting_contacts(a), 6),
       at_least("contacts made with the proposed coupling", lasting_contacts(b), 6),
       at_most("slope of the error, standard coupling, over 1/k_vc, off 1 by at most",
@@ -160,17 +163,29 @@ Outcome coordination(Laboratory& lab) {
   };
   for (std::size_t i = 0; i < std::size(kInertiaErrors); ++i) {
     const Session& s = results[2 + i].session;
-    outcome.checks.push_back(
+    checks.push_back(
         at_most(fmt::format("largest error with the model's inertia times {}, over that with the "
                             "right one",
                             kInertiaErrors[i]),
                 largest_error(s) / largest_error(b), 1.25));
-    outcome.checks.push_back(at_most(
+    checks.push_back(at_most(
         fmt::format("slope of the error with the model's inertia times {}, over that of the "
                     "standard coupling",
                     kInertiaErrors[i]),
         slope(s) / slope(a), 0.01));
   }
+  return checks;
+}
+
+}  // namespace
+
+Outcome coordination(Laboratory& lab) {
+  Parameters standard, proposed;
+  standard.kind = CouplingKind::standard;
+  const std::vector<TrialResult> results = lab.run(all_trials(standard, proposed));
+  Outcome outcome;
+  outcome.figure = draw(results, proposed);
+  outcome.checks = judge(results, 1 / standard.k_vc);
   return outcome;
 }
 

@@ -124,59 +124,51 @@ double growth(const TrialResult& result) {
          rms_norm(s, Column::device_velocity, length, 2 * length);
 }
 
-}  // namespace
+struct Runs {
+  std::vector<PassivityCase> cases;  // the last is this experiment's own: eta = 0.4
+  double limit = 0;                  // smallest eta of the stiff grip, by Routh and Hurwitz
+  std::vector<Books> books;          // of each case's trials
+  std::vector<TrialResult> held;     // in the stiff grip: above the limit, below it
 
-Outcome passivity(Laboratory& lab) {
-  std::vector<PassivityCase> cases(passivity_cases().begin(), passivity_cases().end());
-  const std::size_t compared = cases.size();
-  cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
+  std::size_t compared() const { return cases.size() - 1; }
+  std::span<const Books> of(std::size_t one) const {
+    return std::span(books).subspan(one * kTrialsOfACase, kTrialsOfACase);
+  }
+};
+
+std::vector<Trial> all_trials(const Runs& runs, std::uint64_t seed) {
   std::vector<Trial> trials;
-  for (const PassivityCase& one : cases) {
-    for (Trial& trial : passivity_trials(one, lab.seed())) trials.push_back(std::move(trial));
+  for (const PassivityCase& one : runs.cases) {
+    for (Trial& trial : passivity_trials(one, seed)) trials.push_back(std::move(trial));
   }
   // The last case is this experiment's own; the others' sessions are for the spectrum, too.
-  for (std::size_t i = compared * kTrialsOfACase; i < trials.size(); ++i) trials[i].keep = false;
-  const double limit = grip_limit();
-  trials.push_back(held_still(limit * (1 + kMargin), "grip-above"));
-  trials.push_back(held_still(limit * (1 - kMargin), "grip-below"));
+  for (std::size_t i = runs.compared() * kTrialsOfACase; i < trials.size(); ++i) {
+    trials[i].keep = false;
+  }
+  trials.push_back(held_still(runs.limit * (1 + kMargin), "grip-above"));
+  trials.push_back(held_still(runs.limit * (1 - kMargin), "grip-below"));
+  return trials;
+}
 
-  const std::size_t many = cases.size() * kTrialsOfACase;
-  std::vector<Books> all(many);
-  std::vector<TrialResult> held(2);
-  lab.run(trials, [&](std::size_t i, const TrialResult& result) {
+Runs run_all(Laboratory& lab) {
+  Runs runs;
+  runs.cases.assign(passivity_cases().begin(), passivity_cases().end());
+  runs.cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
+  runs.limit = grip_limit();
+  const std::size_t many = runs.cases.size() * kTrialsOfACase;
+  runs.books.resize(many);
+  runs.held.resize(2);
+  lab.run(all_trials(runs, lab.seed()), [&](std::size_t i, const TrialResult& result) {
     if (i < many) {
-      all[i] = books_of(result.session);
+      runs.books[i] = books_of(result.session);
     } else {
-      held[i - many] = result;
+      runs.held[i - many] = result;
     }
   });
-  const auto of = [&](std::size_t i) {
-    return std::span<const Books>(all).subspan(i * kTrialsOfACase, kTrialsOfACase);
-  };
+  return runs;
+}
 
-  Outcome outcome;
-  Figure& figure = outcome.figure;
-  figure.title = "Energy that the coupling adds, over time";
-  figure.caption = fmt::format(
-      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
-      "with their lowest and highest, paper's gains. Total counts the device's own damping, "
-      "commanded the motors and the proxy alone. Last panel: held still in an undamped grip of {} "
-      "N/m, whose smallest stable eta is {:.3f} by Routh and Hurwitz.",
-      kTrialsOfACase, kStiffGrip, limit);
-  figure.columns = 2;
-  const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
-  FigurePanel total = axes, commanded = axes, zero = axes;
-  total.title = "Total";
-  commanded.title = "Commanded";
-  zero.title = "Commanded, where it changes sign";
-  for (std::size_t i = 0; i < compared; ++i) {
-    const bool standard = cases[i].kind == CouplingKind::standard;
-    const char* color = standard ? kNeutralInk : kFamilyInk[i];
-    add_case(total, cases[i], color, of(i), &Books::total);
-    add_case(commanded, cases[i], color, of(i), &Books::commanded);
-  }
-  add_case(zero, cases[compared], kFamilyInk[4], of(compared), &Books::commanded);
-  add_case(zero, cases[0], kFamilyInk[0], of(0), &Books::commanded);
+FigurePanel grip_panel(const std::vector<TrialResult>& held) {
   FigurePanel grip{.title = "Held in a stiff grip",
                    .x_label = "time [s]",
                    .y_label = "peak of the speed |v1| [rad/s]",
@@ -188,38 +180,80 @@ Outcome passivity(Laboratory& lab) {
     grip.series.push_back(
         {label, i == 0 ? kHandInk : kContactInk, Series::Style::line, envelope(s)});
   }
-  figure.panels = {total, commanded, zero, grip};
+  return grip;
+}
 
-  for (std::size_t i = 0; i < compared; ++i) {
-    outcome.checks.push_back(
-        at_most(fmt::format("highest E_c, total, of all trials, {} [J]", cases[i].name),
-                highest(of(i), &Books::highest_total), kNoise));
+Figure draw(const Runs& runs) {
+  Figure figure;
+  figure.title = "Energy that the coupling adds, over time";
+  figure.caption = fmt::format(
+      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
+      "with their lowest and highest, paper's gains. Total counts the device's own damping, "
+      "commanded the motors and the proxy alone. Last panel: held still in an undamped grip of {} "
+      "N/m, whose smallest stable eta is {:.3f} by Routh and Hurwitz.",
+      kTrialsOfACase, kStiffGrip, runs.limit);
+  figure.columns = 2;
+  const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
+  FigurePanel total = axes, commanded = axes, zero = axes;
+  total.title = "Total";
+  commanded.title = "Commanded";
+  zero.title = "Commanded, where it changes sign";
+  for (std::size_t i = 0; i < runs.compared(); ++i) {
+    const bool standard = runs.cases[i].kind == CouplingKind::standard;
+    const char* color = standard ? kNeutralInk : kFamilyInk[i];
+    add_case(total, runs.cases[i], color, runs.of(i), &Books::total);
+    add_case(commanded, runs.cases[i], color, runs.of(i), &Books::commanded);
   }
-  for (std::size_t i = 0; i < compared; ++i) {
-    outcome.checks.push_back(
-        at_most(fmt::format("highest E_c, commanded, of all trials, {} [J]", cases[i].name),
-                highest(of(i), &Books::highest_commanded), kNoise));
+  add_case(zero, runs.cases[runs.compared()], kFamilyInk[4], runs.of(runs.compared()),
+           &Books::commanded);
+  add_case(zero, runs.cases[0], kFamilyInk[0], runs.of(0), &Books::commanded);
+  figure.panels = {total, commanded, zero, grip_panel(runs.held)};
+  return figure;
+}
+
+std::vector<Check> judge(const Runs& runs) {
+  std::vector<Check> checks;
+  for (std::size_t i = 0; i < runs.compared(); ++i) {
+    checks.push_back(
+        at_most(fmt::format("highest E_c, total, of all trials, {} [J]", runs.cases[i].name),
+                highest(runs.of(i), &Books::highest_total), kNoise));
+  }
+  for (std::size_t i = 0; i < runs.compared(); ++i) {
+    checks.push_back(
+        at_most(fmt::format("highest E_c, commanded, of all trials, {} [J]", runs.cases[i].name),
+                highest(runs.of(i), &Books::highest_commanded), kNoise));
   }
   // 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
   for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
     const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
-    outcome.checks.push_back(
-        at_most(fmt::format("mean final E_c, total, {} less {} [J]", cases[l].name, cases[h].name),
-                final_mean(of(l)) - final_mean(of(h)), 0));
+    checks.push_back(at_most(fmt::format("mean final E_c, total, {} less {} [J]",
+                                         runs.cases[l].name, runs.cases[h].name),
+                             final_mean(runs.of(l)) - final_mean(runs.of(h)), 0));
   }
   double least = std::numeric_limits<double>::infinity();
-  for (const Books& trial : of(compared)) least = std::min(least, trial.highest_commanded);
-  outcome.checks.push_back(at_least(
+  for (const Books& trial : runs.of(runs.compared()))
+    least = std::min(least, trial.highest_commanded);
+  checks.push_back(at_least(
       "highest E_c, commanded, in each trial at eta = 0.4, which is not passive, at least [J]",
       least, kNoise));
-  outcome.checks.push_back(
+  checks.push_back(
       at_most(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                          limit * (1 + kMargin)),
-              growth(held[0]), 0.5));
-  outcome.checks.push_back(
+                          runs.limit * (1 + kMargin)),
+              growth(runs.held[0]), 0.5));
+  checks.push_back(
       at_least(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                           limit * (1 - kMargin)),
-               growth(held[1]), 2));
+                           runs.limit * (1 - kMargin)),
+               growth(runs.held[1]), 2));
+  return checks;
+}
+
+}  // namespace
+
+Outcome passivity(Laboratory& lab) {
+  const Runs runs = run_all(lab);
+  Outcome outcome;
+  outcome.figure = draw(runs);
+  outcome.checks = judge(runs);
   return outcome;
 }
 

@@ -1,86 +1,46 @@
 #include "render/model/simplify.h"
 
-#include <algorithm>
-#include <cmath>
-#include <unordered_map>
+#include <meshoptimizer.h>
+
+#include <span>
 
 namespace limpid {
 namespace {
 
-// Clusters of vertices: all in one cell of a grid that face the same eighth of all directions, so
-// that the two sides of a sheet and the faces at a sharp edge stay apart.
-class Clusters {
- public:
-  Clusters(const std::vector<Vertex>& vertices, const Eigen::AlignedBox3d& box, double cells)
-      : vertices_(vertices), corner_(box.min()), per_meter_(cells / box.sizes().maxCoeff()) {
-    of_.reserve(vertices.size());
-    for (const Vertex& v : vertices) {
-      const auto next = static_cast<std::uint32_t>(numbers_.size());
-      of_.push_back(numbers_.try_emplace(key(v), next).first->second);
-    }
+// Of the model's size: what small parts may lose of their shape, though they count few triangles.
+constexpr float kMostError = 0.01f;
+
+// About `wanted` of these indices, or more. Edges are collapsed, which keeps seams and sharp edges;
+// where that does not help, as in a model of single triangles, vertices are merged by a grid.
+std::vector<std::uint32_t> simplified(const std::vector<Vertex>& vertices,
+                                      std::span<const std::uint32_t> indices, std::size_t wanted) {
+  std::vector<std::uint32_t> out(indices.size());
+  const float* const positions = vertices.front().position.data();
+  std::size_t count =
+      meshopt_simplify(out.data(), indices.data(), indices.size(), positions, vertices.size(),
+                       sizeof(Vertex), wanted, kMostError, 0, nullptr);
+  if (count > 2 * wanted) {
+    count = meshopt_simplifySloppy(out.data(), indices.data(), indices.size(), positions,
+                                   vertices.size(), sizeof(Vertex), wanted, kMostError, nullptr);
   }
-
-  std::size_t count() const { return numbers_.size(); }
-
-  // For each vertex the one that stands for its cluster: the nearest to the middle.
-  std::vector<std::uint32_t> representatives() const {
-    std::vector<Vec3> sum(count(), Vec3::Zero());
-    std::vector<double> size(count()), nearest(count(), 1e300);
-    std::vector<std::uint32_t> chosen(count()), out(of_.size());
-    for (std::size_t i = 0; i < of_.size(); ++i) {
-      sum[of_[i]] += vertices_[i].position.cast<double>();
-      ++size[of_[i]];
-    }
-    for (std::size_t i = 0; i < of_.size(); ++i) {
-      const std::uint32_t k = of_[i];
-      const double off = (vertices_[i].position.cast<double>() - sum[k] / size[k]).squaredNorm();
-      if (off < nearest[k]) nearest[k] = off, chosen[k] = static_cast<std::uint32_t>(i);
-    }
-    for (std::size_t i = 0; i < of_.size(); ++i) out[i] = chosen[of_[i]];
-    return out;
-  }
-
- private:
-  std::uint64_t key(const Vertex& v) const {
-    std::uint64_t key = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double cell = (static_cast<double>(v.position[i]) - corner_[i]) * per_meter_;
-      key = (key << 18) | static_cast<std::uint64_t>(std::clamp(cell, 0.0, 262143.0));
-    }
-    for (int i = 0; i < 3; ++i) key = (key << 1) | (v.normal[i] < 0 ? 1u : 0u);
-    return key;
-  }
-
-  const std::vector<Vertex>& vertices_;
-  Vec3 corner_;
-  double per_meter_;
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
-  std::vector<std::uint32_t> of_;
-};
+  out.resize(count);
+  return out;
+}
 
 }  // namespace
 
 void add_coarse(Model& model, std::size_t triangles) {
   model.coarse.clear();
   model.coarse_parts.clear();
-  const Eigen::AlignedBox3d box = model.bounds();
-  if (model.indices.size() / 3 < 2 * triangles || !(box.sizes().maxCoeff() > 0)) return;
-  // A surface meets a grid in about as many cells as the square of its resolution, and has two
-  // triangles a vertex.
-  constexpr double kProbe = 64;
-  const auto wanted = static_cast<double>(triangles / 2);
-  const auto met = static_cast<double>(Clusters(model.vertices, box, kProbe).count());
-  const double cells = std::clamp(kProbe * std::sqrt(wanted / met), 8.0, 4096.0);
-  const auto stand_in = Clusters(model.vertices, box, cells).representatives();
+  const std::size_t all = model.indices.size() / 3;
+  if (all < 2 * triangles || !(model.bounds().sizes().maxCoeff() > 0)) return;
   for (const Part& part : model.parts) {
     const auto first = static_cast<std::uint32_t>(model.coarse.size());
-    for (std::uint32_t i = part.first; i < part.first + part.count; i += 3) {
-      const std::uint32_t a = stand_in[model.indices[i]], b = stand_in[model.indices[i + 1]],
-                          c = stand_in[model.indices[i + 2]];
-      if (a != b && b != c && c != a) model.coarse.insert(model.coarse.end(), {a, b, c});
-    }
-    const auto count = static_cast<std::uint32_t>(model.coarse.size()) - first;
-    model.coarse_parts.push_back({first, count, part.material});
+    const std::size_t share = 3 * (part.count / 3 * triangles / all);
+    const auto coarse =
+        simplified(model.vertices, std::span(model.indices).subspan(part.first, part.count), share);
+    model.coarse.insert(model.coarse.end(), coarse.begin(), coarse.end());
+    model.coarse_parts.push_back({first, static_cast<std::uint32_t>(coarse.size()), part.material});
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "devices/files/session/file_size_signal.h"
 #include "devices/files/session/session_check.h"
 #include "devices/files/session/session_models.h"
 
@@ -24,28 +24,6 @@ constexpr std::uint64_t kBlocksPerChunk = 16;
 constexpr hsize_t kEventChunk = 64;
 constexpr hsize_t kSumChunk = 64;
 constexpr hsize_t kPage = 4096;  // bytes
-
-// Past the file size limit of the shell (ulimit -f) the kernel sends a deadly signal with the
-// error. While this lives the thread sees the error alone.
-class NoFileSizeSignal {
- public:
-  NoFileSizeSignal() {
-    sigemptyset(&signal_);
-    sigaddset(&signal_, SIGXFSZ);
-    pthread_sigmask(SIG_BLOCK, &signal_, &before_);
-  }
-  ~NoFileSizeSignal() {
-    const timespec no_wait{};
-    if (sigismember(&before_, SIGXFSZ) == 0) sigtimedwait(&signal_, nullptr, &no_wait);
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  NoFileSizeSignal(const NoFileSizeSignal&) = delete;
-  NoFileSizeSignal& operator=(const NoFileSizeSignal&) = delete;
-
- private:
-  sigset_t signal_{};
-  sigset_t before_{};
-};
 
 std::string now() {
   const std::time_t t = std::time(nullptr);

@@ -1,0 +1,152 @@
+// RealtimeKit's answers, from one that the test plays on a bus of its own.
+#include "app/live/rtkit.h"
+
+#include <dbus/dbus.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <future>
+#include <optional>
+
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* kName = "org.freedesktop.RealtimeKit1";
+
+// A bus that the process takes for the system's.
+class Bus {
+ public:
+  Bus() {
+    const std::string address = "--address=unix:path=" + (dir_ / "bus").string();
+    const std::array arguments{"dbus-daemon",   "--session",
+                               "--nofork",      "--print-address=1",
+                               address.c_str(), static_cast<const char*>(nullptr)};
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+    if (posix_spawnp(&pid_, arguments[0], &actions, nullptr,
+                     const_cast<char* const*>(arguments.data()), environ) != 0) {
+      pid_ = -1;
+    }
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    std::array<char, 512> line{};  // once it says where, it listens
+    const ssize_t length = read(ends[0], line.data(), line.size());
+    close(ends[0]);
+    const std::string said(line.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+    runs_ = said.find('\n') != std::string::npos;
+    if (runs_) setenv("DBUS_SYSTEM_BUS_ADDRESS", said.substr(0, said.find('\n')).c_str(), 1);
+  }
+  ~Bus() {
+    if (pid_ < 0) return;
+    kill(pid_, SIGTERM);
+    waitpid(pid_, nullptr, 0);
+  }
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  bool runs() const { return runs_; }
+
+ private:
+  test::TempDir dir_;
+  pid_t pid_ = -1;
+  bool runs_ = false;
+};
+
+struct Asked {
+  std::string method;
+  dbus_uint64_t process = 0, thread = 0;
+  dbus_uint32_t priority = 0;
+};
+struct Outcome {
+  bool granted = false;
+  std::string why;
+  Asked asked;
+};
+
+// What ask_rtkit() makes of the answer to its one question; none for an empty answer.
+Outcome ask(const std::function<DBusMessage*(DBusMessage*)>& answer) {
+  Outcome outcome;
+  DBusConnection* kit = dbus_bus_get_private(DBUS_BUS_SYSTEM, nullptr);
+  dbus_connection_set_exit_on_disconnect(kit, FALSE);
+  dbus_bus_request_name(kit, kName, 0, nullptr);
+  auto asking =
+      std::async(std::launch::async, [&] { outcome.granted = ask_rtkit(4711, 20, &outcome.why); });
+  while (asking.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    dbus_connection_read_write(kit, 10);
+    DBusMessage* question = dbus_connection_pop_message(kit);
+    if (question == nullptr) continue;
+    Asked& asked = outcome.asked;
+    if (dbus_message_get_args(question, nullptr, DBUS_TYPE_UINT64, &asked.process, DBUS_TYPE_UINT64,
+                              &asked.thread, DBUS_TYPE_UINT32, &asked.priority,
+                              DBUS_TYPE_INVALID)) {
+      asked.method = dbus_message_get_member(question);
+      if (DBusMessage* reply = answer(question)) {
+        dbus_connection_send(kit, reply, nullptr);
+        dbus_message_unref(reply);
+      }
+    }
+    dbus_message_unref(question);
+  }
+  dbus_connection_close(kit);
+  dbus_connection_unref(kit);
+  return outcome;
+}
+
+class Rtkit : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { bus_.emplace(); }
+  static void TearDownTestSuite() { bus_.reset(); }
+  void SetUp() override {
+    if (!bus_->runs()) GTEST_SKIP() << "no dbus-daemon here";
+  }
+
+ private:
+  static inline std::optional<Bus> bus_;
+};
+
+TEST_F(Rtkit, IsAskedForTheThreadOfThisProcess) {
+  const Outcome outcome =
+      ask([](DBusMessage* question) { return dbus_message_new_method_return(question); });
+  EXPECT_TRUE(outcome.granted) << outcome.why;
+  EXPECT_EQ(outcome.asked.method, "MakeThreadRealtimeWithPID");
+  EXPECT_EQ(outcome.asked.process, static_cast<dbus_uint64_t>(getpid()));
+  EXPECT_EQ(outcome.asked.thread, 4711u);
+  EXPECT_EQ(outcome.asked.priority, 20u);
+}
+
+TEST_F(Rtkit, SaysWhyItRefuses) {
+  const Outcome outcome = ask([](DBusMessage* question) {
+    return dbus_message_new_error(question, DBUS_ERROR_ACCESS_DENIED, "too many threads");
+  });
+  EXPECT_FALSE(outcome.granted);
+  EXPECT_EQ(outcome.why, "rtkit: too many threads");
+}
+
+TEST_F(Rtkit, IsNotWaitedForForEver) {
+  const Outcome outcome = ask([](DBusMessage*) -> DBusMessage* { return nullptr; });
+  EXPECT_FALSE(outcome.granted);
+  EXPECT_EQ(outcome.asked.thread, 4711u);
+  EXPECT_EQ(outcome.why.substr(0, 7), "rtkit: ");
+  EXPECT_GT(outcome.why.size(), 7u);
+}
+
+TEST_F(Rtkit, IsMissedInWords) {
+  std::string why;
+  EXPECT_FALSE(ask_rtkit(4711, 20, &why));
+  EXPECT_NE(why.find(kName), std::string::npos) << why;
+  EXPECT_FALSE(ask_rtkit(4711, 20, nullptr));
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,156 @@
+"""The rules of the tree, each as a function that lists what breaks it in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOMS = ("core", "devices", "render", "app")
+MOST_LINES = 300
+MOST_FUNCTION_LINES = 60
+
+Arrows = dict[str, set[str]]  # folder: the folders that it includes from
+
+_INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+_RAW_STRING = re.compile(r'R"(\w*)\(.*?\)\1"', re.S)
+_FUNCTION_END = re.compile(r"(\)|\}|\bconst|\bnoexcept|\boverride|\bfinal|\bmutable|-> [^()]*)$")
+
+
+def sources(root: Path) -> list[Path]:
+    found = [path for room in ROOMS for path in (root / room).rglob("*")]
+    return sorted(path for path in found if path.suffix in (".h", ".cpp"))
+
+
+def read_arrows(text: str) -> Arrows:
+    arrows: Arrows = {}
+    for line in text.splitlines():
+        line = line.partition("#")[0].strip()
+        if line:
+            folder, _, seen = line.partition(":")
+            arrows[folder] = set(seen.split())
+    return arrows
+
+
+def found_arrows(root: Path) -> Arrows:
+    """What the files of each folder include of other folders."""
+    arrows: Arrows = {}
+    for path in sources(root):
+        folder = str(path.parent.relative_to(root))
+        seen = {str(Path(name).parent) for name in _INCLUDE.findall(path.read_text())}
+        arrows.setdefault(folder, set()).update(seen - {folder})
+    return arrows
+
+
+def includes_of_nothing(root: Path) -> list[str]:
+    """Includes are written from the root of the tree, so that their folder can be read."""
+    return [
+        f'{path.relative_to(root)}: "{name}" is no file of the tree'
+        for path in sources(root)
+        for name in _INCLUDE.findall(path.read_text())
+        if not (root / name).is_file()
+    ]
+
+
+def forbidden_arrows(found: Arrows, allowed: Arrows) -> list[str]:
+    return _missing(found, allowed, "is included, and arrows.txt does not allow it")
+
+
+def unused_arrows(found: Arrows, allowed: Arrows) -> list[str]:
+    return _missing(allowed, found, "is allowed by arrows.txt, and nobody includes it")
+
+
+def _missing(these: Arrows, those: Arrows, what: str) -> list[str]:
+    broken = [f"{folder}: the folder {what}" for folder in sorted(these.keys() - those.keys())]
+    for folder in sorted(these.keys() & those.keys()):
+        broken += [f"{folder} -> {seen} {what}" for seen in sorted(these[folder] - those[folder])]
+    return broken
+
+
+def circles(arrows: Arrows) -> list[str]:
+    return [
+        f"{folder} includes itself by way of others"
+        for folder in sorted(arrows)
+        if folder in _within_reach(arrows, folder)
+    ]
+
+
+def _within_reach(arrows: Arrows, start: str) -> set[str]:
+    reached: set[str] = set()
+    ahead = set(arrows[start])
+    while ahead:
+        folder = ahead.pop()
+        reached.add(folder)
+        ahead |= arrows.get(folder, set()) - reached
+    return reached
+
+
+def long_files(root: Path) -> list[str]:
+    lengths = ((path, len(path.read_text().splitlines())) for path in sources(root))
+    return [
+        f"{path.relative_to(root)}: {lines} lines, allowed are {MOST_LINES}"
+        for path, lines in lengths
+        if lines > MOST_LINES
+    ]
+
+
+def long_functions(root: Path) -> list[str]:
+    return [
+        f"{path.relative_to(root)}:{line}: a function of {lines} lines, "
+        f"allowed are {MOST_FUNCTION_LINES}"
+        for path in sources(root)
+        for line, lines in functions(path.read_text())
+        if lines > MOST_FUNCTION_LINES
+    ]
+
+
+def functions(text: str) -> Iterator[tuple[int, int]]:
+    """First line (from 1) and number of lines of each function, in code as clang-format leaves it:
+    a body's last line starts with a brace, as far in as the line that opens it or its first line.
+    """
+    text = _RAW_STRING.sub(lambda match: "\n" * match[0].count("\n"), text)
+    lines = [line.partition("//")[0].rstrip() for line in text.splitlines()]
+    at = 0
+    while at < len(lines):
+        first = _header_start(lines, at)
+        header = " ".join(line.strip() for line in lines[first : at + 1])
+        indent = len(lines[first]) - len(lines[first].lstrip())
+        if indent > 4 or not _opens_function(header):
+            at += 1
+            continue
+        end = " " * indent + "}"
+        last = next((i for i in range(at + 1, len(lines)) if lines[i].startswith(end)), at)
+        yield first + 1, last - first + 1
+        at = last + 1
+
+
+def _header_start(lines: list[str], at: int) -> int:
+    while at > 0 and lines[at - 1] and lines[at - 1][-1] not in ";{}:" and lines[at - 1][0] != "#":
+        at -= 1
+    return at
+
+
+def _opens_function(header: str) -> bool:
+    before = header.removesuffix("{").rstrip()
+    if before == header or "(" not in before:
+        return False
+    return bool(_FUNCTION_END.search(before))
+
+
+def headers_without_guard(root: Path) -> list[str]:
+    return [
+        f"{path.relative_to(root)}: no #pragma once"
+        for path in sources(root)
+        if path.suffix == ".h" and "#pragma once\n" not in path.read_text()
+    ]
+
+
+def named_files_that_are_missing(root: Path, page: str) -> list[str]:
+    """Of a page of text: what it quotes as a path of the tree; NAME stands for any name."""
+    text = (root / page).read_text()
+    named = re.findall(rf"`((?:{'|'.join(ROOMS)}|assets|tests|\.ci)/[^`\s]*)`", text)
+    return [
+        f"{page}: {name} is no file of the tree"
+        for name in named
+        if "NAME" not in name and not any(root.glob(name))
+    ]

@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+"""The tree keeps its rules: arrows one way, small files, short functions, guarded headers."""
+
+from __future__ import annotations
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import house
+
+ROOT = Path(__file__).resolve().parents[2]
+TABLE = Path(__file__).with_name("arrows.txt")
+
+
+class TheHouse(unittest.TestCase):
+    def assert_kept(self, broken: list[str]) -> None:
+        if broken:
+            self.fail("\n" + "\n".join(broken))
+
+    def test_includes_follow_the_table(self) -> None:
+        allowed = house.read_arrows(TABLE.read_text())
+        found = house.found_arrows(ROOT)
+        self.assert_kept(house.forbidden_arrows(found, allowed))
+        self.assert_kept(house.unused_arrows(found, allowed))
+        self.assert_kept(house.includes_of_nothing(ROOT))
+
+    def test_no_folders_include_each_other(self) -> None:
+        self.assert_kept(house.circles(house.found_arrows(ROOT)))
+
+    def test_files_are_small(self) -> None:
+        self.assert_kept(house.long_files(ROOT))
+
+    def test_functions_are_short(self) -> None:
+        self.assert_kept(house.long_functions(ROOT))
+
+    def test_headers_are_guarded(self) -> None:
+        self.assert_kept(house.headers_without_guard(ROOT))
+
+    def test_pages_name_files_that_are_there(self) -> None:
+        for page in ("README.md", "CONTRIBUTING.md"):
+            self.assert_kept(house.named_files_that_are_missing(ROOT, page))
+
+
+class ARuleIsSeenBroken(unittest.TestCase):
+    """On a tree of two folders, app on core, with one fault each."""
+
+    def setUp(self) -> None:
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.root = Path(place.name)
+        self.write("core/tick.h", "#pragma once\n")
+        self.write("app/run.cpp", '#include "core/tick.h"\n')
+        self.allowed = house.read_arrows("core:\napp: core  # the loop\n")
+
+    def write(self, name: str, text: str) -> None:
+        path = self.root / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+
+    def broken(self) -> list[str]:
+        found = house.found_arrows(self.root)
+        return [
+            *house.forbidden_arrows(found, self.allowed),
+            *house.unused_arrows(found, self.allowed),
+            *house.includes_of_nothing(self.root),
+            *house.circles(found),
+            *house.long_files(self.root),
+            *house.long_functions(self.root),
+            *house.headers_without_guard(self.root),
+        ]
+
+    def assert_broken_once(self, words: str) -> None:
+        broken = self.broken()
+        self.assertEqual(len(broken), 1, broken)
+        self.assertIn(words, broken[0])
+
+    def test_none_is_when_all_are_kept(self) -> None:
+        self.assertEqual(self.broken(), [])
+
+    def test_an_arrow_that_is_not_in_the_table(self) -> None:
+        self.write("render/view.cpp", "")
+        self.write("app/picture.cpp", '#include "core/tick.h"\n  #  include "render/view.cpp"\n')
+        self.allowed["render"] = set()
+        self.assert_broken_once("app -> render")
+
+    def test_a_folder_that_is_not_in_the_table(self) -> None:
+        self.write("render/view.cpp", "")
+        self.assert_broken_once("render")
+
+    def test_an_arrow_that_nobody_uses(self) -> None:
+        self.write("app/run.cpp", '#include <vector>\n// core/tick.h\n#include "app/run.cpp"\n')
+        self.assert_broken_once("app -> core")
+
+    def test_a_circle(self) -> None:
+        self.write("core/loop.cpp", '#include "app/run.cpp"\n')
+        self.allowed["core"] = {"app"}
+        self.assertEqual(len(self.broken()), 2)
+
+    def test_an_include_that_hides_its_folder(self) -> None:
+        self.write("app/run.cpp", '#include "core/tick.h"\n#include "app/../core/none.h"\n')
+        self.allowed["app"] = {"core", "app/../core"}
+        self.assert_broken_once("app/../core/none.h")
+
+    def test_a_file_of_301_lines(self) -> None:
+        self.write("core/long.cpp", 300 * "int x;\n")
+        self.assertEqual(self.broken(), [])
+        self.write("core/long.cpp", 301 * "int x;\n")
+        self.assert_broken_once("301")
+
+    def test_a_page_that_names_what_is_gone(self) -> None:
+        self.write("page.md", "`core/tick.h`, `core/NAME.h`, `core/gone.h`, `NAME.h5`")
+        broken = house.named_files_that_are_missing(self.root, "page.md")
+        self.assertEqual(broken, ["page.md: core/gone.h is no file of the tree"])
+
+    def test_a_header_without_guard(self) -> None:
+        self.write("core/none.h", "// #pragma twice\n")
+        self.assert_broken_once("core/none.h")
+
+    def test_functions_of_61_lines(self) -> None:
+        heads = (
+            "void f() {{\n{}}}\n",
+            "namespace a {{\nclass A {{\n  A(int b,\n    int c)\n      : b_(b) {{\n{}  }}\n}};\n}}\n",
+            "struct A {{\n  auto f() const -> int {{\n{}  }}\n}};\n",
+            "template <class T>\nvoid f(T) noexcept {{\n{}}}\n",
+            "const auto f = [](int i) {{\n{}}};\n",
+        )
+        for head in heads:
+            of_header = head.partition("{}")[0].split("{{\n")[-2].count("\n") + 1
+            with self.subTest(head):
+                body = (59 - of_header) * "    x();\n"
+                self.write("core/f.cpp", head.format(body))
+                self.assertEqual(self.broken(), [])
+                self.write("core/f.cpp", head.format(body + "    x();\n"))
+                self.assert_broken_once("61 lines")
+
+    def test_a_brace_in_a_raw_string_ends_no_function(self) -> None:
+        rows = 60 * "    x();\n"
+        self.write("core/f.cpp", f'void f() {{\n  x(R"(\n}}\n)");\n{rows}}}\n')
+        self.assert_broken_once("65 lines")
+
+    def test_tables_and_classes_are_no_functions(self) -> None:
+        rows = 100 * "    f(1),\n"
+        self.write("core/table.cpp", f"const T kTable = make({{\n{rows}}});\n")
+        members = 100 * "  int f();\n"
+        self.write("core/class.cpp", f"class A final {{\n{members}}};\n")
+        self.assertEqual(self.broken(), [])
+
+
+
+if __name__ == "__main__":
+    unittest.main()
