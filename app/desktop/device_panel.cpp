@@ -66,7 +66,7 @@ void status(Workbench& bench) {
     }
     return;
   }
-  if (!bench.live.real()) return;
+  if (!bench.live.device_in_place()) return;
   const ForceState state = bench.live.snapshot().force_state;
   read_out("force", explain(state), {},
            "Force is off until the hand has the device and F arms it; it then fades in.");
@@ -161,11 +161,12 @@ void adjustments(Workbench& bench) {
   if (found == nullptr || !bench.live.device_plugged()) return;
   DeviceNotes& notes = desk.hub.notes(desk.hub.in_use());
   const DeviceReading& reading = bench.live.snapshot().reading;
-  const auto joints = static_cast<std::size_t>(bench.live.real() ? bench.stage->arm().dof() : 6);
+  const auto joints =
+      static_cast<std::size_t>(bench.live.device_in_place() ? bench.stage->arm().dof() : 6);
   notes.axes.resize(std::max(notes.axes.size(), joints));
   bool changed = false;
   for (std::size_t i = 0; i < joints; ++i) {
-    changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.real()) || changed;
+    changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.device_in_place()) || changed;
   }
   if (found->kind == HidKind::pid_joystick) {
     const auto reverse = notes.pid.reverse;
@@ -173,7 +174,7 @@ void adjustments(Workbench& bench) {
     if (notes.pid.reverse != reverse) notes.checked = false;
   }
   if (changed) desk.connect_anew(bench);
-  if (!bench.live.real()) return;
+  if (!bench.live.device_in_place()) return;
   ImGui::BeginDisabled(bench.recording());
   if (limit_sliders(notes.limits)) desk.save(bench);
   ImGui::EndDisabled();
