@@ -43,7 +43,7 @@ void DeviceDesk::update(Workbench& bench) {
 bool DeviceDesk::must_wait(const Workbench& bench) const {
   const FoundDevice* found = hub.present();
   return bench.recording() && !bench.live.device_in_place() && found != nullptr &&
-         found->kind != HidKind::space_mouse;
+         !found->kind->leads_hand;
 }
 
 void DeviceDesk::look(Workbench& bench) {

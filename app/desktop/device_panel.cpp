@@ -24,7 +24,7 @@ void choices(Workbench& bench) {
   bool known = bench.devices.hub.in_use().empty();
   for (const FoundDevice& found : bench.devices.hub.found()) {
     const std::string help = found.missing.empty()
-                                 ? fmt::format("{}, {}", name(found.kind), found.place.id)
+                                 ? fmt::format("{}, {}", found.kind->name, found.place.id)
                                  : found.missing;
     ImGui::PushID(found.place.path.c_str());
     choice(bench, found.place.name.c_str(), found.place.id, help.c_str());
@@ -168,7 +168,7 @@ void adjustments(Workbench& bench) {
   for (std::size_t i = 0; i < joints; ++i) {
     changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.device_in_place()) || changed;
   }
-  if (found->kind == HidKind::pid_joystick) {
+  if (found->kind->uncalibrated) {
     const auto reverse = notes.pid.reverse;
     changed = joystick_settings(notes.pid) || changed;
     if (notes.pid.reverse != reverse) notes.checked = false;
