@@ -1,7 +1,9 @@
+#include "devices/registry/device_list.h"
+
 #include <iterator>
 
-#include "devices/registry/device_list.h"
 #include "devices/registry/hid_devices.h"
+#include "devices/registry/socket_devices.h"
 
 namespace limpid {
 namespace {
@@ -10,6 +12,7 @@ namespace {
 using ListDevices = std::vector<FoundDevice> (*)(const std::filesystem::path& udev_rule);
 constexpr ListDevices kWaysIn[] = {
     [](const std::filesystem::path& udev_rule) { return list_hid_devices(udev_rule); },
+    [](const std::filesystem::path&) { return list_socket_devices(socket_folder()); },
 };
 
 }  // namespace
