@@ -4,21 +4,25 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/math/sizes.h"
+#include "core/tick/parameters.h"
+#include "devices/hand_input.h"
 
 namespace limpid {
 
 // What it is; does not change while it is connected.
 struct DeviceTraits {
-  std::string name;                  // for people
-  std::string id;                    // the same at every plug-in: vendor:product:serial
-  int dof = 0;                       // joints
-  bool pushes = false;               // has motors
+  std::string name;     // for people
+  std::string id;       // the same at every plug-in: vendor:product:serial
+  int dof = 0;          // joints
+  bool pushes = false;  // has motors
+  bool guarded = true;  // a hand is on it: its force is armed first, and the safety limits hold
   std::vector<double> lower, upper;  // range of each joint [rad]
   std::vector<double> resolution;    // of each joint [rad]
   std::vector<double> effort;        // torque limit of each joint [N m]; empty if it cannot push
@@ -35,7 +39,13 @@ struct DeviceReading {
   std::uint32_t lapses = 0;  // how often its torque ran out, as nobody gave a new one in time
 };
 
-// Read, write and stop belong to the haptic thread: they never allocate, lock, throw, or wait.
+// What only a simulated device knows of itself.
+struct DeviceTruth {
+  std::span<const double> x, v;         // where it is, not rounded by encoders [rad, rad/s]
+  std::span<const double> hand_torque;  // f1, the mean over the last tick [N m]
+};
+
+// All but traits() belongs to the haptic thread: it never allocates, locks, throws, or waits.
 class Device {
  public:
   virtual ~Device() = default;
@@ -46,6 +56,12 @@ class Device {
   virtual void write(std::span<const double> torque) noexcept = 0;
   // No torque, now.
   virtual void stop() noexcept = 0;
+
+  // What a simulated device is told and asked besides. Before a reading: what the tick is like.
+  virtual void expect(const Parameters&, const HandInput&) noexcept {}
+  // Where it begins, the hand's target on the tip [rad, rad/s, m].
+  virtual void place(std::span<const double>, std::span<const double>, const Vec3&) noexcept {}
+  virtual std::optional<DeviceTruth> truth() const noexcept { return std::nullopt; }
 };
 
 // Before the haptic thread has the device: waits until it has said where it is; false if it has not

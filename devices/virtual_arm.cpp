@@ -137,6 +137,7 @@ VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(descrip
   traits_.id = "virtual";
   traits_.dof = description.dof();
   traits_.pushes = true;
+  traits_.guarded = false;
   traits_.rate = 1 / p_.tick;
   for (const Joint& joint : description.joints) {
     traits_.lower.push_back(joint.lower);
@@ -144,6 +145,21 @@ VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(descrip
     traits_.resolution.push_back(0);
     traits_.effort.push_back(joint.effort);
   }
+}
+
+template <int N>
+void VirtualDevice<N>::place(std::span<const double> x, std::span<const double> v,
+                             const Vec3& target) noexcept {
+  const Eigen::Index n = traits_.dof;
+  arm.place(Eigen::Map<const Vec<N>>(x.data(), n), Eigen::Map<const Vec<N>>(v.data(), n), target);
+}
+
+template <int N>
+std::optional<DeviceTruth> VirtualDevice<N>::truth() const noexcept {
+  const auto joints = [](const Vec<N>& values) {
+    return std::span(values.data(), static_cast<std::size_t>(values.size()));
+  };
+  return DeviceTruth{joints(arm.x()), joints(arm.v()), joints(arm.hand_torque())};
 }
 
 template <int N>

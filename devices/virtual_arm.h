@@ -10,13 +10,6 @@
 
 namespace limpid {
 
-// What the hand does over a tick: it goes on from where it wanted the tip a tick ago to `target`.
-struct HandInput {
-  Vec3 target = Vec3::Zero();        // [m]
-  double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
-  std::span<const double> torque{};  // pushed on the joints besides [N m]; empty: none
-};
-
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring and damper at the
 // tip; gravity counts as compensated. Integrated in substeps of the tick with the motor torque
 // held: linearly implicit midpoint rule, second order and without numerical damping, stable for
@@ -33,6 +26,8 @@ class VirtualArm {
   // Lives through one tick under this motor torque [N m].
   void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
   Vec3 tip() const;
+  const Vec<N>& x() const { return x_; }  // [rad]
+  const Vec<N>& v() const { return v_; }  // [rad/s]
   // f1, the mean over the tick [N m].
   const Vec<N>& hand_torque() const { return hand_torque_; }
 
@@ -60,11 +55,13 @@ class VirtualDevice final : public Device {
  public:
   explicit VirtualDevice(const ArmDescription& arm);
 
-  // What the next tick will be like.
-  void expect(const Parameters& p, const HandInput& hand) {
+  void expect(const Parameters& p, const HandInput& hand) noexcept override {
     p_ = p;
     hand_ = hand;
   }
+  void place(std::span<const double> x, std::span<const double> v,
+             const Vec3& target) noexcept override;
+  std::optional<DeviceTruth> truth() const noexcept override;
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override;
   void write(std::span<const double> torque) noexcept override;

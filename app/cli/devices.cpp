@@ -8,15 +8,6 @@
 namespace limpid {
 namespace {
 
-const char* use(HidKind kind) {
-  switch (kind) {
-    case HidKind::space_mouse: return "leads the hand of the virtual arm; no force";
-    case HidKind::pid_joystick: return "two joints, pushes";
-    case HidKind::raw: return "its own joints, pushes if it says so";
-  }
-  return "";
-}
-
 int devices() {
   fmt::print(
       "virtual arm\n  built in; any URDF chain of 1 to 32 revolute joints (--device), driven by "
@@ -24,9 +15,9 @@ int devices() {
   DeviceHub hub(device_book_file(), {});
   hub.take(DeviceHub::look());
   for (const FoundDevice& found : hub.found()) {
-    fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, name(found.kind), found.place.id,
+    fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
-               found.missing.empty() ? use(found.kind) : found.missing);
+               found.missing.empty() ? found.kind->use : found.missing);
   }
   if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
   return 0;
@@ -39,7 +30,8 @@ Command declare_devices(CLI::App& app) {
   command->footer(
       "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "
-      "(devices/hid/raw_protocol.h).");
+      "(devices/hid/protocols/raw_protocol.h),\nalso programs that do so on a socket, "
+      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py).");
   return devices;
 }
 

@@ -28,17 +28,19 @@ void Workbench::open_device(std::unique_ptr<Device> device) {
   devices.plugged();
   const DeviceTraits& traits = device->traits();
   if (Plug::guides(traits)) {
-    if (live.real()) open(stage->arm(), editor.scene(), editor.models(), nullptr, !editor.dirty());
+    if (live.device_in_place())
+      open(stage->arm(), editor.scene(), editor.models(), nullptr, !editor.dirty());
     return live.plug(std::move(device));
   }
   const ArmDescription arm = arm_for(traits, stage->arm());
-  if (live.real() && arm.dof() == stage->arm().dof()) return live.plug(std::move(device));
+  if (live.device_in_place() && arm.dof() == stage->arm().dof())
+    return live.plug(std::move(device));
   close_playback();
   change_arm(arm, std::move(device));
 }
 
 void Workbench::close_device() {
-  if (!live.real()) return live.plug(nullptr);
+  if (!live.device_in_place()) return live.plug(nullptr);
   try {
     change_arm(read_urdf(device_file), nullptr);
   } catch (const std::exception& e) {

@@ -21,7 +21,7 @@ void DeviceDesk::update(Workbench& bench) {
   look(bench);
   take_connected(bench);
   follow_check(bench);
-  if (bench.live.real()) bench.controls.limits = hub.notes(hub.in_use()).limits;
+  if (bench.live.device_in_place()) bench.controls.limits = hub.notes(hub.in_use()).limits;
   if (bench.live.device_plugged()) return watch(bench);
   if (hub.in_use().empty() || connecting_.valid() || check_.valid() || Clock::now() < retry_at_) {
     return;
@@ -42,8 +42,8 @@ void DeviceDesk::update(Workbench& bench) {
 
 bool DeviceDesk::must_wait(const Workbench& bench) const {
   const FoundDevice* found = hub.present();
-  return bench.recording() && !bench.live.real() && found != nullptr &&
-         found->kind != HidKind::space_mouse;
+  return bench.recording() && !bench.live.device_in_place() && found != nullptr &&
+         !found->kind->leads_hand;
 }
 
 void DeviceDesk::look(Workbench& bench) {
@@ -57,7 +57,7 @@ void DeviceDesk::watch(Workbench& bench) {
   const Snapshot& snapshot = bench.live.snapshot();
   if (Clock::now() < plugged_at_ + kSettle) return;
   const Arming before = std::exchange(arming_, snapshot.arming);
-  if (bench.live.real() && arming_ == Arming::tripped && before != Arming::tripped) {
+  if (bench.live.device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
     bench.say(fmt::format("Force is off: {}. F arms it again.", explain(snapshot.force_state)),
               true);
   }

@@ -24,7 +24,7 @@ void choices(Workbench& bench) {
   bool known = bench.devices.hub.in_use().empty();
   for (const FoundDevice& found : bench.devices.hub.found()) {
     const std::string help = found.missing.empty()
-                                 ? fmt::format("{}, {}", name(found.kind), found.place.id)
+                                 ? fmt::format("{}, {}", found.kind->name, found.place.id)
                                  : found.missing;
     ImGui::PushID(found.place.path.c_str());
     choice(bench, found.place.name.c_str(), found.place.id, help.c_str());
@@ -66,7 +66,7 @@ void status(Workbench& bench) {
     }
     return;
   }
-  if (!bench.live.real()) return;
+  if (!bench.live.device_in_place()) return;
   const ForceState state = bench.live.snapshot().force_state;
   read_out("force", explain(state), {},
            "Force is off until the hand has the device and F arms it; it then fades in.");
@@ -161,19 +161,20 @@ void adjustments(Workbench& bench) {
   if (found == nullptr || !bench.live.device_plugged()) return;
   DeviceNotes& notes = desk.hub.notes(desk.hub.in_use());
   const DeviceReading& reading = bench.live.snapshot().reading;
-  const auto joints = static_cast<std::size_t>(bench.live.real() ? bench.stage->arm().dof() : 6);
+  const auto joints =
+      static_cast<std::size_t>(bench.live.device_in_place() ? bench.stage->arm().dof() : 6);
   notes.axes.resize(std::max(notes.axes.size(), joints));
   bool changed = false;
   for (std::size_t i = 0; i < joints; ++i) {
-    changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.real()) || changed;
+    changed = axis_row(notes.axes[i], i, reading.x[i], bench.live.device_in_place()) || changed;
   }
-  if (found->kind == HidKind::pid_joystick) {
+  if (found->kind->uncalibrated) {
     const auto reverse = notes.pid.reverse;
     changed = joystick_settings(notes.pid) || changed;
     if (notes.pid.reverse != reverse) notes.checked = false;
   }
   if (changed) desk.connect_anew(bench);
-  if (!bench.live.real()) return;
+  if (!bench.live.device_in_place()) return;
   ImGui::BeginDisabled(bench.recording());
   if (limit_sliders(notes.limits)) desk.save(bench);
   ImGui::EndDisabled();

@@ -94,7 +94,7 @@ void Workbench::take_loaded() {
 }
 
 void Workbench::accept(LoadedScene& loaded) {
-  if (live.real()) {
+  if (live.device_in_place()) {
     open_beside(std::move(loaded.scene), std::move(loaded.models));
   } else {
     open(stage->arm(), std::move(loaded.scene), std::move(loaded.models));

@@ -215,7 +215,7 @@ void Workbench::start_over() {
   }
   controls.grab = false;
   ++controls.resets;
-  const bool off = live.real() || !force_armed();
+  const bool off = live.device_in_place() || !force_armed();
   say(off ? "Started over, at rest and without force; F arms it." : "Started over, at rest.");
 }
 
@@ -285,10 +285,10 @@ void Workbench::start_recording() {
   plan.scene = editor.scene();
   plan.scene.toml = scene_toml();
   hand_scene_over(true);
-  plan.hand.source = live.real() ? "device" : "mouse";
+  plan.hand.source = live.device_in_place() ? "device" : "mouse";
   plan.parameters = parameters;
   SessionInfo about = session_info(plan);
-  if (live.real()) about.safety = limits_text(controls.limits);
+  if (live.device_in_place()) about.safety = limits_text(controls.limits);
   opening_recording_ = file_errands.run(
       [file = sessions_dir() / name, info = std::move(about), initial = parameters] {
         return std::make_unique<Recorder>(file, info, initial, false);

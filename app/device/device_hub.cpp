@@ -18,15 +18,6 @@ constexpr std::chrono::milliseconds kFirstReading{200};
 
 }  // namespace
 
-const char* name(HidKind kind) {
-  switch (kind) {
-    case HidKind::space_mouse: return "SpaceMouse";
-    case HidKind::pid_joystick: return "PID force-feedback joystick";
-    case HidKind::raw: return "raw HID haptic device";
-  }
-  return "";
-}
-
 ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) {
   ArmDescription arm = present;
   if (present.dof() != traits.dof) {
@@ -48,7 +39,7 @@ DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
     : file_(std::move(file)), ask_(std::move(ask)), book_(load_device_book(file_, complaint_)) {}
 
 std::vector<FoundDevice> DeviceHub::look() {
-  return list_hid_devices(data_dir() / "assets/udev/70-limpid.rules");
+  return list_devices(data_dir() / "assets/udev/70-limpid.rules");
 }
 
 const FoundDevice* DeviceHub::present() const {
@@ -84,7 +75,7 @@ std::optional<FoundDevice> DeviceHub::found_now() const {
 std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   return [id = book_.in_use, found = found_now(), notes = known(), ask = ask_] {
     std::unique_ptr<Device> opened = std::make_unique<AdjustedDevice>(
-        open_hid_device(usable(found, id), notes.pid, ask), notes.axes);
+        open_device(usable(found, id), notes.pid, ask), notes.axes);
     await_reading(*opened, kFirstReading);
     return opened;
   };
@@ -92,12 +83,12 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
 
 bool DeviceHub::needs_check() const {
   const FoundDevice* device = present();
-  return device != nullptr && device->kind == HidKind::pid_joystick && !known().checked;
+  return device != nullptr && device->kind->uncalibrated && !known().checked;
 }
 
 std::function<AxisCheck()> DeviceHub::checking(std::shared_ptr<AxisCheckTalk> talk) const {
   return [id = book_.in_use, found = found_now(), pid = known().pid, ask = ask_, talk] {
-    const std::unique_ptr<Device> device = open_hid_device(usable(found, id), pid, ask);
+    const std::unique_ptr<Device> device = open_device(usable(found, id), pid, ask);
     await_reading(*device, kFirstReading);
     return run_axis_check(*device, *talk, ask);
   };

@@ -14,8 +14,6 @@
 
 namespace limpid {
 
-const char* name(HidKind kind);  // for people
-
 // The arm for a device: `present` if it has as many joints, else a built-in one. Its torque limits
 // are no higher than the device's. Errors: FileError if there is none with so many joints.
 ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present);
@@ -40,7 +38,7 @@ class DeviceHub {
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
   // be called from anywhere, later. Errors: HidError.
   std::function<std::unique_ptr<Device>()> opening() const;
-  // It is a joystick whose axes were not checked yet: it may not push.
+  // Its axes must be checked and were not yet: it may not push.
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check().
   std::function<AxisCheck()> checking(std::shared_ptr<AxisCheckTalk> talk) const;

@@ -31,7 +31,8 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
 void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
                     std::unique_ptr<Device> device) {
   close();
-  rig_ = std::make_unique<Rig>(arm, scene, true);
+  rig_ = std::make_unique<Rig>(arm, scene, nullptr);
+  in_place_ = true;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   RigStart start{rest_pose(arm), zero, rest_pose(arm), zero, zero, Vec3::Zero(), false};
   if (DeviceReading first; device && device->read(first) && first.count > 0) {
@@ -57,12 +58,12 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   beat_.store(MonotonicTime{}.now());
   thread_.start(
       nanoseconds(std::llround(p.tick * 1e9)), [this](const TickTiming& timing) { tick(timing); },
-      rig_->real() ? Overdue::given_up : Overdue::run);
+      in_place_ ? Overdue::given_up : Overdue::run);
 }
 
 void LiveLoop::close() {
   thread_.stop();
-  if (rig_ && !rig_->real()) virtual_armed_ = rig_->force().armed();
+  if (rig_ && !in_place_) virtual_armed_ = rig_->force().armed();
   stop_recording();
   recording_to_ = nullptr;  // the next loop's rows are not its
   has_let_go_.store(true, std::memory_order_relaxed);
@@ -72,6 +73,7 @@ void LiveLoop::close() {
   delete std::exchange(plug_, nullptr);
   plugged_ = false;
   rig_.reset();
+  in_place_ = false;
 }
 
 LiveLoop::~LiveLoop() { close(); }
@@ -89,7 +91,7 @@ void LiveLoop::take_in() {
   }
   if (Plug* plug = plugs_.take()) {
     if (plug_ != nullptr && plug_->device) plug_->device->stop();
-    if (rig_->real()) rig_->plug(plug->device.get());
+    if (in_place_) rig_->plug(plug->device.get());
     plugs_.give_back(std::exchange(plug_, plug));
   }
 }
@@ -99,7 +101,7 @@ HandInput LiveLoop::hand_input(const Controls& controls) {
   const Vec3 tip = rig_->tip();
   const double T = parameters_.tick;
   connected_ = plug_ != nullptr && plug_->device;
-  if (rig_->real()) {
+  if (in_place_) {
     connected_ = connected_ && rig_->device_reading(guide_);
     return {tip, 1};
   }
@@ -129,16 +131,16 @@ ForceWish LiveLoop::wish() {
 
 RigInput LiveLoop::rig_input(const TickTiming& timing, const HandInput& hand) {
   RigInput input{hand, wish()};
-  if (!rig_->real()) return input;
+  if (!in_place_) return input;
   input.periods = timing.periods;
   input.dt = timing.dt;
   input.silence = in_seconds(MonotonicTime{}.now() - beat_.load(std::memory_order_relaxed));
   return input;
 }
 
-// A real device is where it is, and off; a virtual arm keeps its force, unless that had gone.
+// A device is where it is, and off; a virtual arm keeps its force, unless that had gone.
 void LiveLoop::start_over(const Parameters& p) {
-  if (rig_->real()) {
+  if (in_place_) {
     rig_->present(home_);
     home_.x2 = home_.x1;
     home_.v2 = home_.v1;

@@ -20,7 +20,7 @@ namespace limpid {
 // From the window to the loop; the newest wins.
 struct Controls {
   Parameters parameters;
-  SafetyLimits limits;       // of the real device
+  SafetyLimits limits;       // of a guarded device
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   std::uint32_t resets = 0;  // start over whenever this counts on
@@ -68,7 +68,7 @@ class LiveLoop {
   // A new world; the hand rests with the tip at `home` [m], at rest. The force is as it was on the
   // last virtual arm, at first on. Errors: as rest_at().
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
-  // The same with a real device for the arm, which has as many joints; force is off until it is
+  // The same with a device in the arm's place, which has as many joints; force is off until it is
   // armed. Starts where the device is, if it has said so already.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
             std::unique_ptr<Device> device);
@@ -77,9 +77,10 @@ class LiveLoop {
   // Both are taken in by the running loop at its next tick. Another scene for the same arm, built
   // beside the loop:
   void exchange(std::unique_ptr<TouchWorld> world) { worlds_.offer(std::move(world)); }
-  // Another device, or none: a hand's guide, or, of a loop for a real device, that one back again.
+  // Another device, or none: a hand's guide, or, of a loop with a device in the arm's place, that
+  // one back again.
   void plug(std::unique_ptr<Device> device);
-  bool real() const { return rig_ && rig_->real(); }
+  bool device_in_place() const { return in_place_; }
   bool device_plugged() const { return plugged_; }  // by the window; it may be lost
 
   // Asks for force; nothing else does. What was asked before open() is forgotten.
@@ -87,8 +88,8 @@ class LiveLoop {
   // No force, from the next tick on; wins where both are asked within one.
   void cut() { cuts_.fetch_add(1, std::memory_order_relaxed); }
 
-  // Also says that somebody is there: where motors are real the force fades when this is not heard
-  // for SafetyLimits::kSilence.
+  // Also says that somebody is there: where motors are guarded the force fades when this is not
+  // heard for SafetyLimits::kSilence.
   void set(const Controls& controls) {
     controls_.write(controls);
     beat_.store(MonotonicTime{}.now(), std::memory_order_relaxed);
@@ -139,7 +140,8 @@ class LiveLoop {
   std::unique_ptr<TraceRing> trace_;
   HandOver<TouchWorld> worlds_;
   HandOver<Plug> plugs_;
-  bool plugged_ = false;  // the window's
+  bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
+  bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
 
   // Counted by the window, followed by the loop.

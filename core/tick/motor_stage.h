@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-// At rest it only clamps; where motors are real it bounds the rate as well. While a coupling is
+// At rest it only clamps; where motors are guarded it bounds the rate as well. While a coupling is
 // being switched the torque moves at a bounded rate until it meets the new command.
 template <int N>
 class MotorStage {

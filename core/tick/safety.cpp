@@ -91,7 +91,7 @@ Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Vec
                             const Vec<N>& v, const Jacobian<N>& J, double put_out, double T) {
   Objections against;
   if (diverged) against.fault = ForceState::diverged;
-  if (!health.real) return against;
+  if (!health.guarded) return against;
   if (health.gap) v_ = v;
   v_ += std::min(1.0, T / kSmooth) * (v - v_);
   energy_ = std::max(0.0, energy_ * std::max(0.0, 1 - T / kForget) + put_out);

@@ -1,4 +1,4 @@
-// What there is to say against force on a real device.
+// What there is to say against force on a device that must be guarded.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace limpid {
 
-// What a device, and whoever watches it, says at a tick; a virtual one is always well.
+// What a device, and whoever watches it, says at a tick.
 struct DeviceHealth {
-  bool real = false;
+  bool guarded = false;  // the limits hold; else nothing below is judged
   bool hand = true;
   bool fault = false;
   bool lost = false;

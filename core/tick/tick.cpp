@@ -132,15 +132,15 @@ template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
                       double T) {
   const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
-  if (in.health.real) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
+  if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Objections against =
       safety_.judge(in.health, diverged_, in.measured, device_.v, J_, put_out, T);
   // As much time as really passed, and no more than a tick's.
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
-  const bool real = in.health.real && !diverged_;
-  tau1_ = motors_.pass(real ? safety_.within_tip_force(command_, J_) : command_, limit,
-                       gate_.gain(), dt, real ? SafetyLimits::kSlew : 0);
+  const bool limited = in.health.guarded && !diverged_;
+  tau1_ = motors_.pass(limited ? safety_.within_tip_force(command_, J_) : command_, limit,
+                       gate_.gain(), dt, limited ? SafetyLimits::kSlew : 0);
 }
 
 template <int N>

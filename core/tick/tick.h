@@ -32,7 +32,7 @@ struct Start {
   Vec<N> x1, v1;      // device [rad, rad/s]
   Vec<N> x2, v2;      // proxy
   Vec<N> f1_hat;      // estimate of the human torque [N m]
-  bool armed = true;  // at full force from the first tick on; not for real motors
+  bool armed = true;  // at full force from the first tick on; not where motors are guarded
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
@@ -63,6 +63,11 @@ class Tick {
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
   Vec3 tip() const { return arm_.tip(frames_); }      // of the device as measured [m]
+  Vec3 tip_at(const Vec<N>& x) const {
+    typename Arm<N>::Frames frames;
+    arm_.frames(x, frames);
+    return arm_.tip(frames);
+  }
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.
   bool steady() const {

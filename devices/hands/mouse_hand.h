@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/virtual_arm.h"
+#include "devices/hand_input.h"
 
 namespace limpid {
 

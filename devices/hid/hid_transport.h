@@ -1,4 +1,4 @@
-// The way to one HID device: reports in and out.
+// The way to one device that speaks in HID reports: they come in and go out.
 //
 // A report always begins with the byte of its id, which is 0 where the device numbers none; sizes
 // count that byte.

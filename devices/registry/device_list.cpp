@@ -1,123 +1,35 @@
 #include "devices/registry/device_list.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <fstream>
 #include <iterator>
-#include <optional>
 
-#include "devices/hid/hid_error.h"
-#include "devices/hid/hidapi_transport.h"
-#include "devices/hid/protocols/raw_protocol.h"
-#include "devices/hid/protocols/space_mouse.h"
+#include "devices/registry/hid_devices.h"
+#include "devices/registry/socket_devices.h"
 
 namespace limpid {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::size_t kMostBytes = 4096;  // of a file in sysfs
-
-std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMostBytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
-}
-
-// Of "KEY=value" lines.
-std::string value_of(const std::string& uevent, const std::string& key) {
-  const std::string text = "\n" + uevent;
-  const auto found = text.find("\n" + key + "=");
-  if (found == std::string::npos) return {};
-  const auto start = found + key.size() + 2;
-  return text.substr(start, text.find('\n', start) - start);
-}
-
-// HID_ID=bus:vendor:product in hexadecimal, HID_UNIQ=serial number.
-std::string id_of(const std::string& uevent) {
-  const std::string hid = value_of(uevent, "HID_ID");
-  unsigned bus = 0, vendor = 0, product = 0;
-  if (std::sscanf(hid.c_str(), "%x:%x:%x", &bus, &vendor, &product) != 3) return {};
-  const std::string serial = value_of(uevent, "HID_UNIQ");
-  return fmt::format("{:04x}:{:04x}{}{}", vendor, product, serial.empty() ? "" : ":", serial);
-}
-
-std::optional<HidKind> kind_of(const ReportDescriptor& descriptor) {
-  if (RawProtocol::describes(descriptor)) return HidKind::raw;
-  if (PidJoystick::describes(descriptor)) return HidKind::pid_joystick;
-  if (SpaceMouse::describes(descriptor)) return HidKind::space_mouse;
-  return std::nullopt;
-}
-
-std::optional<ReportDescriptor> read_descriptor(const fs::path& path) {
-  const std::string bytes = read_file(path);
-  try {
-    return parse_report_descriptor(
-        {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-  } catch (const HidError&) {
-    return std::nullopt;
-  }
-}
-
-std::string what_is_missing(const std::string& path, const fs::path& udev_rule) {
-  if (access(path.c_str(), R_OK | W_OK) == 0) return {};
-  if (access(path.c_str(), F_OK) != 0) return fmt::format("{} does not exist", path);
-  return fmt::format(
-      "no permission for {}: run 'sudo cp {} /etc/udev/rules.d/ && sudo udevadm control --reload' "
-      "and plug it in again",
-      path, udev_rule.string());
-}
-
-std::unique_ptr<HidProtocol> make_protocol(HidKind kind, const ReportDescriptor& descriptor,
-                                           const PidSettings& settings) {
-  switch (kind) {
-    case HidKind::space_mouse: return std::make_unique<SpaceMouse>(descriptor);
-    case HidKind::pid_joystick: return std::make_unique<PidJoystick>(descriptor, settings);
-    case HidKind::raw: break;
-  }
-  return std::make_unique<RawProtocol>();
-}
+// Each way by which devices come in, in the order of the list.
+using ListDevices = std::vector<FoundDevice> (*)(const std::filesystem::path& udev_rule);
+constexpr ListDevices kWaysIn[] = {
+    [](const std::filesystem::path& udev_rule) { return list_hid_devices(udev_rule); },
+    [](const std::filesystem::path&) { return list_socket_devices(socket_folder()); },
+};
 
 }  // namespace
 
-std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRoots& roots) {
-  std::vector<FoundDevice> found;
-  std::error_code error;  // no such folder: no devices
-  for (fs::directory_iterator entry(roots.sysfs, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const fs::path device = entry->path() / "device";
-    const auto descriptor = read_descriptor(device / "report_descriptor");
-    const auto kind = descriptor ? kind_of(*descriptor) : std::nullopt;
-    if (!kind) continue;
-    std::string missing =
-        *kind == HidKind::pid_joystick ? PidJoystick::objection(*descriptor) : std::string();
-    const std::string uevent = read_file(device / "uevent");
-    const std::string path = (roots.dev / entry->path().filename()).string();
-    if (missing.empty()) missing = what_is_missing(path, udev_rule);
-    found.push_back({{value_of(uevent, "HID_NAME"), id_of(uevent), path}, *kind, missing});
+std::vector<FoundDevice> list_devices(const std::filesystem::path& udev_rule) {
+  std::vector<FoundDevice> all;
+  for (const ListDevices list : kWaysIn) {
+    auto found = list(udev_rule);
+    all.insert(all.end(), std::make_move_iterator(found.begin()),
+               std::make_move_iterator(found.end()));
   }
-  std::sort(found.begin(), found.end(),
-            [](const FoundDevice& a, const FoundDevice& b) { return a.place.path < b.place.path; });
-  return found;
+  return all;
 }
 
-std::unique_ptr<HidDevice> open_hid_device(const FoundDevice& found, const PidSettings& settings,
-                                           const AskForPriority& ask) {
-  try {
-    auto transport = open_hidraw(found.place.path);
-    const auto descriptor = parse_report_descriptor(transport->report_descriptor());
-    // Another device may have come to this path since the list was made.
-    if (kind_of(descriptor) != found.kind) throw HidError("it has been unplugged");
-    auto protocol = make_protocol(found.kind, descriptor, settings);
-    return std::make_unique<HidDevice>(std::move(transport), std::move(protocol), found.place, ask);
-  } catch (const HidError& error) {
-    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
-  }
+std::unique_ptr<Device> open_device(const FoundDevice& found, const PidSettings& settings,
+                                    const AskForPriority& ask) {
+  return found.open(found, settings, ask);
 }
 
 }  // namespace limpid

@@ -1,42 +1,33 @@
-// Which haptic devices are plugged in, and what keeps them from being used.
-//
-// From the kernel's own files, which everybody may read: a device is listed with its kind even
-// where there is no permission to open it. Plugging in and out shows at the next call.
+// Which haptic devices there are, whatever way leads to them, and what keeps them from being used.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/realtime/realtime.h"
+#include "devices/device.h"
 #include "devices/hid/hid_device.h"
-#include "devices/hid/protocols/pid_joystick.h"
+#include "devices/hid/protocols/protocols.h"
 
 namespace limpid {
 
-enum class HidKind : std::uint8_t { space_mouse, pid_joystick, raw };
-
 struct FoundDevice {
   HidPlace place;
-  HidKind kind = HidKind::raw;
+  const DeviceKind* kind = nullptr;
   std::string missing;  // why it cannot be opened and what to do; empty if it can
+  // How it is opened; see open_device().
+  std::unique_ptr<Device> (*open)(const FoundDevice& found, const PidSettings& settings,
+                                  const AskForPriority& ask) = nullptr;
 };
 
-// Where to look; other than the system's own for tests.
-struct HidRoots {
-  std::filesystem::path sysfs = "/sys/class/hidraw";
-  std::filesystem::path dev = "/dev";
-};
+// All that there are now. `udev_rule`: the file assets/udev/70-limpid.rules, for the message about
+// permissions.
+std::vector<FoundDevice> list_devices(const std::filesystem::path& udev_rule);
 
-// `udev_rule`: the file assets/udev/70-limpid.rules, for the message about permissions. Sorted by
-// path. Devices that cannot be read or understood are left out.
-std::vector<FoundDevice> list_hid_devices(const std::filesystem::path& udev_rule,
-                                          const HidRoots& roots = {});
-
-// Connects to it. Throws HidError. `settings` matter to PID devices only.
-std::unique_ptr<HidDevice> open_hid_device(const FoundDevice& found,
-                                           const PidSettings& settings = {},
-                                           const AskForPriority& ask = {});
+// Connects to it. Throws HidError. `settings` matter to uncalibrated devices only.
+std::unique_ptr<Device> open_device(const FoundDevice& found, const PidSettings& settings = {},
+                                    const AskForPriority& ask = {});
 
 }  // namespace limpid

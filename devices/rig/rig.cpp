@@ -5,28 +5,50 @@
 #include <stdexcept>
 
 #include "core/dynamics/inverse_kinematics.h"
+#include "devices/virtual_arm.h"
 
 namespace limpid {
 
-Rig::Rig(const ArmDescription& arm, const Scene& scene, bool real) {
+namespace {
+
+// In place of a device: it was never there.
+class NoDevice final : public Device {
+ public:
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading&) noexcept override { return false; }
+  void write(std::span<const double>) noexcept override {}
+  void stop() noexcept override {}
+
+ private:
+  DeviceTraits traits_;
+};
+
+}  // namespace
+
+Rig::Rig(const ArmDescription& arm, const Scene& scene) {
   if (arm.dof() == 3) {
-    of_ = std::make_unique<Of<3>>(arm, scene, real);
+    of_ = std::make_unique<Of<3>>(arm, scene, std::make_unique<VirtualDevice<3>>(arm));
   } else {
-    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, real);
+    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, std::make_unique<VirtualDevice<kAnyDof>>(arm));
   }
+}
+
+Rig::Rig(const ArmDescription& arm, const Scene& scene, Device* device) {
+  if (arm.dof() == 3) {
+    of_ = std::make_unique<Of<3>>(arm, scene, std::make_unique<NoDevice>());
+  } else {
+    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, std::make_unique<NoDevice>());
+  }
+  plug(device);
 }
 
 void Rig::plug(Device* device) noexcept {
   std::visit(
       [&](auto& of) {
-        of->plugged = device;
+        of->device = device != nullptr ? device : of->own.get();
         of->lapses.reset();
       },
       of_);
-}
-
-bool Rig::real() const {
-  return std::visit([](const auto& of) { return of->real; }, of_);
 }
 
 bool Rig::device_reading(DeviceReading& newest) const {
@@ -46,33 +68,47 @@ void Rig::limit(const SafetyLimits& limits) {
   std::visit([&](auto& of) { of->tick.limit(limits); }, of_);
 }
 
-template <int N>
-Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
-  if (real) return read_real(p, now);
-  virtual_device.expect(p, now.hand);
-  virtual_device.read(reading);
-  Reading<N> in = virtual_device.arm.read(0);
-  std::copy_n(reading.x.begin(), in.x.size(), in.measured.begin());
-  return in;
-}
-
 // What the loop sees. Of a device that says nothing, or nonsense: where it was when it last did.
 template <int N>
-Reading<N> Rig::Of<N>::read_real(const Parameters& p, const RigInput& now) noexcept {
-  here = plugged != nullptr && plugged->read(reading);
-  const Eigen::Index n = x_before.size();
+Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
+  device->expect(p, now.hand);
+  here = device->read(reading);
+  const bool guarded = device->traits().guarded;
   Vec<N> x = x_before;
-  if (here && reading.count > 0) x = Eigen::Map<const Vec<N>>(reading.x.data(), n);
-  const bool nonsense = !x.allFinite();
+  if (here && reading.count > 0) x = of_joints(reading.x);
+  // What a device without a hand on it says is not made better: the tick finds that it diverged.
+  const bool nonsense = guarded && !x.allFinite();
   if (nonsense) x = x_before;
-  DeviceHealth health{true,  reading.hand, reading.fault || nonsense, !here, reading.age,
-                      false, now.silence};
+  DeviceHealth health{guarded, reading.hand, reading.fault || nonsense, !here, reading.age,
+                      false,   now.silence};
   if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
   health.gap = now.dt > SafetyLimits::kGap || (here && lapses != reading.lapses);
   if (here) lapses = reading.lapses;
-  v_real = health.gap ? Vec<N>::Zero(n) : Vec<N>((x - x_before) / (now.periods * p.tick));
+  v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
-  return {x, x, v_real, health, now.periods, now.dt};
+  const auto truth = device->truth();
+  if (truth) return {x, of_joints(truth->x), of_joints(truth->v), health, now.periods, now.dt};
+  return {x, x, v, health, now.periods, now.dt};
+}
+
+template <int N>
+Vec<N> Rig::Of<N>::of_joints(std::span<const double> values) const {
+  return Eigen::Map<const Vec<N>>(values.data(), x_before.size());
+}
+
+template <int N>
+void Rig::Of<N>::begin_at(const RigStart& start, const Vec3& target) noexcept {
+  const auto n = static_cast<std::size_t>(start.x1.size());
+  device->place({start.x1.data(), n}, {start.v1.data(), n}, target);
+  x_before = start.x1;
+  v = start.v1;
+  input = {{target, 1}};
+}
+
+template <int N>
+Vec3 Rig::Of<N>::tip() const {
+  const auto truth = device->truth();
+  return truth ? tick.tip_at(of_joints(truth->x)) : tick.tip();
 }
 
 TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
@@ -98,12 +134,9 @@ const RowLayout& Rig::layout() const {
 void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
-        const bool armed = start.armed && !of->real;
+        const bool armed = start.armed && !of->device->traits().guarded;
         of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed});
-        of->virtual_device.arm.place(start.x1, start.v1, start.target);
-        of->x_before = start.x1;
-        of->v_real = start.v1;
-        of->input = {{start.target, 1}};
+        of->begin_at(start, start.target);
       },
       of_);
 }
@@ -113,10 +146,7 @@ void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
   std::visit(
       [&](auto& of) {
         of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat});
-        of->virtual_device.arm.place(scratch.x1, scratch.v1, target);
-        of->x_before = scratch.x1;
-        of->v_real = scratch.v1;
-        of->input = {{target, 1}};
+        of->begin_at(scratch, target);
       },
       of_);
 }
@@ -124,9 +154,9 @@ void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
 void Rig::present(RigStart& into) const {
   std::visit(
       [&](const auto& of) {
-        const auto device = of->virtual_device.arm.read(0);
-        into.x1 = of->real ? of->x_before : device.x;
-        into.v1 = of->real ? of->v_real : device.v;
+        const auto truth = of->device->truth();
+        into.x1 = truth ? of->of_joints(truth->x) : of->x_before;
+        into.v1 = truth ? of->of_joints(truth->v) : of->v;
         into.x2 = of->tick.proxy().x();
         into.v2 = of->tick.proxy().v();
         into.f1_hat = of->tick.estimate();
@@ -142,21 +172,17 @@ void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row
         const RowLayout& layout = of->tick.layout();
         const auto reading = of->read(p, input);
         const auto& torque = of->tick.run(p, reading, input.force, row);
-        Device* device = of->real ? of->plugged : &of->virtual_device;
-        if (device != nullptr) {
-          const std::span tau(torque.data(), static_cast<std::size_t>(torque.size()));
-          device->write(tau);
-        }
+        of->device->write({torque.data(), static_cast<std::size_t>(torque.size())});
         of->input = input;
         const std::span<double> f1 = layout.in(row, Column::hand_torque);
         const std::span<double> target = layout.in(row, Column::hand_target);
-        if (of->real) {  // nobody measures the hand
+        if (const auto truth = of->device->truth()) {
+          std::ranges::copy(truth->hand_torque, f1.begin());
+          std::copy_n(input.hand.target.data(), 3, target.begin());
+        } else {  // nobody measures the hand
           std::ranges::fill(f1, std::numeric_limits<double>::quiet_NaN());
           const Vec3 tip = of->tick.tip();
           std::copy_n(tip.data(), 3, target.begin());
-        } else {
-          std::ranges::copy(of->virtual_device.arm.hand_torque(), f1.begin());
-          std::copy_n(input.hand.target.data(), 3, target.begin());
         }
         layout.in(row, Column::hand_grip)[0] = input.hand.grip;
       },
@@ -164,8 +190,7 @@ void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row
 }
 
 Vec3 Rig::tip() const {
-  return std::visit(
-      [](const auto& of) { return of->real ? of->tick.tip() : of->virtual_device.arm.tip(); }, of_);
+  return std::visit([](const auto& of) { return of->tip(); }, of_);
 }
 
 bool Rig::steady() const {

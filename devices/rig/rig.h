@@ -1,5 +1,4 @@
-// A device, virtual or real, the loop that drives it and the hand that holds it: one step is one
-// tick of all three.
+// A device, the loop that drives it and the hand that holds it: one step is one tick of all three.
 //
 // Live threads, headless runs, re-runs and tests all call the same step.
 #pragma once
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include "core/tick/tick.h"
-#include "devices/virtual_arm.h"
+#include "devices/device.h"
 
 namespace limpid {
 
@@ -29,7 +28,7 @@ struct RigStart {
   Eigen::VectorXd x1, v1, x2, v2;  // [rad, rad/s]
   Eigen::VectorXd f1_hat;          // [N m]
   Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
-  bool armed = true;               // at full force at once; a real device never is
+  bool armed = true;               // at full force at once; a guarded device never is
 };
 
 // What a rig's arm can touch, ready to be taken in by a running loop.
@@ -45,19 +44,20 @@ class TouchWorld {
 
 class Rig {
  public:
-  // `real`: the arm is a real device's, to be plugged in; until then it counts as lost.
-  Rig(const ArmDescription& arm, const Scene& scene, bool real = false);
+  // With a simulated device for the arm.
+  Rig(const ArmDescription& arm, const Scene& scene);
+  // With this one; without one it counts as lost.
+  Rig(const ArmDescription& arm, const Scene& scene, Device* device);
 
-  // From the next step on; null: unplugged. Of a rig for a real device. The caller keeps it.
+  // From the next step on; null: as if none was ever plugged in. The caller keeps it.
   void plug(Device* device) noexcept;
-  bool real() const;
-  // What the real device said at the last step; false if it was not there.
+  // What the device said at the last step; false if it was not there.
   bool device_reading(DeviceReading& newest) const;
 
   int dof() const { return layout().dof(); }
   const RowLayout& layout() const;
 
-  // Force of a real device is off then, until it is armed.
+  // Force of a guarded device is off then, until it is armed.
   void start(const Parameters& p, const RigStart& start);
   // Where it stands now, as a starting point. `into` has vectors of this size already: nothing is
   // allocated.
@@ -84,19 +84,25 @@ class Rig {
  private:
   template <int N>
   struct Of {
-    Of(const ArmDescription& description, const Scene& scene, bool is_real)
-        : tick(description, scene), virtual_device(description), real(is_real) {}
+    Of(const ArmDescription& arm, const Scene& scene, std::unique_ptr<Device> unplugged)
+        : tick(arm, scene),
+          own(std::move(unplugged)),
+          device(own.get()),
+          x_before(Vec<N>::Zero(arm.dof())),
+          v(x_before) {}
     Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
-    Reading<N> read_real(const Parameters& p, const RigInput& now) noexcept;
+    void begin_at(const RigStart& start, const Vec3& target) noexcept;
+    Vec3 tip() const;
+    Vec<N> of_joints(std::span<const double> values) const;
 
     Tick<N> tick;
-    VirtualDevice<N> virtual_device;
-    bool real;
-    Device* plugged = nullptr;
+    std::unique_ptr<Device> own;  // in place while nothing is plugged in
+    Device* device;
     bool here = false;  // it answered
     DeviceReading reading;
-    Vec<N> x_before, v_real;              // of a real device
-    std::optional<std::uint32_t> lapses;  // that are known of
+    Vec<N> x_before, v;  // as measured at the last step [rad, rad/s]
+    // Of the device's, that are known of; one that has just been plugged in may have had any.
+    std::optional<std::uint32_t> lapses = 0;
     RigInput input;
   };
   std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;

@@ -345,6 +345,7 @@ TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
   VirtualDevice<kAnyDof> device(two_wheels());
   EXPECT_EQ(device.traits().dof, 2);
   EXPECT_EQ(device.traits().effort, (std::vector<double>{1, 0.25}));
+  EXPECT_FALSE(device.traits().guarded) << "no hand is on it that could be hurt";
   Parameters p;
   p.damping = 0;
   p.tick = 0.002;

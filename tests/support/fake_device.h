@@ -12,6 +12,7 @@ class FakeDevice final : public Device {
  public:
   explicit FakeDevice(int dof) : traits_(pushing(dof)) { reading.count = 1; }
   const DeviceTraits& traits() const override { return traits_; }
+  DeviceTraits& own_traits() { return traits_; }
   bool read(DeviceReading& newest) noexcept override {
     newest = reading;
     return here;

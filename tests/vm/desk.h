@@ -58,11 +58,11 @@ std::unique_ptr<Model> make_model(double effort = kEffort) {
 }
 
 // The one device of this kind; replugged ones may take a moment.
-inline FoundDevice find_device(HidKind kind) {
+inline FoundDevice find_device(std::string_view kind) {
   std::vector<FoundDevice> found;
   wait_until([&] {
-    found = list_hid_devices("rules");
-    std::erase_if(found, [&](const FoundDevice& one) { return one.kind != kind; });
+    found = list_devices("rules");
+    std::erase_if(found, [&](const FoundDevice& one) { return one.kind->key != kind; });
     return !found.empty();
   });
   if (found.empty()) throw std::runtime_error("the device is not listed");
@@ -72,8 +72,7 @@ inline FoundDevice find_device(HidKind kind) {
 template <class Model>
 class Desk {
  public:
-  static constexpr HidKind kKind =
-      std::is_base_of_v<PidJoystickModel, Model> ? HidKind::pid_joystick : HidKind::raw;
+  static constexpr bool kPid = std::is_base_of_v<PidJoystickModel, Model>;
 
   Desk() : Desk(make_model<Model>()) {}
   explicit Desk(std::unique_ptr<Model> one) : model(std::move(one)) {
@@ -84,8 +83,8 @@ class Desk {
 
   static std::unique_ptr<Device> connect(double effort = kEffort) {
     PidSettings settings{.range = kRange, .effort = effort};
-    if constexpr (kKind == HidKind::pid_joystick) settings.reverse = Model::kReversed;
-    return open_hid_device(find_device(kKind), settings);
+    if constexpr (kPid) settings.reverse = Model::kReversed;
+    return open_device(find_device(kPid ? "pid" : "raw"), settings);
   }
   void open() { open(connect()); }
   void open(std::unique_ptr<Device> one) {

@@ -14,17 +14,17 @@ TEST(Devices, AreListedWithTheirNamesAndKinds) {
   PidJoystickModel joystick;
   RawDeviceModel raw;
   const UhidDevice a(mouse), b(joystick), c(raw);
-  const auto found = list_hid_devices("rules");
+  const auto found = list_devices("rules");
   ASSERT_EQ(found.size(), 3u);
-  const auto has = [&](HidKind kind, const char* name, const char* id) {
+  const auto has = [&](std::string_view kind, const char* name, const char* id) {
     return std::ranges::any_of(found, [&](const FoundDevice& one) {
-      return one.kind == kind && one.place.name == name && one.place.id == id &&
+      return one.kind->key == kind && one.place.name == name && one.place.id == id &&
              one.missing.empty();
     });
   };
-  EXPECT_TRUE(has(HidKind::space_mouse, "3Dconnexion SpaceMouse Compact", "256f:c635:SM-1"));
-  EXPECT_TRUE(has(HidKind::pid_joystick, "Limpid PID joystick", "1209:4c49:PID-1"));
-  EXPECT_TRUE(has(HidKind::raw, "Limpid raw arm", "1209:4c50:RAW-1"));
+  EXPECT_TRUE(has("space_mouse", "3Dconnexion SpaceMouse Compact", "256f:c635:SM-1"));
+  EXPECT_TRUE(has("pid", "Limpid PID joystick", "1209:4c49:PID-1"));
+  EXPECT_TRUE(has("raw", "Limpid raw arm", "1209:4c50:RAW-1"));
 }
 
 TEST(RawLoop, LosesNoReportEitherWay) {
@@ -149,7 +149,7 @@ TEST(SpaceMouse, LeadsTheHandOfAVirtualArm) {
   const ArmDescription arm = read_urdf("omni.urdf");
   const Vec3 home(0.19, 0, 0);
   loop.open(arm, Scene{}, Parameters{}, home);
-  loop.plug(open_hid_device(find_device(HidKind::space_mouse)));
+  loop.plug(open_device(find_device("space_mouse")));
   const auto tip = [&] {
     loop.update();
     const auto target =

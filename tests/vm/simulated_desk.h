@@ -107,7 +107,7 @@ class SimulatedDesk {
   static constexpr bool kPid = std::is_base_of_v<PidJoystickModel, Model>;
 
   SimulatedDesk(const ArmDescription& arm, const Scene& scene)
-      : model(make_model()), rig(arm, scene, true), row(rig.layout()) {
+      : model(make_model()), rig(arm, scene, nullptr), row(rig.layout()) {
     model->hand().axis(0) = stick_axis(0);
     model->hand().axis(0).path = lean_right;
     model->power(true, now);

@@ -169,7 +169,7 @@ TEST_F(AWorkbench, DoesNotArmWhenItStartsOver) {
 
 TEST_F(AWorkbench, LeavesARealDeviceOffWhateverElseIsDone) {
   const auto wire = plug_in(3);
-  ASSERT_TRUE(bench->live.real());
+  ASSERT_TRUE(bench->live.device_in_place());
   const auto expect_off = [&](const char* after) {
     frames(70);
     EXPECT_EQ(arming(), Arming::off) << after;
@@ -183,7 +183,7 @@ TEST_F(AWorkbench, LeavesARealDeviceOffWhateverElseIsDone) {
   expect_off("undo");
   bench->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
-  EXPECT_TRUE(bench->live.real()) << "the device stays in the loop";
+  EXPECT_TRUE(bench->live.device_in_place()) << "the device stays in the loop";
   expect_off("another scene");
   bench->open_session(fs::path(LIMPID_ASSETS_DIR) / "sessions/touch.h5");
   ASSERT_TRUE(until([&] { return bench->playing_back(); }));
@@ -331,7 +331,7 @@ TEST_F(AWorkbench, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(bench->editor.dirty());
   bench->close_device();
-  EXPECT_FALSE(bench->live.real());
+  EXPECT_FALSE(bench->live.device_in_place());
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(bench->editor.dirty());
 }

@@ -151,11 +151,12 @@ TEST(DeviceBook, SaysWhyAFileIsNotRead) {
 TEST(DeviceHub, WantsAJoystickCheckedBeforeItPushes) {
   const test::TempDir dir;
   DeviceHub hub(dir / "devices.toml", {});
+  const DeviceKind unknown{.uncalibrated = true}, known{};
   FoundDevice joystick, mouse;
   joystick.place.id = "joystick";
-  joystick.kind = HidKind::pid_joystick;
+  joystick.kind = &unknown;
   mouse.place.id = "mouse";
-  mouse.kind = HidKind::space_mouse;
+  mouse.kind = &known;
   hub.take({joystick, mouse});
   EXPECT_FALSE(hub.needs_check()) << "none is in use";
   hub.use("mouse");

@@ -1,4 +1,4 @@
-// When a real device may push, against the limits it is given.
+// When a guarded device may push, against the limits it is given.
 #include "core/tick/safety.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct SafeArm : testing::Test {
 
   ArmDescription arm = test::random_arm(2, 1);
   std::unique_ptr<Safety<kAnyDof>> safety;
-  DeviceHealth health{.real = true};
+  DeviceHealth health{.guarded = true};
   bool diverged = false;
   Vector x = Vector::Zero(2), v = Vector::Zero(2);
   Jacobian<kAnyDof> J = Jacobian<kAnyDof>::Identity(3, 2);
@@ -211,8 +211,8 @@ TEST_F(SafeArm, HoldsOneJointToItsRangeBesideAnotherWithoutAny) {
   }
 }
 
-TEST_F(SafeArm, DoesNotJudgeAVirtualDevice) {
-  health = {.real = false, .hand = false, .fault = true, .lost = true, .age = 1, .silence = 9};
+TEST_F(SafeArm, DoesNotJudgeADeviceThatIsNotGuarded) {
+  health = {.guarded = false, .hand = false, .fault = true, .lost = true, .age = 1, .silence = 9};
   v[0] = 1e6;
   x[0] = 1e6;
   EXPECT_EQ(judge(), ForceState::on);

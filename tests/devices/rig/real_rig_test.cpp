@@ -1,4 +1,4 @@
-// The loop around a real device, here one that the test plays.
+// The loop around a guarded device, here one that the test plays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 // Held 0.05 rad inside a stop of its first joint: it is pushed back.
 struct RealRig : testing::Test {
-  RealRig() : rig(arm, stop_at(x0[0]), true), rows(rig.layout()) {
+  RealRig() : rig(arm, stop_at(x0[0]), nullptr), rows(rig.layout()) {
     for (Eigen::Index i = 0; i < 3; ++i) device.reading.x[static_cast<std::size_t>(i)] = x0[i];
     RigStart start{x0,
                    Eigen::Vector3d::Zero(),
@@ -72,6 +72,17 @@ TEST_F(RealRig, PushesNothingUntilItIsArmed) {
   EXPECT_EQ(step(500), ForceState::off);
   EXPECT_FALSE(pushes());
   push();
+}
+
+TEST_F(RealRig, PushesAtOnceWhereNoHandHasToBeGuarded) {
+  device.own_traits().guarded = false;
+  RigStart start{x0, x0 * 0, x0, x0 * 0, x0 * 0, Vec3::Zero(), true};
+  rig.start({}, start);
+  EXPECT_EQ(step(2), ForceState::on);
+  device.reading.hand = false;
+  device.reading.fault = true;
+  EXPECT_EQ(step(200), ForceState::on);
+  EXPECT_LT(device.told[0], -0.1);
 }
 
 TEST_F(RealRig, FadesInAndJumpsNowhere) {
@@ -371,7 +382,7 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
   ASSERT_GT(lever, 0.3);
   Scene scene;
   scene.joint_contacts.push_back({"stop", 0, 0, 1, 100});
-  Rig rig(arm, scene, true);
+  Rig rig(arm, scene, nullptr);
   Parameters p;
   p.k_vc = 100;
   RigStart start;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "devices/virtual_arm.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
@@ -96,6 +97,22 @@ TEST_P(RigOfJoints, GivesTheSameBitsTwice) {
   // Also when it has been used before.
   one.start(Script::parameters(0), rest_at(arm_, home_));
   EXPECT_EQ(first_difference(a, run(one, script_, 0, 3000)), -1);
+}
+
+// Nobody asks what kind of device it is.
+TEST_P(RigOfJoints, DrivesASimulatedDeviceThatIsPluggedInAsItDoesItsOwn) {
+  Rig own(arm_, scene_);
+  own.start(Script::parameters(0), rest_at(arm_, home_));
+  const Rows expected = run(own, script_, 0, 2000);
+  const auto expect_same = [&](Device& device) {
+    Rig rig(arm_, scene_, &device);
+    rig.start(Script::parameters(0), rest_at(arm_, home_));
+    EXPECT_EQ(first_difference(expected, run(rig, script_, 0, 2000)), -1);
+  };
+  VirtualDevice<kAnyDof> any(arm_);
+  if (arm_.dof() != 3) return expect_same(any);
+  VirtualDevice<3> three(arm_);
+  expect_same(three);
 }
 
 TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {

@@ -1,4 +1,4 @@
-#include "devices/registry/device_list.h"
+#include "devices/registry/hid_devices.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,11 +43,11 @@ TEST_F(FakeSystem, FindsTheThreeKindsOfDevices) {
           "HID_ID=0003:0000045E:0000001B\nHID_NAME=SideWinder Force Feedback 2\n");
   const auto found = list();
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_EQ(found[0].kind, HidKind::space_mouse);
+  EXPECT_STREQ(found[0].kind->key, "space_mouse");
   EXPECT_EQ(found[0].place.id, "046d:c626");
   EXPECT_EQ(found[0].place.name, "3Dconnexion SpaceNavigator");
-  EXPECT_EQ(found[1].kind, HidKind::pid_joystick);
-  EXPECT_EQ(found[2].kind, HidKind::raw);
+  EXPECT_STREQ(found[1].kind->key, "pid");
+  EXPECT_STREQ(found[2].kind->key, "raw");
   EXPECT_EQ(found[2].place.id, "1209:4c50:007");
   EXPECT_EQ(found[2].place.path, (roots.dev / "hidraw2").string());
   EXPECT_EQ(found[2].missing, "");
@@ -94,7 +94,7 @@ TEST_F(FakeSystem, SaysWhenTheNodeIsNotThere) {
 TEST_F(FakeSystem, DoesNotConnectToWhatIsNoHidDevice) {
   plug_in("hidraw0", test::raw_device(), "HID_NAME=T2\n");
   try {
-    open_hid_device(list().at(0));
+    open_device(list().at(0));
     FAIL();
   } catch (const HidError& error) {
     EXPECT_THAT(error.what(), testing::StartsWith("T2: " + (roots.dev / "hidraw0").string()));

@@ -1,0 +1,133 @@
+"""A haptic device that is a program: Limpid finds it by its socket and drives it as one on USB.
+
+Standard library only. The reports are those of devices/hid/protocols/raw_protocol.h, without an id.
+A hand may be on what your program moves, so exchange() gives no torque once the connection has
+ended or no command came for 10 ms. Call it about every millisecond and apply what it returns, also
+while nobody is connected. Run as a program, it plays joints that springs hold:
+
+    python3 limpid_device.py [NAME [JOINTS]]
+"""
+
+import math
+import os
+import pathlib
+import socket
+import struct
+import sys
+import time
+import zlib
+
+WATCHDOG = 0.010  # [s]
+
+
+def sealed(body: bytes) -> bytes:
+    return body + struct.pack("<I", zlib.crc32(body))
+
+
+class LimpidDevice:
+    def __init__(self, name: str, lower: list, upper: list, effort: list, rate: int = 1000):
+        """One to six joints: their ranges [rad] and torque limits [N m]."""
+        self.effort, self.joints = effort, len(effort)
+        ranges = [round(1e3 * end) for pair in zip(lower, upper) for end in pair]
+        milli = [*ranges, *[0] * (12 - len(ranges))]
+        limits = [*(round(1e3 * e) for e in effort), *[0] * (6 - self.joints)]
+        self._feature = sealed(
+            struct.pack("<4B2H12hf6H12s", 0x4C, 1, self.joints, 1, rate, round(1e3 * WATCHDOG),
+                        *milli, 1e-4, *limits, name.encode("ascii", "replace")[:12]))
+        folder = pathlib.Path(os.environ["XDG_RUNTIME_DIR"], "limpid")
+        folder.mkdir(mode=0o700, exist_ok=True)
+        path = folder / f"{name}.device"
+        path.unlink(missing_ok=True)  # of one that was killed
+        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._listener.setblocking(False)
+        self._listener.bind(str(path))
+        self._listener.listen()
+        self._connection, self._sequence = None, 0
+        self._hang_up()
+
+    def exchange(self, x: list, hand: bool = True, fault: bool = False) -> list:
+        """Says where the joints are [rad]; returns the torques to be held until the next call."""
+        try:
+            self._accept()
+            if self._connection:
+                self._take_commands()
+                self._send_reading(x, hand, fault)
+        except BlockingIOError:
+            pass  # it does not listen at present
+        except OSError:
+            self._hang_up()
+        return self._torque if self._on_time() else [0.0] * self.joints
+
+    def _on_time(self) -> bool:
+        return time.monotonic() - self._heard <= WATCHDOG
+
+    def _hang_up(self):
+        if self._connection:
+            self._connection.close()
+        self._connection, self._command = None, 0
+        self._heard, self._torque = -math.inf, [0.0] * self.joints
+
+    def _accept(self):
+        try:
+            connection, _ = self._listener.accept()
+        except BlockingIOError:
+            return
+        if self._connection:
+            return connection.close()  # one at a time
+        connection.setblocking(False)
+        connection.send(self._feature)
+        self._connection = connection
+
+    def _send_reading(self, x, hand, fault):
+        self._sequence += 1
+        status = 1 | 2 * hand | 4 | 8 * fault | 16 * (not self._on_time())
+        self._connection.send(sealed(
+            struct.pack("<4BIQ6fI16x", 0x4C, 1, self.joints, status, self._sequence & 0xFFFFFFFF,
+                        round(1e6 * time.monotonic()), *x, *[0.0] * (6 - self.joints),
+                        self._command)))
+
+    def _take_commands(self):
+        """All that wait: after a pause only the newest counts."""
+        while True:
+            try:
+                packet = self._connection.recv(128)
+            except BlockingIOError:
+                return
+            if not packet:
+                raise ConnectionResetError
+            if len(packet) == 64 and packet == sealed(packet[:60]):
+                self._obey(struct.unpack("<4BIQ6f", packet[:40]))
+
+    def _obey(self, command):
+        magic, version, joints, mode, sequence, _, *torque = command
+        if (magic, version, joints) != (0x4C, 1, self.joints) or mode > 1:
+            return
+        torque = torque[:self.joints]
+        newer = 0 < (sequence - self._command) % 2**32 < 2**31
+        if mode == 1 and not (newer and all(map(math.isfinite, torque))):
+            return
+        within = [max(-e, min(e, t)) for t, e in zip(torque, self.effort)]
+        self._torque = within if mode == 1 else [0.0] * self.joints
+        self._command, self._heard = sequence, time.monotonic()
+
+
+def play(name: str, joints: int):
+    """Each joint is held in its middle by a spring, critically damped."""
+    stiffness, inertia, end = 0.5, 1e-3, 0.349  # [N m/rad], [kg m^2], [rad]
+    damping = 2 * math.sqrt(stiffness * inertia)
+    device = LimpidDevice(name, [-end] * joints, [end] * joints, [0.2] * joints)
+    x, v = [0.0] * joints, [0.0] * joints
+    before = time.monotonic()
+    while True:
+        torque = device.exchange(x)
+        time.sleep(1e-3)
+        now = time.monotonic()
+        dt, before = min(now - before, 2e-3), now
+        for i in range(joints):
+            v[i] += dt * (torque[i] - stiffness * x[i] - damping * v[i]) / inertia
+            x[i] = max(-end, min(end, x[i] + dt * v[i]))
+
+
+if __name__ == "__main__":
+    words = sys.argv[1:]
+    play(words[0] if words else "springs", int(words[1]) if words[1:] else 2)

@@ -1,0 +1,25 @@
+// The HID devices that are plugged in.
+//
+// From the kernel's own files, which everybody may read: a device is listed with its kind even
+// where there is no permission to open it. Plugging in and out shows at the next call.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "devices/registry/device_list.h"
+
+namespace limpid {
+
+// Where to look; other than the system's own for tests.
+struct HidRoots {
+  std::filesystem::path sysfs = "/sys/class/hidraw";
+  std::filesystem::path dev = "/dev";
+};
+
+// `udev_rule` as in list_devices(). Sorted by path. Devices that cannot be read or understood are
+// left out.
+std::vector<FoundDevice> list_hid_devices(const std::filesystem::path& udev_rule,
+                                          const HidRoots& roots = {});
+
+}  // namespace limpid
