@@ -34,7 +34,8 @@ double eta_min_band(const LockedMode& mode, double w_b);
 // Routh-Hurwitz on (m s^2 + b s)(s + w_f) + (k_h + b_h s)(s + w_f / eta). 0 if every eta is stable.
 double eta_min_grip(const LockedMode& mode, double k_h, double b_h);
 
-// Modes of a matrix inertia M_L with damping b for each joint, lightest first.
+// Modes of the locked system with inertia M_L (n x n, symmetric positive definite [kg m^2]), each
+// joint damped by b (n [N m s/rad]) and observed with gain alpha [N m s/rad]: n, lightest first.
 std::vector<LockedMode> locked_modes(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b,
                                      double alpha);
 
@@ -43,7 +44,8 @@ std::vector<LockedMode> locked_modes(const Eigen::MatrixXd& M_L, const Eigen::Ve
 Eigen::VectorXcd grip_poles(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b, double alpha,
                             double eta, const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h);
 
-// Routh's limit where the matrices share no modes: found by bisection on those poles, to 1e-6.
+// Smallest stable eta in such a grip. Matrices that share no modes leave no closed form: found by
+// bisection on whether all of grip_poles() decay, to 1e-6.
 double eta_min_grip(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b, double alpha,
                     const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h);
 

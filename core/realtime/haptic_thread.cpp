@@ -134,7 +134,6 @@ void HapticThread::run() {
   Clock<> clock(start, period_, realtime_.realtime() ? Clock<>::kSpin : nanoseconds::zero(), time,
                 overdue_ == Overdue::run ? Clock<>::kMaxCatchUp : 0);
   RateMeter meter(start);
-  double compute = 0;
   nanoseconds before = start;
   std::int64_t slipped = 0;
   while (!stop_requested_.load(relaxed)) {
@@ -144,9 +143,8 @@ void HapticThread::run() {
     const auto periods = static_cast<int>(1 + all_slipped - std::exchange(slipped, all_slipped));
     const double dt = wake.tick == 0 ? 0 : in_seconds(wake.moment - before);
     before = wake.moment;
-    body_({wake.tick, in_seconds(wake.latency), compute, periods, dt});
-    compute = in_seconds(time.now() - wake.moment);
-    compute_time_.add(compute);
+    body_({wake.tick, in_seconds(wake.latency), periods, dt});
+    compute_time_.add(in_seconds(time.now() - wake.moment));
   }
 }
 

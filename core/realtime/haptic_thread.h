@@ -16,11 +16,10 @@
 namespace limpid {
 
 struct TickTiming {
-  std::int64_t tick;        // 0, 1, 2, ..., none left out
-  double wake_latency;      // how long after its deadline the tick began [s]
-  double previous_compute;  // how long the tick before took, 0 for the first [s]
-  int periods = 1;          // since the tick before: more than 1 where ticks were given up
-  double dt = 0;            // the same as it really passed, 0 for the first [s]
+  std::int64_t tick;    // 0, 1, 2, ..., none left out
+  double wake_latency;  // how long after its deadline the tick began [s]
+  int periods = 1;      // since the tick before: more than 1 where ticks were given up
+  double dt = 0;        // the same as it really passed, 0 for the first [s]
 };
 
 // What becomes of ticks that are late.

@@ -7,8 +7,10 @@
 
 namespace limpid {
 
-// {x : n_i . x >= o_i}. A stiff contact pulls a point c back to the nearest x there: the potential
-// K |x - c|^2 / 2 is convex with a continuous gradient, and x moves no further than c does.
+// All points on the outer side of some planes, {x : n_i . x >= o_i}, with unit normals n_i and
+// offsets o_i in the unit of x. A contact of stiffness K pulls a point c back to the nearest x of
+// this convex set: the potential K |x - c|^2 / 2 is convex with a continuous gradient, and x moves
+// no further than c does.
 class FreeSpace {
  public:
   static constexpr int kMostPlanes = 6;
@@ -30,10 +32,10 @@ class FreeSpace {
   // The nearest x to c and what holds it there; false if the planes leave no room near enough to
   // tell.
   bool project(const Vec3& c, Vec3& x, Active& active) const;
-  // The same with a set of planes taken for granted: c + what n_i . x = o_i adds to it.
+  // The nearest x to c that lies on all of these planes, n_i . x = o_i, whatever the others say.
   Vec3 onto(const Vec3& c, const Active& active) const;
-  // An orthonormal basis of the active normals, one a column; returns how many. The force is
-  // K sum e_j e_j . (x - c).
+  // Columns e_j of `e`: an orthonormal basis of what the active normals span; returns how many. The
+  // spring's force on c is K sum_j e_j (e_j . (x - c)).
   int basis(const Active& active, Mat3& e) const;
 
  private:

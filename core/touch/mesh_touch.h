@@ -9,10 +9,11 @@ namespace limpid {
 
 // A free point g follows the ball's centre c as near as the surface lets it (after Zilles and
 // Salisbury's god object): it never crosses the mesh, so that it knows the side, of a sheet without
-// thickness as well. The planes that hold g there are the room c is pulled back to: on a face, one;
-// in a groove, two; in a corner, three. Over a convex edge the ball rolls, as long as it is pressed
-// in by less than its radius. Pressed deeper it slips off some edges; the anchor of the force then
-// follows at a bounded speed, so that the force never jumps, and slipping only takes energy away.
+// thickness as well. The planes that stop g (on a face one, in a groove two, in a corner three)
+// bound the free space to which the contact's spring pulls c back. Over a convex edge the ball
+// rolls, as long as it is pressed in by less than its radius. Pressed deeper it slips off some
+// edges; the anchor of the force then follows at a bounded speed, so that the force never jumps,
+// and slipping only takes energy away.
 class MeshTouch {
  public:
   MeshTouch(const MeshObstacle& mesh, double radius);  // [m]

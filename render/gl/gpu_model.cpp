@@ -85,8 +85,7 @@ GpuModel::GpuModel(const Model& model)
     : fine_(cut(model, model.indices, model.parts, 0)),
       coarse_(model.coarse.empty() ? fine_
                                    : cut(model, model.coarse, model.coarse_parts,
-                                         static_cast<std::uint32_t>(model.indices.size()))),
-      has_coarse_(!model.coarse.empty()) {
+                                         static_cast<std::uint32_t>(model.indices.size()))) {
   for (const Piece& piece : fine_) box_.extend(piece.box);
   std::vector<PackedVertex> vertices;
   vertices.reserve(model.vertices.size());

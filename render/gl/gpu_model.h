@@ -21,7 +21,6 @@ class GpuModel {
 
   // The coarse pieces are the fine ones where the model has none.
   const std::vector<Piece>& pieces(bool coarse) const { return coarse ? coarse_ : fine_; }
-  bool has_coarse() const { return has_coarse_; }
   const Eigen::AlignedBox3f& box() const { return box_; }
   GLuint texture(int image) const { return textures_[static_cast<std::size_t>(image)]; }
 
@@ -33,7 +32,6 @@ class GpuModel {
   GlVertexArray array_;
   GlBuffer vertices_, indices_;
   std::vector<Piece> fine_, coarse_;
-  bool has_coarse_;
   Eigen::AlignedBox3f box_;
   std::vector<GlTexture> textures_;
 };

@@ -154,3 +154,14 @@ def named_files_that_are_missing(root: Path, page: str) -> list[str]:
         for name in named
         if "NAME" not in name and not any(root.glob(name))
     ]
+
+
+def table(arrows: Arrows) -> str:
+    """As arrows.txt has it, room by room."""
+    folders = sorted(arrows, key=lambda folder: (ROOMS.index(folder.split("/")[0]), folder))
+    lines = (f"{folder}: {' '.join(sorted(arrows[folder]))}".rstrip() for folder in folders)
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(table(found_arrows(Path(__file__).resolve().parents[2])), end="")

@@ -78,6 +78,11 @@ class ARuleIsSeenBroken(unittest.TestCase):
     def test_none_is_when_all_are_kept(self) -> None:
         self.assertEqual(self.broken(), [])
 
+    def test_the_table_that_is_printed_reads_as_what_was_found(self) -> None:
+        found = house.found_arrows(self.root)
+        self.assertEqual(house.table(found), "core:\napp: core\n")
+        self.assertEqual(house.read_arrows(house.table(found)), found)
+
     def test_an_arrow_that_is_not_in_the_table(self) -> None:
         self.write("render/view.cpp", "")
         self.write("app/picture.cpp", '#include "core/tick.h"\n  #  include "render/view.cpp"\n')

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 
 #include "devices/files/session/file_size_signal.h"
+#include "devices/files/session/session_attributes.h"
 #include "devices/files/session/session_check.h"
 #include "devices/files/session/session_models.h"
 
@@ -24,15 +24,6 @@ constexpr std::uint64_t kBlocksPerChunk = 16;
 constexpr hsize_t kEventChunk = 64;
 constexpr hsize_t kSumChunk = 64;
 constexpr hsize_t kPage = 4096;  // bytes
-
-std::string now() {
-  const std::time_t t = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&t, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
 
 // Nothing small is placed across the end of a page.
 hdf5::Properties placed_within_pages() {
@@ -119,31 +110,13 @@ void SessionFile::create(const SessionInfo& info) {
   check(H5Pset_cache(access.get(), 0, 0, 0, 0) >= 0, path_, "cannot create");
   file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   check(static_cast<bool>(file_), path_, "cannot create");
-  write_attributes(info);
+  write_attributes(file_.get(), info, path_);
   write_models(file_.get(), info.models, path_);
   for (const ColumnInfo& column : kColumnInfo) create_column(column);
   create_events();
   create_check();
   check(H5Fstart_swmr_write(file_.get()) >= 0, path_, "cannot write");
   check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
-}
-
-void SessionFile::write_attributes(const SessionInfo& info) {
-  const hid_t root = file_.get();
-  const std::int64_t version = kSessionVersion;
-  const std::int64_t dof = info.dof;
-  hdf5::write_text(root, "format", kSessionFormat, path_);
-  hdf5::write_scalar(root, "version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version, path_);
-  hdf5::write_scalar(root, "tick", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &info.tick, path_);
-  hdf5::write_scalar(root, "dof", H5T_STD_I64LE, H5T_NATIVE_INT64, &dof, path_);
-  hdf5::write_scalar(root, "seed", H5T_STD_U64LE, H5T_NATIVE_UINT64, &info.seed, path_);
-  hdf5::write_text(root, "created", info.created.empty() ? now() : info.created, path_);
-  hdf5::write_text(root, "app_version", info.app_version, path_);
-  hdf5::write_text(root, "source", info.source, path_);
-  hdf5::write_text(root, "config", info.config, path_);
-  hdf5::write_text(root, "device_urdf", info.device_urdf, path_);
-  hdf5::write_text(root, "scene", info.scene, path_);
-  hdf5::write_text(root, "safety_limits", info.safety, path_);
 }
 
 void SessionFile::create_column(const ColumnInfo& column) {

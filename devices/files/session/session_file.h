@@ -56,7 +56,6 @@ class SessionFile {
   void create_check();
   void create_column(const ColumnInfo& column);
   void create_events();
-  void write_attributes(const SessionInfo& info);
   void flush();
   void write_column(const ColumnInfo& column, std::uint64_t count);
   void write_changes();
