@@ -36,12 +36,14 @@ class LimpidDevice:
                         *milli, 1e-4, *limits, name.encode("ascii", "replace")[:12]))
         folder = pathlib.Path(os.environ["XDG_RUNTIME_DIR"], "limpid")
         folder.mkdir(mode=0o700, exist_ok=True)
-        path = folder / f"{name}.device"
-        path.unlink(missing_ok=True)  # of one that was killed
+        unready = folder / f"{name}.new"
+        unready.unlink(missing_ok=True)
         self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._listener.setblocking(False)
-        self._listener.bind(str(path))
+        self._listener.bind(str(unready))
         self._listener.listen()
+        # Found from now on; takes the place of one that was killed.
+        unready.replace(folder / f"{name}.device")
         self._connection, self._sequence = None, 0
         self._hang_up()
 

@@ -1,5 +1,6 @@
 // Devices that are programs: each listens on a socket of its own, NAME.device in a folder that only
-// this user may write to. See socket_transport.h for what such a program has to do.
+// this user may write to, and gives it this name once it listens. See socket_transport.h for what
+// such a program has to do.
 #pragma once
 
 #include <filesystem>

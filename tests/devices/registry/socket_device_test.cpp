@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -94,6 +95,9 @@ TEST_F(ASocketDevice, IsListedWhileItsProgramRuns) {
   EXPECT_EQ(found.place.name, "springs");
   EXPECT_EQ(found.place.id, "socket:springs");
   EXPECT_EQ(found.missing, "");
+  const auto all = list_devices("rules");  // whatever else is plugged in here
+  EXPECT_EQ(std::ranges::count(all, found.place.id, [](const auto& one) { return one.place.id; }),
+            1);
   kill_client();
   EXPECT_TRUE(list_socket_devices(socket_folder()).empty()) << "its socket is still there";
   EXPECT_TRUE(std::filesystem::exists(found.place.path));
@@ -201,8 +205,17 @@ TEST(SocketDevices, AreNoneWithoutAFolderOrForOtherFiles) {
 
 TEST(SocketTransport, SaysWhatIsWrongWithAPath) {
   const test::TempDir dir;
-  EXPECT_THROW(open_socket((dir / "nobody.device").string()), HidError);
-  EXPECT_THROW(open_socket("/" + std::string(200, 'a')), HidError);
+  const auto complaint = [](const std::string& path) -> std::string {
+    try {
+      open_socket(path);
+    } catch (const HidError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string nobody = (dir / "nobody.device").string();
+  EXPECT_EQ(complaint(nobody), nobody + ": No such file or directory");
+  EXPECT_THAT(complaint("/" + std::string(200, 'a')), testing::HasSubstr("at most 107 characters"));
 }
 
 }  // namespace
