@@ -231,14 +231,21 @@ bool Contacts<N>::reconsider(const Vec<N>& vbar, double T, bool only_let_go) {
 template <int N>
 std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
   std::size_t count = 0;
+  const auto take = [&](const ContactForce& contact) {
+    const auto hardness = [](const ContactForce& c) { return c.force.squaredNorm(); };
+    if (count < into.size()) {
+      into[count++] = contact;
+    } else if (!into.empty()) {
+      ContactForce& weakest = *std::ranges::min_element(into, {}, hardness);
+      if (hardness(contact) > hardness(weakest)) weakest = contact;
+    }
+  };
   for (const Contact<N>& c : list()) {
-    if (c.force > 0 && count < into.size()) into[count++] = {c.point, c.force * c.normal, c.normal};
+    if (c.force > 0 && !c.normal.isZero(0)) take({c.point, c.force * c.normal});
   }
   for (const MeshContact<N>& c : meshes_) {
     const double force = c.force.norm();
-    if (force == 0 || count == into.size()) continue;
-    const Vec3 normal = c.force / force;
-    into[count++] = {c.touch.anchor() - c.touch.radius() * normal, c.force, normal};
+    if (force != 0) take({c.touch.anchor() - c.touch.radius() / force * c.force, c.force});
   }
   return count;
 }

@@ -46,9 +46,8 @@ struct MeshContact {
 
 // Where something touches and how hard it pushes on the proxy.
 struct ContactForce {
-  Vec3 point;   // [m]
-  Vec3 force;   // [N]; zero in joint space
-  Vec3 normal;  // out of the material, unit; zero in joint space
+  Vec3 point = Vec3::Zero();  // [m]
+  Vec3 force = Vec3::Zero();  // [N]
 };
 
 // Finds what is near enough to touch within a tick, and keeps account of what does. Storage for
@@ -80,7 +79,8 @@ class Contacts {
   std::span<const Contact<N>> list() const { return {contacts_.data(), count_}; }
   std::size_t capacity() const { return contacts_.size(); }
   std::span<const MeshContact<N>> meshes() const { return meshes_; }
-  // Copies what pushed over the last tick, as many as fit; returns how many.
+  // Copies what pushed over the last tick, the hardest if not all fit; returns how many. Contacts
+  // in joint space are nowhere and not among them.
   std::size_t forces(std::span<ContactForce> into) const;
   double potential() const;  // of all springs, K d^2 / 2 [J]
 
