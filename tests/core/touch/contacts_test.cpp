@@ -197,7 +197,7 @@ TEST_P(ContactsOfJoints, OfACapsuleOnABallAreAsDeepAsTheirSurfacesOverlap) {
   EXPECT_NEAR(c.depth, 0.012 + 0.04 - 0.049, 1e-12);
   EXPECT_LT((c.point - middle).norm(), 1e-9);
   EXPECT_LT((c.normal + side).norm(), 1e-9);
-  EXPECT_EQ(c.stiffness, 700);
+  EXPECT_EQ(c.material.stiffness, 700);
   w.expect_gradient();
 }
 
@@ -238,7 +238,7 @@ TEST_P(ContactsOfJoints, OfAJointAreAsDeepAsItIsBeyond) {
   ASSERT_EQ(contacts.size(), 2u);
   EXPECT_NEAR(contacts[0].depth, 0.1, 1e-15);
   EXPECT_NEAR(contacts[1].depth, -0.1, 1e-15);
-  EXPECT_EQ(contacts[1].stiffness, 30);
+  EXPECT_EQ(contacts[1].material.stiffness, 30);
   EXPECT_EQ(contacts[0].normal, Vec3::Zero());
   w.expect_gradient();
 }
@@ -503,7 +503,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   EXPECT_LT(taken_over(), 0) << "another shape, even if it is an equal one";
   scene_.meshes[0].shape = shape;
   EXPECT_GT(taken_over(), 0.007);
-  scene_.meshes[0].stiffness = 100;  // may change
+  scene_.meshes[0].material.stiffness = 100;  // may change
   EXPECT_GT(taken_over(), 0.007);
   for (const auto& [scale, aside, radius] :
        {std::tuple(2.0, 0.0, kRadius), {1.0, 0.001, kRadius}, {1.0, 0.0, 0.0051}}) {

@@ -193,7 +193,7 @@ TEST_P(MeshInBothCouplings, GetsToAnotherStiffnessWithoutAJump) {
   const Parameters p = parameters();
   Scene scene = with_mesh(test::sheet(5, 0.2), Vec3(kHome.x(), 0, kTop), 600);
   Rig rig(arm, scene);
-  scene.meshes[0].stiffness = 1200;
+  scene.meshes[0].material.stiffness = 1200;
   TouchWorld stiffer(arm, scene);
   rig.start(p, rest_at(arm, path(0)));
   Rows rows(rig.layout());
