@@ -103,7 +103,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::contact_gain, "/energy/contact_gain", ColumnWidth::one, "J",
      "energy the contacts gave beyond what they had stored"},
     {Column::contact_point, "/contact/point", ColumnWidth::contacts, "m",
-     "where the arm is touched, x, y, z of the four hardest contacts; zeros: by no more"},
+     "where the proxy is touched: x, y, z of at most four contacts, the hardest; else zeros"},
     {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
      "force on the proxy there, over the tick"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
