@@ -18,7 +18,7 @@ std::string shadow_defines(const Quality& quality, int hard_taps) {
 }
 
 // Vertices say everything about it.
-bool is_plain(const Material& m) { return m == Material{}; }
+bool is_plain(const Finish& m) { return m == Finish{}; }
 
 }  // namespace
 
@@ -64,7 +64,7 @@ void LitPass::draw_plain(const ShaderProgram& program, const std::vector<Drawabl
   });
 }
 
-void LitPass::bind_textures(const GpuModel& model, const Material& m) const {
+void LitPass::bind_textures(const GpuModel& model, const Finish& m) const {
   const auto bind = [&](GLuint unit, int image, GLuint otherwise) {
     glActiveTexture(GL_TEXTURE0 + unit);
     glBindTexture(GL_TEXTURE_2D, image < 0 ? otherwise : model.texture(image));
@@ -77,14 +77,14 @@ void LitPass::bind_textures(const GpuModel& model, const Material& m) const {
 
 void LitPass::draw_textured(const std::vector<Drawable>& list, const Links& links,
                             const glm::mat4& view, const Look& look, bool blended) const {
-  const auto drawn_here = [&](const Material& m) {
-    return !is_plain(m) && (m.alpha == Material::Alpha::blend) == blended;
+  const auto drawn_here = [&](const Finish& m) {
+    return !is_plain(m) && (m.alpha == Finish::Alpha::blend) == blended;
   };
   bool begun = false;
   each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
     if (!in_sight(model.box(), view * pose)) return;
     for (const GpuModel::Piece& piece : model.pieces(look.coarse)) {
-      const Material& m = piece.material;
+      const Finish& m = piece.material;
       if (!drawn_here(m) || !in_sight(piece.box, view * pose)) continue;
       if (!begun) {
         textured_.use();
@@ -99,7 +99,7 @@ void LitPass::draw_textured(const std::vector<Drawable>& list, const Links& link
       textured_.set("model", pose);
       textured_.set("glow", glm::vec4(m.glow[0], m.glow[1], m.glow[2], 0));
       textured_.set("bump", m.normal < 0 ? 0.0f : m.bump);
-      textured_.set("cutoff", m.alpha == Material::Alpha::mask ? m.cutoff : -1.0f);
+      textured_.set("cutoff", m.alpha == Finish::Alpha::mask ? m.cutoff : -1.0f);
       bind_textures(model, m);
       if (m.two_sided) glDisable(GL_CULL_FACE);
       model.bind();

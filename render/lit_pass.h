@@ -60,7 +60,7 @@ class LitPass {
                   const Links& links, const glm::mat4& view, const Look& look) const;
   void draw_textured(const std::vector<Drawable>& list, const Links& links, const glm::mat4& view,
                      const Look& look, bool blended) const;
-  void bind_textures(const GpuModel& model, const Material& material) const;
+  void bind_textures(const GpuModel& model, const Finish& material) const;
 
   ShaderProgram plain_, textured_, matte_;
   GlTexture white_, flat_;

@@ -3,6 +3,7 @@
 #include <fmt/os.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "app/cli/commands.h"
@@ -17,6 +18,13 @@ struct InfoOptions {
   std::string session, csv;
   bool force = false;
 };
+
+// Recordings of the first edition have but the torque of their contacts.
+std::string contacts(const Session& session) {
+  const bool known = session.size() > 0 && !std::isnan(session.at(0, Column::contact_force)[0]);
+  if (!known) return "where and how hard was not recorded";
+  return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
+}
 
 int info(const InfoOptions& options) {
   const Session session = read_session(options.session);
@@ -34,6 +42,7 @@ int info(const InfoOptions& options) {
   fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
   fmt::print("{}", summary.text());
+  fmt::print("contacts                 {}\n", contacts(session));
   for (const SettingChange& change : session.changes) {
     fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,
                change.setting);

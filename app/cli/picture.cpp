@@ -18,10 +18,7 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
   const RowLayout layout(plan.arm.dof());
   const RowView rows(plan.arm);
   ViewState view = rows.view(layout, row);
-  const Vec3 force = rows.tip_force(layout.in(row, Column::proxy_position),
-                                    layout.in(row, Column::contact_torque));
-  const ContactForce contact{view.proxy.tip, force, force.stableNormalized()};
-  ViewMemory().update(view, {&contact, 1}, 0);
+  ViewMemory().update(view, rows.contacts(layout, row), 0);
   Camera camera;
   camera.resize(kWidth, kHeight);
   camera.reset(picture.bounds());

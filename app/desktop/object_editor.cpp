@@ -52,26 +52,44 @@ bool position(Pose& pose) {
   return changed;
 }
 
-bool stiffness(double& value, bool joint = false) {
-  const ParameterInfo info{
-      .key = "stiffness",
-      .label = "Stiffness",
-      .field = &Parameters::eta,
-      .unit = joint ? "N m/rad" : "N/m",
-      .minimum = 1e-3,
-      .maximum = kStiffness.maximum,
-      .slider_minimum = joint ? 0.1 : 1,
-      .slider_maximum = joint ? 1e3 : 1e4,
-      .logarithmic = true,
-      .live = true,
-      .meaning = "",
-  };
-  const bool changed =
-      value_slider(info, value, joint ? JointContact{}.stiffness : Plane{}.stiffness);
-  tooltip(
-      "How hard it pushes back. Double click to type, right click for the usual value. A hard "
-      "surface is felt as hard as the coupling lets through.");
+bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
+  const bool changed = value_slider(info, value, usual);
+  tooltip(help);
   return changed;
+}
+
+constexpr const char* kStiffnessHelp =
+    "How hard it pushes back. Double click to type, right click for the usual value. A hard "
+    "surface is felt as hard as the coupling lets through.";
+constexpr ParameterInfo kStiffnessSlider{
+    .key = "stiffness",
+    .label = "Stiffness",
+    .field = &Parameters::eta,
+    .unit = "N/m",
+    .minimum = 1e-3,
+    .maximum = kStiffness.maximum,
+    .slider_minimum = 1,
+    .slider_maximum = 1e4,
+    .logarithmic = true,
+    .live = true,
+    .meaning = "",
+};
+
+// What was changed; nothing, as a rule.
+std::string_view edit_material(Material& material) {
+  std::string_view what;
+  if (slider(material.stiffness, kStiffnessSlider, Material{}.stiffness, kStiffnessHelp)) {
+    what = "stiffness";
+  }
+  return what;
+}
+
+bool joint_stiffness(double& value) {
+  ParameterInfo info = kStiffnessSlider;
+  info.unit = "N m/rad";
+  info.slider_minimum = 0.1;
+  info.slider_maximum = 1e3;
+  return slider(value, info, JointContact{}.stiffness, kStiffnessHelp);
 }
 
 }  // namespace
@@ -131,8 +149,7 @@ bool ObjectEditor::edit_rotation(Pose& pose) {
 }
 
 std::string_view ObjectEditor::edit(Plane& plane) {
-  std::string_view what;
-  if (stiffness(plane.stiffness)) what = "stiffness";
+  std::string_view what = edit_material(plane.material);
   if (position("Point on it x, y, z [mm]", plane.point, "The plane goes through it.")) {
     what = "place";
   }
@@ -143,8 +160,7 @@ std::string_view ObjectEditor::edit(Plane& plane) {
 }
 
 std::string_view ObjectEditor::edit(Sphere& sphere) {
-  std::string_view what;
-  if (stiffness(sphere.stiffness)) what = "stiffness";
+  std::string_view what = edit_material(sphere.material);
   if (position("Centre x, y, z [mm]", sphere.center, "Forward, left and up from the arm's base.")) {
     what = "place";
   }
@@ -157,8 +173,7 @@ std::string_view ObjectEditor::edit(Sphere& sphere) {
 }
 
 std::string_view ObjectEditor::edit(Box& box) {
-  std::string_view what;
-  if (stiffness(box.stiffness)) what = "stiffness";
+  std::string_view what = edit_material(box.material);
   if (position(box.pose)) what = "place";
   if (edit_rotation(box.pose)) what = "rotation";
   Vec3 size = 1e3 * box.size;
@@ -170,8 +185,7 @@ std::string_view ObjectEditor::edit(Box& box) {
 }
 
 std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
-  std::string_view what;
-  if (stiffness(mesh.stiffness)) what = "stiffness";
+  std::string_view what = edit_material(mesh.material);
   if (position(mesh.pose)) what = "place";
   if (edit_rotation(mesh.pose)) what = "rotation";
   double millimetres = 1e3 * mesh.scale * extent_;
@@ -195,7 +209,7 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
 
 std::string_view ObjectEditor::edit(JointContact& contact) {
   std::string_view what;
-  if (stiffness(contact.stiffness, true)) what = "stiffness";
+  if (joint_stiffness(contact.stiffness)) what = "stiffness";
   const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
   if (ImGui::BeginCombo("joint", name(contact.joint).c_str())) {
     for (int i = 0; i < arm_->dof(); ++i) {

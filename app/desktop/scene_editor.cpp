@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_limits.h"
 #include "render/scene_items.h"
 
@@ -52,22 +53,22 @@ void hold(Plane& plane) {
   const double length = plane.normal.stableNorm();
   const bool direction = std::isfinite(length) && length > 1e-9;
   plane.normal = direction ? Vec3(plane.normal / length) : Vec3(Vec3::UnitZ());
-  hold(plane.stiffness, kStiffness, Plane{}.stiffness);
+  hold(plane.material);
 }
 void hold(Sphere& sphere) {
   hold(sphere.center, kPosition, 0);
   hold(sphere.radius, kLength, Sphere{}.radius);
-  hold(sphere.stiffness, kStiffness, Sphere{}.stiffness);
+  hold(sphere.material);
 }
 void hold(Box& box) {
   hold(box.pose);
   hold(box.size, kLength, 0.1);
-  hold(box.stiffness, kStiffness, Box{}.stiffness);
+  hold(box.material);
 }
 void hold(MeshObstacle& mesh) {
   hold(mesh.pose);
   hold(mesh.scale, kScale, 1);
-  hold(mesh.stiffness, kStiffness, MeshObstacle{}.stiffness);
+  hold(mesh.material);
 }
 void hold(JointContact& contact) {
   hold(contact.angle, kAngle, 0);

@@ -39,20 +39,12 @@ void ViewPanel::draw(Workbench& bench, const Window& window, const ScreenRect& r
   const std::span<const double> row = bench.row();
   const RowLayout& layout = stage.channels().layout();
   ViewState view = stage.rows().view(layout, row);
-  const Snapshot& snapshot = bench.live.snapshot();
-  std::span<const ContactForce> contacts(snapshot.contacts.data(), snapshot.contact_count);
-  ContactForce recorded{};
   if (bench.playing_back()) {
-    // A recording keeps the torque of the contacts: shown as one force at the tip.
-    const Vec3 force = stage.rows().tip_force(layout.in(row, Column::proxy_position),
-                                              layout.in(row, Column::contact_torque));
-    recorded = {view.proxy.tip, force, force.stableNormalized()};
-    contacts = {&recorded, 1};
     if (const auto again = bench.playback->rerun_row(); !again.empty()) {
       view.rerun = stage.rows().pose(layout.in(again, Column::proxy_position));
     }
   }
-  stage.memory.update(view, contacts, layout.in(row, Column::time)[0]);
+  stage.memory.update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
   const Settings& s = bench.settings;
   view.show_ghost = s.show_ghost;
   view.show_trail = s.show_trail;

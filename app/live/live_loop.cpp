@@ -200,7 +200,6 @@ void LiveLoop::publish(const TickTiming& timing) {
   if (recording_to_ != nullptr) recording_to_->push(row_);
   Snapshot& snapshot = snapshots_.back();
   std::ranges::copy(row_, snapshot.row.begin());
-  snapshot.contact_count = rig_->contacts(snapshot.contacts);
   snapshot.diverged = rig_->diverged();
   snapshot.recording = recording_to_ != nullptr;
   snapshot.arming = rig_->force().state();

@@ -29,8 +29,6 @@ struct Controls {
 // From the loop to the window; the newest wins.
 struct Snapshot {
   std::array<double, kMaxStride> row{};
-  std::array<ContactForce, 16> contacts{};
-  std::size_t contact_count = 0;
   bool diverged = false;
   bool recording = false;
   Arming arming = Arming::off;

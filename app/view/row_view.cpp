@@ -1,6 +1,7 @@
 #include "app/view/row_view.h"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 namespace limpid {
 namespace {
@@ -47,6 +48,23 @@ Vec3 RowView::tip_force(std::span<const double> x, std::span<const double> torqu
   return A.ldlt().solve(J * joints(torque));
 }
 
+std::vector<ContactForce> RowView::contacts(const RowLayout& layout,
+                                            std::span<const double> row) const {
+  const auto points = layout.in(row, Column::contact_point);
+  const auto forces = layout.in(row, Column::contact_force);
+  if (std::isnan(forces[0])) {
+    const auto x2 = layout.in(row, Column::proxy_position);
+    return {{tip(x2), tip_force(x2, layout.in(row, Column::contact_torque))}};
+  }
+  std::vector<ContactForce> contacts;
+  for (std::size_t i = 0; i < forces.size(); i += 3) {
+    const Vec3 force(forces[i], forces[i + 1], forces[i + 2]);
+    if (force.isZero(0)) continue;
+    contacts.push_back({Vec3(points[i], points[i + 1], points[i + 2]), force});
+  }
+  return contacts;
+}
+
 ViewState RowView::view(const RowLayout& layout, std::span<const double> row) const {
   const auto at = [&](Column c) { return layout.in(row, c); };
   ViewState view;
@@ -80,7 +98,7 @@ void ViewMemory::update(ViewState& view, std::span<const ContactForce> contacts,
     if (touch == touches_.end()) touch = touches_.insert(touch, {contact.point, time, time});
     touch->point = contact.point;
     touch->seen = time;
-    view.contacts.push_back({contact.point, contact.force, time - touch->began, contact.normal});
+    view.contacts.push_back({contact.point, contact.force, time - touch->began});
   }
   std::erase_if(touches_, [&](const Touch& t) { return t.seen < time - kPause; });
 }

@@ -19,6 +19,9 @@ class RowView {
   Vec3 tip(std::span<const double> x) const;
   // Torque at the joints as a force at the tip there, least squares [N].
   Vec3 tip_force(std::span<const double> x, std::span<const double> torque) const;
+  // Where the proxy is touched. A recording that has but the torque of its contacts shows it as one
+  // force at the tip.
+  std::vector<ContactForce> contacts(const RowLayout& layout, std::span<const double> row) const;
   // Both arms, the hand and its force; no contacts, no trails.
   ViewState view(const RowLayout& layout, std::span<const double> row) const;
 

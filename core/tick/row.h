@@ -39,6 +39,8 @@ enum class Column : std::uint8_t {
   proxy_kinetic,
   contact_potential,
   contact_gain,
+  contact_point,
+  contact_force,
   wake_latency,
   compute,
   count_,
@@ -46,7 +48,10 @@ enum class Column : std::uint8_t {
 
 inline constexpr int kColumns = static_cast<int>(Column::count_);
 
-enum class ColumnWidth : std::uint8_t { one, three, dof };
+// Contacts that a row has room for: the hardest, if there are more.
+inline constexpr int kRowContacts = 4;
+
+enum class ColumnWidth : std::uint8_t { one, three, dof, contacts };  // x, y, z of each contact
 
 struct ColumnInfo {
   Column column;
@@ -97,6 +102,10 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "energy stored in the contacts"},
     {Column::contact_gain, "/energy/contact_gain", ColumnWidth::one, "J",
      "energy the contacts gave beyond what they had stored"},
+    {Column::contact_point, "/contact/point", ColumnWidth::contacts, "m",
+     "where the proxy is touched: x, y, z of at most four contacts, the hardest; else zeros"},
+    {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
+     "force on the proxy there, over the tick"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
@@ -122,6 +131,7 @@ class RowLayout {
       case ColumnWidth::one: return 1;
       case ColumnWidth::three: return 3;
       case ColumnWidth::dof: return dof_;
+      case ColumnWidth::contacts: return 3 * kRowContacts;
     }
     return 0;
   }

@@ -179,6 +179,19 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::proxy_kinetic, kinetic_);
   set(Column::contact_potential, potential_);
   set(Column::contact_gain, books_.contact_gain(potential_, first_potential_));
+  write_contacts(row);
+}
+
+template <int N>
+void Tick<N>::write_contacts(std::span<double> row) const {
+  std::array<ContactForce, kRowContacts> hardest{};
+  proxy_.contacts().forces(hardest);
+  auto point = layout_.in(row, Column::contact_point).begin();
+  auto force = layout_.in(row, Column::contact_force).begin();
+  for (const ContactForce& contact : hardest) {
+    point = std::copy_n(contact.point.data(), 3, point);
+    force = std::copy_n(contact.force.data(), 3, force);
+  }
 }
 
 template class Tick<3>;

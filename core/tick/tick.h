@@ -83,6 +83,7 @@ class Tick {
   void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
+  void write_contacts(std::span<double> row) const;
 
   RowLayout layout_;
   Arm<N> arm_;

@@ -81,11 +81,11 @@ bool Contacts<N>::recoverable() const {
 }
 
 template <int N>
-void Contacts<N>::add(double depth, double stiffness, const Vec3& point, const Vec3& normal,
+void Contacts<N>::add(double depth, const Material& material, const Vec3& point, const Vec3& normal,
                       int link, const Arm<N>& arm, const typename Arm<N>::Frames& f) {
   Contact<N>& c = contacts_[count_++];
   c.depth = depth;
-  c.stiffness = stiffness;
+  c.material = material;
   c.point = point;
   c.normal = normal;
   c.touching = depth > 0;
@@ -106,7 +106,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
       const Surface s = distance_to(obstacle, point);
       const double depth = probe.radius - s.distance;
       if (depth > -kReach) {
-        add(depth, obstacle.stiffness, point, s.normal, probe.link, arm, f);
+        add(depth, obstacle.material, point, s.normal, probe.link, arm, f);
       }
     };
     for (const Plane& plane : scene_.planes) touch(plane);
@@ -118,7 +118,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     c.depth = stop.direction * (x[stop.joint] - stop.angle);
     c.gradient.setZero();
     c.gradient[stop.joint] = stop.direction;
-    c.stiffness = stop.stiffness;
+    c.material = {.stiffness = stop.stiffness};
     c.point = f.p[static_cast<std::size_t>(stop.joint)];
     c.normal.setZero();
     c.touching = c.depth > 0;
@@ -162,19 +162,19 @@ void Contacts<N>::aim(MeshContact<N>& contact) {
 
 template <int N>
 void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const Mat<N>& from_f2) const {
-  const auto spring = [&](double stiffness, double depth, const Vec<N>& gradient) {
-    Vec<N> answer = stiffness * gradient;  // of tau2 + f2 to a deeper contact, negative
+  const auto spring = [&](const Material& material, double depth, const Vec<N>& gradient) {
+    Vec<N> answer = material.stiffness * gradient;  // of tau2 + f2 to a deeper contact, negative
     answer += from_f2 * answer.eval();
     A.noalias() += (0.5 * T) * answer * gradient.transpose();
     b -= depth * answer;
   };
   for (const Contact<N>& c : list()) {
-    if (c.touching) spring(c.stiffness, c.depth, c.gradient);
+    if (c.touching) spring(c.material, c.depth, c.gradient);
   }
   for (const MeshContact<N>& c : meshes_) {
     for (int i = 0; i < c.rank; ++i) {
       const Vec<N> gradient = -c.J.transpose() * c.direction.col(i);
-      spring(c.stiffness, c.depth[i], gradient);
+      spring(c.material, c.depth[i], gradient);
     }
   }
 }
@@ -185,7 +185,7 @@ bool Contacts<N>::push(const Vec<N>& vbar, double T, Vec<N>& f2) {
   bool settled = true;
   for (Contact<N>& c : std::span(contacts_.data(), count_)) {
     const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar);
-    c.force = c.touching ? c.stiffness * depth : 0;
+    c.force = c.touching ? c.material.stiffness * depth : 0;
     f2 -= c.force * c.gradient;
     settled = settled && (depth > 0) == c.touching;
   }
@@ -195,7 +195,7 @@ bool Contacts<N>::push(const Vec<N>& vbar, double T, Vec<N>& f2) {
     const Vec3 moved = 0.5 * T * (c.J * vbar);
     for (int i = 0; i < c.rank; ++i) {
       const Vec3 e = c.direction.col(i);
-      c.force += c.stiffness * (c.depth[i] - e.dot(moved)) * e;
+      c.force += c.material.stiffness * (c.depth[i] - e.dot(moved)) * e;
     }
     if (c.rank > 0) f2.noalias() += c.J.transpose() * c.force;
     if (c.touch.held()) continue;
@@ -231,14 +231,21 @@ bool Contacts<N>::reconsider(const Vec<N>& vbar, double T, bool only_let_go) {
 template <int N>
 std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
   std::size_t count = 0;
+  const auto take = [&](const ContactForce& contact) {
+    const auto hardness = [](const ContactForce& c) { return c.force.squaredNorm(); };
+    if (count < into.size()) {
+      into[count++] = contact;
+    } else if (!into.empty()) {
+      ContactForce& weakest = *std::ranges::min_element(into, {}, hardness);
+      if (hardness(contact) > hardness(weakest)) weakest = contact;
+    }
+  };
   for (const Contact<N>& c : list()) {
-    if (c.force > 0 && count < into.size()) into[count++] = {c.point, c.force * c.normal, c.normal};
+    if (c.force > 0 && !c.normal.isZero(0)) take({c.point, c.force * c.normal});
   }
   for (const MeshContact<N>& c : meshes_) {
     const double force = c.force.norm();
-    if (force == 0 || count == into.size()) continue;
-    const Vec3 normal = c.force / force;
-    into[count++] = {c.touch.anchor() - c.touch.radius() * normal, c.force, normal};
+    if (force != 0) take({c.touch.anchor() - c.touch.radius() / force * c.force, c.force});
   }
   return count;
 }
@@ -248,14 +255,14 @@ double Contacts<N>::potential() const {
   double U = 0;
   for (const Contact<N>& c : list()) {
     const double d = std::max(c.depth, 0.0);
-    U += 0.5 * c.stiffness * d * d;
+    U += 0.5 * c.material.stiffness * d * d;
   }
   for (const MeshContact<N>& c : meshes_) {
     if (!c.touch.near()) continue;
     Vec3 x = c.touch.anchor();
     FreeSpace::Active active;
     if (!c.touch.held()) c.touch.space().project(c.center, x, active);
-    U += 0.5 * c.stiffness * (x - c.center).squaredNorm();
+    U += 0.5 * c.material.stiffness * (x - c.center).squaredNorm();
   }
   return U;
 }

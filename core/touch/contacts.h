@@ -17,7 +17,7 @@ template <int N>
 struct Contact {
   double depth = 0;            // [m], or [rad] in joint space; negative: apart
   Vec<N> gradient;             // of the depth [m/rad] or [-]
-  double stiffness = 0;        // [N/m] or [N m/rad]
+  Material material;           // in joint space its stiffness is in [N m/rad]
   Vec3 point = Vec3::Zero();   // on the arm [m]
   Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
   bool touching = false;
@@ -29,12 +29,12 @@ struct Contact {
 template <int N>
 struct MeshContact {
   MeshContact(const MeshObstacle& obstacle, double radius, Eigen::Index dof)
-      : touch(obstacle, radius), stiffness(obstacle.stiffness), J(Jacobian<N>::Zero(3, dof)) {}
+      : touch(obstacle, radius), material(obstacle.material), J(Jacobian<N>::Zero(3, dof)) {}
 
   MeshTouch touch;
-  int mesh = 0, link = 0;             // indices
-  Vec3 on_link = Vec3::Zero();        // the ball's centre, in the link's frame [m]
-  double stiffness = 0;               // [N/m]
+  int mesh = 0, link = 0;       // indices
+  Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
+  Material material;
   Vec3 center = Vec3::Zero();         // [m]
   Jacobian<N> J;                      // of the centre
   FreeSpace::Active active;           // planes that push
@@ -46,9 +46,8 @@ struct MeshContact {
 
 // Where something touches and how hard it pushes on the proxy.
 struct ContactForce {
-  Vec3 point;   // [m]
-  Vec3 force;   // [N]; zero in joint space
-  Vec3 normal;  // out of the material, unit; zero in joint space
+  Vec3 point = Vec3::Zero();  // [m]
+  Vec3 force = Vec3::Zero();  // [N]
 };
 
 // Finds what is near enough to touch within a tick, and keeps account of what does. Storage for
@@ -80,12 +79,13 @@ class Contacts {
   std::span<const Contact<N>> list() const { return {contacts_.data(), count_}; }
   std::size_t capacity() const { return contacts_.size(); }
   std::span<const MeshContact<N>> meshes() const { return meshes_; }
-  // Copies what pushed over the last tick, as many as fit; returns how many.
+  // Copies what pushed over the last tick, the hardest if not all fit; returns how many. Contacts
+  // in joint space are nowhere and not among them.
   std::size_t forces(std::span<ContactForce> into) const;
   double potential() const;  // of all springs, K d^2 / 2 [J]
 
  private:
-  void add(double depth, double stiffness, const Vec3& point, const Vec3& normal, int link,
+  void add(double depth, const Material& material, const Vec3& point, const Vec3& normal, int link,
            const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);

@@ -1,5 +1,5 @@
 // What can be touched, and with what: plain data, in the device base frame (x forward, y left,
-// z up), SI. Contacts are pure stiffness (paper, section 4.1).
+// z up), SI.
 #pragma once
 
 #include <map>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/sizes.h"
+#include "core/touch/material.h"
 
 namespace limpid {
 
@@ -17,21 +18,21 @@ struct Plane {
   std::string name;
   Vec3 point = Vec3::Zero();    // on the surface [m]
   Vec3 normal = Vec3::UnitZ();  // unit, out of the material
-  double stiffness = 600;       // [N/m]
+  Material material{};
 };
 
 struct Sphere {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m]
   double radius = 0.05;        // [m]
-  double stiffness = 600;      // [N/m]
+  Material material{};
 };
 
 struct Box {
   std::string name;
   Pose pose = Pose::Identity();     // of its centre
   Vec3 size = Vec3::Constant(0.1);  // full edge lengths [m]
-  double stiffness = 600;           // [N/m]
+  Material material{};
 };
 
 // A stiff stop of one joint, in joint space (the paper's proximal contact): the joint touches it
@@ -63,7 +64,7 @@ struct MeshObstacle {
   std::string path;              // where that was found; empty: inside a recorded session
   Pose pose = Pose::Identity();  // [m]
   double scale = 1;
-  double stiffness = 600;  // [N/m]
+  Material material{};
   std::shared_ptr<const std::vector<unsigned char>>
       source;                                 // the file's bytes, with all it refers to
   std::shared_ptr<const TriangleMesh> shape;  // built from them before it is touched

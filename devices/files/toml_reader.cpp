@@ -85,7 +85,7 @@ std::string TomlTable::full(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
-void TomlTable::allow_only(std::initializer_list<const char*> keys) const {
+void TomlTable::allow_only(const std::vector<const char*>& keys) const {
   for (const auto& [key, node] : table_) {
     const auto same = [&, name = key.str()](const char* allowed) { return name == allowed; };
     if (std::any_of(keys.begin(), keys.end(), same)) continue;

@@ -4,7 +4,6 @@
 
 #include <toml++/toml.h>
 
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,7 +31,7 @@ class TomlTable {
   TomlTable(const toml::table& table, std::string where, std::string path)
       : table_(table), where_(std::move(where)), path_(std::move(path)) {}
 
-  void allow_only(std::initializer_list<const char*> keys) const;
+  void allow_only(const std::vector<const char*>& keys) const;
   std::optional<std::string> text(const char* key) const;
   std::optional<double> number(const char* key, const Range& range) const;
   std::optional<Vec3> vector(const char* key, const Range& each) const;

@@ -201,10 +201,6 @@ bool Rig::diverged() const {
   return std::visit([](const auto& of) { return of->tick.diverged(); }, of_);
 }
 
-std::size_t Rig::contacts(std::span<ContactForce> into) const noexcept {
-  return std::visit([&](const auto& of) { return of->tick.proxy().contacts().forces(into); }, of_);
-}
-
 RigStart rest_at(const ArmDescription& arm, const Vec3& target) {
   const auto x = inverse_kinematics(arm, target, rest_pose(arm));
   if (!x) throw std::invalid_argument("out of reach");

@@ -78,8 +78,6 @@ class Rig {
   bool diverged() const;  // the loop went unstable; force is off
   const ForceGate& force() const;
   ForceState force_state() const { return force().why(); }
-  // Copies where the proxy is touched, as many as fit; returns how many.
-  std::size_t contacts(std::span<ContactForce> into) const noexcept;
 
  private:
   template <int N>

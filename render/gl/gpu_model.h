@@ -13,7 +13,7 @@ class GpuModel {
   // A piece of a part that is drawn in one call, small enough to be worth leaving out.
   struct Piece {
     std::uint32_t first, count;  // indices
-    Material material;
+    Finish material;
     Eigen::AlignedBox3f box;
   };
 

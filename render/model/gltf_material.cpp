@@ -81,10 +81,10 @@ GltfMaterial GltfMaterials::read(const tinygltf::Material& from) {
     for (std::size_t i = 0; i < 3; ++i) to.material.glow[i] = unit(from.emissiveFactor[i]);
   to.material.two_sided = from.doubleSided;
   if (from.alphaMode == "MASK") {
-    to.material.alpha = Material::Alpha::mask;
+    to.material.alpha = Finish::Alpha::mask;
     to.material.cutoff = unit(from.alphaCutoff);
   } else if (from.alphaMode == "BLEND") {
-    to.material.alpha = Material::Alpha::blend;
+    to.material.alpha = Finish::Alpha::blend;
   } else {
     to.opacity = 1;
   }

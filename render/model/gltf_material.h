@@ -14,7 +14,7 @@ namespace limpid {
 
 // A material as the vertices and the part of a model take it.
 struct GltfMaterial {
-  Material material;
+  Finish material;
   Eigen::Vector3f color = Vertex{}.color;  // linear
   float opacity = 1;
   Eigen::Vector2f surface = Vertex{}.surface;  // metallic, roughness

@@ -52,7 +52,7 @@ class Reader {
   std::size_t expected_, nodes_ = 0, primitives_ = 0, triangles_ = 0;
   std::vector<bool> seen_;  // nodes
   VertexUse use_;
-  std::map<Material, std::vector<std::uint32_t>> indices_;  // of the model, by material
+  std::map<Finish, std::vector<std::uint32_t>> indices_;  // of the model, by material
 };
 
 void Reader::check_wanted() const {
@@ -168,7 +168,7 @@ void Reader::add_vertices(const tinygltf::Primitive& primitive,
   stream("TEXCOORD_" + std::to_string(material.uv_set), 2, [&](Vertex& v, const auto& uv) {
     v.uv = (material.uv_move * uv.template head<2>()).cwiseMax(-kFarthest).cwiseMin(kFarthest);
   });
-  const bool alpha = material.material.alpha != Material::Alpha::opaque;
+  const bool alpha = material.material.alpha != Finish::Alpha::opaque;
   stream("COLOR_0", 3, [&](Vertex& v, const auto& c) {
     const Eigen::Vector4f color = c.cwiseMax(0.0f).cwiseMin(1.0f);
     v.color = v.color.cwiseProduct(color.template head<3>());

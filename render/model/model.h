@@ -28,8 +28,9 @@ struct Image {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
-// What the vertices do not say. Images are numbers in Model::images, -1 for none.
-struct Material {
+// How a part looks, as far as the vertices do not say. Images are numbers in Model::images, -1 for
+// none.
+struct Finish {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
   int color = -1;               // times the vertices' colour and opacity
   int surface = -1;             // green: roughness, blue: metallic, times the vertices'
@@ -41,12 +42,12 @@ struct Material {
   float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there
   bool two_sided = false;
 
-  auto operator<=>(const Material&) const = default;
+  auto operator<=>(const Finish&) const = default;
 };
 
 struct Part {
   std::uint32_t first = 0, count = 0;  // indices
-  Material material = {};
+  Finish material = {};
 };
 
 struct Model {

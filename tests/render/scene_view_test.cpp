@@ -224,7 +224,7 @@ TEST_F(Picture, LetsTheBackgroundThroughWhereAMeshIsCutOut) {
   const Eigen::Vector3i empty = seen_at(there);
   Model model = make_box(Vec3(0.1, 0.1, 0.1), 0.01, {{0.05f, 0.6f, 0.05f}});
   for (Vertex& v : model.vertices) v.opacity = 0.3f;
-  model.parts[0].material.alpha = Material::Alpha::mask;
+  model.parts[0].material.alpha = Finish::Alpha::mask;
   state_.show_grid = false;
   view_->set_quality({.msaa = 1, .shadow_size = 0, .soft = false});
   const auto shared = std::make_shared<const Model>(std::move(model));

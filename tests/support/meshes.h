@@ -43,7 +43,7 @@ struct Triangles {
 inline MeshObstacle obstacle(const Triangles& triangles, double stiffness = 600) {
   MeshObstacle out;
   out.name = "mesh";
-  out.stiffness = stiffness;
+  out.material.stiffness = stiffness;
   out.shape = triangles.mesh();
   return out;
 }

@@ -30,6 +30,20 @@ class Rows {
   Eigen::VectorXd vec(std::size_t k, Column c) const {
     return Eigen::Map<const Eigen::VectorXd>(layout_.in(row(k), c).data(), layout_.width(c));
   }
+  struct Touch {
+    Vec3 point, force;
+  };
+  // Where the proxy was touched.
+  std::vector<Touch> touches(std::size_t k) const {
+    const Eigen::VectorXd points = vec(k, Column::contact_point);
+    const Eigen::VectorXd forces = vec(k, Column::contact_force);
+    std::vector<Touch> out;
+    for (Eigen::Index i = 0; i < forces.size(); i += 3) {
+      const Vec3 force = forces.segment<3>(i);
+      if (!force.isZero(0)) out.push_back({points.segment<3>(i), force});
+    }
+    return out;
+  }
   const RowLayout& layout() const { return layout_; }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
@@ -27,31 +28,39 @@ Pose pose(const TomlTable& t, const Vec3& position) {
 }
 
 Vec3 point(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
-double stiffness(const TomlTable& t, const Range& range) {
-  return t.need(t.number("stiffness", range), "stiffness");
+// These keys and those of a material.
+void allow_with_material(const TomlTable& t, std::vector<const char*> keys) {
+  for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
+  t.allow_only(keys);
+}
+
+Material material(const TomlTable& t) {
+  Material out;
+  for (const MaterialKey& each : kMaterialKeys) {
+    out.*each.field = t.need(t.number(each.key, each.range), each.key);
+  }
+  return out;
 }
 std::string name(const TomlTable& t) { return t.need(t.text("name"), "name"); }
 
 Plane plane(const TomlTable& t) {
-  t.allow_only({"name", "point", "normal", "stiffness"});
+  allow_with_material(t, {"name", "point", "normal"});
   const Vec3 normal = t.need(t.vector("normal", kDirection), "normal");
   if (!(normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
   // One that is unit already stays as it is: what was written is read back to the last bit.
   const bool unit = std::abs(normal.squaredNorm() - 1) < 1e-15;
-  return {name(t), point(t, "point"), unit ? normal : normal.normalized(),
-          stiffness(t, kStiffness)};
+  return {name(t), point(t, "point"), unit ? normal : normal.normalized(), material(t)};
 }
 
 Sphere sphere(const TomlTable& t) {
-  t.allow_only({"name", "center", "radius", "stiffness"});
-  return {name(t), point(t, "center"), t.need(t.number("radius", kLength), "radius"),
-          stiffness(t, kStiffness)};
+  allow_with_material(t, {"name", "center", "radius"});
+  return {name(t), point(t, "center"), t.need(t.number("radius", kLength), "radius"), material(t)};
 }
 
 Box box(const TomlTable& t) {
-  t.allow_only({"name", "center", "size", "rpy", "stiffness"});
+  allow_with_material(t, {"name", "center", "size", "rpy"});
   return {name(t), pose(t, point(t, "center")), t.need(t.vector("size", kLength), "size"),
-          stiffness(t, kStiffness)};
+          material(t)};
 }
 
 int joint_index(const TomlTable& t, const ArmDescription& arm) {
@@ -76,7 +85,8 @@ JointContact joint_contact(const TomlTable& t, const ArmDescription& arm) {
   const std::string side = t.need(t.text("side"), "side");
   if (side != "above" && side != "below") t.refuse("side", "\"above\", \"below\"");
   return {name(t), joint_index(t, arm), t.need(t.number("angle", kAngle), "angle"),
-          side == "above" ? 1.0 : -1.0, stiffness(t, kJointStiffness)};
+          side == "above" ? 1.0 : -1.0,
+          t.need(t.number("stiffness", kJointStiffness), "stiffness")};
 }
 
 // Links of the file that were merged into a moving one will do: the ends are moved along.
@@ -125,13 +135,13 @@ Pose optional_pose(const TomlTable& t) {
 }
 
 MeshObstacle mesh(const TomlTable& t, const fs::path& base_dir, const SceneFiles& files) {
-  t.allow_only({"name", "file", "position", "rpy", "scale", "stiffness"});
+  allow_with_material(t, {"name", "file", "position", "rpy", "scale"});
   MeshObstacle out;
   out.name = name(t);
   out.file = model_file(t);
   out.pose = optional_pose(t);
   out.scale = t.number("scale", kScale).value_or(1);
-  out.stiffness = stiffness(t, kStiffness);
+  out.material = material(t);
   if (const auto known = files.find(out.file); known != files.end()) {
     out.source = known->second;
     return out;

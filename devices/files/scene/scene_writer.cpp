@@ -6,6 +6,7 @@
 
 #include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
 
 namespace limpid {
 namespace {
@@ -66,6 +67,10 @@ class Text {
   std::string text_;
 };
 
+void put_material(Text& text, const Material& material) {
+  for (const MaterialKey& each : kMaterialKeys) text.put(each.key, material.*each.field);
+}
+
 void put_joint(Text& text, const JointContact& contact, const ArmDescription& arm) {
   const auto named = [&](const Joint& joint) {
     return joint.name == arm.joints[static_cast<std::size_t>(contact.joint)].name;
@@ -120,14 +125,14 @@ std::string scene_text(const Scene& scene, const ArmDescription& arm, const fs::
     text.put("name", plane.name);
     text.put("point", plane.point);
     text.put("normal", plane.normal);
-    text.put("stiffness", plane.stiffness);
+    put_material(text, plane.material);
   }
   for (const Sphere& sphere : scene.spheres) {
     text.table("sphere");
     text.put("name", sphere.name);
     text.put("center", sphere.center);
     text.put("radius", sphere.radius);
-    text.put("stiffness", sphere.stiffness);
+    put_material(text, sphere.material);
   }
   for (const Box& box : scene.boxes) {
     text.table("box");
@@ -135,14 +140,14 @@ std::string scene_text(const Scene& scene, const ArmDescription& arm, const fs::
     text.put("center", Vec3(box.pose.translation()));
     text.put("size", box.size);
     text.put_rotation(box.pose);
-    text.put("stiffness", box.stiffness);
+    put_material(text, box.material);
   }
   for (const MeshObstacle& mesh : scene.meshes) {
     text.table("mesh");
     text.put("name", mesh.name);
     text.put("file", mesh.file);
     text.put_place(mesh.pose, mesh.scale);
-    text.put("stiffness", mesh.stiffness);
+    put_material(text, mesh.material);
   }
   for (const JointContact& contact : scene.joint_contacts) {
     text.table("joint_contact");

@@ -13,9 +13,12 @@ namespace {
 std::string column_name(const ColumnInfo& info, int width, int i) {
   std::string name = info.path + 1;
   for (char& c : name) c = c == '/' ? '_' : c;
-  if (width > 1)
-    name += info.width == ColumnWidth::three ? fmt::format("_{:c}", 'x' + i)
-                                             : fmt::format("_{}", i + 1);
+  if (info.width == ColumnWidth::contacts) name += fmt::format("_{}", i / 3 + 1);
+  if (info.width == ColumnWidth::contacts || info.width == ColumnWidth::three) {
+    name += fmt::format("_{:c}", 'x' + i % 3);
+  } else if (width > 1) {
+    name += fmt::format("_{}", i + 1);
+  }
   std::string unit = info.unit;
   if (unit == "-") return name;
   for (char& c : unit) c = c == ' ' || c == '/' ? '_' : c;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -41,11 +42,15 @@ hdf5::Datatype setting_type() {
   return type;
 }
 
+// Whether a column is mostly zeros: blocks of nothing else are not written then, and a chunk of
+// nothing else takes no room in the file. HDF5 reads them as zeros.
+bool sparse(const ColumnInfo& column) { return column.width == ColumnWidth::contacts; }
+
 // A list of rank 1, or a table of rank 2 with rows of `width`.
 hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
-                             hsize_t chunk) {
+                             hsize_t chunk, bool filled = false) {
   const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
+  H5Pset_fill_time(creation.get(), filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
   const std::array<hsize_t, 2> none{0, width};
   const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
   const std::array<hsize_t, 2> chunks{chunk, width};
@@ -57,14 +62,19 @@ hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank,
       H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
 }
 
-// Appends `count` rows behind the first `from` and flushes them. Errors: FileError naming `file`;
-// asked for at once, as closing any handle makes HDF5 forget them.
+// Appends `count` rows behind the first `from` and flushes them; without data they are what the
+// dataset is filled with. Errors: FileError naming `file`; asked for at once, as closing any handle
+// makes HDF5 forget them.
 void append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
                const void* data, const std::filesystem::path& file) {
   const std::array<hsize_t, 2> extent{from + count, width};
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, width};
   check(H5Dset_extent(dataset.get(), extent.data()) >= 0, file, "cannot write");
+  if (data == nullptr) {
+    check(H5Dflush(dataset.get()) >= 0, file, "cannot write");
+    return;
+  }
   const hdf5::Dataspace in_file(H5Dget_space(dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(in_file.get());
   const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
@@ -124,7 +134,7 @@ void SessionFile::create_column(const ColumnInfo& column) {
   dataset = create_growing(file_.get(), column.path, column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE,
                            column.width == ColumnWidth::one ? 1 : 2,  // N x 1 for a single joint
                            static_cast<hsize_t>(layout_.width(column.column)),
-                           kBlocksPerChunk * block_rows_);
+                           kBlocksPerChunk * block_rows_, sparse(column));
   check(static_cast<bool>(dataset), path_, "cannot write");
   hdf5::write_text(dataset.get(), "unit", column.unit, path_);
   hdf5::write_text(dataset.get(), "what", column.what, path_);
@@ -215,6 +225,8 @@ void SessionFile::write_column(const ColumnInfo& column, std::uint64_t count) {
                    [](double x) { return static_cast<std::uint8_t>(x); });
   }
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers_.data();
+  const auto zero = [](double x) { return std::bit_cast<std::uint64_t>(x) == 0; };
+  if (sparse(column) && std::ranges::all_of(numbers_, zero)) data = nullptr;
   append_to(columns_[column_index(column.column)], flushed_rows_, count,
             static_cast<hsize_t>(layout_.width(column.column)),
             column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);

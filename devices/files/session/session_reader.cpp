@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "devices/files/session/hdf5_heaps.h"
@@ -31,6 +32,9 @@ std::optional<double> default_of(Column column) {
     case Column::force_state: return 0.0;
     case Column::contact_potential: return 0.0;
     case Column::contact_gain: return 0.0;
+    // That nothing touched is not known.
+    case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
+    case Column::contact_force: return std::numeric_limits<double>::quiet_NaN();
     default: return std::nullopt;
   }
 }
@@ -152,8 +156,10 @@ void read_rows(hid_t root, Session& session, const fs::path& file) {
   for (const ColumnInfo& column : kColumnInfo) {
     const auto value = default_of(column.column);
     if (!value) continue;
-    const auto offset = static_cast<std::size_t>(session.layout.offset(column.column));
-    for (std::size_t k = 0; k < whole; ++k) session.rows[k * stride + offset] = *value;
+    for (std::size_t k = 0; k < whole; ++k) {
+      const auto row = std::span(session.rows).subspan(k * stride, stride);
+      std::ranges::fill(session.layout.in(row, column.column), *value);
+    }
   }
   for (std::size_t i = 0; i < sources.size(); ++i) {
     whole = std::min(whole, read_column(sources[i], session, columns[i], file));

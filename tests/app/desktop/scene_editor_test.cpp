@@ -201,7 +201,7 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
     MeshObstacle gear = mesh("gear");
     gear.pose = pose();
     gear.scale = number(1);
-    gear.stiffness = number(600);
+    gear.material.stiffness = number(600);
     editor.set({ObjectKind::mesh, 0}, gear, "");
     editor.set_tip_radius(number(0.01));
 

@@ -27,7 +27,7 @@ TEST(LoadModel, GivesItsPictureAndItsShape) {
   EXPECT_EQ(loaded.mesh.name, "table");
   EXPECT_EQ(loaded.mesh.path, fs::absolute(table()).lexically_normal().string());
   EXPECT_EQ(loaded.mesh.file, loaded.mesh.path);
-  EXPECT_EQ(loaded.mesh.stiffness, 600);
+  EXPECT_EQ(loaded.mesh.material.stiffness, 600);
   EXPECT_GT(loaded.mesh.shape->triangles(), 0u);
   EXPECT_LE(loaded.mesh.shape->triangles(), loaded.model->indices.size() / 3);
 }

@@ -325,7 +325,7 @@ TEST_F(AWorkbench, OffersToPlayWhatItHasRecovered) {
 }
 
 TEST_F(AWorkbench, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
-  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
+  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   ASSERT_TRUE(bench->editor.dirty());
   plug_in(3);
   EXPECT_TRUE(has("mine"));
@@ -338,7 +338,7 @@ TEST_F(AWorkbench, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
 
 TEST_F(AWorkbench, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
   const std::string file = bench->scene_file;
-  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
+  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   plug_in(2);
   EXPECT_FALSE(has("mine"));
   EXPECT_NE(bench->scene_file, file);
@@ -353,7 +353,7 @@ TEST_F(AWorkbench, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
 // Only what the user had open is put aside, not what a device brought.
 TEST_F(AWorkbench, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   const std::string file = bench->scene_file;
-  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
+  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   plug_in(2);
   plug_in(3);
   bench->close_device();
@@ -364,9 +364,9 @@ TEST_F(AWorkbench, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
 
 TEST_F(AWorkbench, KeepsASceneWhoseFileHasVanished) {
   const fs::path file = dir / "scene.toml";
-  bench->add_object(Sphere{.name = "saved", .radius = 0.01, .stiffness = 500});
+  bench->add_object(Sphere{.name = "saved", .radius = 0.01, .material = {500}});
   ASSERT_TRUE(bench->save_scene_as(file));
-  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .stiffness = 500});
+  bench->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   fs::remove(file);
   plug_in(3);
   bench->close_device();

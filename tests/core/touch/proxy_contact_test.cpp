@@ -139,7 +139,7 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
       pushing += contact.force > 0 ? 1 : 0;
       // At the midpoint, the depth there.
       const double middle = contact.depth + contact.gradient.dot(dx) / 2;
-      ASSERT_NEAR(contact.force, contact.force > 0 ? contact.stiffness * middle : 0, 1e-8);
+      ASSERT_NEAR(contact.force, contact.force > 0 ? contact.material.stiffness * middle : 0, 1e-8);
     }
     ASSERT_LT((f2 - proxy.f()).norm(), 1e-12 * (1 + f2.norm()));
     // What the drive gives, share of the contacts included.

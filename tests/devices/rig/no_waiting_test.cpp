@@ -145,7 +145,6 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   crowded.start(Parameters{}, start);
 
   std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
-  std::array<ContactForce, 16> contacts;
   TraceRing ring(1 << 10, row.size());
   TripleBuffer<std::array<double, kMaxStride>> snapshots;
   MouseHand hand;
@@ -168,7 +167,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       const HandInput input =
           hand.step(k % 500 < 400, goal, crowded.tip(), p.hand_stiffness, p.tick);
       crowded.step(p, {input, wisher.at(k % 600 < 500)}, row);
-      touched += crowded.contacts(contacts);
+      touched +=
+          std::ranges::count(rig.layout().in(std::span(row), Column::contact_force), 0.0) < 12;
       ring.push(row);
       std::copy(row.begin(), row.end(), snapshots.back().begin());
       snapshots.publish();

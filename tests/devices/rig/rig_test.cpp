@@ -158,24 +158,55 @@ TEST_P(RigOfJoints, WritesWhatTheHandDid) {
   }
 }
 
-TEST(Rig, ListsTheContactsThatPush) {
+TEST(Rig, RecordsTheContactsThatPush) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, test::omni_scene("table.toml"));
   const Vec3 home(0.19, 0, 0);
   rig.start(Parameters{}, rest_at(arm, home));
   Rows rows(rig.layout());
-  std::array<ContactForce, 4> contacts;
   rig.step(Parameters{}, {{home, 1}}, rows.add());
-  EXPECT_EQ(rig.contacts(contacts), 0u);
+  EXPECT_EQ(rows.vec(0, Column::contact_force), Eigen::VectorXd::Zero(12));
+  EXPECT_EQ(rows.vec(0, Column::contact_point), Eigen::VectorXd::Zero(12));
   for (int k = 0; k < 3000; ++k) {
     const Vec3 target = home - Vec3(0, 0, std::min(0.045, 3e-5 * k));
     rig.step(Parameters{}, {{target, 1}}, rows.add());
   }
-  ASSERT_EQ(rig.contacts(contacts), 1u);
-  EXPECT_GT(contacts[0].force.z(), 0.3);
-  EXPECT_LT(contacts[0].force.head<2>().norm(), 1e-12);
-  EXPECT_NEAR(contacts[0].point.z(), -0.04 - contacts[0].force.z() / 600, 1e-5);
-  EXPECT_EQ(rig.contacts(std::span(contacts).first(0)), 0u);
+  const auto touches = rows.touches(rows.size() - 1);
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_GT(touches[0].force.z(), 0.3);
+  EXPECT_LT(touches[0].force.head<2>().norm(), 1e-12);
+  EXPECT_NEAR(touches[0].point.z(), -0.04 - touches[0].force.z() / 600, 1e-5);
+}
+
+// What the contacts do at their points is what they do at the joints: a plane at the tip, a ball at
+// the middle of the last link.
+TEST(Rig, RecordsContactForcesThatMakeTheContactTorque) {
+  const ArmDescription description = test::omni();
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames f;
+  arm.frames(rest_pose(description), f);
+  const Vec3 home = arm.tip(f), middle = 0.5 * (f.p[2] + home);
+  Scene scene = things(description);
+  scene.joint_contacts.clear();
+  scene.spheres = {{"", middle + Vec3(0, 0.024, 0), 0.02, 500}};
+  scene.probes.push_back({"link", 2, Vec3::Zero(), description.tip.translation(), 0.005});
+  Rig rig(description, scene);
+  rig.start(Script::parameters(0), rest_at(description, home));
+  const Rows rows = run(rig, Script(home), 0, 2000);
+  int at_tip = 0, on_link = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    arm.frames(rows.vec(k, Column::proxy_position), f);
+    Eigen::VectorXd torque = Eigen::VectorXd::Zero(3);
+    for (const Rows::Touch& touch : rows.touches(k)) {
+      Jacobian<kAnyDof> J;
+      arm.point_jacobian(f, 2, touch.point, J);
+      torque += J.transpose() * touch.force;
+      ++((touch.point - arm.tip(f)).norm() < 1e-9 ? at_tip : on_link);
+    }
+    ASSERT_LT((torque - rows.vec(k, Column::contact_torque)).norm(), 1e-12) << k;
+  }
+  EXPECT_GT(at_tip, 100);
+  EXPECT_GT(on_link, 100);
 }
 
 TEST(RestAt, RefusesWhatIsOutOfReach) {

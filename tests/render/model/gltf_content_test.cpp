@@ -115,7 +115,7 @@ TEST(GltfContent, MultipliesVertexColoursOfEveryKindWithTheMaterial) {
     const Model model = parse_gltf(file.binary(), "part.glb");
     EXPECT_TRUE(model.vertices[1].color.isApprox(Eigen::Vector3f(0.5f, 0, 0.2f), 1e-5f));
     EXPECT_NEAR(model.vertices[1].opacity, bytes ? 0.1 : 0.5, 1e-6);
-    EXPECT_EQ(model.parts[0].material.alpha, Material::Alpha::blend);
+    EXPECT_EQ(model.parts[0].material.alpha, Finish::Alpha::blend);
   }
 }
 
@@ -140,9 +140,9 @@ TEST(GltfContent, ReadsAMaterialWithItsTextures) {
   const Model model = parse_gltf(file.binary(), "part.glb");
   EXPECT_TRUE(model.warnings.empty());
   ASSERT_EQ(model.parts.size(), 1u);
-  const Material& m = model.parts[0].material;
+  const Finish& m = model.parts[0].material;
   EXPECT_TRUE(m.two_sided);
-  EXPECT_EQ(m.alpha, Material::Alpha::mask);
+  EXPECT_EQ(m.alpha, Finish::Alpha::mask);
   EXPECT_FLOAT_EQ(m.cutoff, 0.25f);
   EXPECT_FLOAT_EQ(m.glow[2], 0.3f);
   EXPECT_FLOAT_EQ(m.bump, 2);

@@ -127,6 +127,27 @@ TEST(Scene, RefusesWithFileLineKeyFoundAndAllowed) {
   }
 }
 
+TEST(Scene, GivesAllThatHasASurfaceAMaterialOfTheSameKeys) {
+  const std::string objects[] = {"[[plane]]\nname = \"a\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n",
+                                 "[[sphere]]\nname = \"a\"\ncenter = [0, 0, 0]\nradius = 1\n",
+                                 "[[box]]\nname = \"a\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\n"};
+  for (const std::string& object : objects) {
+    const Scene scene = parse(object + "stiffness = 1e6\n");
+    for (const auto& plane : scene.planes) EXPECT_EQ(plane.material.stiffness, 1e6);
+    for (const auto& sphere : scene.spheres) EXPECT_EQ(sphere.material.stiffness, 1e6);
+    for (const auto& box : scene.boxes) EXPECT_EQ(box.material.stiffness, 1e6);
+    EXPECT_THAT(refusal([&] { parse(object); }), HasSubstr(".stiffness: missing")) << object;
+    for (const char* wrong : {"0", "1.1e6", "nan", "true"}) {
+      EXPECT_THAT(refusal([&] { parse(object + "stiffness = " + wrong + "\n"); }),
+                  HasSubstr(".stiffness"))
+          << object << wrong;
+    }
+    EXPECT_THAT(refusal([&] { parse(object + "stiffness = 1\nhardness = 1\n"); }),
+                HasSubstr(", stiffness"))
+        << object;
+  }
+}
+
 TEST(Scene, HoldsAtMost64ContactsAnd63ProbesBesidesTheTip) {
   const auto spheres = [](int count) {
     std::string text;

@@ -28,28 +28,28 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.planes[i].name, b.planes[i].name);
     EXPECT_EQ(a.planes[i].point, b.planes[i].point);
     EXPECT_EQ(a.planes[i].normal, b.planes[i].normal);
-    EXPECT_EQ(a.planes[i].stiffness, b.planes[i].stiffness);
+    EXPECT_EQ(a.planes[i].material.stiffness, b.planes[i].material.stiffness);
   }
   ASSERT_EQ(a.spheres.size(), b.spheres.size());
   for (std::size_t i = 0; i < a.spheres.size(); ++i) {
     EXPECT_EQ(a.spheres[i].name, b.spheres[i].name);
     EXPECT_EQ(a.spheres[i].center, b.spheres[i].center);
     EXPECT_EQ(a.spheres[i].radius, b.spheres[i].radius);
-    EXPECT_EQ(a.spheres[i].stiffness, b.spheres[i].stiffness);
+    EXPECT_EQ(a.spheres[i].material.stiffness, b.spheres[i].material.stiffness);
   }
   ASSERT_EQ(a.boxes.size(), b.boxes.size());
   for (std::size_t i = 0; i < a.boxes.size(); ++i) {
     EXPECT_EQ(a.boxes[i].name, b.boxes[i].name);
     expect_same(a.boxes[i].pose, b.boxes[i].pose);
     EXPECT_EQ(a.boxes[i].size, b.boxes[i].size);
-    EXPECT_EQ(a.boxes[i].stiffness, b.boxes[i].stiffness);
+    EXPECT_EQ(a.boxes[i].material.stiffness, b.boxes[i].material.stiffness);
   }
   ASSERT_EQ(a.meshes.size(), b.meshes.size());
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     EXPECT_EQ(a.meshes[i].name, b.meshes[i].name);
     expect_same(a.meshes[i].pose, b.meshes[i].pose);
     EXPECT_EQ(a.meshes[i].scale, b.meshes[i].scale);
-    EXPECT_EQ(a.meshes[i].stiffness, b.meshes[i].stiffness);
+    EXPECT_EQ(a.meshes[i].material.stiffness, b.meshes[i].material.stiffness);
     EXPECT_EQ(*a.meshes[i].source, *b.meshes[i].source);
   }
   ASSERT_EQ(a.joint_contacts.size(), b.joint_contacts.size());
@@ -123,7 +123,7 @@ Scene random_scene(const ArmDescription& arm, unsigned seed, SceneFiles& files) 
     mesh.file = "models/" + std::to_string(i) + " \"of\" \xCE\xB7.glb";
     mesh.pose = random_pose(random);
     mesh.scale = random.between(1e-3, 5);
-    mesh.stiffness = stiffness();
+    mesh.material.stiffness = stiffness();
     mesh.source = files[mesh.file] = bytes("model " + std::to_string(i));
     scene.meshes.push_back(mesh);
   }

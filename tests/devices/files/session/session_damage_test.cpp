@@ -300,8 +300,8 @@ TEST(ForeignSession, NeedNotHaveWhatTheContractDoesNotAskFor) {
   test::write_sample(dir / "a.h5", 50);
   {
     Vandal vandal(dir / "a.h5");
-    for (const char* path :
-         {"/hand/grip", "/device/force_wanted", "/energy/contact_potential", "/events"}) {
+    for (const char* path : {"/hand/grip", "/device/force_wanted", "/energy/contact_potential",
+                             "/events", "/contact"}) {
       vandal.remove(path);
     }
   }
@@ -312,6 +312,11 @@ TEST(ForeignSession, NeedNotHaveWhatTheContractDoesNotAskFor) {
     EXPECT_EQ(session.at(k, Column::hand_grip)[0], 1);
     EXPECT_EQ(session.at(k, Column::force_wanted)[0], 1);
     EXPECT_EQ(session.at(k, Column::contact_potential)[0], 0);
+    // Where it was touched, or that it was not, is not known.
+    for (const Column c : {Column::contact_point, Column::contact_force}) {
+      ASSERT_EQ(session.at(k, c).size(), 12u);
+      EXPECT_TRUE(std::ranges::all_of(session.at(k, c), [](double x) { return std::isnan(x); }));
+    }
   }
 }
 

@@ -339,8 +339,8 @@ TEST(FullDisk, IsAnErrorAndKeepsWhatWasFlushed) {
     const test::TempDir dir;
     EXPECT_EQ(exit_status_with_limit(bytes, &record_until_it_fails, dir / "a.h5"), 0) << bytes;
     const auto left = read_session(dir / "a.h5.part");
-    // A row of three joints takes at most 51 numbers.
-    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (51 * 8)) << bytes;
+    // A row of three joints takes at most 75 numbers.
+    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (75 * 8)) << bytes;
     expect_sample(left);
     EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, left.size());
   }

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,6 +13,7 @@
 
 #include "devices/files/hand/hand_file.h"
 #include "devices/files/session/session_check.h"
+#include "devices/files/session/session_csv.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 
@@ -95,6 +97,48 @@ TEST(Session, KeepsTheSumsOfItsColumns) {
         0.001 * static_cast<double>(k);
   }
   EXPECT_EQ(column_sum(layout, rows, Column::time), 0x9f0d'5535'0614'3067u);
+}
+
+// 16 seconds of three joints, pushed at one point for 11 ticks from `from` on.
+std::vector<double> touched_briefly(std::size_t from) {
+  const RowLayout layout(3);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  std::vector<double> rows = sample_rows(layout, 0, 16000);
+  for (std::size_t k = 0; k < 16000; ++k) {
+    const auto row = std::span(rows).subspan(k * stride, stride);
+    for (const Column c : {Column::contact_point, Column::contact_force}) {
+      const auto values = layout.in(row, c);
+      std::ranges::fill(values, 0.0);
+      if (k >= from && k < from + 11) std::ranges::fill(values.first(3), 0.25);
+    }
+  }
+  return rows;
+}
+
+std::uintmax_t size_recorded(const fs::path& out, const std::vector<double>& rows) {
+  SessionWriter writer(out, sample_info(), false);
+  writer.append(rows);
+  writer.close();
+  EXPECT_TRUE(same_bits(read_session(out).rows, rows));
+  return fs::file_size(out);
+}
+
+// A row without contacts takes at most 51 numbers, its contacts 24, for eight seconds at a time.
+TEST(Session, HasRoomForContactsOnlyAboutWhenSomethingTouches) {
+  const test::TempDir dir;
+  const auto never = size_recorded(dir / "never.h5", touched_briefly(16000));
+  EXPECT_LT(never, 16000u * 51 * 8 + 400'000);
+  const auto late = size_recorded(dir / "late.h5", touched_briefly(15000));
+  EXPECT_LT(late, never + 8000 * 24 * 8 + 100'000);
+}
+
+TEST(Session, NamesEachNumberOfItsContactsInATable) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  write_csv(read_session(dir / "a.h5"), dir / "a.csv", false);
+  const std::string table = test::file_bytes(dir / "a.csv");
+  EXPECT_THAT(table.substr(0, table.find('\n')),
+              HasSubstr(",contact_point_4_y_m,contact_point_4_z_m,contact_force_1_x_N,"));
 }
 
 // The last block was full and is written already; a change comes after it.

@@ -1,0 +1,91 @@
+// What the 3D view shows of a row, live or recorded.
+#include "app/view/row_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+std::vector<ContactMark> marks(const RowView& rows, ViewMemory& memory, const RowLayout& layout,
+                               std::span<const double> row) {
+  ViewState view = rows.view(layout, row);
+  memory.update(view, rows.contacts(layout, row), layout.in(row, Column::time)[0]);
+  return view.contacts;
+}
+
+// The middle of the last link against a ball, over the table.
+RunPlan link_against_a_ball() {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 3);
+  const Arm<kAnyDof> arm(plan.arm);
+  Arm<kAnyDof>::Frames f;
+  arm.frames(rest_pose(plan.arm), f);
+  const Vec3 middle = 0.5 * (f.p[2] + arm.tip(f));
+  plan.scene.probes.push_back({"link", 2, Vec3::Zero(), plan.arm.tip.translation(), 0.005});
+  plan.scene.spheres.push_back({"", middle - Vec3(0, 0, 0.026), 0.02, 500});
+  return plan;
+}
+
+TEST(RowView, ShowsTheRecordedContactsOfALinkAsTheyWereLive) {
+  const test::TempDir dir;
+  const RunPlan plan = link_against_a_ball();
+  const RowView rows(plan.arm);
+  const RowLayout layout(plan.arm.dof());
+  ViewMemory live, played;
+  std::vector<std::vector<ContactMark>> seen;
+  Recorder recorder(dir / "a.h5", session_info(plan), plan.parameters, false);
+  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+    seen.push_back(marks(rows, live, layout, row));
+    return recorder.push_waiting(row);
+  });
+  recorder.finish();
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_EQ(session.size(), seen.size());
+  int on_link = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const auto again = marks(rows, played, session.layout, session.row(k));
+    ASSERT_EQ(again.size(), seen[k].size()) << k;
+    const Vec3 tip = rows.tip(session.at(k, Column::proxy_position));
+    for (std::size_t i = 0; i < again.size(); ++i) {
+      ASSERT_EQ(again[i].position, seen[k][i].position) << k;
+      ASSERT_EQ(again[i].force, seen[k][i].force) << k;
+      ASSERT_EQ(again[i].age, seen[k][i].age) << k;
+      if ((again[i].position - tip).norm() > 0.03) ++on_link;
+    }
+  }
+  EXPECT_GT(on_link, 100);
+}
+
+// The torque of one contact, at the tip, is as good as its point and force.
+TEST(RowView, ShowsOneForceAtTheTipWhereOnlyTheTorqueWasRecorded) {
+  const RunPlan plan = test::plan("table.toml", "touch.csv", 3);
+  const RowView view(plan.arm);
+  const test::Rows rows = test::rows_of(plan);
+  int touched = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto known = view.contacts(rows.layout(), rows.row(k));
+    if (known.empty()) continue;
+    ASSERT_EQ(known.size(), 1u);
+    ++touched;
+    std::vector<double> row(rows.row(k).begin(), rows.row(k).end());
+    for (const Column c : {Column::contact_point, Column::contact_force}) {
+      std::ranges::fill(rows.layout().in(std::span(row), c),
+                        std::numeric_limits<double>::quiet_NaN());
+    }
+    const auto guessed = view.contacts(rows.layout(), row);
+    ASSERT_EQ(guessed.size(), 1u);
+    ASSERT_LT((guessed[0].point - known[0].point).norm(), 1e-9) << k;
+    ASSERT_LT((guessed[0].force - known[0].force).norm(), 1e-4 * known[0].force.norm()) << k;
+  }
+  EXPECT_GT(touched, 100);
+}
+
+}  // namespace
+}  // namespace limpid
