@@ -1,9 +1,8 @@
-#include "app/desktop/desktop.h"
-
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/desktop/shell/run_desktop.h"
 
 namespace limpid {
 namespace {

@@ -219,7 +219,7 @@ void Plot::handle_menu(const PlotFrame& frame, const History& history, PlotGroup
     frames_until_png_ = kFramesToCloseMenu;
   } else {
     const PlotPicture picture{frame.window.start(), frame.window.stop(), y_};
-    tell(fulfil(wish, spec_, history, picture, saving.folder), events);
+    if (auto notice = fulfil(wish, spec_, history, picture, saving)) tell(*notice, events);
   }
 }
 

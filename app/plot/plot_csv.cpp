@@ -32,26 +32,39 @@ Rows rows_between(const History& history, double start, double stop) {
 
 }  // namespace
 
-std::size_t plot_csv_rows(const History& history, double start, double stop) {
+PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop) {
+  PlotTable table;
+  for (const Curve& curve : spec.curves) {
+    if (curve.visible) table.columns.push_back(fmt::format("{} [{}]", curve.label, spec.unit));
+  }
+  const Rows rows = rows_between(history, start, stop);
+  for (SampleIndex row = rows.from; row < rows.to; ++row) {
+    table.times.push_back(history.time(row) - history.offset());
+    for (const Curve& curve : spec.curves) {
+      if (!curve.visible) continue;
+      const auto value = static_cast<double>(history.value(curve.channel, row));
+      table.values.push_back(spec.factor * value);
+    }
+  }
+  return table;
+}
+
+std::size_t plot_table_rows(const History& history, double start, double stop) {
   const Rows rows = rows_between(history, start, stop);
   return static_cast<std::size_t>(rows.to - rows.from);
 }
 
-std::string plot_csv(const PlotSpec& spec, const History& history, double start, double stop) {
+std::string csv_text(const PlotTable& table) {
   std::string text = "time [s]";
-  for (const Curve& curve : spec.curves) {
-    if (curve.visible) text += "," + quoted(fmt::format("{} [{}]", curve.label, spec.unit));
-  }
+  for (const std::string& column : table.columns) text += "," + quoted(column);
   text += '\n';
   const auto out = std::back_inserter(text);
-  const Rows rows = rows_between(history, start, stop);
-  for (SampleIndex row = rows.from; row < rows.to; ++row) {
-    fmt::format_to(out, "{:.6f}", history.time(row) - history.offset());
-    for (const Curve& curve : spec.curves) {
-      if (!curve.visible) continue;
-      const double value = spec.factor * static_cast<double>(history.value(curve.channel, row));
+  auto value = table.values.begin();
+  for (const double time : table.times) {
+    fmt::format_to(out, "{:.6f}", time);
+    for (std::size_t i = 0; i < table.columns.size(); ++i, ++value) {
       text += ',';
-      if (std::isfinite(value)) fmt::format_to(out, "{:.7g}", value);
+      if (std::isfinite(*value)) fmt::format_to(out, "{:.7g}", *value);
     }
     text += '\n';
   }

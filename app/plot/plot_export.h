@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/plot/autoscale.h"
 #include "app/plot/history.h"
@@ -9,13 +10,20 @@
 
 namespace limpid {
 
-// How many rows plot_csv() would have, without its header.
-std::size_t plot_csv_rows(const History& history, double start, double stop);
+// Rows of a history, to be written whatever becomes of the history: visible curves only, in the
+// plot's unit, over start <= time <= stop, times without the history's offset.
+struct PlotTable {
+  std::vector<std::string> columns;  // "label [unit]"
+  std::vector<double> times;         // [s]
+  std::vector<double> values;        // a row after the other
+};
+PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop);
 
-// Header "time [s],label [unit],..." and a line for each row of the history with
-// start <= time <= stop, times without the history's offset; visible curves only, in the plot's
-// unit. What is not a number is left empty.
-std::string plot_csv(const PlotSpec& spec, const History& history, double start, double stop);
+// How many rows it would have.
+std::size_t plot_table_rows(const History& history, double start, double stop);
+
+// Header "time [s],label [unit],..." and a line for each row. What is not a number is left empty.
+std::string csv_text(const PlotTable& table);
 
 // A complete SVG document, `width` x `height` [px], of the visible curves over [start, stop] and
 // `y` in the channels' unit; light colours, for paper.

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 
 namespace limpid {
@@ -25,12 +26,22 @@ std::filesystem::path save_text(const std::filesystem::path& file, const std::st
 }
 
 PlotNotice copy_csv(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
-  const std::size_t rows = plot_csv_rows(history, picture.start, picture.stop);
+  const std::size_t rows = plot_table_rows(history, picture.start, picture.stop);
   if (rows > kMostRowsToCopy) {
     return {fmt::format("{} rows are too many for the clipboard; save as CSV instead", rows), true};
   }
-  ImGui::SetClipboardText(plot_csv(spec, history, picture.start, picture.stop).c_str());
+  const PlotTable table = plot_table(spec, history, picture.start, picture.stop);
+  ImGui::SetClipboardText(csv_text(table).c_str());
   return {fmt::format("Copied {} rows", rows)};
+}
+
+PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
+                   const char* extension, const std::function<std::string()>& text) {
+  try {
+    return {"Saved " + save_text(free_file(folder, name, extension), text()).string()};
+  } catch (const std::exception& e) {
+    return {e.what(), true};
+  }
 }
 
 }  // namespace
@@ -60,16 +71,22 @@ std::filesystem::path free_file(const std::filesystem::path& folder, const std::
   }
 }
 
-PlotNotice fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
-                  const PlotPicture& picture, const std::filesystem::path& folder) try {
+std::optional<PlotNotice> fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
+                                 const PlotPicture& picture, const PlotSaving& saving) {
   if (wish == PlotWish::copy_csv) return copy_csv(spec, history, picture);
-  const bool csv = wish == PlotWish::save_csv;
-  const auto file = free_file(folder, spec.file_name, csv ? "csv" : "svg");
-  save_text(file, csv ? plot_csv(spec, history, picture.start, picture.stop)
-                      : plot_svg(spec, history, picture));
-  return {"Saved " + file.string()};
-} catch (const std::exception& e) {
-  return {e.what(), true};
+  if (wish == PlotWish::save_svg) {
+    return save_as(saving.folder, spec.file_name, "svg",
+                   [&] { return plot_svg(spec, history, picture); });
+  }
+  // The history goes on meanwhile: its rows are taken along.
+  const auto save = [folder = saving.folder, name = spec.file_name,
+                     table = std::make_shared<const PlotTable>(
+                         plot_table(spec, history, picture.start, picture.stop))] {
+    return save_as(folder, name, "csv", [&] { return csv_text(*table); });
+  };
+  if (!saving.beside) return save();
+  saving.beside(save);
+  return std::nullopt;
 }
 
 }  // namespace limpid

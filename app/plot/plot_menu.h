@@ -11,6 +11,11 @@
 
 namespace limpid {
 
+struct PlotNotice {
+  std::string text;
+  bool bad = false;
+};
+
 struct PlotSaving {
   std::filesystem::path folder;  // created when missing
 
@@ -18,11 +23,10 @@ struct PlotSaving {
   // is called while the frame is built, so the pixels are to be read after it is drawn, and who
   // reads them says what became of it. Without it PNG is not offered.
   std::function<void(const ScreenRect& box, const std::filesystem::path& file)> save_png;
-};
 
-struct PlotNotice {
-  std::string text;
-  bool bad = false;
+  // Does work on a file that may take its time somewhere else, and says what became of it. Without
+  // it that is done, and said, at once.
+  std::function<void(std::function<PlotNotice()> work)> beside;
 };
 
 enum class PlotWish { none, copy_csv, save_csv, save_svg, save_png, fit };
@@ -35,9 +39,9 @@ PlotWish plot_menu_items(bool png_offered);
 std::filesystem::path free_file(const std::filesystem::path& folder, const std::string& name,
                                 const std::string& extension);
 
-// Does copy_csv, save_csv and save_svg; what there is to tell the person about it. Never throws
-// for a file that cannot be written: that is told, too.
-PlotNotice fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
-                  const PlotPicture& picture, const std::filesystem::path& folder);
+// Does copy_csv, save_csv and save_svg; what there is to tell the person about it, if it is known
+// already. Never throws for a file that cannot be written: that is told, too.
+std::optional<PlotNotice> fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
+                                 const PlotPicture& picture, const PlotSaving& saving);
 
 }  // namespace limpid

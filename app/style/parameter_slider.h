@@ -1,6 +1,7 @@
 // One parameter as a slider, a check box or a row of choices.
 #pragma once
 
+#include "app/style/number_slider.h"
 #include "core/tick/parameters.h"
 
 namespace limpid {
@@ -16,10 +17,5 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
 // The same for a number that is no parameter, described as if it were one of type double; `usual`
 // is marked and gone back to. Without a tooltip.
 bool value_slider(const ParameterInfo& info, double& value, double usual);
-
-// Where a value lies on the slider of `info`, 0 to 1, and back; beyond the ends it is held there.
-// A logarithmic slider whose range begins at zero begins at a millionth of its end.
-double slider_place(const ParameterInfo& info, double value);
-double slider_value(const ParameterInfo& info, double place);
 
 }  // namespace limpid

@@ -152,12 +152,38 @@ TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
   std::filesystem::remove_all(folder);
   const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
   const History history = seconds_of_data(1);
-  const PlotNotice good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, folder);
-  EXPECT_FALSE(good.bad);
+  const auto good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, {.folder = folder});
+  ASSERT_TRUE(good);
+  EXPECT_FALSE(good->bad);
   EXPECT_TRUE(std::filesystem::exists(folder / "energy-001.csv"));
-  EXPECT_NE(good.text.find("energy-001.csv"), std::string::npos);
-  const PlotNotice bad = fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, "/dev/null/x");
-  EXPECT_TRUE(bad.bad);
+  EXPECT_NE(good->text.find("energy-001.csv"), std::string::npos);
+  const auto bad =
+      fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, {.folder = "/dev/null/x"});
+  ASSERT_TRUE(bad);
+  EXPECT_TRUE(bad->bad);
+}
+
+// As the window does: it asks for another place to work, and the history does not wait.
+TEST(PlotMenu, WritesATableElsewhereAsItWasWhenAskedFor) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-beside";
+  std::filesystem::remove_all(folder);
+  const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
+  std::function<PlotNotice()> work;
+  const PlotSaving saving{.folder = folder,
+                          .beside = [&](std::function<PlotNotice()> w) { work = std::move(w); }};
+  {
+    History history({.channels = 1, .seconds = 1});
+    history.append(0, std::array{0.25});
+    history.append(0.001, std::array{0.5});
+    EXPECT_FALSE(fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, saving));
+    history.append(0.002, std::array{0.75});
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "nothing is written before";
+  ASSERT_TRUE(work);
+  EXPECT_FALSE(work().bad);
+  std::ifstream file(folder / "energy-001.csv");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}),
+            "time [s],E [J]\n0.000000,0.25\n0.001000,0.5\n");
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ void expect_well_formed(const std::string& xml) {
 }
 
 TEST(PlotCsv, HasAHeaderWithUnitsAndOneLineForEachRow) {
-  const auto all = lines(plot_csv(spec(), two_channels(), 1.0, 1.002));
+  const auto all = lines(csv_text(plot_table(spec(), two_channels(), 1.0, 1.002)));
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all[0], "time [s],joint 1 [mrad],\"joint 2, \"\"other\"\" [mrad]\"");
   EXPECT_EQ(all[1], "1.000000,1000,-2000");
@@ -73,14 +73,14 @@ TEST(PlotCsv, HasAHeaderWithUnitsAndOneLineForEachRow) {
 }
 
 TEST(PlotCsv, LeavesMissingValuesEmpty) {
-  const auto all = lines(plot_csv(spec(), two_channels(), 0, 0.002));
+  const auto all = lines(csv_text(plot_table(spec(), two_channels(), 0, 0.002)));
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all[2], "0.001000,1,");
 }
 
 TEST(PlotCsv, KnowsItsLengthBeforehand) {
-  EXPECT_EQ(plot_csv_rows(two_channels(), 0.5, 1.5), 1001u);
-  EXPECT_EQ(plot_csv_rows(two_channels(), 100, 200), 0u);
+  EXPECT_EQ(plot_table_rows(two_channels(), 0.5, 1.5), 1001u);
+  EXPECT_EQ(plot_table_rows(two_channels(), 100, 200), 0u);
 }
 
 TEST(PlotSvg, IsWellFormedWhateverTheLabelsSay) {

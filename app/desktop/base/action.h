@@ -1,0 +1,61 @@
+// What keys, menus and buttons ask for.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace limpid {
+
+enum class Action : std::uint8_t {
+  none,
+  escape,  // force off, and what is open first is closed
+  cut_force,
+  save_and_leave,
+  discard_and_leave,
+  front_view,
+  side_view,
+  top_view,
+  reset_camera,
+  toggle_coupling,
+  smaller_eta,
+  larger_eta,
+  toggle_force,
+  start_over,
+  back_to_live,
+  toggle_recording,
+  toggle_playing,
+  tick_back,
+  tick_on,
+  step_back,
+  step_on,
+  to_the_beginning,
+  toggle_loop,
+  rerun,
+  freeze_plots,
+  toggle_ghost,
+  toggle_help,
+  toggle_left,
+  toggle_right,
+  toggle_plots,
+  toggle_experiments,
+  full_screen,
+  save_picture,
+  open_session,
+  undo,
+  redo,
+  quit,
+  gallery,
+  add_model,
+  save_scene,
+  save_scene_as,
+  select_next,
+  select_previous,
+  remove_selected,
+  duplicate_selected,
+  frame_selected,
+};
+
+// Has it carried out.
+using Act = std::function<void(Action)>;
+
+}  // namespace limpid

@@ -1,0 +1,69 @@
+#include "app/desktop/base/stage.h"
+
+#include <algorithm>
+
+#include "app/base/assets.h"
+#include "app/view/mesh_pictures.h"
+
+namespace limpid {
+namespace {
+
+// Everything SceneView::set_scene() looks at, which reads files and builds shapes.
+bool same_items(const Scene& a, const Scene& b) {
+  const auto same = [](const auto& x, const auto& y, const auto& equal) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
+  };
+  return same(a.planes, b.planes,
+              [](const Plane& p, const Plane& q) {
+                return p.point == q.point && p.normal == q.normal;
+              }) &&
+         same(a.spheres, b.spheres,
+              [](const Sphere& p, const Sphere& q) {
+                return p.center == q.center && p.radius == q.radius;
+              }) &&
+         same(a.boxes, b.boxes,
+              [](const Box& p, const Box& q) {
+                return p.pose.matrix() == q.pose.matrix() && p.size == q.size;
+              }) &&
+         same(a.joint_contacts, b.joint_contacts,
+              [](const JointContact& p, const JointContact& q) {
+                return p.joint == q.joint && p.angle == q.angle && p.direction == q.direction;
+              }) &&
+         same(a.visuals, b.visuals,
+              [](const SceneVisual& p, const SceneVisual& q) { return p.file == q.file; });
+}
+
+}  // namespace
+
+Stage::Stage(ArmDescription arm, Scene scene, MeshModels models, History past, double shown)
+    : picture(data_dir() / "shaders", arm, scene),
+      history(std::move(past)),
+      group(shown),
+      arm_(std::move(arm)),
+      scene_(std::move(scene)),
+      rows_(arm_),
+      channels_(RowLayout(arm_.dof())) {
+  for (PlotSpec& spec : channels_.plots(history.channels() > channels_.count())) {
+    plots.emplace_back(std::move(spec));
+  }
+  show_meshes(models, std::nullopt);
+}
+
+void Stage::show(const Scene& scene, const MeshModels& models,
+                 std::optional<std::size_t> highlighted) {
+  if (!same_items(scene_, scene)) picture.set_scene(scene);
+  scene_ = scene;
+  show_meshes(models, highlighted);
+}
+
+void Stage::show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted) {
+  picture.set_meshes(mesh_pictures(scene_, models, highlighted));
+}
+
+void Stage::draw_at(int quality) {
+  if (quality == quality_) return;
+  quality_ = quality;
+  picture.set_quality(Quality::level(quality));
+}
+
+}  // namespace limpid

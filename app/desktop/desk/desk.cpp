@@ -1,0 +1,203 @@
+#include "app/desktop/desk/desk.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "app/device/device_book.h"
+#include "app/run/replay.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kDrainRows = 512;
+
+// Where a new loop rests: the tip as at the middle of the arm's limits.
+Vec3 home(const ArmDescription& arm) {
+  const Eigen::VectorXd x = rest_pose(arm);
+  return RowView(arm).tip({x.data(), static_cast<std::size_t>(x.size())});
+}
+
+}  // namespace
+
+Desk::~Desk() {
+  loop_.close();
+  try {
+    if (opening_.valid()) {  // it never began
+      const std::unique_ptr<Recorder> empty = opening_.get();
+      empty->finish();
+      fs::remove(empty->out());
+    }
+    loop_.finish_recording();
+    if (closing_.valid()) closing_.get();
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "limpid: {}\n", e.what());
+  }
+  for (std::future<PlotNotice>& saving : saving_) {
+    if (const PlotNotice notice = saving.get(); notice.bad) {
+      fmt::print(stderr, "limpid: {}\n", notice.text);
+    }
+  }
+}
+
+void Desk::open(ArmDescription arm, Scene scene, const MeshModels& models, const Parameters& p,
+                double shown, std::unique_ptr<Device> device) {
+  auto fresh = make_stage(std::move(arm), std::move(scene), models, p, shown);
+  const Vec3 rest = home(fresh->arm());
+  if (device) {
+    loop_.open(fresh->arm(), fresh->scene(), p, std::move(device));
+  } else {
+    loop_.open(fresh->arm(), fresh->scene(), p, rest);
+  }
+  controls_.grab = false;
+  controls_.goal = rest;
+  take_stage(std::move(fresh));
+}
+
+void Desk::open_beside(Scene scene, const MeshModels& models, const Parameters& p, double shown) {
+  auto fresh = make_stage(stage_->arm(), std::move(scene), models, p, shown);
+  touch(fresh->scene());
+  take_stage(std::move(fresh));
+}
+
+void Desk::touch(const Scene& scene) {
+  loop_.exchange(std::make_unique<TouchWorld>(stage_->arm(), scene));
+}
+
+std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, Scene scene, const MeshModels& models,
+                                        const Parameters& p, double shown) const {
+  const int channels = TraceChannels(RowLayout(arm.dof())).count();
+  return std::make_unique<Stage>(std::move(arm), std::move(scene), models,
+                                 History({.channels = channels, .tick = p.tick}), shown);
+}
+
+void Desk::take_stage(std::unique_ptr<Stage> fresh) {
+  stage_ = std::move(fresh);
+  rows_.assign(kDrainRows * static_cast<std::size_t>(loop_.layout().stride()), 0.0);
+}
+
+void Desk::drop_pictures() {
+  loop_.close();
+  stage_.reset();
+}
+
+std::span<const double> Desk::row() const {
+  return std::span(loop_.snapshot().row).first(static_cast<std::size_t>(loop_.layout().stride()));
+}
+
+bool Desk::force_armed() const {
+  const Arming now = loop_.snapshot().arming;
+  return now != Arming::off && now != Arming::tripped;
+}
+
+void Desk::start_over() {
+  if (recording()) {
+    notices_.say("Stop the recording before starting over.", true);
+    return;
+  }
+  controls_.grab = false;
+  ++controls_.resets;
+  const bool off = loop_.device_in_place() || !force_armed();
+  notices_.say(off ? "Started over, at rest and without force; F arms it."
+                   : "Started over, at rest.");
+}
+
+void Desk::let_go(std::unique_ptr<Device> device) {
+  device_errands_.run(
+      [done = std::shared_ptr<Device>(std::move(device))]() mutable { done.reset(); });
+}
+
+void Desk::update(const Parameters& p) {
+  controls_.parameters = p;
+  loop_.set(controls_);
+  loop_.update();
+  follow_recording();
+  follow_saving();
+  take_rows();
+  watch_loop();
+}
+
+void Desk::mark(const std::string& label, const std::string& key) {
+  stage_->history.mark(stage_->channels().layout().in(row(), Column::time)[0], label, key);
+}
+
+void Desk::take_rows() {
+  const auto stride = static_cast<std::size_t>(loop_.layout().stride());
+  while (const std::size_t count = loop_.drain(rows_)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      stage_->append(std::span<const double>(rows_).subspan(i * stride, stride));
+    }
+  }
+}
+
+void Desk::watch_loop() {
+  const LoopStatus loop = loop_.status();
+  if (was_running_ && !loop.running) {
+    notices_.say(
+        fmt::format("The loop has stopped, without force: {}. Start Limpid again.", loop.failure),
+        true);
+  }
+  was_running_ = loop.running;
+}
+
+bool Desk::became_unstable() {
+  const bool diverged = loop_.snapshot().diverged;
+  return !std::exchange(was_diverged_, diverged) && diverged;
+}
+
+bool Desk::may_record() {
+  if (opening_.valid()) return false;
+  if (closing_.valid()) notices_.say("The last recording is still being closed.");
+  return !closing_.valid();
+}
+
+void Desk::record(const RunPlan& plan, const fs::path& folder) {
+  const std::string name =
+      fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+  SessionInfo about = session_info(plan);
+  if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
+  opening_ =
+      file_errands_.run([file = folder / name, info = std::move(about), initial = plan.parameters] {
+        return std::make_unique<Recorder>(file, info, initial, false);
+      });
+}
+
+void Desk::follow_recording() {
+  try {
+    if (auto recorder = take_ready(opening_)) {
+      loop_.record(std::move(*recorder));
+      mark("recording", "rec");
+    }
+    if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
+    if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
+      recorded_ = done->out();
+      closing_ = file_errands_.run([done] {
+        done->finish();
+        const std::uint64_t dropped = done->dropped();
+        const std::string missing = dropped > 0 ? fmt::format(", {} ticks missing", dropped) : "";
+        return Notice{
+            fmt::format("Recorded {}{}. Play it with P.", done->out().filename().string(), missing),
+            dropped > 0};
+      });
+    }
+    if (auto notice = take_ready(closing_)) notices_.say(notice->text, notice->bad);
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
+void Desk::save_beside(std::function<PlotNotice()> work) {
+  saving_.push_back(file_errands_.run(std::move(work)));
+}
+
+void Desk::follow_saving() {
+  for (std::future<PlotNotice>& saving : saving_) {
+    if (auto notice = take_ready(saving)) notices_.say(notice->text, notice->bad);
+  }
+  std::erase_if(saving_, [](const std::future<PlotNotice>& saving) { return !saving.valid(); });
+}
+
+}  // namespace limpid

@@ -1,0 +1,99 @@
+// The running loop and what hangs on it: its controls, force, plots and recording.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/base/stage.h"
+#include "app/live/live_loop.h"
+#include "app/plot/plot_menu.h"
+#include "app/run/simulate.h"
+#include "app/session/errands.h"
+
+namespace limpid {
+
+class Desk {
+ public:
+  Desk(Notices& notices, AskForPriority ask)
+      : notices_(notices), loop_(std::move(ask), [this](std::unique_ptr<Device> device) {
+          let_go(std::move(device));
+        }) {}
+  ~Desk();  // what is recorded is complete before the program ends
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  // Another world and its loop, with a real device or the virtual arm. `shown` as Stage's. Errors:
+  // as Stage and LiveLoop::open(); what there was before goes on then.
+  void open(ArmDescription arm, Scene scene, const MeshModels& models, const Parameters& p,
+            double shown, std::unique_ptr<Device> device);
+  // The same arm, and the loop that runs, in another scene.
+  void open_beside(Scene scene, const MeshModels& models, const Parameters& p, double shown);
+  // Another state of the scene, for the loop.
+  void touch(const Scene& scene);
+
+  LiveLoop& loop() { return loop_; }
+  const LiveLoop& loop() const { return loop_; }
+  Controls& controls() { return controls_; }
+  Stage& stage() { return *stage_; }
+  const Stage& stage() const { return *stage_; }
+  std::span<const double> row() const;  // the newest
+
+  // Whether force is on, or will be as soon as nothing keeps it off.
+  bool force_armed() const;
+  void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
+  // At rest in the middle; a recording has to end first, and says so.
+  void start_over();
+
+  // From when it was asked for: what is recorded has to stay as it is.
+  bool recording() const { return loop_.recording() || opening_.valid(); }
+  // False while the last one is still being opened or closed.
+  bool may_record();
+  // In a new file of the folder.
+  void record(const RunPlan& plan, const std::filesystem::path& folder);
+  void stop_recording() { loop_.stop_recording(); }
+  // The file of the recording that has just ended, once.
+  std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
+
+  // Work on devices, which may hang; of their own, so that files never wait for it.
+  Errands& device_errands() { return device_errands_; }
+  // Closes a device beside the window.
+  void let_go(std::unique_ptr<Device> device);
+  // Writes something beside the window, and says what became of it.
+  void save_beside(std::function<PlotNotice()> work);
+
+  // Once a frame: the controls with these parameters to the loop, and its rows to the plots.
+  void update(const Parameters& p);
+  // True once the loop has become unstable, once.
+  bool became_unstable();
+  // Marks in the plots that something has changed.
+  void mark(const std::string& label, const std::string& key);
+  // Before the OpenGL context goes.
+  void drop_pictures();
+
+ private:
+  std::unique_ptr<Stage> make_stage(ArmDescription arm, Scene scene, const MeshModels& models,
+                                    const Parameters& p, double shown) const;
+  void take_stage(std::unique_ptr<Stage> fresh);
+  void follow_recording();
+  void follow_saving();
+  void take_rows();
+  void watch_loop();
+
+  Notices& notices_;
+  Controls controls_;
+  Errands device_errands_, file_errands_;
+  LiveLoop loop_;
+  std::unique_ptr<Stage> stage_;
+  std::vector<double> rows_;
+  bool was_diverged_ = false, was_running_ = false;
+  std::future<std::unique_ptr<Recorder>> opening_;
+  std::future<Notice> closing_;
+  std::vector<std::future<PlotNotice>> saving_;
+  std::optional<std::filesystem::path> recorded_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,158 @@
+#include "app/desktop/desk/device_desk.h"
+
+#include <fmt/format.h>
+
+namespace limpid {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLook{1000};   // between two looks at what is plugged in
+constexpr milliseconds kRetry{3000};  // after a device could not be opened
+constexpr milliseconds kSettle{500};  // until the loop shows whether a new device answers
+
+}  // namespace
+
+void DeviceDesk::update() {
+  look();
+  take_connected();
+  follow_check();
+  if (desk_.loop().device_in_place()) desk_.controls().limits = hub_.notes(hub_.in_use()).limits;
+  if (desk_.loop().device_plugged()) return watch();
+  if (hub_.in_use().empty() || connecting_.valid() || check_.valid() || Clock::now() < retry_at_) {
+    return;
+  }
+  const FoundDevice* found = hub_.present();
+  if (found == nullptr) {
+    problem_ = "not connected";
+  } else if (!found->missing.empty()) {
+    problem_ = found->missing;
+  } else if (hub_.needs_check()) {
+    if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
+  } else if (must_wait()) {
+    problem_ = "waits for the end of the recording";
+  } else {
+    connect();
+  }
+}
+
+bool DeviceDesk::must_wait() const {
+  const FoundDevice* found = hub_.present();
+  return desk_.recording() && !desk_.loop().device_in_place() && found != nullptr &&
+         !found->kind->leads_hand;
+}
+
+void DeviceDesk::look() {
+  if (auto found = take_ready(looking_)) hub_.take(std::move(*found));
+  if (looking_.valid() || Clock::now() < look_at_) return;
+  looking_ = desk_.device_errands().run([] { return DeviceHub::look(); });
+  look_at_ = Clock::now() + kLook;
+}
+
+void DeviceDesk::watch() {
+  const Snapshot& snapshot = desk_.loop().snapshot();
+  if (Clock::now() < plugged_at_ + kSettle) return;
+  const Arming before = std::exchange(arming_, snapshot.arming);
+  if (desk_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
+    notices_.say(fmt::format("Force is off: {}. F arms it again.", explain(snapshot.force_state)),
+                 true);
+  }
+  if (!snapshot.connected) {
+    problem_ = "not connected";
+    notices_.say("The device is gone. It is taken up again when it comes back, without force.",
+                 true);
+    desk_.loop().plug(nullptr);
+    return;
+  }
+  const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
+  if ((pressed & 1) != 0) requests_.toggle_coupling();
+  if ((pressed & 2) != 0) desk_.toggle_force();
+}
+
+void DeviceDesk::connect() {
+  problem_ = "connecting";
+  connecting_id_ = hub_.in_use();
+  connecting_ = desk_.device_errands().run(hub_.opening());
+}
+
+void DeviceDesk::take_connected() {
+  try {
+    auto ready = take_ready(connecting_);
+    if (!ready) return;
+    if (connecting_id_ != hub_.in_use() || must_wait()) {  // meanwhile it is not wanted
+      return desk_.let_go(std::move(*ready));
+    }
+    const DeviceTraits traits = (*ready)->traits();
+    requests_.open(std::move(*ready));
+    problem_.clear();
+    notices_.say(
+        traits.pushes
+            ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
+                          traits.name)
+            : fmt::format("{} leads the hand.", traits.name));
+  } catch (const std::exception& e) {
+    problem_ = e.what();
+    retry_at_ = Clock::now() + kRetry;
+  }
+}
+
+void DeviceDesk::save() {
+  if (const std::string error = hub_.save(); !error.empty()) notices_.say(error, true);
+}
+
+void DeviceDesk::plugged() {
+  buttons_.forget();
+  arming_ = Arming::off;
+  plugged_at_ = Clock::now();
+}
+
+void DeviceDesk::start_check() {
+  talk_ = std::make_shared<AxisCheckTalk>();
+  problem_.clear();
+  connecting_id_ = hub_.in_use();
+  check_ = desk_.device_errands().run(hub_.checking(talk_));
+}
+
+void DeviceDesk::follow_check() {
+  if (!check_.valid()) return;
+  talk_->see_window();
+  try {
+    const auto check = take_ready(check_);
+    if (!check || connecting_id_ != hub_.in_use()) return;
+    problem_ = report_of(*check);
+    if (!remember_check(*check, hub_.notes(hub_.in_use()))) {
+      return notices_.say("The check has not passed; the device stays out of the loop.", true);
+    }
+    notices_.say("Its axes move as they are pushed.\n" + problem_);
+    problem_.clear();
+    save();
+  } catch (const std::exception& e) {
+    problem_ = e.what();
+    retry_at_ = Clock::now() + kRetry;
+  }
+}
+
+void DeviceDesk::use(const std::string& id) {
+  if (desk_.recording()) {
+    notices_.say("Stop the recording before changing the device.", true);
+    return;
+  }
+  if (id == hub_.in_use()) return;
+  hub_.use(id);
+  cancel_check();
+  problem_.clear();
+  retry_at_ = {};
+  requests_.close();
+  save();
+}
+
+void DeviceDesk::connect_anew() {
+  save();
+  if (!desk_.loop().device_plugged()) return;
+  desk_.loop().cut();
+  cancel_check();
+  desk_.loop().plug(nullptr);
+  retry_at_ = Clock::now() + milliseconds(100);  // the loop gives the old one back first
+}
+
+}  // namespace limpid

@@ -1,0 +1,85 @@
+// Keeps the chosen device in the loop: connects it when it is there, notices when it goes, takes it
+// up again when it comes back, always without force until the user arms it. What takes time is done
+// beside the window.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/desktop/desk/desk.h"
+#include "app/device/device_hub.h"
+#include "devices/buttons.h"
+
+namespace limpid {
+
+// What the desk asks for that changes more than the loop.
+struct DeviceRequests {
+  std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
+  std::function<void()> close;                        // the virtual arm by the mouse
+  std::function<void()> toggle_coupling;
+};
+
+class DeviceDesk {
+ public:
+  DeviceDesk(Desk& desk, Notices& notices, AskForPriority ask, DeviceRequests requests)
+      : desk_(desk),
+        notices_(notices),
+        hub_(device_book_file(), std::move(ask)),
+        requests_(std::move(requests)) {}
+
+  // Once a frame.
+  void update();
+  // A device has just been given to the loop.
+  void plugged();
+  // Another device; empty: the virtual arm.
+  void use(const std::string& id);
+  // After the notes on the device in use have changed.
+  void save();
+  // The same, where it has to be connected anew for it.
+  void connect_anew();
+
+  const std::string& problem() const { return problem_; }  // why it is not in the loop
+
+  // The check of a joystick's axes, which has to come before it may push.
+  bool awaits_check() const { return hub_.needs_check() && !check_.valid(); }
+  void start_check();
+  void cancel_check() {
+    if (talk_) talk_->cancel = true;
+  }
+  // What goes on in it; null: none does.
+  const AxisCheckTalk* check() const { return check_.valid() ? talk_.get() : nullptr; }
+
+  DeviceHub& hub() { return hub_; }
+  const DeviceHub& hub() const { return hub_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void look();
+  void connect();
+  void take_connected();
+  void watch();
+  void follow_check();
+  // A recording goes on with the device that it began with only.
+  bool must_wait() const;
+
+  Desk& desk_;
+  Notices& notices_;
+  DeviceHub hub_;
+  DeviceRequests requests_;
+  std::string problem_;
+  Clock::time_point look_at_{}, retry_at_{}, plugged_at_{};
+  ButtonPresses buttons_;
+  Arming arming_ = Arming::off;  // at the last frame
+  std::future<std::vector<FoundDevice>> looking_;
+  std::future<std::unique_ptr<Device>> connecting_;
+  std::string connecting_id_;
+  std::future<AxisCheck> check_;
+  std::shared_ptr<AxisCheckTalk> talk_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,215 @@
+#include "app/desktop/document/document.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/base/assets.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_writer.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// 69451 -> "69,451".
+std::string with_commas(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), ",");
+  }
+  return text;
+}
+
+// Of what stands before an Omni a joystick reaches nothing, nor the other way round.
+bool share_a_workspace(const ArmDescription& a, const ArmDescription& b) {
+  return (a.dof() == 2) == (b.dof() == 2);
+}
+
+}  // namespace
+
+void Document::open(const ArmDescription& arm, Scene scene, MeshModels models, bool saved) {
+  arm_ = arm;
+  editor_.open(std::move(scene), std::move(models), saved);
+  known_.scene = editor_.version();
+  // Steps of other scenes cannot be undone in this one.
+  history_.rewrite(
+      [&](EditState& state) { state.scene = known_.scene; },
+      [](const EditState& a, const EditState& b) { return a.parameters == b.parameters; });
+}
+
+bool Document::may_edit() {
+  const std::string why = why_fixed_();
+  if (!why.empty()) {
+    notices_.say(why, true);
+  } else if (loader_.opening_scene()) {
+    notices_.say("Wait until the scene is there, or cancel its loading.", true);
+  } else {
+    return true;
+  }
+  return false;
+}
+
+void Document::add_object(SceneObject object, const Workplace& at) {
+  if (!may_edit()) return;
+  const auto table = table_height(scene(), at.rest);
+  const Bounds box = bounds_of(object, nullptr);
+  if (!box.isEmpty()) {
+    const Vec3 place = find_place(box.sizes(), table, at);
+    if (auto* sphere = std::get_if<Sphere>(&object)) sphere->center = place;
+    if (auto* cuboid = std::get_if<Box>(&object)) cuboid->pose.translation() = place;
+  }
+  if (auto* plane = std::get_if<Plane>(&object)) {
+    plane->point = at.rest - Vec3(0, 0, table ? 0.02 : 0.04);
+  }
+  try {
+    editor_.add(std::move(object));
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
+void Document::add_model(LoadedModel loaded, const Workplace& at) {
+  const Bounds bounds = loaded.model->bounds();
+  place_mesh(loaded.mesh, bounds, scene(), at);
+  const double scale = loaded.mesh.scale;
+  const std::size_t triangles = loaded.mesh.shape->triangles();
+  const double centimetres = 100 * scale * bounds.sizes().maxCoeff();
+  editor_.add(std::move(loaded.mesh), loaded.model);
+  std::string text =
+      fmt::format("Added {}: {} triangles, {:.3g} cm{}. Ctrl+Z removes it.",
+                  name_of(scene(), *editor_.selected()), with_commas(triangles), centimetres,
+                  scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
+  for (const std::string& warning : loaded.warnings) text += "\n" + warning;
+  notices_.say(text);
+}
+
+void Document::remove_selected() {
+  if (!editor_.selected() || !may_edit()) return;
+  const std::string name = name_of(scene(), *editor_.selected());
+  editor_.remove(*editor_.selected());
+  notices_.say(fmt::format("Removed {}. Ctrl+Z brings it back.", name));
+}
+
+void Document::duplicate_selected() {
+  if (!editor_.selected() || !may_edit()) return;
+  try {
+    editor_.duplicate(*editor_.selected());
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
+Bounds Document::selected_bounds() const {
+  if (!editor_.selected()) return {};
+  const ObjectRef ref = *editor_.selected();
+  const Model* model = ref.kind == ObjectKind::mesh ? editor_.models()[ref.index].get() : nullptr;
+  return bounds_of(object_of(scene(), ref), model);
+}
+
+void Document::note_changes() {
+  const Parameters& parameters = settings_.parameters;
+  const EditState now{parameters, editor_.version()};
+  const bool scene = now.scene.world != known_.scene.world;
+  const bool settings = !(parameters == known_.parameters);
+  std::string what = scene ? editor_.last_change() : "";
+  if (settings) {
+    for (const ParameterInfo& info : parameter_table()) {
+      const bool same = parameter_text(parameters, info) == parameter_text(known_.parameters, info);
+      if (!same) what = scene ? "" : info.key;
+    }
+  }
+  if (settings || scene) history_.changed(known_, what, std::chrono::steady_clock::now());
+  known_ = now;
+}
+
+bool Document::may_go_to(const EditState* state, const char* otherwise) {
+  if (state == nullptr) {
+    notices_.say(otherwise);
+    return false;
+  }
+  return state->scene.world == known_.scene.world || may_edit();
+}
+
+void Document::go_to(const std::optional<EditState>& state) {
+  if (!state) return;
+  settings_.parameters = state->parameters;
+  editor_.restore(state->scene);
+  known_ = *state;
+}
+
+void Document::undo() {
+  note_changes();
+  if (may_go_to(history_.next_undo(), "Nothing to undo.")) go_to(history_.undo(known_));
+}
+
+void Document::redo() {
+  note_changes();
+  if (may_go_to(history_.next_redo(), "Nothing to redo.")) go_to(history_.redo(known_));
+}
+
+std::string Document::toml() const {
+  if (!scene().toml.empty()) return scene().toml;
+  return scene_text(scene(), arm_, fs::path(file_).parent_path());
+}
+
+fs::path Document::own_file() const {
+  const fs::path file = fs::absolute(file_).lexically_normal();
+  const fs::path inside = file.lexically_relative(data_dir().lexically_normal());
+  const bool shipped = !inside.empty() && *inside.begin() != "..";
+  return shipped ? fs::path() : file;
+}
+
+bool Document::save_as(const fs::path& file) {
+  if (!may_edit()) return false;
+  try {
+    editor_.saved(save_scene(scene(), arm_, file));
+    // The names of files are other ones, what can be touched is not.
+    known_.scene = editor_.version();
+    remember_file(fs::absolute(file).lexically_normal().string());
+    notices_.say(fmt::format("Saved {}", file_));
+    return true;
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+    return false;
+  }
+}
+
+void Document::leave(std::function<void()> then) {
+  if (!editor_.dirty()) return then();
+  after_question_ = std::move(then);
+}
+
+void Document::leave_now() { std::exchange(after_question_, nullptr)(); }
+
+void Document::discard_and_leave() {
+  editor_.saved(scene());
+  leave_now();
+}
+
+// Shapes and pictures of meshes are the same for every arm.
+std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm) const {
+  const Scene& present = scene();
+  if (arm.urdf == arm_.urdf) return SceneEditor::World{present, editor_.models()};
+  if (!share_a_workspace(arm, arm_)) return std::nullopt;
+  SceneFiles sources;
+  for (const MeshObstacle& mesh : present.meshes) sources[mesh.file] = mesh.source;
+  try {
+    Scene scene = parse_scene(toml(), file_, fs::path(file_).parent_path(), arm, sources);
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+      scene.meshes[i].shape = present.meshes.at(i).shape;
+      scene.meshes[i].path = present.meshes.at(i).path;
+    }
+    return SceneEditor::World{std::move(scene), editor_.models()};
+  } catch (const std::exception&) {  // it names joints or links that this arm does not have
+    return std::nullopt;
+  }
+}
+
+void Document::put_aside() {
+  if (!set_aside_) set_aside_ = SetAside{file_, arm_, editor_.version().world, editor_.dirty()};
+}
+
+}  // namespace limpid

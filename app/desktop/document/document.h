@@ -1,0 +1,112 @@
+// The scene and the settings that are worked on: changing them, undo, and the scene's file.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/base/settings.h"
+#include "app/desktop/document/placement.h"
+#include "app/desktop/document/scene_editor.h"
+#include "app/desktop/document/scene_loader.h"
+#include "app/desktop/document/undo_history.h"
+
+namespace limpid {
+
+// A scene that waits until the device which brought its own is gone.
+struct SetAside {
+  std::string file;
+  ArmDescription arm;
+  std::shared_ptr<const SceneEditor::World> world;
+  bool unsaved = false;
+};
+
+class Document {
+ public:
+  // Why the scene has to stay as it is now; empty: it may be changed.
+  using WhyFixed = std::function<std::string()>;
+
+  // Works on the parameters of the settings, and keeps there which scene was opened last.
+  Document(Settings& settings, Notices& notices, WhyFixed why_fixed)
+      : settings_(settings), notices_(notices), why_fixed_(std::move(why_fixed)) {
+    known_.parameters = settings.parameters;
+  }
+
+  // From now on this scene for this arm is edited, as its file has it; not `saved`: no file has it.
+  void open(const ArmDescription& arm, Scene scene, MeshModels models, bool saved);
+
+  SceneEditor& editor() { return editor_; }
+  const SceneEditor& editor() const { return editor_; }
+  const Scene& scene() const { return editor_.scene(); }
+  SceneLoader& loader() { return loader_; }
+  const SceneLoader& loader() const { return loader_; }
+
+  // False, and says why, while the scene has to stay as it is.
+  bool may_edit();
+  void add_object(SceneObject object, const Workplace& at);  // it gets a place in reach
+  void add_model(LoadedModel loaded, const Workplace& at);
+  void remove_selected();
+  void duplicate_selected();
+  Bounds selected_bounds() const;  // [m]; empty for what has none, or with nothing selected
+
+  void undo();
+  void redo();
+  // Once a frame: notices what a panel, a key or a mouse changed, for undo.
+  void note_changes();
+  void hold(bool mouse_held) { history_.hold(mouse_held); }
+
+  // Where the scene came from.
+  const std::string& file() const { return file_; }
+  void set_file(const std::string& file) { file_ = file; }
+  // The same, and it is the one to open at the next start.
+  void remember_file(const std::string& file) { file_ = settings_.scene = file; }
+  // The text that a recording keeps of the present scene.
+  std::string toml() const;
+  // Where saving writes to; empty for scenes that came with Limpid.
+  std::filesystem::path own_file() const;
+  bool save_as(const std::filesystem::path& file);  // false, and says why, if it was not
+
+  // Does it at once, or after the user has been asked what to do with unsaved changes.
+  void leave(std::function<void()> then);
+  bool asking() const { return after_question_ != nullptr; }
+  void stay() { after_question_ = nullptr; }  // the answers
+  void leave_now();                           // after saving
+  void discard_and_leave();
+
+  // The present scene with all its changes, if there is one like it for this arm.
+  std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
+  // The present scene waits, if none does yet; and comes back.
+  void put_aside();
+  bool has_set_aside() const { return set_aside_.has_value(); }
+  SetAside take_set_aside() { return *std::exchange(set_aside_, std::nullopt); }
+  // The one that waits, if it has changes that no file has.
+  const SetAside* unsaved_set_aside() const {
+    return set_aside_ && set_aside_->unsaved ? &*set_aside_ : nullptr;
+  }
+
+ private:
+  // What undo goes back to.
+  struct EditState {
+    Parameters parameters;
+    SceneEditor::Version scene;
+  };
+  bool may_go_to(const EditState* state, const char* otherwise);
+  void go_to(const std::optional<EditState>& state);
+
+  Settings& settings_;
+  Notices& notices_;
+  WhyFixed why_fixed_;
+  ArmDescription arm_;
+  SceneEditor editor_;
+  SceneLoader loader_;
+  std::string file_;
+  UndoHistory<EditState> history_;
+  EditState known_;                       // at the last frame
+  std::function<void()> after_question_;  // of what to do with unsaved changes; none: not asked
+  std::optional<SetAside> set_aside_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,104 @@
+#include "app/desktop/document/scene_loader.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/file_error.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_limits.h"
+#include "devices/files/text_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The window draws while this thread works. It inherits the window's scheduling, never the haptic
+// thread's.
+void step_back() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10); }
+
+LoadProgress progress_of(BackgroundProgress& progress) {
+  return {.part = &progress.part, .cancel = &progress.cancel};
+}
+
+}  // namespace
+
+LoadedScene load_scene(const fs::path& file, const ArmDescription& arm,
+                       const LoadProgress& progress) {
+  LoadedScene loaded{file, read_scene(file, arm), {}, {}};
+  loaded.models = build_meshes(loaded.scene, progress);
+  loaded.warnings = mesh_warnings(loaded.scene, loaded.models);
+  return loaded;
+}
+
+LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
+  Scene one;
+  MeshObstacle& mesh = one.meshes.emplace_back();
+  mesh.name = file.stem().string();
+  mesh.file = mesh.path = fs::absolute(file).lexically_normal().string();
+  const std::string bytes = read_text(file, scene_limits::kLargestModel);
+  mesh.source = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
+  const MeshModels models = build_meshes(one, progress);
+  std::vector<std::string> warnings = mesh_warnings(one, models);
+  return {std::move(mesh), models.front(), std::move(warnings)};
+}
+
+void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {
+  const std::string what = fmt::format("opening {}", file.filename().string());
+  waiting_.push_back(
+      {what, true, [file = std::move(file), arm](BackgroundProgress& progress) -> Loaded {
+         step_back();
+         return load_scene(file, arm, progress_of(progress));
+       }});
+  start_next();
+}
+
+void SceneLoader::add_model(fs::path file) {
+  const std::string what = fmt::format("loading {}", file.filename().string());
+  waiting_.push_back(
+      {what, false, [file = std::move(file)](BackgroundProgress& progress) -> Loaded {
+         step_back();
+         return load_model(file, progress_of(progress));
+       }});
+  start_next();
+}
+
+bool SceneLoader::opening_scene() const {
+  return (work_.busy() && scene_) || std::ranges::any_of(waiting_, &Request::scene);
+}
+
+void SceneLoader::start_next() {
+  if (work_.busy() || waiting_.empty()) return;
+  unwanted_ = false;
+  scene_ = waiting_.front().scene;
+  work_.start(std::move(waiting_.front().what), std::move(waiting_.front().work));
+  waiting_.pop_front();
+}
+
+void SceneLoader::cancel() {
+  waiting_.clear();
+  unwanted_ = true;
+  work_.ask_to_stop();
+}
+
+std::optional<Loaded> SceneLoader::take() {
+  start_next();
+  try {
+    std::optional<Loaded> loaded = work_.take();
+    return unwanted_ ? std::nullopt : std::move(loaded);
+  } catch (const std::exception&) {
+    if (unwanted_) return std::nullopt;
+    throw;
+  }
+}
+
+double SceneLoader::seconds_left() const {
+  const double part = work_.part();
+  return part > 0.05 ? work_.seconds() * (1 - part) / part : -1;
+}
+
+}  // namespace limpid

@@ -1,0 +1,53 @@
+#include "app/desktop/document/unsaved.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "devices/files/scene/scene_writer.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kUnsaved = "-unsaved";
+
+// folder/STEM.toml, or with the first number that makes it a new one.
+fs::path free_name(const fs::path& folder, const std::string& stem) {
+  fs::path file = folder / (stem + ".toml");
+  for (int number = 2; fs::exists(file); ++number) {
+    file = folder / fmt::format("{}-{}.toml", stem, number);
+  }
+  return file;
+}
+
+}  // namespace
+
+fs::path keep_unsaved(const Scene& scene, const ArmDescription& arm, const std::string& name,
+                      const fs::path& folder) {
+  fs::create_directories(folder);
+  const fs::path file = free_name(folder, name + std::string(kUnsaved));
+  save_scene(scene, arm, file);
+  return file;
+}
+
+std::vector<fs::path> take_unsaved(const fs::path& folder) {
+  std::vector<fs::path> kept;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".toml" && stem.find(kUnsaved) != std::string::npos) {
+      kept.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(kept);
+  for (fs::path& file : kept) {
+    const std::string stem = file.stem().string();
+    const fs::path scene = free_name(folder, stem.substr(0, stem.find(kUnsaved)) + "-recovered");
+    fs::rename(file, scene, none);
+    if (!none) file = scene;
+  }
+  return kept;
+}
+
+}  // namespace limpid

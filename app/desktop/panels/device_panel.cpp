@@ -1,0 +1,188 @@
+#include "app/desktop/panels/device_panel.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+void choice(DeviceDesk& devices, const char* label, const std::string& id, const char* help) {
+  if (ImGui::RadioButton(label, devices.hub().in_use() == id)) devices.use(id);
+  tooltip(help);
+}
+
+void choices(DeviceDesk& devices) {
+  choice(devices, "virtual arm, by the mouse", "", "A simulated arm; the mouse is the hand on it.");
+  bool known = devices.hub().in_use().empty();
+  for (const FoundDevice& found : devices.hub().found()) {
+    const std::string help = found.missing.empty()
+                                 ? fmt::format("{}, {}", found.kind->name, found.place.id)
+                                 : found.missing;
+    ImGui::PushID(found.place.path.c_str());
+    choice(devices, found.place.name.c_str(), found.place.id, help.c_str());
+    ImGui::PopID();
+    known = known || found.place.id == devices.hub().in_use();
+  }
+  if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
+}
+
+// The guided check of a joystick that has not been used before; true while there is one to show.
+bool axis_check(DeviceDesk& devices) {
+  if (const AxisCheckTalk* check = devices.check()) {
+    ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
+    if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
+    return true;
+  }
+  if (!devices.awaits_check()) return false;
+  ImGui::TextWrapped("%s", devices.problem().c_str());
+  if (ImGui::Button("Check the axes")) devices.start_check();
+  tooltip(
+      "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
+      "stick stand free, the hands beside it; Esc stops it.");
+  return true;
+}
+
+void status(DeviceDesk& devices, const LiveLoop& loop) {
+  if (devices.hub().in_use().empty() || axis_check(devices)) return;
+  if (!devices.problem().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
+    ImGui::TextWrapped("%s", devices.problem().c_str());
+    ImGui::PopStyleColor();
+    const FoundDevice* found = devices.hub().present();
+    const std::string missing = found != nullptr ? found->missing : std::string();
+    const std::size_t from = missing.find('\''), to = missing.rfind('\'');
+    if (from < to && ImGui::SmallButton("copy the command")) {
+      ImGui::SetClipboardText(missing.substr(from + 1, to - from - 1).c_str());
+    }
+    return;
+  }
+  if (!loop.device_in_place()) return;
+  const ForceState state = loop.snapshot().force_state;
+  read_out("force", explain(state), {},
+           "Force is off until the hand has the device and F arms it; it then fades in.");
+}
+
+// A joint: where it is, which way round, how far, and its zero.
+bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
+  bool changed = false;
+  ImGui::PushID(static_cast<int>(i));
+  if (!joint) {  // of a cap: part of its full deflection
+    ImGui::Text("axis %zu  %+5.2f", i + 1, angle);
+    ImGui::SameLine(8.5f * ImGui::GetFontSize());
+    changed = ImGui::Checkbox("invert", &axis.inverted);
+    ImGui::PopID();
+    return changed;
+  }
+  ImGui::AlignTextToFramePadding();
+  ImGui::Text("axis %zu  %+7.2f\xC2\xB0", i + 1, angle * kDegrees);
+  ImGui::SameLine(8.5f * ImGui::GetFontSize());
+  changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
+  tooltip("Turns the axis round, its torque with it.");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("zero here")) {
+    axis.zero += angle / axis.factor();
+    changed = true;
+  }
+  tooltip("Where it is now becomes zero.");
+  auto scale = static_cast<float>(axis.scale);
+  ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
+  ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
+  axis.scale = static_cast<double>(scale);
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip(
+      "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
+      "the hand stays the power in the loop.");
+  ImGui::PopID();
+  return changed;
+}
+
+bool joystick_settings(PidSettings& pid) {
+  bool changed = false;
+  auto effort = static_cast<float>(pid.effort);
+  auto range = static_cast<float>(pid.range * kDegrees);
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m", ImGuiSliderFlags_Logarithmic);
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip(
+      "The joystick's own torque at full force, measured or from its data sheet: USB gives "
+      "forces without a unit. Too low a value here makes it push too hard.");
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0");
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip("How far the stick tilts to each side.");
+  pid.effort = static_cast<double>(effort);
+  pid.range = static_cast<double>(range) / kDegrees;
+  for (std::size_t i = 0; i < 2; ++i) {
+    changed =
+        ImGui::Checkbox(i == 0 ? "reverse force X" : "reverse force Y", &pid.reverse[i]) || changed;
+    tooltip(
+        "For a device that pushes the wrong way. Try with little force: with the wrong sign "
+        "the loop is unstable.");
+    if (i == 0) ImGui::SameLine();
+  }
+  return changed;
+}
+
+// True once a limit was changed.
+bool limit_sliders(SafetyLimits& limits) {
+  if (!ImGui::TreeNode("Limits of force")) return false;
+  tooltip("They can be lowered for this device; as they are at first is the most they can be.");
+  bool changed = false;
+  const SafetyLimits most;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    auto value = static_cast<float>(limits.*info.field);
+    ImGui::SetNextItemWidth(-9 * ImGui::GetFontSize());
+    const std::string format = fmt::format("%.3g {}", info.unit);
+    if (ImGui::SliderFloat(info.label, &value, static_cast<float>(info.least),
+                           static_cast<float>(most.*info.field), format.c_str(),
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+      limits.*info.field = static_cast<double>(value);
+      limits = allowed(limits);
+    }
+    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  }
+  ImGui::TreePop();
+  return changed;
+}
+
+void adjustments(DeviceDesk& devices, const Desk& desk) {
+  const FoundDevice* found = devices.hub().present();
+  if (found == nullptr || !desk.loop().device_plugged()) return;
+  DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
+  const DeviceReading& reading = desk.loop().snapshot().reading;
+  const auto joints =
+      static_cast<std::size_t>(desk.loop().device_in_place() ? desk.stage().arm().dof() : 6);
+  notes.axes.resize(std::max(notes.axes.size(), joints));
+  bool changed = false;
+  for (std::size_t i = 0; i < joints; ++i) {
+    changed = axis_row(notes.axes[i], i, reading.x[i], desk.loop().device_in_place()) || changed;
+  }
+  if (found->kind->uncalibrated) {
+    const auto reverse = notes.pid.reverse;
+    changed = joystick_settings(notes.pid) || changed;
+    if (notes.pid.reverse != reverse) notes.checked = false;
+  }
+  if (changed) devices.connect_anew();
+  if (!desk.loop().device_in_place()) return;
+  ImGui::BeginDisabled(desk.recording());
+  if (limit_sliders(notes.limits)) devices.save();
+  ImGui::EndDisabled();
+}
+
+}  // namespace
+
+void draw_device_panel(DeviceDesk& devices, const Desk& desk) {
+  choices(devices);
+  status(devices, desk.loop());
+  if (!devices.hub().in_use().empty()) adjustments(devices, desk);
+  ImGui::Separator();
+}
+
+}  // namespace limpid

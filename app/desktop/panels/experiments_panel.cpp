@@ -1,0 +1,178 @@
+#include "app/desktop/panels/experiments_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/desktop/base/settings.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path experiments_dir() { return sessions_dir().parent_path() / "experiments"; }
+
+std::vector<fs::path> sessions_of(const Experiment& experiment) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(experiments_dir() / experiment.name, none)) {
+    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+void ExperimentsPanel::start(const Experiment& experiment) {
+  current_ = &experiment;
+  shown_ = &experiment;
+  began_ = ImGui::GetTime();
+  running_.start(experiment.name, [&experiment](BackgroundProgress& progress) {
+    Laboratory::Options options;
+    options.dir = experiments_dir();
+    options.threads = 1;  // the loop and the picture need the rest
+    options.stop = &progress.cancel;
+    options.progress = [&progress](double part) { progress.part = part; };
+    return carry_out(experiment, options);
+  });
+}
+
+void ExperimentsPanel::take() {
+  try {
+    if (auto outcome = running_.take()) {
+      Verdict verdict{std::move(*outcome), std::nullopt, sessions_of(*current_)};
+      verdict.figure.emplace(experiments_dir() / (std::string(current_->name) + ".png"));
+      notices_.say(fmt::format("{}: {}", current_->name,
+                               verdict.outcome.passed() ? "passed" : "a check failed"),
+                   !verdict.outcome.passed());
+      verdicts_.insert_or_assign(current_->name, std::move(verdict));
+      write_report(experiments_dir());
+    }
+  } catch (const std::exception& e) {
+    notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
+    queue_.clear();
+  }
+  if (!running_.busy() && !queue_.empty()) {
+    const Experiment& next = *queue_.front();
+    queue_.erase(queue_.begin());
+    start(next);
+  }
+}
+
+fs::path ExperimentsPanel::draw(bool& open) {
+  take();
+  if (!open) return {};
+  fs::path chosen;
+  const ImVec2 room = ImGui::GetMainViewport()->Size;
+  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
+  if (ImGui::Begin("Experiments", &open,
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    ImGui::BeginChild("list", {17 * ImGui::GetFontSize(), 0});
+    draw_list();
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("verdict", {0, 0});
+    const auto found = shown_ == nullptr ? verdicts_.end() : verdicts_.find(shown_->name);
+    if (found != verdicts_.end()) {
+      chosen = draw_verdict(found->second);
+    } else {
+      ImGui::TextWrapped(
+          "The paper's experiments, each run by the ordinary loop with recorded and seeded hands. "
+          "Figures, tables, verdicts and every trial are kept in %s.",
+          experiments_dir().c_str());
+      ImGui::Spacing();
+      for (const Experiment& experiment : experiments()) {
+        ImGui::Bullet();
+        ImGui::TextWrapped("%s: %s", experiment.name, experiment.about);
+      }
+    }
+    ImGui::EndChild();
+  }
+  ImGui::End();
+  return chosen;
+}
+
+void ExperimentsPanel::draw_list() {
+  const Palette& colours = palette(current_theme());
+  for (const Experiment& experiment : experiments()) {
+    ImGui::PushID(experiment.name);
+    const bool runs = running_.busy() && current_ == &experiment;
+    const bool waits = std::ranges::find(queue_, &experiment) != queue_.end();
+    if (runs) {
+      const double elapsed = ImGui::GetTime() - began_;
+      const double part = running_.part();
+      const std::string left =
+          part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "";
+      progress_bar(part, 0, left);
+    } else if (ImGui::Button(waits ? "waits" : "Run")) {
+      queue_.push_back(&experiment);
+    }
+    if (!runs) ImGui::SameLine();
+    if (ImGui::Selectable(experiment.name, shown_ == &experiment)) shown_ = &experiment;
+    tooltip(experiment.about);
+    if (const auto found = verdicts_.find(experiment.name); found != verdicts_.end()) {
+      const bool passed = found->second.outcome.passed();
+      ImGui::SameLine(ImGui::GetContentRegionAvail().x - 3 * ImGui::GetFontSize());
+      ImGui::TextColored(colour_vector(passed ? colours.muted : colours.broken), "%s",
+                         passed ? "passed" : "failed");
+    }
+    ImGui::PopID();
+  }
+  ImGui::Spacing();
+  if (running_.busy()) {
+    if (ImGui::Button("Stop")) {
+      queue_.clear();
+      running_.cancel();
+      notices_.say("Stopped; finished trials are kept and are not run again.");
+    }
+  } else if (ImGui::Button("Run all")) {
+    for (const Experiment& experiment : experiments()) queue_.push_back(&experiment);
+  }
+}
+
+fs::path ExperimentsPanel::draw_verdict(const Verdict& verdict) {
+  const Palette& colours = palette(current_theme());
+  if (verdict.figure) {
+    const float width = std::min(ImGui::GetContentRegionAvail().x, verdict.figure->width());
+    ImGui::Image(verdict.figure->id(),
+                 {width, width * verdict.figure->height() / verdict.figure->width()});
+  }
+  ImGui::TextWrapped("%s", verdict.outcome.figure.caption.c_str());
+  ImGui::Spacing();
+  if (ImGui::BeginTable("checks", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH)) {
+    ImGui::TableSetupColumn("check", ImGuiTableColumnFlags_WidthStretch);
+    for (const char* name : {"value", "bound", ""}) {
+      ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 6 * ImGui::GetFontSize());
+    }
+    ImGui::TableHeadersRow();
+    for (const Check& check : verdict.outcome.checks) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", check.what.c_str());
+      ImGui::TableNextColumn();
+      ImGui::Text("%.4g", check.value);
+      ImGui::TableNextColumn();
+      ImGui::Text("%.4g", check.bound);
+      ImGui::TableNextColumn();
+      ImGui::TextColored(colour_vector(check.passed ? colours.muted : colours.broken), "%s",
+                         check.passed ? "passed" : "failed");
+    }
+    ImGui::EndTable();
+  }
+  fs::path chosen;
+  if (verdict.trials.empty()) return chosen;
+  heading("Trials, to open in playback");
+  for (const fs::path& trial : verdict.trials) {
+    if (ImGui::Selectable(trial.stem().c_str())) chosen = trial;
+  }
+  return chosen;
+}
+
+}  // namespace limpid

@@ -1,0 +1,46 @@
+// The paper's experiments in the window: run them, see figure and verdict, play every trial.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/widgets/picture_texture.h"
+#include "app/experiments/experiment.h"
+#include "app/session/background.h"
+
+namespace limpid {
+
+class ExperimentsPanel {
+ public:
+  explicit ExperimentsPanel(Notices& notices) : notices_(notices) {}
+
+  // Experiments go on while it is closed. A window over the others while `open`, which closing it
+  // clears. The trial that is to be played, if one was chosen.
+  std::filesystem::path draw(bool& open);
+
+ private:
+  struct Verdict {
+    Outcome outcome;
+    std::optional<PictureTexture> figure;
+    std::vector<std::filesystem::path> trials;
+  };
+
+  void start(const Experiment& experiment);
+  void take();
+  void draw_list();
+  static std::filesystem::path draw_verdict(const Verdict& verdict);
+
+  Notices& notices_;
+  Background<Outcome> running_;
+  const Experiment* current_ = nullptr;  // that runs
+  const Experiment* shown_ = nullptr;
+  std::vector<const Experiment*> queue_;
+  std::map<std::string, Verdict> verdicts_;
+  double began_ = 0;  // [s of ImGui's time]
+};
+
+}  // namespace limpid

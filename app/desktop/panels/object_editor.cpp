@@ -1,0 +1,237 @@
+#include "app/desktop/panels/object_editor.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <numbers>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/parameter_slider.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/rpy.h"
+#include "devices/files/scene/scene_limits.h"
+
+namespace limpid {
+namespace {
+
+using namespace scene_limits;
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
+
+// Three numbers side by side, dragged or typed after a double click.
+bool drag3(const char* label, Vec3& values, double speed, double least, double most,
+           const char* format, const char* help) {
+  ImGui::TextUnformatted(label);
+  tooltip(help);
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
+                         &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+bool position(const char* label, Vec3& point, const char* help) {
+  Vec3 millimetres = 1e3 * point;
+  if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
+             "%.1f", help)) {
+    return false;
+  }
+  point = 1e-3 * millimetres;
+  return true;
+}
+
+bool position(Pose& pose) {
+  Vec3 at = pose.translation();
+  const bool changed =
+      position("Position x, y, z [mm]", at, "Forward, left and up from the arm's base.");
+  pose.translation() = at;
+  return changed;
+}
+
+bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
+  const bool changed = value_slider(info, value, usual);
+  tooltip(help);
+  return changed;
+}
+
+constexpr const char* kStiffnessHelp =
+    "How hard it pushes back. Double click to type, right click for the usual value. A hard "
+    "surface is felt as hard as the coupling lets through.";
+constexpr ParameterInfo kStiffnessSlider{
+    .key = "stiffness",
+    .label = "Stiffness",
+    .field = &Parameters::eta,
+    .unit = "N/m",
+    .minimum = 1e-3,
+    .maximum = kStiffness.maximum,
+    .slider_minimum = 1,
+    .slider_maximum = 1e4,
+    .logarithmic = true,
+    .live = true,
+    .meaning = "",
+};
+
+// What was changed; nothing, as a rule.
+std::string_view edit_material(Material& material) {
+  std::string_view what;
+  if (slider(material.stiffness, kStiffnessSlider, Material{}.stiffness, kStiffnessHelp)) {
+    what = "stiffness";
+  }
+  return what;
+}
+
+bool joint_stiffness(double& value) {
+  ParameterInfo info = kStiffnessSlider;
+  info.unit = "N m/rad";
+  info.slider_minimum = 0.1;
+  info.slider_maximum = 1e3;
+  return slider(value, info, JointContact{}.stiffness, kStiffnessHelp);
+}
+
+}  // namespace
+
+bool drag_number(const char* label, double& value, double speed, double least, double most,
+                 const char* format, const char* help) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(label);
+  tooltip(help);
+  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
+                        &most, format, ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+void ObjectEditor::draw(Document& document, const ObjectRef& ref, const ArmDescription& arm) {
+  draw_name(document, ref);
+  arm_ = &arm;
+  if (ref.kind == ObjectKind::mesh && document.editor().models()[ref.index] != measured_) {
+    measured_ = document.editor().models()[ref.index];
+    extent_ = measured_->bounds().sizes().maxCoeff();
+  }
+  SceneObject object = object_of(document.scene(), ref);
+  const std::string what(std::visit([this](auto& o) { return edit(o); }, object));
+  if (!what.empty() && document.may_edit()) document.editor().set(ref, std::move(object), what);
+}
+
+void ObjectEditor::draw_name(Document& document, const ObjectRef& ref) {
+  const std::string& present = name_of(document.scene(), ref);
+  if (name_of_ != present) name_ = name_of_ = present;
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputText("##name", &name_);
+  if (ImGui::IsItemDeactivated()) {
+    if (document.may_edit()) document.editor().rename(ref, name_);
+    name_of_.clear();
+  }
+  tooltip("Its name");
+}
+
+bool ObjectEditor::edit_rotation(Pose& pose) {
+  if (pose.linear() != turned_) {
+    turned_ = pose.linear();
+    degrees_ = (rpy_of(turned_) / kDegree * 1e6).array().round() / 1e6 + 0.0;  // no -0
+  }
+  if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
+             "About the fixed axes x, y and z, one after the other.")) {
+    return false;
+  }
+  turned_ = settled(rotation(degrees_ * kDegree));
+  pose.linear() = turned_;
+  return true;
+}
+
+std::string_view ObjectEditor::edit(Plane& plane) {
+  std::string_view what = edit_material(plane.material);
+  if (position("Point on it x, y, z [mm]", plane.point, "The plane goes through it.")) {
+    what = "place";
+  }
+  if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f", "Out of the material.")) {
+    what = "normal";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Sphere& sphere) {
+  std::string_view what = edit_material(sphere.material);
+  if (position("Centre x, y, z [mm]", sphere.center, "Forward, left and up from the arm's base.")) {
+    what = "place";
+  }
+  double radius = 1e3 * sphere.radius;
+  if (drag_number("Radius", radius, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", "Of the ball")) {
+    sphere.radius = 1e-3 * radius;
+    what = "radius";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Box& box) {
+  std::string_view what = edit_material(box.material);
+  if (position(box.pose)) what = "place";
+  if (edit_rotation(box.pose)) what = "rotation";
+  Vec3 size = 1e3 * box.size;
+  if (drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
+    box.size = 1e-3 * size;
+    what = "size";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
+  std::string_view what = edit_material(mesh.material);
+  if (position(mesh.pose)) what = "place";
+  if (edit_rotation(mesh.pose)) what = "rotation";
+  double millimetres = 1e3 * mesh.scale * extent_;
+  if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
+                  "1: as large as its file says.")) {
+    what = "scale";
+  }
+  if (drag_number("Largest extent", millimetres, kMillimetreSpeed, 0.1, 1e5, "%.1f mm",
+                  "Sets the scale.") &&
+      extent_ > 0) {
+    mesh.scale = 1e-3 * millimetres / extent_;
+    what = "scale";
+  }
+  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.file.c_str());
+  const std::string health = mesh.shape->health().text();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());
+  ImGui::PopTextWrapPos();
+  return what;
+}
+
+std::string_view ObjectEditor::edit(JointContact& contact) {
+  std::string_view what;
+  if (joint_stiffness(contact.stiffness)) what = "stiffness";
+  const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
+  if (ImGui::BeginCombo("joint", name(contact.joint).c_str())) {
+    for (int i = 0; i < arm_->dof(); ++i) {
+      if (ImGui::Selectable(fmt::format("{}##{}", name(i), i).c_str(), i == contact.joint)) {
+        contact.joint = i;
+        what = "joint";
+      }
+    }
+    ImGui::EndCombo();
+  }
+  double angle = contact.angle / kDegree;
+  if (drag_number("Angle", angle, kDegreeSpeed, -360, 360, "%.1f\xC2\xB0", "Where it stops")) {
+    contact.angle = angle * kDegree;
+    what = "angle";
+  }
+  bool above = contact.direction > 0;
+  if (ImGui::Checkbox("stops what goes above", &above)) {
+    contact.direction = above ? 1 : -1;
+    what = "side";
+  }
+  tooltip("Otherwise it stops what goes below the angle.");
+  return what;
+}
+
+}  // namespace limpid

@@ -1,0 +1,39 @@
+// What can be changed about one object of the scene.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "app/desktop/document/document.h"
+
+namespace limpid {
+
+// A number with its label before it: dragged, or typed after a double click. True if it changed.
+bool drag_number(const char* label, double& value, double speed, double least, double most,
+                 const char* format, const char* help);
+
+class ObjectEditor {
+ public:
+  void draw(Document& document, const ObjectRef& ref, const ArmDescription& arm);
+
+ private:
+  void draw_name(Document& document, const ObjectRef& ref);
+  // Each says what was changed, "" for nothing.
+  std::string_view edit(Plane& plane);
+  std::string_view edit(Sphere& sphere);
+  std::string_view edit(Box& box);
+  std::string_view edit(MeshObstacle& mesh);
+  std::string_view edit(JointContact& contact);
+  bool edit_rotation(Pose& pose);
+
+  std::string name_;            // being typed
+  std::string name_of_;         // the object's it is
+  Mat3 turned_ = Mat3::Zero();  // the rotation that `degrees_` stand for
+  Vec3 degrees_ = Vec3::Zero();
+  std::shared_ptr<const Model> measured_;  // a large one takes a while
+  double extent_ = 0;                      // its largest [m]
+  const ArmDescription* arm_ = nullptr;    // while drawing
+};
+
+}  // namespace limpid

@@ -1,0 +1,154 @@
+#include "app/desktop/panels/scene_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+// A small picture of the kind, before the name.
+void draw_icon(ObjectKind kind, const ImVec2& middle, float r, ImU32 ink) {
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const auto [x, y] = middle;
+  const float thick = 1.4f * current_scale();
+  switch (kind) {
+    case ObjectKind::plane:
+      draw->AddLine({x - r, y + 0.5f * r}, {x + r, y + 0.5f * r}, ink, 1.6f * thick);
+      draw->AddLine({x, y + 0.4f * r}, {x, y - r}, ink, thick);
+      break;
+    case ObjectKind::sphere: draw->AddCircle(middle, r, ink, 20, thick); break;
+    case ObjectKind::box: draw->AddRect({x - r, y - r}, {x + r, y + r}, ink, 0, 0, thick); break;
+    case ObjectKind::mesh:
+      draw->AddTriangle({x - r, y + r}, {x + r, y + r}, {x, y - r}, ink, thick);
+      draw->AddTriangle({x - 0.5f * r, y}, {x + 0.5f * r, y}, {x, y + r}, ink, thick);
+      break;
+    case ObjectKind::joint_contact:
+      draw->PathArcTo({x - r, y + r}, 1.8f * r, -1.57f, 0, 12);
+      draw->PathStroke(ink, 0, thick);
+      break;
+  }
+}
+
+void draw_title(const Scene& scene) {
+  const std::string title = scene.title.empty() ? "untitled" : scene.title;
+  ImGui::TextUnformatted(title.c_str());
+  tooltip(scene.about.c_str());
+}
+
+void draw_why_fixed(const char* why) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", why);
+  ImGui::PopTextWrapPos();
+}
+
+// `editor`: where they can be chosen; null: they cannot.
+void draw_list(const Scene& scene, SceneEditor* editor, const Act& act) {
+  const std::vector<ObjectRef> all = objects_of(scene);
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
+  const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
+  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a .glb here.");
+  for (const ObjectRef& ref : all) {
+    ImGui::PushID(static_cast<int>(ref.kind) * 1000 + static_cast<int>(ref.index));
+    const bool chosen = editor != nullptr && editor->selected() == ref;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float em = ImGui::GetFontSize();
+    const bool clicked =
+        ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
+    if (clicked && editor != nullptr) {
+      const bool twice = ImGui::IsMouseDoubleClicked(0);
+      editor->select(chosen && !twice ? std::nullopt : std::optional(ref));
+      if (twice) act(Action::frame_selected);
+    }
+    tooltip(
+        fmt::format("{}, {}. Double click to look at it.", name_of(scene, ref), kind_name(ref.kind))
+            .c_str());
+    draw_icon(ref.kind, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
+              colour(current_palette().muted));
+    ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
+                                        name_of(scene, ref).c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+}
+
+void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject& add) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
+  if (ImGui::Button("Add", size)) ImGui::OpenPopup("add");
+  tooltip("Something more to touch.");
+  ImGui::BeginDisabled(!any_selected);
+  ImGui::SameLine();
+  if (ImGui::Button("Copy", size)) act(Action::duplicate_selected);
+  tooltip("Another one beside it (Ctrl+D).");
+  ImGui::SameLine();
+  if (ImGui::Button("Remove", size)) act(Action::remove_selected);
+  tooltip("Delete. Ctrl+Z brings it back.");
+  ImGui::SameLine();
+  if (ImGui::Button("Look", size)) act(Action::frame_selected);
+  tooltip("Turns the camera to it (double click).");
+  ImGui::EndDisabled();
+  if (ImGui::BeginPopup("add")) {
+    if (ImGui::MenuItem("Model (.glb, .gltf)...", "Ctrl+M")) act(Action::add_model);
+    if (ImGui::MenuItem("Ball")) add(Sphere{.name = "ball", .radius = 0.02});
+    if (ImGui::MenuItem("Block")) {
+      add(Box{.name = "block", .size = Vec3::Constant(0.04)});
+    }
+    if (ImGui::MenuItem("Plane")) add(Plane{.name = "plane"});
+    if (ImGui::MenuItem("Joint stop")) {
+      add(JointContact{.name = "stop", .joint = 0, .angle = 0.6});
+    }
+    ImGui::EndPopup();
+  }
+}
+
+}  // namespace
+
+void ScenePanel::draw_recorded(const Scene& scene) {
+  draw_title(scene);
+  draw_why_fixed("The recording's scene; it stays as it was.");
+  ImGui::BeginDisabled();
+  draw_list(scene, nullptr, {});
+  ImGui::EndDisabled();
+}
+
+void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
+                      const AddObject& add) {
+  SceneEditor& editor = document.editor();
+  draw_title(editor.scene());
+  if (editor.dirty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("changed");
+    tooltip("There are changes that are not saved. Ctrl+S saves them.");
+  }
+  if (fixed) draw_why_fixed("Cannot be changed while recording.");
+  ImGui::BeginDisabled(fixed);
+  draw_list(editor.scene(), &editor, act);
+  draw_buttons(editor.selected().has_value(), act, add);
+  if (const auto ref = editor.selected()) {
+    ImGui::Separator();
+    object_.draw(document, *ref, arm);
+    ImGui::Separator();
+  }
+  double tip = 1e3 * editor.scene().tip_radius;
+  if (drag_number("Tip radius", tip, 0.05, 0, 50, "%.2f mm",
+                  "The ball at the arm's tip that touches; 0 is a point.")) {
+    editor.set_tip_radius(1e-3 * tip);
+  }
+  const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  if (ImGui::Button("Save scene", {width, 0})) act(Action::save_scene);
+  tooltip("Ctrl+S. A scene that came with Limpid is saved as your own.");
+  ImGui::SameLine();
+  if (ImGui::Button("Gallery...", {width, 0})) act(Action::gallery);
+  tooltip("Ctrl+G: scenes to open, with pictures.");
+  ImGui::EndDisabled();
+}
+
+}  // namespace limpid

@@ -1,0 +1,83 @@
+#include "app/desktop/panels/session_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "app/base/assets.h"
+#include "app/desktop/base/settings.h"
+#include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/path_dialog.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The recordings of a folder, newest names first; the one that was clicked.
+fs::path list_sessions(const char* name, const fs::path& dir) {
+  heading(name);
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(dir, none)) {
+    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  }
+  std::ranges::sort(files, std::greater{});
+  if (files.empty()) ImGui::TextDisabled("none yet");
+  fs::path chosen;
+  for (const fs::path& file : files) {
+    const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
+    const std::string text = fmt::format("{}   {:.1f} MiB", file.filename().string(), mib);
+    if (ImGui::Selectable(text.c_str())) chosen = file;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+fs::path SessionDialog::draw(bool& open) {
+  const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+  const float em = ImGui::GetFontSize();
+  const bool shown = begin_modal("Open session", open, {std::min(34 * em, 0.94f * room.x), 0});
+  if (!shown) {
+    was_shown_ = false;
+    return {};
+  }
+  if (!was_shown_) typed_ = complaint_ = "";
+  ImGui::SetNextItemWidth(-1);
+  if (!was_shown_) ImGui::SetKeyboardFocusHere();
+  was_shown_ = true;
+  fs::path chosen;
+  const std::string before = typed_;
+  if (ImGui::InputTextWithHint("##path", "type a path and press Enter; dropping a file works too",
+                               &typed_, ImGuiInputTextFlags_EnterReturnsTrue) ||
+      accepted()) {
+    chosen = expanded(typed_);
+  }
+  if (typed_ != before) complaint_.clear();
+  if (!complaint_.empty()) {
+    ImGui::TextColored(colour_vector(current_palette().broken), "%s", complaint_.c_str());
+  }
+  ImGui::BeginChild("sessions", {0, std::min(20 * em, 0.55f * room.y)});
+  for (const auto& [name, dir] : {std::pair{"Yours", sessions_dir()},
+                                  {"Shipped with Limpid", data_dir() / "assets/sessions"}}) {
+    if (const fs::path clicked = list_sessions(name, dir); !clicked.empty()) chosen = clicked;
+  }
+  ImGui::EndChild();
+  ImGui::EndPopup();
+  std::error_code none;
+  if (chosen.empty()) return {};
+  if (!fs::is_regular_file(chosen, none)) {
+    complaint_ = "There is no such file.";
+    return {};
+  }
+  open = false;
+  return chosen;
+}
+
+}  // namespace limpid

@@ -1,0 +1,22 @@
+// What is going on, at the right-hand end of the menu bar.
+#pragma once
+
+#include <string>
+
+#include "app/live/live_loop.h"
+
+namespace limpid {
+
+// The coupling that is on screen.
+struct StatusLaw {
+  CouplingKind kind;
+  double eta;
+};
+
+// As much as there is room for; the force is the last to go. `played`: the name of the recording
+// that is shown, empty for the loop.
+void draw_status(const LiveLoop& loop, const StatusLaw& law, const std::string& played);
+// Of the force alone [px].
+float least_status_width(const LiveLoop& loop);
+
+}  // namespace limpid

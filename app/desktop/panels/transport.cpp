@@ -1,0 +1,194 @@
+#include "app/desktop/panels/transport.h"
+
+#include <fmt/format.h>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+std::string clock_text(double seconds) {
+  const int minutes = static_cast<int>(seconds / 60);
+  return fmt::format("{:02d}:{:04.1f}", minutes, seconds - 60 * minutes);
+}
+
+float button_width(const char* label) {
+  return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+// Left out where there is no room for it; a key does the same.
+bool button(const char* label, const char* help, bool on = false, bool bad = false) {
+  if (button_width(label) > ImGui::GetContentRegionAvail().x) return false;
+  const Palette& colours = palette(current_theme());
+  if (on) {
+    const Rgb back = bad ? colours.broken : colours.accent;
+    ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(back));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(back));
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(bad ? Rgb{255, 255, 255} : colours.panel));
+  }
+  const bool pressed = ImGui::Button(label);
+  if (on) ImGui::PopStyleColor(3);
+  tooltip(help);
+  ImGui::SameLine();
+  return pressed;
+}
+
+constexpr float kChoice = 74;    // width of a list at scale 1 [px]
+constexpr float kTimeline = 60;  // the least of it
+constexpr float kProgress = 110;
+
+// A drop-down list of numbers; returns the one chosen.
+double choose(const char* name, double value, std::initializer_list<double> choices,
+              const char* unit) {
+  const float width = kChoice * current_scale();
+  if (width > ImGui::GetContentRegionAvail().x) return value;
+  ImGui::SetNextItemWidth(width);
+  const auto text = [&](double x) { return fmt::format("{:g}{}", x, unit); };
+  if (ImGui::BeginCombo(name, text(value).c_str())) {
+    for (const double choice : choices) {
+      if (ImGui::Selectable(text(choice).c_str(), choice == value)) value = choice;
+    }
+    ImGui::EndCombo();
+  }
+  return value;
+}
+
+void timeline(Player& player, float right) {
+  auto time = static_cast<float>(player.time());
+  ImGui::SetNextItemWidth(std::max(kTimeline * current_scale(), right - ImGui::GetCursorPosX()));
+  if (ImGui::SliderFloat("##timeline", &time, 0, static_cast<float>(player.duration()), "")) {
+    player.pause();
+    player.seek(time);
+  }
+  tooltip("Drag to any moment; left and right arrow step by a tick, with Shift by 0.1 s.");
+  ImGui::SameLine();
+}
+
+void rerun_controls(Playback& playback, const Act& act) {
+  if (!playback.rerunning()) {
+    if (button(
+            "Re-run",
+            "Let the recorded hand drive a new simulation under the present settings and show it "
+            "beside the recording (E).")) {
+      act(Action::rerun);
+    }
+    return;
+  }
+  progress_bar(playback.rerun_part(), kProgress * current_scale(), "re-running");
+  ImGui::SameLine();
+  if (button("Cancel", "Stop the re-run")) playback.cancel_rerun();
+}
+
+void playback_controls(Playback& playback, const Act& act) {
+  Player& player = playback.shown()->player();
+  const float scale = current_scale();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const std::string clock = clock_text(player.time()) + " / " + clock_text(player.duration());
+  // What there is no room for is left out, the least important first.
+  float room = ImGui::GetContentRegionAvail().x - button_width("Pause") - kTimeline * scale -
+               button_width("Back to live") - 3 * gap;
+  const auto fits = [&](float width) {
+    const bool enough = width + gap <= room;
+    if (enough) room -= width + gap;
+    return enough;
+  };
+  const bool with_clock = fits(ImGui::CalcTextSize(clock.c_str()).x);
+  const bool with_rerun =
+      fits(playback.rerunning() ? kProgress * scale + gap + button_width("Cancel")
+                                : button_width("Re-run"));
+  const bool with_speed = fits(kChoice * scale);
+  const bool with_steps = fits(button_width("|<") + 2 * button_width("<") + 2 * gap);
+  const bool with_loop = fits(button_width("Loop"));
+
+  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses."))
+    act(Action::toggle_playing);
+  if (with_steps) {
+    if (button("|<", "To the beginning (Home)")) player.seek(0);
+    if (button("<", "One tick back (left arrow)")) player.step(-1);
+    if (button(">", "One tick on (right arrow)")) player.step(1);
+  }
+  if (with_loop && button("Loop", "Begin again at the end (L)", player.loop)) {
+    player.loop = !player.loop;
+  }
+  if (with_speed) {
+    player.speed = choose("##speed", player.speed, {0.1, 0.2, 0.5, 1, 2, 5, 10}, "x");
+    tooltip("Speed of playback, 0.1 to 10");
+    ImGui::SameLine();
+  }
+  if (with_rerun) rerun_controls(playback, act);
+  const float after = button_width("Back to live") + gap +
+                      (with_clock ? ImGui::CalcTextSize(clock.c_str()).x + gap : 0);
+  timeline(player, ImGui::GetWindowContentRegionMax().x - after);
+  if (with_clock) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(clock.c_str());
+    ImGui::SameLine();
+  }
+  if (button("Back to live", "Leave the recording; the device is yours again (Backspace).")) {
+    act(Action::back_to_live);
+  }
+}
+
+void recording_controls(const Desk& desk, double tick, const Act& act) {
+  const LiveLoop& loop = desk.loop();
+  const bool recording = loop.recording();
+  if (button(recording ? "Stop" : "Record", "R starts and stops recording every tick.", recording,
+             true)) {
+    act(Action::toggle_recording);
+  }
+  if (recording) {
+    const double seconds = static_cast<double>(loop.recorder()->rows()) * tick;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(clock_text(seconds).c_str());
+    tooltip(loop.recorder()->out().c_str());
+    ImGui::SameLine();
+  } else if (button("Play", "Plays the last recording, or opens one (P).")) {
+    act(Action::toggle_playing);
+  }
+}
+
+void live_controls(Desk& desk, double tick, double& plot_length, const Act& act) {
+  recording_controls(desk, tick, act);
+  if (button("Open...", "Choose a recorded session (Ctrl+O).")) act(Action::open_session);
+  if (button("A/B", "Switch between standard and proposed coupling without a jump (C).")) {
+    act(Action::toggle_coupling);
+  }
+  PlotGroup& group = desk.stage().group;
+  if (button(group.following() ? "Freeze plots" : "Follow", "Holds the plots or lets them run (X).",
+             !group.following())) {
+    act(Action::freeze_plots);
+  }
+  const double length = choose("##length", plot_length, {1, 2, 5, 10, 20, 30, 60}, " s");
+  if (length != plot_length) {
+    plot_length = length;
+    group.set_fitted_length(length);
+    group.fit();
+  }
+  tooltip("How much time the plots show, 1 to 60 s");
+  ImGui::SameLine();
+  if (button(
+          "Start over",
+          "Device and proxy at rest in the middle; a real device's force goes off (Backspace).")) {
+    act(Action::start_over);
+  }
+}
+
+}  // namespace
+
+void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_length,
+                    const Act& act, ScreenRect rect) {
+  begin_panel("transport", rect);
+  if (playback.loading()) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::Text("%s ...", playback.what().c_str());
+  } else if (playback.on()) {
+    playback_controls(playback, act);
+  } else {
+    live_controls(desk, tick, plot_length, act);
+  }
+  ImGui::End();
+}
+
+}  // namespace limpid

@@ -1,0 +1,48 @@
+// The 3D view: the picture under ImGui, and what the mouse does in it.
+#pragma once
+
+#include <imgui.h>
+
+#include <optional>
+#include <span>
+
+#include "app/desktop/base/settings.h"
+#include "app/desktop/base/stage.h"
+#include "app/desktop/document/scene_editor.h"
+#include "app/live/live_loop.h"
+#include "app/plot/plot_frame.h"
+#include "render/camera.h"
+
+namespace limpid {
+
+// What there is to see in one frame.
+struct ViewScene {
+  Stage& stage;
+  std::span<const double> row;
+  bool recorded = false;               // the row is a recording's
+  std::span<const double> rerun = {};  // the row of its second run; or none
+  std::optional<SceneObject> selected = {};
+  int quality = 0;         // a level of Quality
+  double pixel_scale = 1;  // pixels a point
+  int pixel_height = 0;    // of the window [px]
+};
+
+class ViewPanel {
+ public:
+  // The mouse turns the camera and, in the controls, leads the hand.
+  void draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+            ScreenRect rect);
+
+ private:
+  static ViewState state_of(const ViewScene& scene, const Settings& settings);
+  void handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+                    ScreenRect rect);
+  void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
+                 const Eigen::Vector2d& pixel);
+
+  bool dragging_ = false;
+  Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
+  Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]
+};
+
+}  // namespace limpid

@@ -1,0 +1,96 @@
+#include "app/desktop/playback/playback.h"
+
+#include <fmt/format.h>
+
+#include "devices/files/session/session_csv.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+void Playback::open(const fs::path& file) {
+  loading_.start(
+      fmt::format("loading {}", file.filename().string()),
+      [file](BackgroundProgress&) -> std::optional<LoadedSession> { return load_session(file); });
+}
+
+void Playback::close() {
+  rerunning_.cancel();
+  shown_.reset();
+}
+
+void Playback::toggle_playing() {
+  Player& player = shown_->player();
+  player.playing() ? player.pause() : player.play();
+}
+
+void Playback::start_rerun(const Parameters& chosen) {
+  if (!shown_) return;
+  rerunning_.start(
+      "re-running",
+      [session = shown_->player().shared(), where = shown_->file().string(), chosen](
+          BackgroundProgress& progress) { return run_again(*session, where, chosen, progress); });
+}
+
+void Playback::export_csv() {
+  if (!shown_ || exporting_.busy()) return;
+  fs::path out = shown_->file();
+  out.replace_extension(".csv");
+  exporting_.start("writing the table",
+                   [session = shown_->player().shared(), out](BackgroundProgress&) {
+                     write_csv(*session, out, false);
+                     return fmt::format("Wrote {}", out.string());
+                   });
+}
+
+void Playback::recover_leftovers(const fs::path& folder) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (!entry.path().string().ends_with(".h5.part")) continue;
+    try {
+      const Recovered recovered = recover_session(entry.path(), false);
+      notices_.say(fmt::format("Recovered {} ({} ticks) from a recording that was cut off.",
+                               recovered.file.filename().string(), recovered.rows));
+      last_ = recovered.file;
+    } catch (const std::exception& e) {
+      notices_.say(e.what(), true);
+    }
+  }
+}
+
+bool Playback::update(double dt) {
+  bool opened = false;
+  try {
+    opened = take_results();
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+  if (shown_) shown_->player().advance(dt);
+  return opened;
+}
+
+bool Playback::take_results() {
+  bool opened = false;
+  if (auto loaded = loading_.take(); loaded && *loaded) {
+    rerunning_.cancel();
+    PlayedSession fresh(std::move(**loaded));
+    shown_.emplace(std::move(fresh));
+    last_ = shown_->file();
+    shown_->player().play();
+    opened = true;
+  }
+  if (auto again = rerunning_.take(); again && shown_ && !again->rows.empty()) {
+    const RunEnd end = again->end;
+    shown_->show(std::move(*again));
+    if (end.diverged) {
+      notices_.say(fmt::format("The re-run is unstable from {:.3f} s on: {}. It is shown up to its "
+                               "end.",
+                               end.diverged_at, end.why),
+                   true);
+    }
+  }
+  if (auto text = exporting_.take()) notices_.say(*text);
+  return opened;
+}
+
+}  // namespace limpid

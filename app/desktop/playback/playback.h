@@ -1,0 +1,58 @@
+// Recordings that are looked at: loading one, its second run, and writing it as a table.
+#pragma once
+
+#include <optional>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/playback/played_session.h"
+
+namespace limpid {
+
+class Playback {
+ public:
+  explicit Playback(Notices& notices) : notices_(notices) {}
+
+  // The session comes in beside the window and is shown then.
+  void open(const std::filesystem::path& file);
+  bool loading() const { return loading_.busy(); }
+  const std::string& what() const { return loading_.what(); }  // for people, while loading
+  void close();
+
+  // The session that is shown; null: none is, the loop is.
+  PlayedSession* shown() { return shown_ ? &*shown_ : nullptr; }
+  const PlayedSession* shown() const { return shown_ ? &*shown_ : nullptr; }
+  bool on() const { return shown_.has_value(); }
+
+  void toggle_playing();  // precondition: on()
+  // The recorded hand under these settings.
+  void start_rerun(const Parameters& chosen);
+  void cancel_rerun() { rerunning_.cancel(); }
+  bool rerunning() const { return rerunning_.busy(); }
+  double rerun_part() const { return rerunning_.part(); }  // 0 to 1
+  // The table goes beside the session's file.
+  void export_csv();
+  bool exporting() const { return exporting_.busy(); }
+
+  // What there was last to look at; empty: nothing yet.
+  const std::filesystem::path& last() const { return last_; }
+  void set_last(const std::filesystem::path& file) { last_ = file; }
+  // Makes sessions of the recordings in a folder that were cut off.
+  void recover_leftovers(const std::filesystem::path& folder);
+
+  // Once a frame. True when another session has come.
+  bool update(double dt);
+  // Before the OpenGL context goes.
+  void drop_pictures() { shown_.reset(); }
+
+ private:
+  bool take_results();
+
+  Notices& notices_;
+  std::optional<PlayedSession> shown_;
+  std::filesystem::path last_;
+  Background<std::optional<LoadedSession>> loading_;
+  Background<Rerun> rerunning_;
+  Background<std::string> exporting_;
+};
+
+}  // namespace limpid

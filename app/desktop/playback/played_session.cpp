@@ -1,0 +1,87 @@
+#include "app/desktop/playback/played_session.h"
+
+#include "app/run/replay.h"
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The plots hold the whole recording, and the re-run if there is one.
+History history_of(const Session& session, std::span<const double> again) {
+  const TraceChannels channels(session.layout);
+  const double length = static_cast<double>(session.size()) * session.info.tick;
+  History history({.channels = channels.count() * (again.empty() ? 1 : 2),
+                   .seconds = length + 1,
+                   .tick = session.info.tick});
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto second = again.empty() ? again : again.subspan(k * stride, stride);
+    channels.append(history, session.row(k), second);
+  }
+  for (const SettingChange& change : session.changes) {
+    std::string label = change.setting;
+    std::erase(label, '"');
+    history.mark(static_cast<double>(change.row) * session.info.tick, label);
+  }
+  return history;
+}
+
+}  // namespace
+
+LoadedSession load_session(const fs::path& file) {
+  auto session = std::make_shared<const Session>(read_session(file));
+  if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
+  RunPlan world = replay(*session, file.string(), {});
+  History history = history_of(*session, {});
+  return {.file = file,
+          .session = std::move(session),
+          .arm = std::move(world.arm),
+          .scene = std::move(world.scene),
+          .models = std::move(world.models),
+          .history = std::move(history)};
+}
+
+Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
+                BackgroundProgress& progress) {
+  const RunPlan plan = replay(session, where, chosen);
+  std::vector<double> rows;
+  rows.reserve(session.rows.size());
+  std::uint64_t count = 0;
+  const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
+                              [&](std::span<const double> row, const Parameters*) {
+                                rows.insert(rows.end(), row.begin(), row.end());
+                                progress.part =
+                                    static_cast<double>(++count) / static_cast<double>(plan.rows);
+                                return true;
+                              });
+  if (end.stopped || rows.empty()) return {{}, end, history_of(session, {})};
+  const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
+  while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
+  History history = history_of(session, rows);
+  return {std::move(rows), end, std::move(history)};
+}
+
+PlayedSession::PlayedSession(LoadedSession loaded)
+    : file_(std::move(loaded.file)),
+      player_(std::move(loaded.session)),
+      arm_(std::move(loaded.arm)),
+      scene_(std::move(loaded.scene)),
+      models_(std::move(loaded.models)),
+      stage_(std::make_unique<Stage>(arm_, scene_, models_, std::move(loaded.history),
+                                     player_.duration())) {}
+
+void PlayedSession::show(Rerun again) {
+  stage_ =
+      std::make_unique<Stage>(arm_, scene_, models_, std::move(again.history), player_.duration());
+  rerun_ = std::move(again.rows);
+}
+
+std::span<const double> PlayedSession::rerun_row() const {
+  const auto stride = static_cast<std::size_t>(player_.session().layout.stride());
+  return rerun_.empty() ? std::span<const double>()
+                        : std::span<const double>(rerun_).subspan(player_.index() * stride, stride);
+}
+
+}  // namespace limpid

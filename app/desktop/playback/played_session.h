@@ -1,0 +1,67 @@
+// A session that is being looked at, with a second run of its hand beside it if one was made.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "app/desktop/base/stage.h"
+#include "app/run/simulate.h"
+#include "app/session/background.h"
+#include "app/session/player.h"
+
+namespace limpid {
+
+// A session as it comes from its file.
+struct LoadedSession {
+  std::filesystem::path file;
+  std::shared_ptr<const Session> session;
+  ArmDescription arm;
+  Scene scene;
+  MeshModels models;
+  History history;
+};
+
+// A second run of a recording's hand.
+struct Rerun {
+  std::vector<double> rows;  // as many as the session's
+  RunEnd end;                // where it diverged the last row stands for those that are missing
+  History history;           // of both
+};
+
+// Neither is for the window's thread. Errors: FileError and the like.
+LoadedSession load_session(const std::filesystem::path& file);
+// Under `chosen`, where these may be changed; without rows if it was cancelled.
+Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
+                BackgroundProgress& progress);
+
+class PlayedSession {
+ public:
+  // Needs a current OpenGL context. Errors: as Stage.
+  explicit PlayedSession(LoadedSession loaded);
+
+  const std::filesystem::path& file() const { return file_; }
+  const Scene& scene() const { return scene_; }
+  Player& player() { return player_; }
+  const Player& player() const { return player_; }
+  Stage& stage() { return *stage_; }
+  const Stage& stage() const { return *stage_; }
+
+  // From now on beside the recording. Errors: as Stage.
+  void show(Rerun again);
+  bool has_rerun() const { return !rerun_.empty(); }
+  // The second run's at the player's time; empty without one.
+  std::span<const double> rerun_row() const;
+
+ private:
+  std::filesystem::path file_;
+  Player player_;
+  ArmDescription arm_;
+  Scene scene_;
+  MeshModels models_;
+  std::vector<double> rerun_;  // rows of the second run; or none
+  std::unique_ptr<Stage> stage_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,156 @@
+#include "app/desktop/shell/actions.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "app/desktop/shell/keys.h"
+
+namespace limpid {
+namespace {
+
+void change_eta(Parameters& p, double factor) {
+  const ParameterInfo& info = *find_parameter("coupling.eta");
+  p.eta = std::clamp(p.eta * factor, info.slider_minimum, info.slider_maximum);
+}
+
+void toggle(Desktop& desktop, Dialog dialog) {
+  desktop.open_dialog(desktop.dialog() == dialog ? Dialog::none : dialog);
+}
+
+void cut_force(Desktop& desktop) {
+  if (desktop.desk().loop().snapshot().arming != Arming::off) {
+    desktop.notices().say("Force off. F switches it on again.");
+  }
+  desktop.cut_force();
+}
+
+// Closes what is open first: a menu, then typing outside of dialogs (which ImGui ends), the
+// question, the dialog.
+void close_one(Desktop& desktop) {
+  const Focus focus = desktop.focus();
+  if (focus.popup) {
+    // Lists inside of a dialog go, the dialog stays.
+    const int level = ImGui::GetTopMostPopupModal() != nullptr ? 1 : 0;
+    ImGui::ClosePopupToLevel(level, true);
+  } else if (focus.question) {
+    desktop.document().stay();
+  } else if (!focus.text || modal(focus.dialog)) {
+    desktop.close_dialog();
+  }
+}
+
+void save_picture(Window& window) {
+  const std::string name =
+      fmt::format("limpid-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr)));
+  window.save_picture(sessions_dir() / name);
+}
+
+void freeze_plots(PlotGroup& group) { group.set_following(!group.following()); }
+
+// Each carries out its own actions and knows no others.
+bool act_on_playback(Action action, Playback& playback, const Parameters& parameters) {
+  if (!playback.on()) return false;
+  Player& player = playback.shown()->player();
+  switch (action) {
+    case Action::back_to_live: playback.close(); return true;
+    case Action::tick_back: player.step(-1); return true;
+    case Action::tick_on: player.step(1); return true;
+    case Action::step_back: player.step(-100); return true;
+    case Action::step_on: player.step(100); return true;
+    case Action::to_the_beginning: player.seek(0); return true;
+    case Action::toggle_loop: player.loop = !player.loop; return true;
+    case Action::rerun: playback.start_rerun(parameters); return true;
+    default: return false;
+  }
+}
+
+bool act_on_document(Action action, Document& document) {
+  switch (action) {
+    case Action::discard_and_leave: document.discard_and_leave(); return true;
+    case Action::undo: document.undo(); return true;
+    case Action::redo: document.redo(); return true;
+    case Action::select_next: document.editor().select_next(1); return true;
+    case Action::select_previous: document.editor().select_next(-1); return true;
+    case Action::remove_selected: document.remove_selected(); return true;
+    case Action::duplicate_selected: document.duplicate_selected(); return true;
+    default: return false;
+  }
+}
+
+bool act_on_view(Action action, Desktop& desktop) {
+  Settings& s = desktop.settings();
+  Camera& camera = desktop.camera();
+  switch (action) {
+    case Action::front_view: camera.look(Camera::View::front); return true;
+    case Action::side_view: camera.look(Camera::View::side); return true;
+    case Action::top_view: camera.look(Camera::View::top); return true;
+    case Action::smaller_eta: change_eta(s.parameters, 1 / 1.1); return true;
+    case Action::larger_eta: change_eta(s.parameters, 1.1); return true;
+    case Action::toggle_ghost: s.show_ghost = !s.show_ghost; return true;
+    case Action::toggle_left: s.show_left = !s.show_left; return true;
+    case Action::toggle_right: s.show_right = !s.show_right; return true;
+    case Action::toggle_plots: s.show_plots = !s.show_plots; return true;
+    default: return false;
+  }
+}
+
+bool act_on_window(Action action, Window& window) {
+  switch (action) {
+    case Action::full_screen: window.toggle_full_screen(); return true;
+    case Action::save_picture: save_picture(window); return true;
+    case Action::quit: window.close(); return true;
+    default: return false;
+  }
+}
+
+void act_on_desktop(Action action, Desktop& d) {
+  switch (action) {
+    case Action::escape:
+      cut_force(d);
+      close_one(d);
+      break;
+    case Action::cut_force: cut_force(d); break;
+    case Action::toggle_force: d.desk().toggle_force(); break;
+    case Action::start_over: d.desk().start_over(); break;
+    case Action::toggle_coupling: d.toggle_coupling(); break;
+    case Action::toggle_recording: d.toggle_recording(); break;
+    case Action::toggle_playing: d.toggle_playing(); break;
+    case Action::reset_camera: d.camera().reset(d.shown().picture.bounds()); break;
+    case Action::frame_selected: d.frame_selected(); break;
+    case Action::freeze_plots: freeze_plots(d.shown().group); break;
+    case Action::save_scene: d.save_scene(); break;
+    case Action::save_and_leave: d.save_and_leave(); break;
+    case Action::toggle_help: toggle(d, Dialog::help); break;
+    case Action::toggle_experiments: toggle(d, Dialog::experiments); break;
+    case Action::open_session: d.open_dialog(Dialog::open_session); break;
+    case Action::gallery: d.open_dialog(Dialog::gallery); break;
+    case Action::add_model: d.open_dialog(Dialog::add_model); break;
+    case Action::save_scene_as: d.open_dialog(Dialog::save_scene); break;
+    default: break;
+  }
+}
+
+}  // namespace
+
+void carry_out(Action action, Desktop& desktop, Window& window) {
+  const Parameters& parameters = desktop.settings().parameters;
+  const bool done = act_on_view(action, desktop) || act_on_window(action, window) ||
+                    act_on_document(action, desktop.document()) ||
+                    act_on_playback(action, desktop.playback(), parameters);
+  if (!done) act_on_desktop(action, desktop);
+}
+
+void handle_keys(Desktop& desktop, Window& window) {
+  for (const KeyPress& press : window.keys()) {
+    // A key may have opened something for the next one.
+    const KeyOwner owner = owner_of(desktop.focus());
+    carry_out(action_of(owner, press.key, press.modifiers, press.repeated), desktop, window);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,176 @@
+#include "app/desktop/shell/desktop.h"
+
+#include <fmt/format.h>
+
+#include "app/base/assets.h"
+#include "core/dynamics/arm.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/config/config_file.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+Desktop::Desktop(Settings settings, const AskForPriority& ask)
+    : settings_(std::move(settings)),
+      document_(settings_, notices_, [this] { return why_fixed(); }),
+      desk_(notices_, ask),
+      devices_(desk_, notices_, ask,
+               {.open = [this](std::unique_ptr<Device> device) { open_device(std::move(device)); },
+                .close = [this] { close_device(); },
+                .toggle_coupling = [this] { toggle_coupling(); }}),
+      playback_(notices_),
+      analysed_(settings_.parameters) {
+  desk_.controls().parameters = settings_.parameters;
+}
+
+void Desktop::open_world(const std::string& device, const std::string& scene) {
+  device_file_ = device.empty() ? default_device().string() : device;
+  document_.set_file(scene.empty() ? default_scene().string() : fs::absolute(scene).string());
+  ArmDescription arm = read_urdf(device_file_);
+  Scene whole = read_scene(document_.file(), arm);
+  if (whole.meshes.empty()) return open(std::move(arm), std::move(whole), {});
+  // Models may be large: they come in while the window is there already.
+  Scene first = whole;
+  first.meshes.clear();
+  open(std::move(arm), std::move(first), {});
+  document_.loader().open_scene(document_.file(), desk_.stage().arm());
+}
+
+void Desktop::open_last_world(const std::string& device, const std::string& scene) {
+  const std::string& arm = device.empty() ? settings_.device : device;
+  if (!scene.empty()) return open_world(arm, scene);
+  try {
+    open_world(arm, settings_.scene);
+  } catch (const std::exception& e) {
+    if (settings_.scene.empty()) throw;
+    open_world(arm, "");
+    notices_.say(e.what(), true);
+  }
+}
+
+void Desktop::open(ArmDescription arm, Scene scene, MeshModels models,
+                   std::unique_ptr<Device> device, bool saved) {
+  desk_.open(std::move(arm), std::move(scene), models, settings_.parameters, settings_.plot_length,
+             std::move(device));
+  take_stage(std::move(models), saved);
+}
+
+// The stage's scene is the one that is edited from now on.
+void Desktop::take_stage(MeshModels models, bool saved) {
+  const Stage& stage = desk_.stage();
+  camera_.reset(stage.picture.bounds());
+  camera_.finish();
+  analysis_ = analyze(stage.arm(), rest_pose(stage.arm()), settings_.parameters, std::nullopt);
+  document_.open(stage.arm(), stage.scene(), std::move(models), saved);
+  shown_ = document_.editor().version();
+  touched_ = shown_.world;
+}
+
+void Desktop::drop_pictures() {
+  playback_.drop_pictures();
+  desk_.drop_pictures();
+}
+
+void Desktop::update(double dt) {
+  document_.note_changes();
+  follow_parameters();
+  show_scene();
+  hand_scene_over(false);
+  desk_.update(settings_.parameters);
+  if (const auto recorded = desk_.take_recorded()) playback_.set_last(*recorded);
+  if (playback_.update(dt)) camera_.frame(playback_.shown()->stage().picture.bounds());
+  take_loaded();
+  devices_.update();
+  camera_.advance(dt);
+  if (desk_.became_unstable()) {
+    cut_force();
+    notices_.say(
+        "The loop became unstable; force is off. Choose a larger eta or a smaller alpha, start "
+        "over (Backspace), then F.",
+        true);
+  }
+  notices_.forget_old();
+}
+
+std::span<const double> Desktop::row() const {
+  return playback_.on() ? playback_.shown()->player().row() : desk_.row();
+}
+
+// Marks in the plots what has changed.
+void Desktop::follow_parameters() {
+  const Parameters& parameters = settings_.parameters;
+  if (parameters == analysed_) return;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string text = parameter_text(parameters, info);
+    if (playback_.on() || text == parameter_text(analysed_, info)) continue;
+    std::string value = text.empty() ? "the arm's" : text;
+    std::erase(value, '"');
+    desk_.mark(fmt::format("{} {}", info.label, value), info.key);
+  }
+  analysed_ = parameters;
+  const ArmDescription& arm = shown().arm();
+  analysis_ = analyze(arm, rest_pose(arm), parameters, std::nullopt);
+}
+
+int Desktop::quality_level() const {
+  if (settings_.picture_quality == "high") return 0;
+  if (settings_.picture_quality == "medium") return 2;
+  if (settings_.picture_quality == "low") return Quality::kLowest;
+  return automatic_quality_.level();
+}
+
+Focus Desktop::focus() const {
+  return {.text = typing(),
+          .popup = popup_open(),
+          .question = document_.asking(),
+          .dialog = dialog_,
+          .playback = playback_.on()};
+}
+
+void Desktop::toggle_coupling() { settings_.parameters.kind = next(settings_.parameters.kind); }
+
+void Desktop::cut_force() {
+  desk_.loop().cut();
+  devices_.cancel_check();
+}
+
+void Desktop::reset_parameters() {
+  settings_.parameters = Parameters{};
+  notices_.say("All settings are the paper's again.");
+}
+
+void Desktop::toggle_recording() {
+  if (desk_.loop().recording()) return desk_.stop_recording();
+  if (!desk_.may_record()) return;
+  try {
+    start_recording();
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
+void Desktop::start_recording() {
+  playback_.close();
+  RunPlan plan;
+  plan.arm = desk_.stage().arm();
+  plan.scene = document_.scene();
+  plan.scene.toml = document_.toml();
+  plan.hand.source = desk_.loop().device_in_place() ? "device" : "mouse";
+  plan.parameters = settings_.parameters;
+  hand_scene_over(true);
+  desk_.record(plan, sessions_dir());
+}
+
+void Desktop::toggle_playing() {
+  if (playback_.on()) {
+    playback_.toggle_playing();
+  } else if (!playback_.last().empty()) {
+    playback_.open(playback_.last());
+  } else {
+    open_dialog(Dialog::open_session);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,110 @@
+// The parts of the desktop, and what is done that needs more than one of them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/desktop/desk/device_desk.h"
+#include "app/desktop/document/document.h"
+#include "app/desktop/playback/playback.h"
+#include "app/desktop/shell/focus.h"
+#include "app/run/analysis.h"
+#include "render/camera.h"
+#include "render/quality.h"
+
+namespace limpid {
+
+class Desktop {
+ public:
+  Desktop(Settings settings, const AskForPriority& ask);
+
+  Settings& settings() { return settings_; }
+  Notices& notices() { return notices_; }
+  Document& document() { return document_; }
+  Desk& desk() { return desk_; }
+  DeviceDesk& devices() { return devices_; }
+  Playback& playback() { return playback_; }
+  Camera& camera() { return camera_; }
+  AutoQuality& automatic_quality() { return automatic_quality_; }
+
+  // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
+  void open_world(const std::string& device, const std::string& scene);
+  // The same, empty for what was open last time; a scene that is gone by now only says so.
+  void open_last_world(const std::string& device, const std::string& scene);
+  // Before the OpenGL context goes.
+  void drop_pictures();
+  // Once a frame, before anything is drawn.
+  void update(double dt);
+
+  // What is on screen: the recording that is played, or the loop. The row is empty before the
+  // first.
+  Stage& shown() { return playback_.on() ? playback_.shown()->stage() : desk_.stage(); }
+  const Stage& shown() const { return playback_.on() ? playback_.shown()->stage() : desk_.stage(); }
+  std::span<const double> row() const;
+  const Analysis& analysis() const { return analysis_; }  // at the arm's rest pose
+  int quality_level() const;                              // of Quality, as the settings want it
+
+  Dialog dialog() const { return dialog_; }  // that is open
+  void open_dialog(Dialog dialog) { dialog_ = dialog; }
+  void close_dialog() { dialog_ = Dialog::none; }
+  // Who has the keys at this moment.
+  Focus focus() const;
+
+  void toggle_coupling();
+  void cut_force();
+  void reset_parameters();
+  void toggle_recording();
+  void toggle_playing();
+
+  // Loading goes on beside the window; what is there stays until it is done.
+  void open_scene(const std::filesystem::path& file);
+  void add_model(const std::filesystem::path& file);
+  void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
+  void add_object(SceneObject object);
+  void frame_selected();
+  // Where the scene has no file of the user's own, its name is asked for.
+  void save_scene();
+  void save_and_leave();
+
+  // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
+  // along with all its changes, or, if it cannot, the user is asked first.
+  void open_device(std::unique_ptr<Device> device);
+  void close_device();
+
+ private:
+  // A world, and its loop.
+  void open(ArmDescription arm, Scene scene, MeshModels models,
+            std::unique_ptr<Device> device = nullptr, bool saved = true);
+  void take_stage(MeshModels models, bool saved);
+  void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
+  void take_up_set_aside(const ArmDescription& arm);
+  std::string why_fixed() const;
+  void take_loaded();
+  void accept(LoadedScene& loaded);
+  void accept(LoadedModel& loaded);
+  Workplace workplace() const;
+  void start_recording();
+  void follow_parameters();
+  void show_scene();
+  void hand_scene_over(bool at_once);
+
+  Settings settings_;
+  Notices notices_;
+  Document document_;
+  Desk desk_;
+  DeviceDesk devices_;
+  Playback playback_;
+  Camera camera_;
+  AutoQuality automatic_quality_;
+  Dialog dialog_ = Dialog::none;
+  std::string device_file_;
+  Analysis analysis_;
+  Parameters analysed_;  // that marks and analysis know
+  SceneEditor::Version shown_;
+  std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
+  std::chrono::steady_clock::time_point touched_since_;
+};
+
+}  // namespace limpid

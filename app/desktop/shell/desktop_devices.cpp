@@ -1,0 +1,70 @@
+// What the desktop does when devices come and go.
+#include "app/base/assets.h"
+#include "app/desktop/shell/desktop.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/file_error.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path own_scene(const ArmDescription& arm) {
+  const fs::path assets = data_dir() / "assets";
+  return arm.dof() == 2 ? assets / "devices/joystick.toml" : assets / "scenes/free.toml";
+}
+
+}  // namespace
+
+void Desktop::open_device(std::unique_ptr<Device> device) {
+  devices_.plugged();
+  const DeviceTraits& traits = device->traits();
+  const ArmDescription& present = desk_.stage().arm();
+  if (Plug::guides(traits)) {
+    const SceneEditor& editor = document_.editor();
+    if (desk_.loop().device_in_place()) {
+      open(present, editor.scene(), editor.models(), nullptr, !editor.dirty());
+    }
+    return desk_.loop().plug(std::move(device));
+  }
+  const ArmDescription arm = arm_for(traits, present);
+  if (desk_.loop().device_in_place() && arm.dof() == present.dof()) {
+    return desk_.loop().plug(std::move(device));
+  }
+  playback_.close();
+  change_arm(arm, std::move(device));
+}
+
+void Desktop::close_device() {
+  if (!desk_.loop().device_in_place()) return desk_.loop().plug(nullptr);
+  try {
+    change_arm(read_urdf(device_file_), nullptr);
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+    change_arm(read_urdf(default_device()), nullptr);
+  }
+}
+
+void Desktop::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
+  if (!device && document_.has_set_aside()) {
+    return document_.leave([this, arm] { take_up_set_aside(arm); });
+  }
+  if (auto scene = document_.scene_for(arm)) {
+    return open(arm, std::move(scene->scene), std::move(scene->models), std::move(device),
+                !document_.editor().dirty());
+  }
+  document_.put_aside();
+  const fs::path file = own_scene(arm);
+  document_.set_file(file.string());
+  open(arm, read_scene(file, arm), {}, std::move(device));
+}
+
+// What was open before a device brought its own scene, with its changes.
+void Desktop::take_up_set_aside(const ArmDescription& arm) {
+  const SetAside before = document_.take_set_aside();
+  document_.set_file(before.file);
+  open(arm, before.world->scene, before.world->models, nullptr, !before.unsaved);
+}
+
+}  // namespace limpid

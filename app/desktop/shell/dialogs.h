@@ -1,0 +1,42 @@
+// What opens over the window.
+#pragma once
+
+#include <filesystem>
+
+#include "app/desktop/base/action.h"
+#include "app/desktop/panels/experiments_panel.h"
+#include "app/desktop/panels/gallery.h"
+#include "app/desktop/panels/session_dialog.h"
+#include "app/desktop/shell/desktop.h"
+#include "app/desktop/widgets/path_dialog.h"
+
+namespace limpid {
+
+class Dialogs {
+ public:
+  explicit Dialogs(Desktop& desktop) : desktop_(desktop), experiments_(desktop.notices()) {}
+
+  void draw_reading();  // help and the like
+  void draw_experiments();
+  // Those about scenes and files, which are modal.
+  void draw_scenes(const Act& act);
+  void draw_sessions();
+  void drop_pictures() { gallery_.drop_pictures(); }  // before the OpenGL context goes
+
+ private:
+  // Draws one, which closes itself by clearing what says that it is open.
+  template <class Draw>
+  auto draw(Dialog which, Draw&& draw_it);
+  void draw_paths();
+
+  Desktop& desktop_;
+  Gallery gallery_;
+  SessionDialog session_;
+  ExperimentsPanel experiments_;
+  PathDialog add_{{.title = "Add model", .action = "Add", .extensions = {".glb", ".gltf"}}};
+  PathDialog save_{
+      {.title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true}};
+  std::filesystem::path last_folder_;  // that a model came from
+};
+
+}  // namespace limpid

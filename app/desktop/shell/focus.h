@@ -1,0 +1,59 @@
+// Who the keys belong to. A key goes to one owner only: a text field before a question, a question
+// before a dialog, a dialog before the recording and the view.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+
+namespace limpid {
+
+// One dialog is open at a time; the question about unsaved changes stands above it.
+enum class Dialog : std::uint8_t {
+  none,
+  help,
+  about,
+  experiments,
+  open_session,
+  gallery,
+  add_model,
+  save_scene,
+};
+const char* name(Dialog dialog);
+// One that asks something: nothing behind it acts meanwhile.
+bool modal(Dialog dialog);
+
+// Of ImGui: a text field is being typed in; a menu or a list is open.
+bool typing();
+bool popup_open();
+
+struct Focus {
+  bool text = false;   // a text field is being typed in
+  bool popup = false;  // a menu or a list is open
+  bool question = false;
+  Dialog dialog = Dialog::none;
+  bool playback = false;
+
+  friend bool operator==(const Focus&, const Focus&) = default;
+};
+
+enum class KeyOwner : std::uint8_t { view, playback, dialog, popup, question, text };
+KeyOwner owner_of(const Focus& focus);
+
+// Keys that are down. One that is held while the focus goes elsewhere is stale until it is let go:
+// neither its repetitions nor its characters reach the new owner. Modifiers never are.
+class HeldKeys {
+ public:
+  // By GLFW's numbers; what has none is not followed.
+  void press(int key);
+  void release(int key);
+  void set_focus(const Focus& focus);
+  bool stale(int key) const;
+
+ private:
+  static constexpr int kKeys = 512;
+
+  std::bitset<kKeys> held_, stale_;
+  Focus focus_;
+};
+
+}  // namespace limpid

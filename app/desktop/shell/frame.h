@@ -1,0 +1,51 @@
+// One frame of the window: all of its parts, each in its place.
+#pragma once
+
+#include <utility>
+
+#include "app/desktop/panels/analysis_panel.h"
+#include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/panels/view_panel.h"
+#include "app/desktop/shell/dialogs.h"
+#include "app/desktop/shell/layout.h"
+#include "app/desktop/shell/window.h"
+#include "app/desktop/widgets/guard.h"
+
+namespace limpid {
+
+// What throws becomes a notice, but not the same one in every frame.
+template <class Work>
+void guard(Notices& notices, Work&& work) {
+  guarded([&](const char* what) { notices.say_once(what, true); }, std::forward<Work>(work));
+}
+
+class Frame {
+ public:
+  // `act` carries out what is asked for in the parts.
+  Frame(Desktop& desktop, Window& window, Act act)
+      : desktop_(desktop), window_(window), act_(std::move(act)), dialogs_(desktop) {}
+
+  void draw();
+  void drop_pictures() { dialogs_.drop_pictures(); }  // before the OpenGL context goes
+
+ private:
+  Layout lay_out();
+  void draw_view(ScreenRect rect);
+  void draw_coupling(ScreenRect rect);
+  void draw_side(ScreenRect rect);
+  void draw_plot_row(ScreenRect rect);
+  void draw_splitters(const Layout& at);
+  std::string quality_text() const;
+
+  // The parts of the window that remember something themselves.
+  Desktop& desktop_;
+  Window& window_;
+  Act act_;
+  WindowLayout layout_;
+  ViewPanel view_;
+  ScenePanel scene_;
+  AnalysisPanel analysis_;
+  Dialogs dialogs_;
+};
+
+}  // namespace limpid

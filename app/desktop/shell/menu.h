@@ -1,0 +1,11 @@
+// The menu bar, with what is going on at its end.
+#pragma once
+
+#include "app/desktop/base/action.h"
+#include "app/desktop/shell/desktop.h"
+
+namespace limpid {
+
+void draw_menu_bar(Desktop& desktop, bool full_screen, const Act& act);
+
+}  // namespace limpid

@@ -1,0 +1,48 @@
+#include "app/desktop/shell/print_state.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace limpid {
+
+void print_state(Desktop& d, int width, int height) {
+  const Parameters& p = d.settings().parameters;
+  const Desk& desk = d.desk();
+  const SceneEditor& editor = d.document().editor();
+  const PlayedSession* played = d.playback().shown();
+  const Focus focus = d.focus();
+  nlohmann::json notices = nlohmann::json::array();
+  for (const Notice& notice : d.notices().all()) notices.push_back(notice.text);
+  const std::span<const double> row = d.row();
+  const RowLayout& layout = d.shown().channels().layout();
+  const LoopStatus status = desk.loop().status();
+  std::vector<double> values(static_cast<std::size_t>(d.shown().channels().count()));
+  d.shown().channels().values(row, values);
+  const auto& selected = editor.selected();
+  const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
+  fmt::print(
+      "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
+      "\"energy_total\": {:.6g}, \"grip\": {:.2f}, \"force\": {}, \"recording\": {}, "
+      "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
+      "{}, "
+      "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
+      "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
+      "{}, "
+      "\"typing\": {}, \"notices\": {}, \"size\": [{}, {}]}}\n",
+      layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
+      channel(Channel::contact), channel(Channel::energy_total),
+      layout.in(row, Column::hand_grip)[0], desk.force_armed(), desk.loop().recording(),
+      played != nullptr, played != nullptr && played->has_rerun(), status.rate, status.ticks,
+      status.late, status.missed, status.slipped, desk.loop().trace_dropped(),
+      objects_of(editor.scene()).size(),
+      selected ? nlohmann::json(name_of(editor.scene(), *selected)).dump() : "null",
+      d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
+      focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
+      nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
+      notices.dump(), width, height);
+  std::fflush(stdout);
+}
+
+}  // namespace limpid

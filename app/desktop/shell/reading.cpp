@@ -1,0 +1,66 @@
+#include "app/desktop/shell/reading.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/desktop/shell/keys.h"
+#include "app/desktop/widgets/modal.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+// Pairs with ImGui::End().
+void begin_reading(const char* title, float width, bool& open) {
+  const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.96f * room.x, 0.9f * room.y});
+  ImGui::SetNextWindowSize({std::min(width * ImGui::GetFontSize(), 0.96f * room.x), 0});
+  ImGui::Begin(
+      title, &open,
+      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize);
+  if (accepted()) open = false;
+}
+
+}  // namespace
+
+void draw_help(bool& open) {
+  if (!open) return;
+  begin_reading("Keys and mouse", 46, open);
+  if (ImGui::BeginTable("keys", 2)) {
+    ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
+    for (const Shortcut& shortcut : shortcuts()) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(shortcut.keys);
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", shortcut.what);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+void draw_about(bool& open) {
+  if (!open) return;
+  begin_reading("About Limpid", 34, open);
+  ImGui::PushFont(font(Face::semibold));
+  ImGui::TextUnformatted("Limpid " LIMPID_VERSION);
+  ImGui::PopFont();
+  ImGui::TextWrapped(
+      "Touch a virtual world through a haptic device and see, tick by tick, how transparent the "
+      "coupling between hand and world is.");
+  ImGui::Spacing();
+  ImGui::TextWrapped(
+      "The proposed coupling is that of \"Improving transparency of virtual coupling for haptic "
+      "interaction with human force observer\"; numbers in parentheses are its equations. Please "
+      "cite the paper when you publish what you measured here.");
+  ImGui::Spacing();
+  ImGui::TextWrapped(
+      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, HDF5, urdfdom and fmt. Text "
+      "is set in Inter (SIL Open Font License).");
+  ImGui::End();
+}
+
+}  // namespace limpid

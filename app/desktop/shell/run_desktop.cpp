@@ -1,0 +1,174 @@
+#include "app/desktop/shell/run_desktop.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/base/interrupt.h"
+#include "app/desktop/document/unsaved.h"
+#include "app/desktop/shell/actions.h"
+#include "app/desktop/shell/frame.h"
+#include "app/desktop/shell/print_state.h"
+#include "app/live/rtkit.h"
+
+namespace limpid {
+namespace {
+
+// Changes that the user could not be asked about are kept for the next start.
+void keep_changes(const Scene& scene, const ArmDescription& arm, const std::string& scene_file) {
+  const std::string name = std::filesystem::path(scene_file).stem().string();
+  for (const std::filesystem::path& folder :
+       {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
+    try {
+      const auto file = keep_unsaved(scene, arm, name, folder);
+      fmt::print(stderr, "limpid: unsaved changes are in {}\n", file.string());
+      return;
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "limpid: unsaved changes: {}\n", e.what());
+    }
+  }
+}
+
+class Application {
+ public:
+  // The haptic thread comes first: what its scheduling allows decides how the window behaves, and
+  // OpenGL's own threads inherit that.
+  Application(const DesktopOptions& options, Settings settings)
+      : options_(options),
+        desktop_(std::move(settings),
+                 [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
+        window_(prepare_window()),
+        frame_(desktop_, window_, [this](Action action) { carry_out(action, desktop_, window_); }) {
+  }
+  ~Application() {  // pictures go before the window they are drawn in
+    frame_.drop_pictures();
+    desktop_.drop_pictures();
+  }
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
+
+  void open();
+  void run(const std::string& complaint);  // about the settings
+  void keep();                             // what is for the next start
+
+ private:
+  Window::Options prepare_window();
+  void do_frame();
+  bool asked_to_close();  // true: at once
+  void say_what_was_saved();
+
+  const DesktopOptions& options_;
+  std::string why_;
+  Desktop desktop_;
+  Window window_;
+  Frame frame_;
+  double last_ = 0;
+  int frames_ = 0;
+  bool leaving_ = false;
+};
+
+Window::Options Application::prepare_window() {
+  if (!desktop_.desk().loop().status().realtime.realtime()) yield_to_haptics();
+  const Settings& settings = desktop_.settings();
+  return {.width = settings.width,
+          .height = settings.height,
+          .ui_scale = options_.ui_scale > 0 ? options_.ui_scale : settings.ui_scale,
+          .theme = settings.theme};
+}
+
+void Application::open() {
+  desktop_.automatic_quality() = AutoQuality(Quality::automatic_level(window_.renderer()));
+  desktop_.open_last_world(options_.device, options_.scene);
+}
+
+void Application::run(const std::string& complaint) {
+  Notices& notices = desktop_.notices();
+  if (!complaint.empty()) notices.say(complaint, true);
+  desktop_.playback().recover_leftovers(sessions_dir());
+  for (const std::filesystem::path& file : take_unsaved(scenes_dir())) {
+    notices.say(
+        fmt::format("Limpid was ended while a scene had unsaved changes. They are in {}: "
+                    "open it from the gallery (Ctrl+G).",
+                    file.filename().string()));
+  }
+  if (!options_.session.empty()) desktop_.playback().open(options_.session);
+  last_ = glfwGetTime();
+  while (!leaving_) {
+    if (window_.begin_frame(desktop_.focus())) {
+      do_frame();
+    } else if (asked_to_close()) {
+      break;
+    }
+  }
+}
+
+// Unsaved changes are asked about, unless somebody interrupts from outside.
+bool Application::asked_to_close() {
+  Document& document = desktop_.document();
+  if (interrupted) {
+    if (document.editor().dirty()) {
+      keep_changes(document.scene(), desktop_.desk().stage().arm(), document.file());
+    }
+    return true;
+  }
+  document.leave([this] { leaving_ = true; });
+  window_.keep_open();
+  return false;
+}
+
+void Application::do_frame() {
+  Notices& notices = desktop_.notices();
+  if (interrupted) window_.close();
+  const double now = glfwGetTime();
+  desktop_.document().hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
+  guard(notices, [&] { handle_keys(desktop_, window_); });
+  guard(notices, [&] { desktop_.open_files(window_.dropped()); });
+  guard(notices, [&] { desktop_.update(now - last_); });
+  last_ = now;
+  frame_.draw();
+  window_.end_frame();
+  say_what_was_saved();
+  desktop_.automatic_quality().frame(window_.frame_time());
+  if (options_.print_state && ++frames_ % 6 == 0) {
+    int width = 0, height = 0;
+    window_.size(width, height);
+    print_state(desktop_, width, height);
+  }
+}
+
+void Application::say_what_was_saved() {
+  for (const SavedPicture& picture : window_.saved()) {
+    if (picture.error.empty()) {
+      desktop_.notices().say("Saved " + picture.file.string());
+    } else {
+      desktop_.notices().say(
+          picture.error + ". See to it that the folder is there and can be written to.", true);
+    }
+  }
+}
+
+void Application::keep() {
+  if (const SetAside* waiting = desktop_.document().unsaved_set_aside()) {
+    keep_changes(waiting->world->scene, waiting->arm, waiting->file);
+  }
+  Settings& settings = desktop_.settings();
+  if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
+  if (const std::string error = save_settings(settings); !error.empty()) {
+    fmt::print(stderr, "limpid: settings not saved: {}\n", error);
+  }
+}
+
+}  // namespace
+
+void run_desktop(const DesktopOptions& options) {
+  std::string complaint;
+  Settings settings = load_settings(complaint);
+  if (options.parameters) settings.parameters = *options.parameters;
+  Application application(options, std::move(settings));
+  catch_interrupts();
+  application.open();
+  application.run(complaint);
+  application.keep();
+}
+
+}  // namespace limpid

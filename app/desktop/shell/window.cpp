@@ -1,0 +1,264 @@
+#include "app/desktop/shell/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "app/style/theme.h"
+#include "render/gl/offscreen.h"
+#include "render/scene_view.h"
+
+namespace limpid {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+constexpr auto kFrame = std::chrono::microseconds(16667);
+constexpr int kLeastWidth = 900, kLeastHeight = 560;
+
+// Where windows may be: the screen without the desktop's bars.
+struct WorkArea {
+  int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
+  float scale = 1;  // of the screen
+};
+
+WorkArea work_area() {
+  WorkArea area;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return area;
+  glfwGetMonitorWorkarea(monitor, &area.x, &area.y, &area.width, &area.height);
+  float vertical = 1;
+  glfwGetMonitorContentScale(monitor, &area.scale, &vertical);
+  return area;
+}
+
+// Inside of the area with the frame that the desktop drew round the window.
+void move_into(const WorkArea& area, GLFWwindow* window) {
+  int left = 0, top = 0, right = 0, bottom = 0, x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowFrameSize(window, &left, &top, &right, &bottom);
+  glfwGetWindowPos(window, &x, &y);
+  glfwGetWindowSize(window, &width, &height);
+  const int fit_width = std::min(width, area.width - left - right);
+  const int fit_height = std::min(height, area.height - top - bottom);
+  if (fit_width != width || fit_height != height) glfwSetWindowSize(window, fit_width, fit_height);
+  const auto held = [](int at, int low, int high) {
+    return std::clamp(at, low, std::max(low, high));
+  };
+  const int fit_x = held(x, area.x + left, area.x + area.width - right - fit_width);
+  const int fit_y = held(y, area.y + top, area.y + area.height - bottom - fit_height);
+  if (fit_x != x || fit_y != y) glfwSetWindowPos(window, fit_x, fit_y);
+}
+
+}  // namespace
+
+struct Window::Impl {
+  GLFWwindow* glfw = nullptr;
+  std::string renderer;
+  KeyInput keys;
+  std::vector<std::filesystem::path> dropped;
+  SteadyClock::time_point due = SteadyClock::now();
+  SteadyClock::time_point began = due;
+  double frame_time = 0;
+  struct Picture {
+    std::filesystem::path file;
+    double left, top, right, bottom;  // nothing: all
+  };
+  std::vector<Picture> pictures;  // to be saved
+  std::vector<SavedPicture> saved;
+  int x = 0, y = 0, width = 0, height = 0;  // before full screen
+  float screen_scale = 1;
+
+  static Impl& of(GLFWwindow* window) {
+    return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+  }
+
+  void save(const Picture& wanted) const {
+    const auto& [file, left, top, right, bottom] = wanted;
+    int pixels_x = 0, pixels_y = 0, points_x = 0, points_y = 0;
+    glfwGetFramebufferSize(glfw, &pixels_x, &pixels_y);
+    glfwGetWindowSize(glfw, &points_x, &points_y);
+    const double scale = static_cast<double>(pixels_x) / points_x;
+    const std::vector<unsigned char> all = read_rgba(pixels_x, pixels_y);
+    if (right <= left || bottom <= top) return write_png(file, pixels_x, pixels_y, all);
+    const auto pixel = [&](double at, int most) {
+      return std::clamp(static_cast<int>(std::lround(at * scale)), 0, most);
+    };
+    const int x0 = pixel(left, pixels_x), x1 = pixel(right, pixels_x);
+    const int y0 = pixel(top, pixels_y), y1 = pixel(bottom, pixels_y);
+    std::vector<unsigned char> part;
+    for (int line = y0; line < y1; ++line) {
+      const auto row = all.begin() + 4 * (static_cast<std::ptrdiff_t>(line) * pixels_x);
+      part.insert(part.end(), row + 4 * x0, row + 4 * x1);
+    }
+    write_png(file, x1 - x0, y1 - y0, part);
+  }
+};
+
+namespace {
+
+// Throws std::runtime_error where there is none to be had.
+GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  const auto fitting = [&](int asked, int least, int most) {
+    const double scaled = static_cast<double>(area.scale) * asked;
+    return static_cast<int>(std::clamp<double>(scaled, std::min(least, most), most));
+  };
+  GLFWwindow* window = glfwCreateWindow(fitting(options.width, kLeastWidth, area.width),
+                                        fitting(options.height, kLeastHeight, area.height),
+                                        "Limpid", nullptr, nullptr);
+  if (window == nullptr) {
+    glfwTerminate();
+    throw std::runtime_error("the display gives no OpenGL 3.3; `limpid run` works without");
+  }
+  glfwMakeContextCurrent(window);
+  glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
+                          std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
+  move_into(area, window);
+  glfwSwapInterval(0);
+  return window;
+}
+
+std::string name_of_renderer() {
+  const auto ask =
+      reinterpret_cast<const unsigned char* (*)(unsigned)>(glfwGetProcAddress("glGetString"));
+  constexpr unsigned kRenderer = 0x1F01;  // GL_RENDERER
+  const unsigned char* name = ask != nullptr ? ask(kRenderer) : nullptr;
+  return name != nullptr ? reinterpret_cast<const char*>(name) : "";
+}
+
+}  // namespace
+
+Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
+  if (glfwInit() == GLFW_FALSE) {
+    const char* why = nullptr;
+    glfwGetError(&why);
+    throw std::runtime_error(std::string("no display to open a window on (") +
+                             (why != nullptr ? why : "glfwInit failed") +
+                             "); `limpid run` works without one");
+  }
+  const WorkArea area = work_area();
+  impl_->screen_scale = area.scale;
+  impl_->glfw = create_window(options, area);
+  impl_->renderer = name_of_renderer();
+  glfwSetWindowUserPointer(impl_->glfw, impl_.get());
+  glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+    Impl::of(w).keys.key(key, action, modifiers);
+  });
+  glfwSetDropCallback(impl_->glfw, [](GLFWwindow* w, int count, const char** paths) {
+    for (int i = 0; i < count; ++i) Impl::of(w).dropped.emplace_back(paths[i]);
+  });
+
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
+  // In place of ImGui's own: characters go to their owner.
+  glfwSetCharCallback(impl_->glfw, [](GLFWwindow* w, unsigned character) {
+    Impl::of(w).keys.character(character);
+  });
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  float scale_x = 1, scale_y = 1;
+  glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
+  const double scale = options.ui_scale > 0 ? options.ui_scale : scale_x;
+  load_fonts(static_cast<float>(scale));
+  apply_theme(options.theme, static_cast<float>(scale));
+}
+
+Window::~Window() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(impl_->glfw);
+  glfwTerminate();
+}
+
+bool Window::begin_frame(const Focus& focus) {
+  std::this_thread::sleep_until(impl_->due);
+  // A frame that took too long does not hurry the next ones.
+  impl_->due = std::max(impl_->due + kFrame, SteadyClock::now());
+  impl_->began = SteadyClock::now();
+  impl_->keys.forget_pressed();
+  impl_->dropped.clear();
+  glfwPollEvents();
+  if (glfwWindowShouldClose(impl_->glfw)) return false;
+  impl_->keys.deal(focus);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  return true;
+}
+
+void Window::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  impl_->saved.clear();
+  for (const Impl::Picture& picture : std::exchange(impl_->pictures, {})) {
+    SavedPicture& result = impl_->saved.emplace_back(SavedPicture{picture.file, ""});
+    try {
+      impl_->save(picture);
+    } catch (const std::exception& e) {
+      result.error = e.what();
+    }
+  }
+  glfwSwapBuffers(impl_->glfw);
+  const std::chrono::duration<double> took = SteadyClock::now() - impl_->began;
+  impl_->frame_time = took.count();
+}
+
+void Window::close() { glfwSetWindowShouldClose(impl_->glfw, GLFW_TRUE); }
+
+void Window::keep_open() { glfwSetWindowShouldClose(impl_->glfw, GLFW_FALSE); }
+
+bool Window::full_screen() const { return glfwGetWindowMonitor(impl_->glfw) != nullptr; }
+
+void Window::toggle_full_screen() {
+  Impl& w = *impl_;
+  if (full_screen()) {
+    glfwSetWindowMonitor(w.glfw, nullptr, w.x, w.y, w.width, w.height, 0);
+    return;
+  }
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return;
+  glfwGetWindowPos(w.glfw, &w.x, &w.y);
+  glfwGetWindowSize(w.glfw, &w.width, &w.height);
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+  glfwSetWindowMonitor(w.glfw, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+const std::vector<KeyPress>& Window::keys() const { return impl_->keys.pressed(); }
+const std::vector<std::filesystem::path>& Window::dropped() const { return impl_->dropped; }
+void Window::size(int& width, int& height) const {
+  glfwGetWindowSize(impl_->glfw, &width, &height);
+}
+void Window::framebuffer_size(int& width, int& height) const {
+  glfwGetFramebufferSize(impl_->glfw, &width, &height);
+}
+void Window::asked_size(int& width, int& height) const {
+  size(width, height);
+  width = static_cast<int>(std::lround(static_cast<float>(width) / impl_->screen_scale));
+  height = static_cast<int>(std::lround(static_cast<float>(height) / impl_->screen_scale));
+}
+const std::string& Window::renderer() const { return impl_->renderer; }
+double Window::frame_time() const { return impl_->frame_time; }
+
+void Window::save_picture(const std::filesystem::path& png) { save_picture(png, 0, 0, 0, 0); }
+
+void Window::save_picture(const std::filesystem::path& png, double left, double top, double right,
+                          double bottom) {
+  impl_->pictures.push_back({png, left, top, right, bottom});
+}
+
+const std::vector<SavedPicture>& Window::saved() const { return impl_->saved; }
+
+}  // namespace limpid

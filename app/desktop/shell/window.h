@@ -1,0 +1,69 @@
+// The window of the operating system with OpenGL and ImGui in it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/desktop/shell/key_input.h"
+#include "render/theme.h"
+
+struct GLFWwindow;
+
+namespace limpid {
+
+// What became of a picture that was to be saved.
+struct SavedPicture {
+  std::filesystem::path file;
+  std::string error;  // empty: it is there
+};
+
+class Window {
+ public:
+  struct Options {
+    int width = 1440, height = 900;
+    double ui_scale = 0;  // 0: the screen's
+    Theme theme = Theme::dark;
+  };
+
+  // As large as asked for, but no larger than the screen has room for. Throws std::runtime_error
+  // where there is no display or no OpenGL 3.3.
+  explicit Window(const Options& options);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  // Waits until the next of 60 frames a second, collects input for who has the `focus` and begins
+  // ImGui's frame. False once the user closes the window.
+  bool begin_frame(const Focus& focus);
+  // Draws ImGui over the picture and shows the frame.
+  void end_frame();
+
+  void close();
+  void keep_open();  // after begin_frame() returned false
+  void toggle_full_screen();
+  bool full_screen() const;
+  // Keys pressed in this frame, without those held since somebody else had the focus.
+  const std::vector<KeyPress>& keys() const;
+  // Files dropped on the window in this frame.
+  const std::vector<std::filesystem::path>& dropped() const;
+  void size(int& width, int& height) const;              // in ImGui's coordinates
+  void asked_size(int& width, int& height) const;        // Options that would give this size
+  void framebuffer_size(int& width, int& height) const;  // in pixels
+  const std::string& renderer() const;                   // what OpenGL calls itself
+  double frame_time() const;  // work of the last frame, without waiting [s]
+  // Saves what is between two corners [ImGui's coordinates] once the frame is drawn; without
+  // corners all of it. What became of it is in saved() after end_frame().
+  void save_picture(const std::filesystem::path& png);
+  void save_picture(const std::filesystem::path& png, double left, double top, double right,
+                    double bottom);
+  // Pictures that the last end_frame() wrote, or could not write.
+  const std::vector<SavedPicture>& saved() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace limpid

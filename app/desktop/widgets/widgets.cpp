@@ -1,0 +1,92 @@
+#include "app/desktop/widgets/widgets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+
+void begin_panel(const char* name, ScreenRect rect) {
+  ImGui::SetNextWindowPos(rect.min);
+  ImGui::SetNextWindowSize(rect.size());
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
+}
+
+bool section(const char* name, bool open_at_first) {
+  ImGui::PushFont(font(Face::semibold));
+  const bool open = ImGui::CollapsingHeader(
+      name, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+  ImGui::PopFont();
+  return open;
+}
+
+void heading(const char* text) {
+  ImGui::Spacing();
+  ImGui::PushFont(font(Face::semibold));
+  ImGui::TextUnformatted(text);
+  ImGui::PopFont();
+  ImGui::Spacing();
+}
+
+void tooltip(const char* text) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void read_out(const char* label, const std::string& value, const std::string& broken,
+              const char* help) {
+  const Palette& colours = palette(current_theme());
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+  ImGui::TextUnformatted(label);
+  ImGui::PopStyleColor();
+  const bool on_label = ImGui::IsItemHovered();
+  const float width = ImGui::CalcTextSize(value.c_str()).x;
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
+  ImGui::PushStyleColor(ImGuiCol_Text,
+                        colour_vector(broken.empty() ? colours.text : colours.broken));
+  ImGui::TextUnformatted(value.c_str());
+  ImGui::PopStyleColor();
+  if (!on_label && !ImGui::IsItemHovered()) return;
+  if (!broken.empty()) {
+    ImGui::SetTooltip("%s", broken.c_str());
+  } else if (help != nullptr) {
+    ImGui::SetTooltip("%s", help);
+  }
+}
+
+void progress_bar(double part, float width, std::string text) {
+  const Palette& colours = current_palette();
+  const double filled = std::clamp(part, 0.0, 1.0);
+  if (text.empty()) text = fmt::format("{:.0f} %", 100 * filled);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size(width > 0 ? width : ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight());
+  const ImVec2 to(at.x + size.x, at.y + size.y);
+  const float edge = at.x + static_cast<float>(filled) * size.x;
+  const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+  const ImVec2 place(std::round(at.x + (size.x - extent.x) / 2),
+                     std::round(at.y + (size.y - extent.y) / 2));
+  // The text has the colours of both sides of the edge, each with its own contrast.
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  const auto side = [&](float from, float until, Rgb back, Rgb ink) {
+    draw->PushClipRect({from, at.y}, {until, to.y}, true);
+    draw->AddRectFilled(at, to, colour(back), ImGui::GetStyle().FrameRounding);
+    if (extent.x <= size.x) draw->AddText(place, colour(ink), text.c_str());
+    draw->PopClipRect();
+  };
+  side(at.x, edge, colours.accent, colours.panel);
+  side(edge, to.x, colours.frame, colours.text);
+  ImGui::Dummy(size);
+}
+
+}  // namespace limpid

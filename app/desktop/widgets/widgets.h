@@ -1,0 +1,26 @@
+// Small things that panels are made of.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "app/plot/plot_frame.h"
+
+namespace limpid {
+
+// A panel's frame without a title bar; pairs with ImGui::End().
+void begin_panel(const char* name, ScreenRect rect);
+// A part of a panel that folds; whether it is open.
+bool section(const char* name, bool open_at_first);
+// A small heading inside a panel.
+void heading(const char* text);
+// A label in the muted colour and a value; red with a tooltip when `broken` is not empty.
+void read_out(const char* label, const std::string& value, const std::string& broken = {},
+              const char* help = nullptr);
+void tooltip(const char* text);
+// A bar filled to `part`, 0 to 1, with a text on it; `width` [px], 0: all there is. Without a text
+// it says the part.
+void progress_bar(double part, float width, std::string text = {});
+
+}  // namespace limpid

@@ -1,0 +1,216 @@
+#include "app/style/number_slider.h"
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include "app/style/theme.h"
+#include "app/style/ticks.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* kSliderId = "##slider";  // below the key, which the caller pushes
+
+double slider_low(const ParameterInfo& info) {
+  if (!info.logarithmic || info.slider_minimum > 0) return info.slider_minimum;
+  return 1e-6 * info.slider_maximum;
+}
+
+void draw_track(const ImRect& track, const ParameterInfo& info, double value, double paper_value,
+                bool broken, bool hovered, bool held) {
+  const Palette& p = current_palette();
+  const float scale = current_scale();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float middle = std::round(track.GetCenter().y);
+  const float r = 2 * scale;
+  const auto x_of = [&](double v) {
+    return track.Min.x + static_cast<float>(slider_place(info, v)) * track.GetWidth();
+  };
+  list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
+                     colour(hovered ? p.frame_active : p.frame_hovered), r);
+  if (!std::isnan(paper_value)) {
+    const float x = std::round(x_of(paper_value));
+    list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
+                       {x + 0.75f * scale, middle + 6 * scale}, colour(p.muted));
+  }
+  if (std::isnan(value)) return;
+  const float x = x_of(value);
+  const Rgb main = broken ? p.broken : held ? p.text : p.accent;
+  list.AddRectFilled({track.Min.x, middle - r}, {x, middle + r},
+                     colour(broken ? p.broken : mix(p.axis, p.accent, 0.35f)), r);
+  list.AddCircleFilled({x, middle}, (held ? 6.5f : 5.5f) * scale, colour(p.panel), 24);
+  list.AddCircleFilled({x, middle}, (held ? 5.5f : 4.5f) * scale, colour(main), 24);
+}
+
+// Label and value above the track; the value is shortened first where the panel is narrow.
+void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bool broken) {
+  const Palette& p = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(box.Min, colour(p.text), info.label);
+  const float room = box.GetWidth() - ImGui::CalcTextSize(info.label).x - ImGui::GetFontSize();
+  std::string text = with_unit(info, value);
+  if (ImGui::CalcTextSize(text.c_str()).x > room) text = text.substr(0, text.find(' '));
+  const float width = ImGui::CalcTextSize(text.c_str()).x;
+  const Rgb rgb = broken ? p.broken : std::isnan(value) ? p.muted : p.text;
+  list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
+}
+
+// A number with a point or a comma; nothing else around it.
+bool parse_number(std::string text, double& value) {
+  std::ranges::replace(text, ',', '.');
+  const auto from = text.find_first_not_of(' ');
+  const auto to = text.find_last_not_of(' ');
+  if (from == std::string::npos) return false;
+  const char* end = text.data() + to + 1;
+  double parsed = 0;
+  const auto result = std::from_chars(text.data() + from, end, parsed);
+  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(parsed)) return false;
+  value = parsed;
+  return true;
+}
+
+// Number typed over the slider; true while the input is open. The value changes when typing is
+// done, not with every key: nobody wants to feel the 0 on the way to 0.6.
+bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin, double& value,
+            bool& changed) {
+  if (!begin && !ImGui::TempInputIsActive(id)) return false;
+  const double from = std::isnan(value) ? slider_value(info, 0.5) : value;
+  std::array<char, 32> text{};
+  const int length = std::snprintf(text.data(), text.size(), "%.6g", from);
+  const std::string before(text.data(), static_cast<std::size_t>(length));
+  ImGui::TempInputText(box, id, kSliderId, text.data(), static_cast<int>(text.size()),
+                       ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
+  const bool done = !begin && !ImGui::TempInputIsActive(id);
+  if (done && before != text.data()) changed = parse_number(text.data(), value);
+  return true;
+}
+
+// Where on the track the mouse wants the value now. A press alone may be the first half of a double
+// click, which must leave the value alone: it counts once the mouse is dragged, or when no second
+// one has come.
+class TrackMouse {
+ public:
+  explicit TrackMouse(ImGuiID id)
+      : memory_(*ImGui::GetStateStorage()), place_(id + 1), since_(id + 2) {}
+
+  void forget() { memory_.SetFloat(since_, kNever); }
+
+  // `held`: the track, by the mouse's left button.
+  std::optional<double> wanted(const ImRect& track, bool held) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto now = static_cast<float>(ImGui::GetTime());
+    const float place = (io.MousePos.x - track.Min.x) / track.GetWidth();
+    if (held && io.MouseClicked[0]) {
+      memory_.SetFloat(place_, place);
+      memory_.SetFloat(since_, now);
+    }
+    const float since = memory_.GetFloat(since_, kNever);
+    if (held && ImGui::IsMouseDragging(0, kDragStarts * current_scale())) {
+      forget();
+      const bool moved = io.MouseDelta.x != 0 || since != kNever;
+      return moved ? std::optional<double>(place) : std::nullopt;
+    }
+    if (since == kNever || now - since < io.MouseDoubleClickTime) return std::nullopt;
+    forget();
+    // One that was hidden meanwhile comes back as it was left.
+    return now - since < kForgotten ? std::optional<double>(memory_.GetFloat(place_))
+                                    : std::nullopt;
+  }
+
+ private:
+  static constexpr float kNever = -1;
+  static constexpr float kForgotten = 3;   // [s]
+  static constexpr float kDragStarts = 3;  // [px] at scale 1
+
+  ImGuiStorage& memory_;
+  ImGuiID place_, since_;
+};
+
+}  // namespace
+
+bool is_int(const ParameterInfo& info) {
+  return std::holds_alternative<int Parameters::*>(info.field);
+}
+
+double slider_place(const ParameterInfo& info, double value) {
+  const double low = slider_low(info);
+  const double high = info.slider_maximum;
+  const double inside = std::clamp(value, low, high);
+  if (!info.logarithmic) return (inside - low) / (high - low);
+  return std::log(inside / low) / std::log(high / low);
+}
+
+double slider_value(const ParameterInfo& info, double place) {
+  const double low = slider_low(info);
+  const double high = info.slider_maximum;
+  const double at = std::clamp(place, 0.0, 1.0);
+  const double value = info.logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
+  return is_int(info) ? std::round(value) : value;
+}
+
+std::string with_unit(const ParameterInfo& info, double value) {
+  if (std::isnan(value)) return "arm's own";
+  std::string text = is_int(info) ? std::to_string(std::lround(value)) : three_digits(value);
+  if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;
+  return text;
+}
+
+void draw_broken_frame(ImVec2 from, ImVec2 to) {
+  const float pad = 3 * current_scale();
+  ImRect frame(from, to);
+  frame.Expand({pad, 1});
+  ImGui::GetWindowDrawList()->AddRect(frame.Min, frame.Max, colour(current_palette().broken),
+                                      ImGui::GetStyle().FrameRounding, 0, current_scale());
+}
+
+bool number_slider(const ParameterInfo& info, double& value, double usual, bool broken) {
+  ImGuiWindow* window = ImGui::GetCurrentWindow();
+  const float text = ImGui::GetTextLineHeight();
+  const float scale = current_scale();
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, text + 16 * scale};
+  const ImVec2 at = window->DC.CursorPos;
+  const ImRect box(at, {at.x + size.x, at.y + size.y});
+  const ImGuiID id = window->GetID(kSliderId);
+  ImGui::ItemSize(size);
+  if (!ImGui::ItemAdd(box, id, nullptr, ImGuiItemFlags_Inputable)) return false;
+
+  const bool hovered = ImGui::ItemHoverable(box, id);
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool type = hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]);
+  const float r = 6 * scale;
+  const ImRect track({box.Min.x + r, box.Min.y + text + 2 * scale}, {box.Max.x - r, box.Max.y});
+  bool changed = false;
+  TrackMouse mouse(id);
+  if (typing(box, id, info, type, value, changed)) {
+    mouse.forget();
+    return changed;
+  }
+  bool over = false;
+  bool held = false;
+  ImGui::ButtonBehavior(box, id, &over, &held);
+  // Only the track is for dragging: a click on the caption leaves the value alone.
+  const bool from_track = held && io.MouseClickedPos[0].y >= track.Min.y;
+  if (const auto place = mouse.wanted(track, from_track)) {
+    const double wanted = slider_value(info, *place);
+    changed = wanted != value;
+    value = wanted;
+  }
+  if (over && io.MouseClicked[1]) {
+    changed = !(value == usual || (std::isnan(value) && std::isnan(usual)));
+    value = usual;
+  }
+  draw_caption(box, info, value, broken);
+  draw_track(track, info, value, usual, broken, over, from_track);
+  if (broken) draw_broken_frame(box.Min, box.Max);
+  return changed;
+}
+
+}  // namespace limpid

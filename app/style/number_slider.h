@@ -1,0 +1,29 @@
+// A number as a slider: what value_slider() and parameter_slider() are made of.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "core/tick/parameters.h"
+
+namespace limpid {
+
+bool is_int(const ParameterInfo& info);
+
+// Where a value lies on the slider of `info`, 0 to 1, and back; beyond the ends it is held there.
+// A logarithmic slider whose range begins at zero begins at a millionth of its end.
+double slider_place(const ParameterInfo& info, double value);
+double slider_value(const ParameterInfo& info, double place);
+
+// The number for people; what is not a number is the arm's own.
+std::string with_unit(const ParameterInfo& info, double value);
+
+// Draws it at ImGui's cursor over the width left, below an ID of its own; returns whether `value`
+// was changed. `usual` is marked and gone back to; `broken`: in red.
+bool number_slider(const ParameterInfo& info, double& value, double usual, bool broken);
+
+// The frame round what is broken.
+void draw_broken_frame(ImVec2 from, ImVec2 to);
+
+}  // namespace limpid

@@ -1,0 +1,129 @@
+#include "app/desktop/base/settings.h"
+
+#include <stdlib.h>
+
+#include <optional>
+
+#include "tests/devices/files/test_files.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Gives an environment variable back what it was.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() {
+    if (before_) {
+      setenv(name_, before_->c_str(), 1);
+    } else {
+      unsetenv(name_);
+    }
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+class SettingsFile : public testing::Test {
+ protected:
+  fs::path file() const { return dir_ / "limpid/settings.toml"; }
+  Settings load() { return load_settings(complaint_); }
+  void write(const std::string& text) {
+    fs::create_directories(file().parent_path());
+    test::write_file(file(), text);
+  }
+
+  test::TempDir dir_;
+  Variable config_{"XDG_CONFIG_HOME", (dir_ / "").string()};
+  Variable data_{"XDG_DATA_HOME", (dir_ / "data").string()};
+  std::string complaint_;
+};
+
+TEST_F(SettingsFile, ThatIsMissingMeansDefaults) {
+  const Settings s = load();
+  EXPECT_EQ(complaint_, "");
+  EXPECT_EQ(s.width, Settings{}.width);
+  EXPECT_EQ(s.parameters, Settings{}.parameters);
+}
+
+TEST_F(SettingsFile, GivesEverythingBack) {
+  Settings s;
+  s.theme = Theme::light;
+  s.ui_scale = 1.75;
+  s.width = 1999;
+  s.height = 777;
+  s.left = 311;
+  s.plots = 123.5;
+  s.show_right = false;
+  s.show_trail = false;
+  s.hold_on_release = true;
+  s.hint_seen = true;
+  s.plot_length = 31;
+  s.device = "/some/\"odd\" path/arm\xCE\xB7.urdf";
+  s.scene = "C:\\scene.toml";
+  s.parameters.kind = CouplingKind::proposed;
+  s.parameters.eta = 0.1 + 0.2;
+  s.parameters.damping = 0.017;
+  s.parameters.velocity = VelocitySource::adaptive;
+  EXPECT_EQ(save_settings(s), "");
+  const Settings again = load();
+  EXPECT_EQ(complaint_, "");
+  EXPECT_EQ(again.theme, s.theme);
+  EXPECT_EQ(again.ui_scale, s.ui_scale);
+  EXPECT_EQ(again.width, s.width);
+  EXPECT_EQ(again.height, s.height);
+  EXPECT_EQ(again.left, s.left);
+  EXPECT_EQ(again.plots, s.plots);
+  EXPECT_EQ(again.show_right, s.show_right);
+  EXPECT_EQ(again.show_trail, s.show_trail);
+  EXPECT_EQ(again.hold_on_release, s.hold_on_release);
+  EXPECT_EQ(again.hint_seen, s.hint_seen);
+  EXPECT_EQ(again.plot_length, s.plot_length);
+  EXPECT_EQ(again.device, s.device);
+  EXPECT_EQ(again.scene, s.scene);
+  EXPECT_EQ(again.parameters, s.parameters);
+}
+
+TEST_F(SettingsFile, ThatIsNoTomlIsComplainedAboutAndLeftAlone) {
+  write("[window\nwidth = ");
+  const Settings s = load();
+  EXPECT_THAT(complaint_, testing::HasSubstr("settings"));
+  EXPECT_EQ(s.width, Settings{}.width);
+}
+
+TEST_F(SettingsFile, TakesWhatItCanOfAFileThatIsPartlyWrong) {
+  write("[window]\nwidth = \"wide\"\nheight = 555\nunknown = 3\n");
+  const Settings s = load();
+  EXPECT_EQ(s.width, Settings{}.width);
+  EXPECT_EQ(s.height, 555);
+}
+
+TEST_F(SettingsFile, WithAParameterOutOfRangeNamesIt) {
+  write("[parameters]\ncoupling.eta = -4\n");
+  const Settings s = load();
+  EXPECT_THAT(complaint_, testing::HasSubstr("coupling.eta"));
+  EXPECT_EQ(s.parameters.eta, 1);
+}
+
+TEST_F(SettingsFile, ThatCannotBeWrittenIsReportedNotThrown) {
+  test::write_file(dir_ / "limpid", "a file where the folder should be");
+  EXPECT_NE(save_settings(Settings{}), "");
+}
+
+TEST_F(SettingsFile, StandsBesideAFolderForSessions) {
+  const fs::path folder = sessions_dir();
+  EXPECT_EQ(folder, dir_ / "data/limpid/sessions");
+  EXPECT_TRUE(fs::is_directory(folder));
+}
+
+}  // namespace
+}  // namespace limpid

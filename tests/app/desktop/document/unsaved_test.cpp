@@ -1,0 +1,59 @@
+#include "app/desktop/document/unsaved.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/base/assets.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Unsaved : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder);
+    scene.spheres.push_back(Sphere{.name = "ball", .center = {0.1, 0, 0.05}, .radius = 0.02});
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  fs::path folder = fs::path(testing::TempDir()) / "limpid_unsaved";
+  ArmDescription arm = read_urdf(default_device().string());
+  Scene scene;
+};
+
+TEST_F(Unsaved, ChangesAreThereAtTheNextStartAndToldOfOnce) {
+  const fs::path kept = keep_unsaved(scene, arm, "table", folder);
+  EXPECT_EQ(kept, folder / "table-unsaved.toml");
+  const auto found = take_unsaved(folder);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front(), folder / "table-recovered.toml");
+  const Scene again = read_scene(found.front().string(), arm);
+  ASSERT_EQ(again.spheres.size(), 1u);
+  EXPECT_EQ(again.spheres.front().name, "ball");
+  EXPECT_TRUE(take_unsaved(folder).empty());
+}
+
+TEST_F(Unsaved, EarlierOnesAreNeverReplaced) {
+  keep_unsaved(scene, arm, "table", folder);
+  keep_unsaved(scene, arm, "table", folder);
+  EXPECT_EQ(take_unsaved(folder).size(), 2u);
+  keep_unsaved(scene, arm, "table", folder);
+  EXPECT_EQ(take_unsaved(folder).size(), 1u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
+}
+
+TEST_F(Unsaved, OtherScenesAreLeftAlone) {
+  fs::create_directories(folder);
+  std::ofstream(folder / "mine.toml") << "title = \"mine\"\n";
+  EXPECT_TRUE(take_unsaved(folder).empty());
+  EXPECT_TRUE(fs::exists(folder / "mine.toml"));
+  EXPECT_TRUE(take_unsaved(folder / "not there").empty());
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,395 @@
+// The desktop without a window: what it does to the loop, to devices and to what is not saved.
+#include "app/desktop/shell/desktop.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "app/run/replay.h"
+#include "core/dynamics/arm.h"
+#include "render/gl/offscreen.h"
+#include "tests/support/built_in.h"
+#include "tests/support/device_traits.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+// What a fake device says and hears, shared with the test.
+struct Wire {
+  std::atomic<double> angle{0};  // from where the arm rests [rad]
+  std::atomic<bool> here{true};
+  std::atomic<std::uint32_t> buttons{0};
+  std::atomic<double> torque{0};  // the largest of the newest
+  std::atomic<int> closed{0};
+};
+
+class WiredDevice final : public Device {
+ public:
+  WiredDevice(int dof, std::shared_ptr<Wire> wire)
+      : traits_(test::pushing(dof)), rest_(static_cast<std::size_t>(dof)), wire_(std::move(wire)) {
+    if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
+  }
+  ~WiredDevice() override { ++wire_->closed; }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    for (std::size_t i = 0; i < rest_.size(); ++i) newest.x[i] = rest_[i] + wire_->angle;
+    newest.count = ++count_;
+    newest.buttons = wire_->buttons;
+    return wire_->here;
+  }
+  void write(std::span<const double> torque) noexcept override {
+    double largest = 0;
+    for (const double tau : torque) largest = std::max(largest, std::abs(tau));
+    wire_->torque = largest;
+  }
+  void stop() noexcept override { wire_->torque = 0; }
+
+ private:
+  DeviceTraits traits_;
+  std::vector<double> rest_;  // [rad]
+  std::shared_ptr<Wire> wire_;
+  std::uint64_t count_ = 0;
+};
+
+struct ADesktop : testing::Test {
+  void SetUp() override {
+    setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);
+    setenv("XDG_CONFIG_HOME", (dir / "config").c_str(), 1);
+    try {
+      context = std::make_unique<OffscreenContext>(64, 64);
+    } catch (const std::exception& e) {
+      GTEST_SKIP() << "no OpenGL here: " << e.what();
+    }
+    desktop = std::make_unique<Desktop>(Settings{}, AskForPriority{});
+    desktop->open_world("", "");
+    frames(3);
+  }
+  void TearDown() override {
+    if (desktop) desktop->drop_pictures();
+    desktop.reset();
+  }
+  void frames(int count) {
+    for (int i = 0; i < count; ++i) {
+      desktop->update(0.01);
+      std::this_thread::sleep_for(10ms);
+    }
+  }
+  template <class Done>
+  bool until(Done done) {
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (std::chrono::steady_clock::now() < end) {
+      if (done()) return true;
+      frames(1);
+    }
+    return done();
+  }
+  LiveLoop& loop() const { return desktop->desk().loop(); }
+  Document& document() const { return desktop->document(); }
+  Arming arming() const { return loop().snapshot().arming; }
+  bool said(const std::string& what) const {
+    return std::ranges::any_of(desktop->notices().all(), [&](const Notice& notice) {
+      return notice.text.find(what) != std::string::npos;
+    });
+  }
+  // Asks for force until it is there: on a busy computer the window may have been silent meanwhile.
+  template <class Ask>
+  bool until_on(Ask ask) {
+    return until([&] {
+      if (!desktop->desk().force_armed()) {
+        ask();
+        frames(5);
+      }
+      return arming() == Arming::on;
+    });
+  }
+  bool armed() {
+    return until_on([&] { loop().arm(); });
+  }
+  // However late the loop's first tick with it is: a desk that did not connect it gives it no time.
+  void await_device() {
+    while (!loop().snapshot().connected) {
+      std::this_thread::sleep_for(1ms);
+      loop().update();
+    }
+  }
+  std::shared_ptr<Wire> plug_in(int dof) {
+    auto wire = std::make_shared<Wire>();
+    desktop->open_device(std::make_unique<WiredDevice>(dof, wire));
+    await_device();
+    return wire;
+  }
+  // A device in the loop, beside a stop that presses against it, armed.
+  std::shared_ptr<Wire> pushed() {
+    auto wire = plug_in(3);
+    EXPECT_TRUE(until([&] { return loop().snapshot().connected; }));
+    wire->angle = 0.1;  // pulled away from its proxy, whose coupling pulls back
+    EXPECT_TRUE(armed());
+    return wire;
+  }
+  void record_something() {
+    desktop->toggle_recording();
+    ASSERT_TRUE(until([&] { return loop().snapshot().recording; }));
+    frames(20);
+  }
+  std::vector<fs::path> recordings() const {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(dir / "data/limpid/sessions")) {
+      files.push_back(entry.path());
+    }
+    return files;
+  }
+  bool has(const std::string& name) const {
+    return std::ranges::any_of(document().editor().scene().spheres,
+                               [&](const Sphere& sphere) { return sphere.name == name; });
+  }
+
+  const test::TempDir dir;
+  std::unique_ptr<OffscreenContext> context;
+  std::unique_ptr<Desktop> desktop;
+};
+
+TEST_F(ADesktop, HasForceOnTheVirtualArmFromTheStart) {
+  EXPECT_TRUE(until([&] { return arming() == Arming::on; }));
+}
+
+TEST_F(ADesktop, DoesNotArmWhenItStartsOver) {
+  desktop->cut_force();
+  ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
+  desktop->desk().start_over();
+  frames(80);
+  EXPECT_EQ(arming(), Arming::off);
+  desktop->desk().toggle_force();
+  EXPECT_TRUE(until([&] { return arming() == Arming::on; }));
+}
+
+TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
+  const auto wire = plug_in(3);
+  ASSERT_TRUE(loop().device_in_place());
+  const auto expect_off = [&](const char* after) {
+    frames(70);
+    EXPECT_EQ(arming(), Arming::off) << after;
+    EXPECT_EQ(wire->torque, 0) << after;
+  };
+  expect_off("plugging in");
+  desktop->desk().start_over();
+  expect_off("starting over");
+  desktop->toggle_coupling();
+  document().undo();
+  expect_off("undo");
+  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  EXPECT_TRUE(loop().device_in_place()) << "the device stays in the loop";
+  expect_off("another scene");
+  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/touch.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  desktop->playback().start_rerun(desktop->settings().parameters);
+  ASSERT_TRUE(until([&] { return desktop->playback().shown()->has_rerun(); }));
+  expect_off("playback and re-run");
+  desktop->playback().close();
+  expect_off("going back to live");
+}
+
+TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
+  auto wire = pushed();
+  desktop->desk().start_over();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  EXPECT_EQ(wire->torque, 0);
+  wire->angle = 0;
+  ASSERT_TRUE(armed());
+  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  frames(70);
+  EXPECT_EQ(arming(), Arming::off);
+}
+
+TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
+  auto wire = std::make_shared<Wire>();
+  wire->buttons = 2;
+  desktop->open_device(std::make_unique<WiredDevice>(3, wire));
+  await_device();
+  frames(120);  // also beyond the time in which a device settles
+  EXPECT_EQ(arming(), Arming::off);
+  wire->buttons = 0;
+  frames(10);
+  EXPECT_EQ(arming(), Arming::off);
+  const auto press = [&] {
+    wire->buttons = 0;
+    frames(5);
+    wire->buttons = 2;
+    frames(5);
+  };
+  EXPECT_TRUE(until_on(press)) << "one that is pressed now arms";
+  press();
+  EXPECT_TRUE(until([&] { return !desktop->desk().force_armed(); }));
+}
+
+TEST_F(ADesktop, SaysThatADeviceIsGoneAndClosesItBesideTheWindow) {
+  const auto wire = pushed();
+  frames(60);
+  wire->here = false;
+  EXPECT_TRUE(until([&] { return said("The device is gone"); }));
+  EXPECT_EQ(arming(), Arming::tripped);
+  EXPECT_TRUE(until([&] { return wire->closed == 1; }));
+}
+
+TEST_F(ADesktop, RecordsAndClosesTheFileBesideTheWindow) {
+  for (int i = 0; i < 2; ++i) {
+    record_something();
+    desktop->toggle_recording();
+    ASSERT_TRUE(until([&] { return said("Recorded"); }));
+    desktop->notices().clear();
+    std::this_thread::sleep_for(1100ms);  // names have seconds
+  }
+  ASSERT_EQ(recordings().size(), 2u);
+  for (const fs::path& file : recordings()) EXPECT_GT(read_session(file).size(), 100u);
+}
+
+TEST_F(ADesktop, CompletesARecordingWhenItEnds) {
+  record_something();
+  desktop->drop_pictures();
+  desktop.reset();
+  ASSERT_EQ(recordings().size(), 1u);
+  EXPECT_EQ(recordings()[0].extension(), ".h5");
+  EXPECT_GT(read_session(recordings()[0]).size(), 100u);
+}
+
+TEST_F(ADesktop, LeavesNothingBehindWhenItEndsBeforeARecordingBegan) {
+  desktop->toggle_recording();
+  desktop->drop_pictures();
+  desktop.reset();
+  EXPECT_TRUE(recordings().empty());
+}
+
+// Rows of another width must not go into the file.
+TEST_F(ADesktop, CompletesARecordingWhenADeviceBringsAnotherArm) {
+  record_something();
+  plug_in(2);
+  EXPECT_TRUE(until([&] { return said("Recorded"); }));
+  frames(20);
+  ASSERT_EQ(recordings().size(), 1u);
+  const Session session = read_session(recordings()[0]);
+  EXPECT_EQ(session.layout.dof(), 3);
+  EXPECT_GT(session.size(), 100u);
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    ASSERT_NEAR(session.at(k, Column::time)[0], 1e-3 * static_cast<double>(k), 1e-9);
+  }
+}
+
+TEST_F(ADesktop, SaysThatItCannotRecordAndGoesOn) {
+  fs::remove_all(dir / "data");
+  std::ofstream(dir / "data") << "a file where a folder should be";
+  desktop->toggle_recording();
+  EXPECT_TRUE(until(
+      [&] { return !desktop->notices().all().empty() && desktop->notices().all().back().bad; }));
+  EXPECT_FALSE(desktop->desk().recording());
+  const auto ticks = loop().status().ticks;
+  EXPECT_TRUE(until([&] { return loop().status().ticks > ticks + 50; }));
+}
+
+// With the device in the loop that it was recorded with.
+TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
+  desktop->devices().hub().use("device");
+  desktop->devices().hub().notes("device").limits.tip_force = 1.25;
+  plug_in(3);
+  frames(2);
+  EXPECT_EQ(desktop->desk().controls().limits.tip_force, 1.25);
+  record_something();
+  desktop->toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  ASSERT_EQ(recordings().size(), 1u);
+  EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
+}
+
+TEST_F(ADesktop, WritesBesideTheWindowAndSaysWhatBecameOfIt) {
+  std::atomic<bool> elsewhere{false};
+  desktop->desk().save_beside([&, window = std::this_thread::get_id()] {
+    elsewhere = std::this_thread::get_id() != window;
+    return PlotNotice{"Saved a table"};
+  });
+  desktop->desk().save_beside([] { return PlotNotice{"No room for a table", true}; });
+  ASSERT_TRUE(until([&] { return said("No room for a table"); }));
+  EXPECT_TRUE(said("Saved a table"));
+  EXPECT_TRUE(elsewhere);
+  EXPECT_TRUE(desktop->notices().all().back().bad);
+}
+
+TEST_F(ADesktop, ChangesNoDeviceInARecording) {
+  record_something();
+  desktop->devices().use("another");
+  EXPECT_EQ(desktop->devices().hub().in_use(), "");
+  EXPECT_TRUE(said("Stop the recording"));
+}
+
+TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
+  const fs::path sessions = dir / "data/limpid/sessions";
+  fs::create_directories(sessions);
+  RunPlan plan;
+  plan.arm = test::omni();
+  plan.hand.source = "mouse";
+  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+  ASSERT_TRUE(fs::exists(sessions / "cut.h5.part"));
+  desktop->playback().recover_leftovers(sessions);
+  EXPECT_TRUE(said("Recovered cut.h5"));
+  EXPECT_EQ(desktop->playback().last(), sessions / "cut.h5");
+}
+
+TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
+  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  ASSERT_TRUE(document().editor().dirty());
+  plug_in(3);
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(document().editor().dirty());
+  desktop->close_device();
+  EXPECT_FALSE(loop().device_in_place());
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(document().editor().dirty());
+}
+
+TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
+  const std::string file = document().file();
+  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  plug_in(2);
+  EXPECT_FALSE(has("mine"));
+  EXPECT_NE(document().file(), file);
+  ASSERT_NE(document().unsaved_set_aside(), nullptr);
+  desktop->close_device();
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(document().editor().dirty());
+  EXPECT_EQ(document().file(), file);
+  EXPECT_EQ(document().unsaved_set_aside(), nullptr);
+}
+
+// Only what the user had open is put aside, not what a device brought.
+TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
+  const std::string file = document().file();
+  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  plug_in(2);
+  plug_in(3);
+  desktop->close_device();
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(document().editor().dirty());
+  EXPECT_EQ(document().file(), file);
+}
+
+TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
+  const fs::path file = dir / "scene.toml";
+  desktop->add_object(Sphere{.name = "saved", .radius = 0.01, .material = {500}});
+  ASSERT_TRUE(document().save_as(file));
+  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  fs::remove(file);
+  plug_in(3);
+  desktop->close_device();
+  EXPECT_TRUE(has("saved"));
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(document().editor().dirty());
+}
+
+}  // namespace
+}  // namespace limpid

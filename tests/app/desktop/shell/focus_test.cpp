@@ -1,0 +1,68 @@
+#include "app/desktop/shell/focus.h"
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+namespace limpid {
+namespace {
+
+TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndView) {
+  Focus focus;
+  EXPECT_EQ(owner_of(focus), KeyOwner::view);
+  focus.playback = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::playback);
+  focus.dialog = Dialog::add_model;
+  EXPECT_EQ(owner_of(focus), KeyOwner::dialog);
+  focus.question = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::question);
+  focus.popup = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::popup);
+  focus.text = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::text);
+}
+
+TEST(Focus, WhatIsOnlyReadLeavesTheKeysToTheView) {
+  for (const Dialog dialog : {Dialog::none, Dialog::help, Dialog::about, Dialog::experiments}) {
+    EXPECT_EQ(owner_of({.dialog = dialog}), KeyOwner::view) << name(dialog);
+  }
+  for (const Dialog dialog :
+       {Dialog::open_session, Dialog::gallery, Dialog::add_model, Dialog::save_scene}) {
+    EXPECT_EQ(owner_of({.dialog = dialog}), KeyOwner::dialog) << name(dialog);
+  }
+}
+
+TEST(HeldKeys, KeyHeldWhileTheFocusChangesIsStaleUntilItIsPressedAgain) {
+  HeldKeys keys;
+  keys.press(GLFW_KEY_O);
+  EXPECT_FALSE(keys.stale(GLFW_KEY_O));
+  keys.set_focus({.dialog = Dialog::open_session});
+  EXPECT_TRUE(keys.stale(GLFW_KEY_O));
+  EXPECT_FALSE(keys.stale(GLFW_KEY_X)) << "was not down";
+  keys.set_focus({.text = true, .dialog = Dialog::open_session});
+  EXPECT_TRUE(keys.stale(GLFW_KEY_O)) << "as long as it is held";
+  keys.release(GLFW_KEY_O);
+  keys.press(GLFW_KEY_O);
+  EXPECT_FALSE(keys.stale(GLFW_KEY_O));
+}
+
+TEST(HeldKeys, SameFocusMakesNothingStale) {
+  HeldKeys keys;
+  keys.set_focus({.text = true});
+  keys.press(GLFW_KEY_A);
+  keys.set_focus({.text = true});
+  EXPECT_FALSE(keys.stale(GLFW_KEY_A));
+}
+
+TEST(HeldKeys, ModifiersAndUnknownKeysAreNeverStale) {
+  HeldKeys keys;
+  for (const int key : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_SHIFT, GLFW_KEY_UNKNOWN, 100000}) {
+    keys.press(key);
+    keys.set_focus({.text = true});
+    EXPECT_FALSE(keys.stale(key)) << key;
+    keys.release(key);
+    keys.set_focus({});
+  }
+}
+
+}  // namespace
+}  // namespace limpid
