@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "devices/files/session/file_size_signal.h"
+#include "devices/files/session/growing_dataset.h"
 #include "devices/files/session/session_attributes.h"
 #include "devices/files/session/session_check.h"
 #include "devices/files/session/session_models.h"
@@ -17,7 +18,9 @@
 namespace limpid {
 namespace {
 
+using hdf5::append_to;
 using hdf5::check;
+using hdf5::create_growing;
 
 constexpr double kFlushSeconds = 0.5;  // rows reach the disk this often
 constexpr double kMostBlockRows = 16384;
@@ -45,45 +48,6 @@ hdf5::Datatype setting_type() {
 // Whether a column is mostly zeros: blocks of nothing else are not written then, and a chunk of
 // nothing else takes no room in the file. HDF5 reads them as zeros.
 bool sparse(const ColumnInfo& column) { return column.width == ColumnWidth::contacts; }
-
-// A list of rank 1, or a table of rank 2 with rows of `width`.
-hdf5::Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
-                             hsize_t chunk, bool filled = false) {
-  const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_fill_time(creation.get(), filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
-  const std::array<hsize_t, 2> none{0, width};
-  const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
-  const std::array<hsize_t, 2> chunks{chunk, width};
-  const hdf5::Dataspace space(H5Screate_simple(rank, none.data(), unlimited.data()));
-  const hdf5::Properties links(H5Pcreate(H5P_LINK_CREATE));
-  H5Pset_create_intermediate_group(links.get(), 1);
-  H5Pset_chunk(creation.get(), rank, chunks.data());
-  return hdf5::Dataset(
-      H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
-}
-
-// Appends `count` rows behind the first `from` and flushes them; without data they are what the
-// dataset is filled with. Errors: FileError naming `file`; asked for at once, as closing any handle
-// makes HDF5 forget them.
-void append_to(const hdf5::Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
-               const void* data, const std::filesystem::path& file) {
-  const std::array<hsize_t, 2> extent{from + count, width};
-  const std::array<hsize_t, 2> start{from, 0};
-  const std::array<hsize_t, 2> block{count, width};
-  check(H5Dset_extent(dataset.get(), extent.data()) >= 0, file, "cannot write");
-  if (data == nullptr) {
-    check(H5Dflush(dataset.get()) >= 0, file, "cannot write");
-    return;
-  }
-  const hdf5::Dataspace in_file(H5Dget_space(dataset.get()));
-  const int rank = H5Sget_simple_extent_ndims(in_file.get());
-  const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
-  check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
-                            nullptr) >= 0 &&
-            H5Dwrite(dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, data) >= 0 &&
-            H5Dflush(dataset.get()) >= 0,
-        file, "cannot write");
-}
 
 }  // namespace
 

@@ -374,14 +374,15 @@ int record_on_a_disk_of(std::size_t pages, const fs::path& out) {
 }
 
 TEST(FullDisk, KeepsAllButTheLastSecond) {
-  for (const std::size_t pages : {400, 1000, 1001, 1777}) {
+  for (const std::size_t pages : {600, 1000, 1001, 1777}) {
     const test::TempDir dir;
     const auto work = [&] { return record_on_a_disk_of(pages, dir / "a.h5"); };
     EXPECT_EQ(exit_status_of(work), 0) << pages;
     const auto left = read_session(dir / "a.h5.part");
     expect_sample(left);
-    // A row takes at most 408 bytes; before the rows come 400 kB, and a page may be half empty.
-    EXPECT_GT(left.size() + 1000, (pages * 4096 - 600'000) / 408) << pages;
+    // A row takes at most 600 bytes, the contacts' part of it, 1536 kB, for eight seconds at once;
+    // before the rows come 400 kB, and a page may be half empty.
+    EXPECT_GT(left.size() + 1000, (pages * 4096 - 600'000 - 1'536'000) / 600) << pages;
   }
 }
 
