@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -152,13 +154,15 @@ TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
   std::filesystem::remove_all(folder);
   const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
   const History history = seconds_of_data(1);
-  const auto good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, {.folder = folder});
+  PlotSaving saving;
+  saving.folder = folder;
+  const auto good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, saving);
   ASSERT_TRUE(good);
   EXPECT_FALSE(good->bad);
   EXPECT_TRUE(std::filesystem::exists(folder / "energy-001.csv"));
   EXPECT_NE(good->text.find("energy-001.csv"), std::string::npos);
-  const auto bad =
-      fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, {.folder = "/dev/null/x"});
+  saving.folder = "/dev/null/x";
+  const auto bad = fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, saving);
   ASSERT_TRUE(bad);
   EXPECT_TRUE(bad->bad);
 }
@@ -169,8 +173,9 @@ TEST(PlotMenu, WritesATableElsewhereAsItWasWhenAskedFor) {
   std::filesystem::remove_all(folder);
   const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
   std::function<PlotNotice()> work;
-  const PlotSaving saving{.folder = folder,
-                          .beside = [&](std::function<PlotNotice()> w) { work = std::move(w); }};
+  PlotSaving saving;
+  saving.folder = folder;
+  saving.beside = [&](std::function<PlotNotice()> w) { work = std::move(w); };
   {
     History history({.channels = 1, .seconds = 1});
     history.append(0, std::array{0.25});
