@@ -130,7 +130,7 @@ TEST(Recorder, LetsTheRunGoOnWhenTheDiskIsFullAndKeepsWhatWasWritten) {
   std::size_t pushed = 0;
   std::string said;
   {
-    const FileSizeLimit limit(8'000'000);
+    const FileSizeLimit limit(12'000'000);  // a second chunk of 8000 rows, not a third
     Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
     while (recorder.push_waiting(sample_rows(layout, pushed, 1)) && pushed < 200'000) ++pushed;
     EXPECT_TRUE(recorder.failed());
