@@ -49,13 +49,6 @@ Reading<N> VirtualArm<N>::read(double encoder_step) const {
   return reading;
 }
 
-template <int N>
-Vec3 VirtualArm<N>::tip() const {
-  typename Arm<N>::Frames f;
-  arm_.frames(x_, f);
-  return arm_.tip(f);
-}
-
 // The joints' own resistance around the middle of a substep: damping, friction, stops.
 template <int N>
 typename VirtualArm<N>::Resistance VirtualArm<N>::resistance(const Vec<N>& b_d,

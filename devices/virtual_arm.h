@@ -25,7 +25,7 @@ class VirtualArm {
   Reading<N> read(double encoder_step) const;
   // Lives through one tick under this motor torque [N m].
   void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
-  Vec3 tip() const;
+  Vec3 tip() const { return arm_.tip_at(x_); }
   const Vec<N>& x() const { return x_; }  // [rad]
   const Vec<N>& v() const { return v_; }  // [rad/s]
   // f1, the mean over the tick [N m].

@@ -126,7 +126,9 @@ void InputOptions::add_parameters(CLI::App& command) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--coupling", coupling, "standard or proposed (coupling.kind)")
+  command
+      .add_option("--coupling", coupling,
+                  fmt::format("{} (coupling.kind)", fmt::join(kLawKeys, " or ")))
       ->type_name("KIND");
   command.add_option("--eta", eta, "apparent inertia (coupling.eta)")->type_name("RATIO");
   command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");

@@ -76,10 +76,7 @@ Eigen::MatrixXd inertia_at(const ArmDescription& description, const Eigen::Vecto
 }
 
 Vec3 tip_at(const ArmDescription& description, const Eigen::VectorXd& x) {
-  const Arm<kAnyDof> arm(description);
-  Arm<kAnyDof>::Frames frames;
-  arm.frames(x, frames);
-  return arm.tip(frames);
+  return Arm<kAnyDof>(description).tip_at(x);
 }
 
 }  // namespace limpid

@@ -32,11 +32,7 @@ ArmPose RowView::pose(std::span<const double> x) const {
   return pose;
 }
 
-Vec3 RowView::tip(std::span<const double> x) const {
-  Arm<kAnyDof>::Frames f;
-  arm_.frames(joints(x), f);
-  return arm_.tip(f);
-}
+Vec3 RowView::tip(std::span<const double> x) const { return arm_.tip_at(joints(x)); }
 
 Vec3 RowView::tip_force(std::span<const double> x, std::span<const double> torque) const {
   Arm<kAnyDof>::Frames f;

@@ -15,8 +15,7 @@ class Proxy;
 struct LawInfo {
   const char* key;      // in files and on the command line
   const char* label;    // on a button
-  const char* tooltip;  // of that
-  const char* meaning;  // in help
+  const char* meaning;  // in help and tooltips, a sentence after "KEY: "
   // It feeds the observed human force forward, and scales the inertia felt by eta, (12): then the
   // conditions of (25) are its own.
   bool scales_inertia;

@@ -1,7 +1,9 @@
 // The coupling laws there are. A new one is a file like proposed.h, and its line here.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <string_view>
 #include <tuple>
 
 #include "core/coupling/proposed.h"
@@ -27,12 +29,21 @@ template <class... Law>
 Listed<Law...> listed(std::tuple<Law...>*);
 using AllLaws = decltype(listed(static_cast<Laws*>(nullptr)));
 
-template <class P, std::size_t... Size>
-constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
-  std::array<Setting<P>, (Size + ...)> all{};
+// What all of them do, in one text: "standard: ... proposed: ...".
+consteval auto meanings() {
+  constexpr std::size_t kLongest = 1024;
+  std::array<char, kLongest> text{};
   std::size_t at = 0;
-  ((std::copy(parts.begin(), parts.end(), all.begin() + at), at += Size), ...);
-  return all;
+  const auto put = [&](std::string_view part) {
+    at = static_cast<std::size_t>(std::ranges::copy(part, text.begin() + at).out - text.begin());
+  };
+  for (const LawInfo* law : AllLaws::kInfos) {
+    if (at > 0) put(" ");
+    put(law->key);
+    put(": ");
+    put(law->meaning);
+  }
+  return text;
 }
 
 }  // namespace detail
@@ -45,7 +56,7 @@ template <class P>
 constexpr auto law_settings() {
   return std::apply(
       [](auto... law) {
-        return detail::joined<P>(decltype(law)::Settings::template settings<P>()...);
+        return joined<P>(decltype(law)::Settings::template settings<P>()...);
       },
       Laws{});
 }
@@ -60,6 +71,7 @@ inline CouplingKind next(CouplingKind kind) {
 }
 inline constexpr auto& kLawKeys = detail::AllLaws::kKeys;
 inline constexpr std::uint8_t kLaws = kLawKeys.size();
+inline constexpr auto kLawMeanings = detail::meanings();
 
 // All laws, of which one at a time ties device and proxy together.
 template <int N>

@@ -28,9 +28,6 @@ struct ProposedLaw {
   static constexpr LawInfo kInfo{
       .key = "proposed",
       .label = "Proposed",
-      .tooltip =
-          "With feedforward of the observed human force and the contact force, (14)-(15). "
-          "C switches.",
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
       .scales_inertia = true,
       .sliders = kPaperSliders,

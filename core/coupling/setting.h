@@ -2,6 +2,8 @@
 // sliders, tooltips and help. Whatever has settings describes them beside itself.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <variant>
@@ -40,5 +42,14 @@ struct Setting {
   bool live;            // may change while the loop runs
   const char* meaning;  // one or two sentences with the equation's number
 };
+
+// The descriptions of several owners, one after another.
+template <class P, std::size_t... Size>
+constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
+  std::array<Setting<P>, (Size + ...)> all{};
+  std::size_t at = 0;
+  ((std::copy(parts.begin(), parts.end(), all.begin() + at), at += Size), ...);
+  return all;
+}
 
 }  // namespace limpid

@@ -9,7 +9,6 @@ struct StandardLaw {
   static constexpr LawInfo kInfo{
       .key = "standard",
       .label = "Standard",
-      .tooltip = "Spring and damper alone, (1)-(2). C switches.",
       .meaning = "spring and damper alone, (1)-(2).",
       .scales_inertia = false,
       .sliders = kPaperSliders,

@@ -82,6 +82,11 @@ class Arm {
   void bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const;
 
   Vec3 tip(const Frames& f) const { return point(f, dof() - 1, tip_); }
+  Vec3 tip_at(const Vec<N>& x) const {
+    Frames f;
+    frames(x, f);
+    return tip(f);
+  }
   static Vec3 point(const Frames& f, int link, const Vec3& in_link) {
     const auto i = static_cast<std::size_t>(link);
     return f.p[i] + f.R[i] * in_link;

@@ -13,9 +13,7 @@ using P = Parameters;
 
 constexpr std::array kFirst{
     ParameterInfo{"coupling.kind", "coupling", choice<P, &P::kind>(kLawKeys), "-", 0, kLaws - 1, 0,
-                  kLaws - 1, false, true,
-                  "standard: spring and damper alone, (1)-(2). proposed: with feedforward of the "
-                  "observed human force and the contact force, (14)-(15)."},
+                  kLaws - 1, false, true, kLawMeanings.data()},
 };
 constexpr std::array kOthers{
     ParameterInfo{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-",
@@ -45,7 +43,7 @@ constexpr std::array kOthers{
 };
 
 constexpr auto kTable =
-    detail::joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers);
+    joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers);
 
 std::string number(double x) {
   std::array<char, 40> text{};

@@ -57,7 +57,7 @@ void kind_buttons(Parameters& p) {
     }
     if (ImGui::Button(info(kind).label, size)) p.kind = kind;
     if (chosen) ImGui::PopStyleColor(3);
-    tooltip(info(kind).tooltip);
+    tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
 }
 
