@@ -73,6 +73,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   const double h = p.tick / p.substeps;
   const double k_h = hand.grip * p.hand_stiffness;
   const double b_h = hand.grip * p.hand_damping;
+  const double mass = hand.grip * p.hand_mass_at_tip;
   const Vec<N> b_d = resolve<N>(p.damping, damping_);
   const Vec<N> friction = resolve<N>(p.friction, friction_);
   const Vec3 target_rate = (hand.target - target_) / p.tick;
@@ -82,7 +83,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   if (!hand.torque.empty()) pushed = Eigen::Map<const Vec<N>>(hand.torque.data(), x_.size());
   Vec<N> x_model = x_;
   Vec<N> dv = Vec<N>::Zero(x_.size());
-  Vec3 tip_model = Vec3::Zero();
+  Vec3 tip_model = Vec3::Zero(), drift = Vec3::Zero();
   const typename Arm<N>::Angles start = Arm<N>::angles(x_start);
   hand_torque_.setZero();
   for (int s = 0; s < p.substeps; ++s) {
@@ -93,19 +94,23 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
       arm_.inertia_bias(frames_, v_ + 0.5 * ahead * dv, M_, Cv_);
       tip_model = arm_.tip(frames_);
       arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);
+      if (mass > 0) {
+        const Vec<N> v_mid = v_ + 0.5 * ahead * dv;
+        drift = arm_.point_drift(frames_, arm_.dof() - 1, tip_model, v_mid);
+      }
     }
     // Everything at the middle of the substep as v would have it; dv then corrects:
     // x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
     const Vec<N> x_mid = x_ + h / 2 * v_;
     const Vec3 tip = tip_model + J_ * (x_mid - x_model);
     const Vec3 target = target_ + (s + 0.5) * h * target_rate;
-    const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_);
+    const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_) - mass * drift;
     const Resistance r = resistance(b_d, friction, x_mid);
 
     // A is symmetric: its lower triangle is enough.
     Mat<N> A = M_;
     for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      const Vec3 pulled = grip_damping * J_.col(j);
+      const Vec3 pulled = (grip_damping + mass) * J_.col(j);
       for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += J_.col(i).dot(pulled);
       A(j, j) += h / 2 * r.damping[j] + h * h / 4 * r.stiffness[j];
     }
@@ -114,7 +119,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     b *= h;
     dv = solve_symmetric<N>(A, b);
 
-    const Vec3 force = pull - (b_h / 2 + h / 4 * k_h) * (J_ * dv);
+    const Vec3 force = pull - (b_h / 2 + h / 4 * k_h + mass / h) * (J_ * dv);
     hand_torque_.noalias() += J_.transpose() * force;
     x_ += h * (v_ + 0.5 * dv);
     v_ += dv;
@@ -138,6 +143,8 @@ VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(descrip
     traits_.resolution.push_back(0);
     traits_.effort.push_back(joint.effort);
   }
+  sent_.fill(Vec<N>::Zero(traits_.dof));
+  acted_ = sent_[0];
 }
 
 template <int N>
@@ -145,6 +152,8 @@ void VirtualDevice<N>::place(std::span<const double> x, std::span<const double> 
                              const Vec3& target) noexcept {
   const Eigen::Index n = traits_.dof;
   arm.place(Eigen::Map<const Vec<N>>(x.data(), n), Eigen::Map<const Vec<N>>(v.data(), n), target);
+  sent_.fill(Vec<N>::Zero(n));
+  acted_ = sent_[0];
 }
 
 template <int N>
@@ -152,7 +161,7 @@ std::optional<DeviceTruth> VirtualDevice<N>::truth() const noexcept {
   const auto joints = [](const Vec<N>& values) {
     return std::span(values.data(), static_cast<std::size_t>(values.size()));
   };
-  return DeviceTruth{joints(arm.x()), joints(arm.v()), joints(arm.hand_torque())};
+  return DeviceTruth{joints(arm.x()), joints(arm.v()), joints(arm.hand_torque()), joints(acted_)};
 }
 
 template <int N>
@@ -168,7 +177,10 @@ template <int N>
 void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
   Vec<N> tau = Vec<N>::Zero(traits_.dof);
   if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
-  arm.live(p_, tau, hand_);
+  std::ranges::rotate(sent_, sent_.end() - 1);
+  sent_.front() = tau;
+  acted_ = sent_[static_cast<std::size_t>(p_.device_delay)];
+  arm.live(p_, acted_, hand_);
 }
 
 template class VirtualDevice<3>;

@@ -10,8 +10,8 @@
 
 namespace limpid {
 
-// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring and damper at the
-// tip; gravity counts as compensated. Integrated in substeps of the tick with the motor torque
+// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass at
+// the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor torque
 // held: linearly implicit midpoint rule, second order and without numerical damping, stable for
 // every grip.
 template <int N>
@@ -49,7 +49,7 @@ class VirtualArm {
   Jacobian<N> J_;
 };
 
-// The virtual arm as a device: a write lives through the tick.
+// The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.
 template <int N>
 class VirtualDevice final : public Device {
  public:
@@ -73,6 +73,8 @@ class VirtualDevice final : public Device {
   DeviceTraits traits_;
   Parameters p_;
   HandInput hand_;
+  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques, the newest first [N m]
+  Vec<N> acted_;                             // the one that the motors gave over the last tick
   std::uint64_t count_ = 0;
 };
 

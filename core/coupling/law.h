@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/coupling/decomposition.h"
+#include "core/dynamics/arm.h"
 
 namespace limpid {
 
@@ -16,10 +17,34 @@ struct LawInfo {
   const char* key;      // in files and on the command line
   const char* label;    // on a button
   const char* meaning;  // in help and tooltips, a sentence after "KEY: "
-  // It feeds the observed human force forward, and scales the inertia felt by eta, (12): then the
-  // conditions of (25) are its own.
+  // The inertia felt is scaled by eta, (12).
   bool scales_inertia;
+  // By feeding the observed human force forward: then the conditions of (25) are its own.
+  bool observes;
   std::span<const char* const> sliders;  // keys, in the panel
+};
+
+// Where a law begins: device and proxy as they are.
+template <int N>
+struct LawStart {
+  const Vec<N>& x1;      // as measured [rad]
+  const Vec<N>& v1;      // [rad/s]
+  const Vec<N>& f1_hat;  // human torque, as far as it is known [N m]
+};
+
+// What the device says at t_k.
+template <int N>
+struct LawReading {
+  const Vec<N>& x1;     // as measured [rad]
+  const Vec<N>& v1;     // estimated velocity [rad/s]
+  double elapsed;       // since the reading before; 0 for the first one [s]
+  double encoder_step;  // [rad]
+};
+
+// Where a law takes the device to be.
+template <int N>
+struct Whereabouts {
+  Vec<N> x, v;  // [rad, rad/s]
 };
 
 // What a law knows at t_k.
@@ -31,6 +56,34 @@ struct LawInput {
   const Vec<N>& f1_hat;       // human torque, as observed [N m]
   const Vec<N>& vbar2;        // mean velocity of the proxy over the tick before [rad/s]
   double T;                   // of the tick that begins [s]
+  // For laws that model the device:
+  const typename Arm<N>::Frames& frames;  // of it, where the law takes it to be
+  const Vec<N>& b_d;                      // its own damping [N m s/rad]
+  const Vec<N>& b_d_sure;                 // no more than that for sure
+  const Vec<N>& limit;                    // of its motors [N m]
+  double authority;                       // share of a torque that leaves for them, 0 to 1
+  double tick;                            // as it should be [s]
+  double encoder_step;                    // [rad]
+};
+
+// What a law tells of itself, a tick.
+struct LawReport {
+  double reserve = 0;           // energy left in its ledger [J]
+  double contact_governor = 1;  // share of the contact force that it lets through
+  double damping_governor = 1;  // share of the damping that it may cancel
+};
+
+// What most laws need not do.
+template <int N>
+struct PlainLaw {
+  void start(const LawStart<N>&) {}
+  template <class P>
+  Whereabouts<N> locate(const P&, const LawReading<N>& in) {
+    return {in.x1, in.v1};
+  }
+  // The torque that really left, for the tick that begins [N m].
+  void applied(const Vec<N>&) {}
+  LawReport report() const { return {}; }
 };
 
 }  // namespace limpid

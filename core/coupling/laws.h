@@ -6,14 +6,15 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/coupling/predictive.h"
 #include "core/coupling/proposed.h"
 #include "core/coupling/standard.h"
 
 namespace limpid {
 
 // Numbered in the order of Laws: the number is what recordings keep.
-enum class CouplingKind : std::uint8_t { standard, proposed };
-using Laws = std::tuple<StandardLaw, ProposedLaw>;
+enum class CouplingKind : std::uint8_t { standard, proposed, predictive };
+using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw>;
 
 namespace detail {
 
@@ -77,25 +78,43 @@ inline constexpr auto kLawMeanings = detail::meanings();
 template <int N>
 class Coupling {
  public:
-  void start() {
-    std::apply([](auto&... law) { (law.start(), ...); }, laws_);
+  void start(const LawStart<N>& at) {
+    std::apply([&](auto&... law) { (law.start(at), ...); }, laws_);
   }
-  // Steps the proxy over the tick; returns the torque that the motors are asked for [N m].
+  // First in a tick: where the law takes the device to be.
+  template <class P>
+  Whereabouts<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
+    Whereabouts<N> at;
+    with(laws_, kind, [&](auto& law) { at = law.locate(p, in); });
+    return at;
+  }
+  // Then: steps the proxy over the tick; returns the torque that the motors are asked for [N m].
   template <class P>
   Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
     Vec<N> torque;
-    std::uint8_t i = 0;
-    std::apply(
-        [&](auto&... law) {
-          ((i++ == static_cast<std::uint8_t>(kind) ? void(torque = law.step(p, in, proxy))
-                                                   : void()),
-           ...);
-        },
-        laws_);
+    with(laws_, kind, [&](auto& law) { torque = law.step(p, in, proxy); });
     return torque;
+  }
+  // Last: what left of it [N m].
+  void applied(CouplingKind kind, const Vec<N>& torque) {
+    with(laws_, kind, [&](auto& law) { law.applied(torque); });
+  }
+  LawReport report(CouplingKind kind) const {
+    LawReport report;
+    with(laws_, kind, [&](const auto& law) { report = law.report(); });
+    return report;
   }
 
  private:
+  template <class All, class Action>
+  static void with(All& all, CouplingKind kind, const Action& action) {
+    std::uint8_t i = 0;
+    const auto one = [&](auto& law) {
+      if (i++ == static_cast<std::uint8_t>(kind)) action(law);
+    };
+    std::apply([&](auto&... law) { (one(law), ...); }, all);
+  }
+
   detail::AllLaws::Instances<N> laws_;
 };
 

@@ -30,6 +30,7 @@ struct ProposedLaw {
       .label = "Proposed",
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
       .scales_inertia = true,
+      .observes = true,
       .sliders = kPaperSliders,
   };
 
@@ -45,9 +46,8 @@ struct ProposedLaw {
   };
 
   template <int N>
-  class Of {
+  class Of : public PlainLaw<N> {
    public:
-    void start() {}
     // p: Settings and a SpringDamper.
     template <class P>
     Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {

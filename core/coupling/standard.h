@@ -11,14 +11,14 @@ struct StandardLaw {
       .label = "Standard",
       .meaning = "spring and damper alone, (1)-(2).",
       .scales_inertia = false,
+      .observes = false,
       .sliders = kPaperSliders,
   };
 
   using Settings = SpringDamper;
 
   template <int N>
-  struct Of {
-    void start() {}
+  struct Of : PlainLaw<N> {
     Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy) {
       return couple<N>(p, in, Feedforward<N>::none(in.x1.size()), proxy);
     }

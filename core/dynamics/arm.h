@@ -93,6 +93,8 @@ class Arm {
   }
   // Velocity of a point fixed to `link`, now at `world`, per joint rate [m]; J is 3 x n.
   void point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const;
+  // Acceleration of that point at constant joint rates, Jdot v [m/s^2].
+  Vec3 point_drift(const Frames& f, int link, const Vec3& world, const Vec<N>& v) const;
 
  private:
   // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's

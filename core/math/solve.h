@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <type_traits>
 
 #include "core/math/sizes.h"
 
@@ -86,5 +87,30 @@ auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
     return x;
   }
 }
+
+// A regular matrix made ready for several right sides.
+template <int N>
+class Factor {
+ public:
+  Factor() = default;
+  explicit Factor(const Mat<N>& A) {
+    if constexpr (N == 3) {
+      factor_ = A.inverse();
+    } else {
+      factor_.compute(A);
+    }
+  }
+  template <class B>
+  auto solve(const B& b) const -> typename B::PlainObject {
+    if constexpr (N == 3) {
+      return factor_ * b;
+    } else {
+      return factor_.solve(b);
+    }
+  }
+
+ private:
+  std::conditional_t<N == 3, Mat<N>, Eigen::PartialPivLU<Mat<N>>> factor_;
+};
 
 }  // namespace limpid

@@ -11,14 +11,17 @@ template <int N>
 struct EnergyBooks {
   double commanded = 0;  // [J]
   double total = 0;      // [J]
+  double port = 0;       // of motors and own damping alone: what the human was given [J]
   double contact = 0;    // work of the contacts on the proxy [J]
 
   // tau1 the motor torque held over the tick, dx the motion over it, b_d the device's damping.
   void add(const Vec<N>& tau1, const Vec<N>& dx1, const Vec<N>& tau2, const Vec<N>& dx2,
            const Vec<N>& b_d, double T) {
     const double work = tau1.dot(dx1) + tau2.dot(dx2);
+    const double damped = b_d.cwiseProduct(dx1).dot(dx1) / T;
     commanded += work;
-    total += work - b_d.cwiseProduct(dx1).dot(dx1) / T;
+    total += work - damped;
+    port += tau1.dot(dx1) - damped;
   }
 
   // A contact is a spring: what it gave and still stores comes to nothing while it lasts. Making

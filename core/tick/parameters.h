@@ -19,14 +19,18 @@ namespace limpid {
 // Not a number stands for "as the arm's file says".
 inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 
+inline constexpr int kMostDelay = 20;  // of a device [ticks]
+
 struct Parameters : LawSettings, ObserverSettings {
   CouplingKind kind = CouplingKind::proposed;
   double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
   double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]
   double hand_stiffness = 300;  // [N/m]
   double hand_damping = 2;      // [N s/m]
+  double hand_mass_at_tip = 0;  // of hand and handle, at the tip [kg]
   double tick = 0.001;          // T [s]
   int substeps = 20;
+  int device_delay = 0;            // between command and motor [ticks]
   double encoder_step = 0;         // [rad]
   double friction = kFromArm;      // Coulomb, every joint [N m]
   double damping = kFromArm;       // b_d, every joint [N m s/rad]

@@ -52,7 +52,7 @@ void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   tau1_ = vbar2_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  coupling_.start();
+  coupling_.start({start.x1, start.v1, start.f1_hat});
   k_ = period_ = 0;
   diverged_ = false;
 }
@@ -74,34 +74,39 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   if (k_ > 0) period_ += static_cast<std::uint64_t>(in.periods);
   if (k_ > 0) close_books(in, T);
   proxy_.set_ratio(p.inertia_ratio);
-  if (p.kind != kind_) motors_.begin_slew();
-  kind_ = p.kind;
   b_d_ = resolve<N>(p.damping, arm_damping_);
+  limit_ = resolve<N>(p.torque_limit, arm_limit_);
 
   // The device, (5), as the controller believes it to be.
-  if (k_ > 0 && !in.health.gap) {
+  const bool goes_on = k_ > 0 && !in.health.gap;
+  if (goes_on) {
     velocity_.update(in.measured, T, p.velocity, p.encoder_step);
   } else {
     velocity_.reset(in.measured);
   }
-  device_.v = velocity_.estimate();
-  arm_.frames(in.measured, frames_);
+  if (p.kind != kind_) switch_law(p.kind, in.measured);
+  const Whereabouts<N> at = coupling_.locate(
+      p.kind, p, {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
+  fresh_law_ = false;
+  device_.v = at.v;
+  arm_.frames(at.x, frames_);
   arm_.inertia_coriolis(frames_, device_.v, device_.M, device_.C);
   device_.M *= p.inertia_error;
   device_.C *= p.inertia_error;
   const Vec<N>& v1 = velocity_.raw();
 
   // Human force, (16)-(18).
-  f1_hat_ = k_ > 0 && !in.health.gap
-                ? observer_.estimate(p.alpha, T, device_.M, device_.C, device_.v, b_d_)
-                : observer_.present();
+  f1_hat_ = goes_on ? observer_.estimate(p.alpha, T, device_.M, device_.C, velocity_.estimate(), b_d_)
+                    : observer_.present();
 
   // The coupling, (1)-(2), (7)-(15), and with it the proxy, (4).
   x2_ = proxy_.x();
   v2_ = proxy_.v();
   kinetic_ = proxy_.kinetic_energy();
-  command_ =
-      coupling_.step(p.kind, p, LawInput<N>{in.measured, v1, device_, f1_hat_, vbar2_, T}, proxy_);
+  const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
+  const LawInput<N> now{in.measured, v1,     device_, f1_hat_,      vbar2_, T,           frames_,
+                        b_d_,        b_d_sure, limit_, gate_.gain(), p.tick, p.encoder_step};
+  command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
   vbar2_ = proxy_.vbar();
@@ -109,6 +114,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   diverged_ = diverged_ || !command_.allFinite();
   pass_on(p, in, wish, put_out, T);
   observer_.applied(p.anti_windup ? tau1_ : command_);
+  coupling_.applied(p.kind, tau1_);
   write_row(p, in, row);
   x1_before_ = in.x;
   ++k_;
@@ -124,22 +130,32 @@ void Tick<N>::begin_after_gap(const Reading<N>& in) {
   observer_.reset(f1_hat_, f1_hat_);
   tau1_.setZero();
   motors_.start();
+  coupling_.start({in.measured, f1_hat_, f1_hat_});
   x1_before_ = in.x;
+}
+
+// The law that takes over begins with things as they are; the torque gets there at a bounded rate.
+template <int N>
+void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
+  motors_.begin_slew();
+  proxy_.contacts().forget();
+  coupling_.start({x1, velocity_.estimate(), f1_hat_});
+  kind_ = to;
+  fresh_law_ = true;
 }
 
 // The command on its way to the motors.
 template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
                       double T) {
-  const Vec<N> limit = resolve<N>(p.torque_limit, arm_limit_);
   if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Objections against =
-      safety_.judge(in.health, diverged_, in.measured, device_.v, J_, put_out, T);
+      safety_.judge(in.health, diverged_, in.measured, velocity_.estimate(), J_, put_out, T);
   // As much time as really passed, and no more than a tick's.
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool limited = in.health.guarded && !diverged_;
-  tau1_ = motors_.pass(limited ? safety_.within_tip_force(command_, J_) : command_, limit,
+  tau1_ = motors_.pass(limited ? safety_.within_tip_force(command_, J_) : command_, limit_,
                        gate_.gain(), dt, limited ? SafetyLimits::kSlew : 0);
 }
 
@@ -147,7 +163,7 @@ template <int N>
 void Tick<N>::close_books(const Reading<N>& in, double T) {
   const Vec<N> dx1 = in.x - x1_before_;
   const Vec<N> dx2 = proxy_.x() - x2_;
-  books_.add(tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
+  books_.add(in.acted ? *in.acted : tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
   books_.add_contact(proxy_.f(), dx2);
 }
 
@@ -174,6 +190,11 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::kind, static_cast<double>(p.kind));
   set(Column::eta, p.eta);
   set(Column::alpha, p.alpha);
+  const LawReport law = coupling_.report(p.kind);
+  set(Column::governor, law.contact_governor);
+  set(Column::damping_governor, law.damping_governor);
+  set(Column::energy_ledger, law.reserve);
+  set(Column::energy_port, books_.port);
   set(Column::energy_total, books_.total);
   set(Column::energy_commanded, books_.commanded);
   set(Column::proxy_kinetic, kinetic_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/coupling/force_observer.h"
@@ -24,6 +25,8 @@ struct Reading {
   DeviceHealth health{};
   int periods = 1;  // since the reading before, in ticks; more than 1 after a late one
   double dt = 0;    // the same as it really passed [s]; 0: as long as it should be
+  // That the motors gave since, where it is known to differ from what was sent [N m].
+  std::optional<Vec<N>> acted{};
 };
 
 // Where a loop starts.
@@ -76,6 +79,7 @@ class Tick {
 
  private:
   void begin_after_gap(const Reading<N>& in);
+  void switch_law(CouplingKind to, const Vec<N>& x1);
   void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
@@ -100,8 +104,9 @@ class Tick {
   Vec<N> x2_, v2_, f1_hat_, command_;
   double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
   // Of the last tick, for the books and for the delayed terms of (1):
-  Vec<N> x1_before_, tau1_, vbar2_, b_d_;
+  Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;
+  bool fresh_law_ = false;    // it took over at this tick
   std::uint64_t k_ = 0;       // ticks run
   std::uint64_t period_ = 0;  // of the present tick; the same unless ticks were given up
   bool diverged_ = false;

@@ -24,6 +24,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene) : scene_(sc
   empty.gradient = Vec<N>::Zero(arm.dof());
   contacts_.assign(obstacles * probes_.size() + scene.joint_contacts.size(), empty);
   add_mesh_contacts(arm);
+  memories_.resize(contacts_.size() + meshes_.size());
 }
 
 template <int N>
@@ -38,6 +39,7 @@ void Contacts<N>::add_mesh_contacts(const ArmDescription& arm) {
         const double part = balls > 1 ? static_cast<double>(i) / (balls - 1) : 0;
         MeshContact<N> contact(mesh, probe.radius, arm.dof());
         contact.mesh = static_cast<int>(m);
+        contact.id = contacts_.size() + meshes_.size();
         contact.link = probe.link;
         contact.on_link = probe.from + part * (probe.to - probe.from);
         meshes_.push_back(std::move(contact));
@@ -53,6 +55,7 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
     contact.touch.place(contact.center);
     contact.force.setZero();
   }
+  forget();
   find(arm, f, x, 0);
   for (Contact<N>& contact : contacts_) contact.force = 0;
 }
@@ -81,23 +84,21 @@ bool Contacts<N>::recoverable() const {
 }
 
 template <int N>
-void Contacts<N>::add(double depth, const Material& material, const Vec3& point, const Vec3& normal,
-                      int link, const Arm<N>& arm, const typename Arm<N>::Frames& f) {
+void Contacts<N>::add(const Contact<N>& found, const Arm<N>& arm,
+                      const typename Arm<N>::Frames& f) {
   Contact<N>& c = contacts_[count_++];
-  c.depth = depth;
-  c.material = material;
-  c.point = point;
-  c.normal = normal;
-  c.touching = depth > 0;
+  c = found;
+  c.touching = found.depth > 0;
   Jacobian<N> J;
-  arm.point_jacobian(f, link, point, J);
-  c.gradient.noalias() = -J.transpose() * normal;
+  arm.point_jacobian(f, found.link, found.point, J);
+  c.gradient.noalias() = -J.transpose() * found.normal;
 }
 
 template <int N>
 void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x,
                        double T) {
   count_ = 0;
+  std::size_t id = 0;
   for (const Probe& probe : probes_) {
     const Vec3 from = Arm<N>::point(f, probe.link, probe.from);
     const Vec3 to = Arm<N>::point(f, probe.link, probe.to);
@@ -106,8 +107,9 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
       const Surface s = distance_to(obstacle, point);
       const double depth = probe.radius - s.distance;
       if (depth > -kReach) {
-        add(depth, obstacle.material, point, s.normal, probe.link, arm, f);
+        add({depth, {}, obstacle.material, point, s.normal, probe.link, id}, arm, f);
       }
+      ++id;
     };
     for (const Plane& plane : scene_.planes) touch(plane);
     for (const Sphere& sphere : scene_.spheres) touch(sphere);
@@ -121,6 +123,8 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     c.material = {.stiffness = stop.stiffness};
     c.point = f.p[static_cast<std::size_t>(stop.joint)];
     c.normal.setZero();
+    c.friction.setZero();
+    c.id = id++;
     c.touching = c.depth > 0;
   }
   for (MeshContact<N>& contact : meshes_) {
@@ -241,7 +245,7 @@ std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
     }
   };
   for (const Contact<N>& c : list()) {
-    if (c.force > 0 && !c.normal.isZero(0)) take({c.point, c.force * c.normal});
+    if (c.force > 0 && !c.normal.isZero(0)) take({c.point, c.force * c.normal + c.friction});
   }
   for (const MeshContact<N>& c : meshes_) {
     const double force = c.force.norm();
@@ -251,18 +255,29 @@ std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
 }
 
 template <int N>
+bool Contacts<N>::engaged() const {
+  const auto pushed = [&](const auto& c) { return !memories_[c.id].push.isZero(0); };
+  return std::ranges::any_of(list(), [&](const auto& c) { return c.depth > 0 || pushed(c); }) ||
+         std::ranges::any_of(meshes_, [&](const auto& c) { return c.rank > 0 || pushed(c); });
+}
+
+template <int N>
 double Contacts<N>::potential() const {
   double U = 0;
+  const auto friction = [&](const auto& c) {
+    const Vec3& anchor = memories_[c.id].anchor;
+    return 0.5 * friction_stiffness(c.material) * anchor.squaredNorm();
+  };
   for (const Contact<N>& c : list()) {
     const double d = std::max(c.depth, 0.0);
-    U += 0.5 * c.material.stiffness * d * d;
+    U += 0.5 * c.material.stiffness * d * d + friction(c);
   }
   for (const MeshContact<N>& c : meshes_) {
     if (!c.touch.near()) continue;
     Vec3 x = c.touch.anchor();
     FreeSpace::Active active;
     if (!c.touch.held()) c.touch.space().project(c.center, x, active);
-    U += 0.5 * c.material.stiffness * (x - c.center).squaredNorm();
+    U += 0.5 * c.material.stiffness * (x - c.center).squaredNorm() + friction(c);
   }
   return U;
 }

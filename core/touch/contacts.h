@@ -1,6 +1,7 @@
 // Where the arm touches the scene, how deep, and what comes of it within a tick.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,9 +21,25 @@ struct Contact {
   Material material;           // in joint space its stiffness is in [N m/rad]
   Vec3 point = Vec3::Zero();   // on the arm [m]
   Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
+  int link = 0;                // that touches
+  std::size_t id = 0;          // the same as long as the scene is
   bool touching = false;
-  double force = 0;  // over the last tick [N] or [N m]
+  double force = 0;               // over the last tick [N] or [N m]
+  Vec3 friction = Vec3::Zero();  // the same, along the surface [N]
 };
+
+// What a contact keeps from tick to tick, for laws that render friction.
+struct ContactMemory {
+  Vec3 push = Vec3::Zero();    // of the wall: along x the force [N]; of a mesh: as a vector [N]
+  Vec3 anchor = Vec3::Zero();  // how far the spring of friction is stretched [m]
+  bool slipping = false;
+};
+
+// The spring of friction: no stiffer than this [N/m].
+inline constexpr double kStiffestFriction = 2000;
+inline double friction_stiffness(const Material& m) {
+  return std::min(m.stiffness, kStiffestFriction);
+}
 
 // A ball of the arm against a mesh: its centre c(x2 + dx) = center + J dx is pulled by K (x - c) to
 // the nearest x that the mesh leaves free, within a tick a room of planes.
@@ -33,6 +50,7 @@ struct MeshContact {
 
   MeshTouch touch;
   int mesh = 0, link = 0;       // indices
+  std::size_t id = 0;           // among all contacts
   Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
   Material material;
   Vec3 center = Vec3::Zero();         // [m]
@@ -41,7 +59,7 @@ struct MeshContact {
   Mat3 direction = Mat3::Identity();  // columns: orthonormal, along which it pushes
   int rank = 0;                       // columns used
   Vec3 depth = Vec3::Zero();          // along each of them at x2 [m]
-  Vec3 force = Vec3::Zero();          // over the last tick [N]
+  Vec3 force = Vec3::Zero();          // over the last tick, with friction [N]
 };
 
 // Where something touches and how hard it pushes on the proxy.
@@ -79,14 +97,21 @@ class Contacts {
   std::span<const Contact<N>> list() const { return {contacts_.data(), count_}; }
   std::size_t capacity() const { return contacts_.size(); }
   std::span<const MeshContact<N>> meshes() const { return meshes_; }
+  // For laws that solve for the forces themselves.
+  std::span<Contact<N>> list() { return {contacts_.data(), count_}; }
+  std::span<MeshContact<N>> meshes() { return meshes_; }
+  ContactMemory& memory(std::size_t id) { return memories_[id]; }
+  // Something is in, or pushed over the last tick.
+  bool engaged() const;
+  void forget() { std::ranges::fill(memories_, ContactMemory{}); }
+
   // Copies what pushed over the last tick, the hardest if not all fit; returns how many. Contacts
   // in joint space are nowhere and not among them.
   std::size_t forces(std::span<ContactForce> into) const;
-  double potential() const;  // of all springs, K d^2 / 2 [J]
+  double potential() const;  // of all springs, those of friction too [J]
 
  private:
-  void add(double depth, const Material& material, const Vec3& point, const Vec3& normal, int link,
-           const Arm<N>& arm, const typename Arm<N>::Frames& f);
+  void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   static void aim(MeshContact<N>& contact);
@@ -96,6 +121,7 @@ class Contacts {
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
+  std::vector<ContactMemory> memories_;  // by id
 };
 
 extern template class Contacts<3>;

@@ -77,7 +77,7 @@ void Proxy<N>::update_velocity() {
 
 template <int N>
 void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
-  contacts_->find(arm_, frames_, x_, T);
+  look(T);
   // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
   // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
   // none ever pulls.
@@ -85,6 +85,13 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   for (int round = 0; !solve_step(T, drive); ++round) {
     if (!contacts_->reconsider(vbar_, T, round >= kRounds)) break;
   }
+  step(T, vbar_, f_);
+}
+
+template <int N>
+void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
+  vbar_ = vbar;
+  f_ = f;
   // The torque as it acted, from the momentum it made: the balance then holds to round-off.
   const Vec<N> nu_before = nu_;
   nu_ = 2 * (L_.transpose() * vbar_) - nu_before;
@@ -101,9 +108,9 @@ template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
   // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
   // f2 - K T/2 vbar the contacts' force.
-  Mat<N> A = 2 / T * M_ + S_;
+  Mat<N> A = impedance(T);
   A.diagonal().array() += drive.damping;
-  Vec<N> b = 2 / T * (L_ * nu_) + drive.constant;
+  Vec<N> b = momentum(T) + drive.constant;
   contacts_->add_to(A, b, T, drive.from_f2);
   vbar_ = solve<N>(A, b);
   return contacts_->push(vbar_, T, f_);

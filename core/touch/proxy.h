@@ -38,6 +38,15 @@ class Proxy {
   // One tick of length T [s].
   void advance(double T, const ProxyDrive<N>& drive);
 
+  // The same in two halves, for laws that solve device and proxy together. What is near is found;
+  void look(double T) { contacts_->find(arm_, frames_, x_, T); }
+  // then (2/T M + S) vbar - 2/T L nu = tau + f, for whatever tau is.
+  Mat<N> impedance(double T) const { return 2 / T * M_ + S_; }
+  Vec<N> momentum(double T) const { return 2 / T * (L_ * nu_); }
+  // Over the tick it moved like this, under these contact forces [rad/s, N m].
+  void step(double T, const Vec<N>& vbar, const Vec<N>& f);
+  Contacts<N>& contacts() { return *contacts_; }
+
   const Vec<N>& x() const { return x_; }
   const Vec<N>& v() const { return v_; }
   const Mat<N>& M() const { return M_; }

@@ -87,8 +87,9 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
   const auto truth = device->truth();
-  if (truth) return {x, of_joints(truth->x), of_joints(truth->v), health, now.periods, now.dt};
-  return {x, x, v, health, now.periods, now.dt};
+  if (!truth) return {x, x, v, health, now.periods, now.dt, {}};
+  return {x,           of_joints(truth->x), of_joints(truth->v),           health,
+          now.periods, now.dt,              of_joints(truth->motor_torque)};
 }
 
 template <int N>
@@ -178,6 +179,7 @@ void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row
         const std::span<double> target = layout.in(row, Column::hand_target);
         if (const auto truth = of->device->truth()) {
           std::ranges::copy(truth->hand_torque, f1.begin());
+          std::ranges::copy(truth->motor_torque, layout.in(row, Column::motor_torque).begin());
           std::copy_n(input.hand.target.data(), 3, target.begin());
         } else {  // nobody measures the hand
           std::ranges::fill(f1, std::numeric_limits<double>::quiet_NaN());

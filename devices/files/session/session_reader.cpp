@@ -32,6 +32,10 @@ std::optional<double> default_of(Column column) {
     case Column::force_state: return 0.0;
     case Column::contact_potential: return 0.0;
     case Column::contact_gain: return 0.0;
+    case Column::governor: return 1.0;
+    case Column::damping_governor: return 1.0;
+    case Column::energy_ledger: return 0.0;
+    case Column::energy_port: return std::numeric_limits<double>::quiet_NaN();
     // That nothing touched is not known.
     case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
     case Column::contact_force: return std::numeric_limits<double>::quiet_NaN();

@@ -1,0 +1,108 @@
+// The passive networks that make the hand feel less or more inertia than there is: per joint a
+// ladder of two springs, a mass and dampers (eta < 1), or a mass on a spring and damper (eta > 1).
+#pragma once
+
+#include <numbers>
+
+#include "core/math/solve.h"
+
+namespace limpid {
+
+// Driven by the device's motion through R_N, M-like: N = R_N R_N^T. All time dependence of eta and
+// of the inertia sits in R_N, so that for every eta(t) the work given over a tick is at most the
+// storage lost and b_e |dx1|^2/T, b_e a few percent of the device's damping.
+template <int N>
+class InertiaNetwork {
+ public:
+  void start(Eigen::Index n) {
+    s_ = v_ = g_ = Vec<N>::Zero(n);
+    R_ = Mat<N>::Zero(n, n);
+    side_ = 0;
+  }
+
+  // Over the tick of T [s] just ended, in which the device moved by dx [rad].
+  void advance(const Vec<N>& dx, double T, double band) {
+    if (side_ == 0) return;
+    const Vec<N> nu = R_.transpose() * dx / T;
+    if (side_ < 0) {
+      climb(nu, T, 2 * std::numbers::pi * band);
+    } else {
+      const double h = T * kGhost;
+      const Vec<N> d = (nu - g_ - h / 2 * s_) / (1 + kZeta * h + h * h / 4);
+      s_ += h * d;
+      g_ = 2 * (nu - d) - g_;
+    }
+  }
+
+  // For the tick that begins: at this eta, locked inertia M_L, with the share `gain` of what adds
+  // inertia. `band`: edge of the band in which eta holds [Hz].
+  void set(double eta, const Mat<N>& M_L, double gain, double T, double band) {
+    const int side = eta < 1 ? -1 : eta > 1 ? 1 : 0;
+    if (side != side_) start(M_L.rows());  // what was stored is lost, never gained
+    side_ = side;
+    const Eigen::Index n = M_L.rows();
+    if (side == 0) {
+      force_ = Vec<N>::Zero(n);
+      K_ = R_ = Mat<N>::Zero(n, n);
+      return;
+    }
+    const double w2 = 2 * std::numbers::pi * band;
+    const double scale =
+        side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) : gain * (eta - 1);
+    R_ = std::sqrt(scale) * cholesky<N>(M_L);
+    if (side < 0) {
+      force_ = -w2 * (R_ * s_);
+      K_ = Mat<N>::Zero(n, n);
+    } else {
+      const double h = T * kGhost;
+      const double gamma = kGhost * (h / 2 + 2 * kZeta) / (1 + kZeta * h + h * h / 4);
+      force_ = -R_ * (kGhost * s_ - gamma * (g_ + h / 2 * s_));
+      K_ = gamma * (R_ * R_.transpose());
+    }
+  }
+
+  // Its torque on the device over the tick, force() - damping() w [N m, N m s/rad].
+  const Vec<N>& force() const { return force_; }
+  const Mat<N>& damping() const { return K_; }
+  bool damps() const { return side_ > 0; }
+  double storage() const {  // S [J]
+    if (side_ == 0) return 0;
+    if (side_ > 0) return 0.5 * (s_.squaredNorm() + g_.squaredNorm());
+    return 0.5 * (kA1 * s_.squaredNorm() + kA2 * v_.squaredNorm() + kA3 * g_.squaredNorm());
+  }
+
+ private:
+  // The ladder of order 3 whose mass-like share is 1 - eta to 1.5 % up to the band's edge, found by
+  // optimisation; r1 is what the proof needs.
+  static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
+  static constexpr double kGhost = 2 * std::numbers::pi * 25;  // of the added mass [rad/s]
+  static constexpr double kZeta = 0.7;
+
+  // Midpoint rule of q' = w2 (A q + (nu / a1, 0, 0)), q = (s, v, g) of each joint.
+  void climb(const Vec<N>& nu, double T, double w2) {
+    const double step = T * w2;
+    if (step != step_) {
+      Mat3 A;
+      A << 0, -1 / kA1, 0, 1 / kA2, -kR1 / kA2, -1 / kA2, 0, 1 / kA3, -1 / (kA3 * kR);
+      middle_ = (Mat3::Identity() - step / 2 * A).inverse();
+      step_ = step;
+    }
+    for (Eigen::Index i = 0; i < nu.size(); ++i) {
+      const Vec3 q(s_[i], v_[i], g_[i]);
+      const Vec3 next = 2 * (middle_ * (q + Vec3(step / (2 * kA1) * nu[i], 0, 0))) - q;
+      s_[i] = next.x();
+      v_[i] = next.y();
+      g_[i] = next.z();
+    }
+  }
+
+  Vec<N> s_, v_, g_;
+  Mat<N> R_;
+  int side_ = 0;  // -1 ladder, +1 added mass, 0 neither
+  double step_ = 0;
+  Mat3 middle_;
+  Vec<N> force_;
+  Mat<N> K_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,183 @@
+// Where the device is and what pushes it, from encoders and the torque that was applied: a model of
+// the device stepped ahead a tick at a time, corrected by each reading.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/coupling/setting.h"
+#include "core/math/solve.h"
+
+namespace limpid {
+
+enum class PredictorPreset : std::uint8_t { by_encoder, fine, coarse };
+inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "coarse"};
+
+// What a preset stands for; see the table of constants.
+struct PredictorGains {
+  double p;        // memory of a fading-memory filter, 0 none [-]
+  double mu;       // factor on the device's inertia in the predictor [-]
+  double damping;  // that walls get, as a part of m_n/T [-]
+};
+
+struct PredictorSettings {
+  PredictorPreset preset = PredictorPreset::by_encoder;
+  double memory = kAsPreset;  // p [-]
+  double inertia = kAsPreset; // mu [-]
+  double hand_mass = 0.2;     // of the second predictor [kg]
+  int delay = 0;              // between command and motor, as far as it is known [ticks]
+
+  // Not a number stands for "as the preset has it".
+  static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
+  // Encoders coarser than this ask for the coarse preset [rad].
+  static constexpr double kCoarse = 1.5e-4;
+
+  PredictorGains gains(double encoder_step) const {
+    const bool coarse = preset == PredictorPreset::coarse ||
+                        (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
+    PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
+    if (!std::isnan(memory)) g.p = memory;
+    if (!std::isnan(inertia)) g.mu = inertia;
+    return g;
+  }
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 5> settings() {
+    return {{{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2,
+              0, 2, false, true,
+              "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
+              "(walls up to 2000 N/m); auto goes by device.encoder_step."},
+             {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+              "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
+              "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
+             {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
+              "Predictive coupling: factor on the device's inertia in the predictor. Default: "
+              "the preset's, 1 or 0.5."},
+             {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
+              "Predictive coupling: mass of hand and handle in the second predictor, which takes "
+              "over when it is the better one. 0 does without."},
+             {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
+              "Predictive coupling: delay between command and motor that it reckons with, in "
+              "ticks."}}};
+  }
+};
+
+// Two of them run side by side, for a light hand and for one with mass; the one whose predictions
+// were better lately is active.
+template <int N>
+class Predictor {
+ public:
+  static constexpr int kMostDelay = 20;
+
+  // Velocity and torque of the hand as they are [rad, rad/s, N m].
+  void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
+    const Vec<N> zero = Vec<N>::Zero(x.size());
+    tracks_.fill({x, v, zero, f, x, v, 0});
+    pending_.fill(zero);
+    active_ = 0;
+  }
+
+  // A reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; inside a cell
+  // an encoder says nothing.
+  void correct(const Vec<N>& y, double elapsed, double q, double p, bool both) {
+    const double forget = std::exp(-elapsed / kJudged);
+    for (Track& t : tracks_) {
+      t.x_ahead = t.x + elapsed * t.w;  // as foretold
+      t.v_ahead = 2 * t.w - t.v;
+      t.error = y - t.x_ahead;
+      if (q > 0) t.error -= t.error.cwiseMin(q / 2).cwiseMax(-q / 2);
+      t.x = t.x_ahead + (1 - p * p * p) * t.error;
+      t.v = t.v_ahead + 1.5 * (1 - p) * (1 - p) * (1 + p) / elapsed * t.error;
+      t.misses = forget * t.misses + t.error.squaredNorm();
+      if (!both) break;
+    }
+    if (!both) {
+      active_ = 0;
+    } else if (active_ == 0 ? 2 * tracks_[1].misses < tracks_[0].misses
+                            : tracks_[0].misses < tracks_[1].misses) {
+      active_ = 1 - active_;
+    }
+  }
+
+  // Where the active one says that the device is now [rad, rad/s].
+  const Vec<N>& x_now() const { return active().x; }
+  const Vec<N>& v_now() const { return active().v; }
+
+  // The device as modelled there: M, C, its damping b_d, the tip's J; T of the coming tick [s].
+  // Goes on to where the coming torque will meet it, if that is known to be late.
+  void model(const Mat<N>& M, const Mat<N>& C, const Vec<N>& b_d, const Jacobian<N>& J, double T,
+             const PredictorGains& g, double hand_mass, int delay) {
+    T_ = T;
+    delay_ = delay;
+    const double gain = std::pow(1 - g.p, 3) / (T * T);
+    for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
+      Track& t = tracks_[m];
+      t.Mp = g.mu * M;
+      if (m == 1) t.Mp += hand_mass * (J.transpose() * J);
+      t.f += gain * (t.Mp * t.error);
+      t.D0 = 2 / T * t.Mp + C;
+      t.D0.diagonal() += b_d;
+      t.D0_inverse = Factor<N>(t.D0);
+      t.x_met = t.x;
+      t.v_met = t.v;
+      for (int k = 0; k < delay; ++k) {
+        const Vec<N> w = mean_velocity(t, t.v_met, pending_[static_cast<std::size_t>(k)]);
+        if (k == 0) t.w = w;
+        t.x_met += T * w;
+        t.v_met = 2 * w - t.v_met;
+      }
+    }
+  }
+
+  // Of the active one, where the coming torque meets it: the motion is D0 w = drive() + tau, w the
+  // mean velocity over the tick.
+  const Vec<N>& x() const { return active().x_met; }
+  const Mat<N>& D0() const { return active().D0; }
+  Vec<N> drive() const { return 2 / T_ * (active().Mp * active().v_met) + active().f; }
+  bool heavy_hand() const { return active_ == 1; }
+
+  // The torque as it leaves for the motors at the coming tick [N m].
+  void applied(const Vec<N>& tau, bool both) {
+    if (delay_ > 0) {
+      for (int k = 1; k < delay_; ++k) {
+        pending_[static_cast<std::size_t>(k - 1)] = pending_[static_cast<std::size_t>(k)];
+      }
+      pending_[static_cast<std::size_t>(delay_ - 1)] = tau;
+      return;
+    }
+    for (std::size_t m = 0; m < (both ? 2 : 1); ++m) {
+      tracks_[m].w = mean_velocity(tracks_[m], tracks_[m].v, tau);
+    }
+  }
+  // The torque that acts over the coming tick, if `tau` is sent now [N m].
+  const Vec<N>& acting(const Vec<N>& tau) const { return delay_ > 0 ? pending_[0] : tau; }
+  // Mean velocity foretold for the tick that begins [rad/s].
+  const Vec<N>& w() const { return active().w; }
+
+ private:
+  struct Track {
+    Vec<N> x, v;              // at the last reading, corrected [rad, rad/s]
+    Vec<N> w;                 // mean velocity foretold for the tick after it [rad/s]
+    Vec<N> f;                 // torque of the hand and of whatever the model lacks [N m]
+    Vec<N> x_ahead, v_ahead;  // foretold for the next reading
+    double misses = 0;        // squared errors, fading [rad^2]
+    Vec<N> error{};           // of the last reading [rad]
+    Vec<N> x_met{}, v_met{};  // where the coming torque meets it
+    Mat<N> Mp{}, D0{};        // inertia, and 2/T Mp + C + b_d
+    Factor<N> D0_inverse{};
+  };
+  static constexpr double kJudged = 0.05;  // predictions count for so long [s]
+
+  const Track& active() const { return tracks_[active_]; }
+  Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
+    return t.D0_inverse.solve((2 / T_ * (t.Mp * v) + t.f + tau).eval());
+  }
+
+  std::array<Track, 2> tracks_;
+  std::size_t active_ = 0;
+  std::array<Vec<N>, kMostDelay> pending_;  // torques under way, the next to act first [N m]
+  int delay_ = 0;
+  double T_ = 0.001;
+};
+
+}  // namespace limpid

@@ -1,0 +1,255 @@
+#include "core/touch/contact_solve.h"
+
+#include "core/touch/room_force.h"
+#include "core/touch/wall_force.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kNear = 2e-3;       // what is further off and does not come is left out [m]
+constexpr double kSettled = 1e-8;    // largest change of a force, as a part of it or of 1 N
+
+// Two unit vectors across a unit vector.
+Mat3 frame_of(const Vec3& normal) {
+  Mat3 frame;
+  frame.col(0) = normal;
+  frame.col(1) = normal.unitOrthogonal();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
+double friction_radius(const Material& m, bool slipping) {
+  return slipping ? m.friction_kinetic : std::max(m.friction_static, m.friction_kinetic);
+}
+
+}  // namespace
+
+template <int N>
+typename ContactSolve<N>::Row& ContactSolve<N>::next_row(double depth) {
+  std::size_t at = static_cast<std::size_t>(count_);
+  if (count_ < kMost) {
+    ++count_;
+  } else {
+    at = static_cast<std::size_t>(std::ranges::min_element(depths_) - depths_.begin());
+  }
+  depths_[at] = depth;
+  rows_[at] = Row{};
+  return rows_[at];
+}
+
+template <int N>
+void ContactSolve<N>::collect(Contacts<N>& contacts, const Arm<N>& arm,
+                              const typename Arm<N>::Frames& f, const Vec<N>& u, double T) {
+  count_ = 0;
+  for (Contact<N>& c : contacts.list()) {
+    const double deeper = T * c.gradient.dot(u);
+    const bool near = c.depth > -kNear || c.depth + 2 * deeper > 0;
+    if (near && (count_ < kMost || c.depth > std::ranges::min(depths_))) add(c, contacts, arm, f);
+    c.force = 0;
+    c.friction.setZero();
+  }
+  for (MeshContact<N>& c : contacts.meshes()) {
+    c.force.setZero();
+    if (c.touch.near() && (count_ < kMost || c.depth.norm() > std::ranges::min(depths_))) {
+      add(c, contacts);
+    }
+  }
+}
+
+template <int N>
+void ContactSolve<N>::add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
+                          const typename Arm<N>::Frames& f) {
+  Row& row = next_row(c.depth);
+  row.wall = &c;
+  row.material = c.material;
+  row.before = contacts.memory(c.id);
+  row.radius = friction_radius(c.material, row.before.slipping);
+  row.g[0] = -c.gradient;
+  row.push.x() = row.before.push.x();
+  if (row.radius == 0 || c.normal.isZero(0)) return;
+  row.axes = 3;
+  row.frame = frame_of(c.normal);
+  Jacobian<N> J;
+  arm.point_jacobian(f, c.link, c.point, J);
+  for (int i = 1; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    row.g[axis].noalias() = J.transpose() * row.frame.col(i);
+  }
+  row.friction = -friction_stiffness(c.material) * (row.frame.transpose() * row.before.anchor);
+  row.friction.x() = 0;
+}
+
+template <int N>
+void ContactSolve<N>::add(MeshContact<N>& c, Contacts<N>& contacts) {
+  Row& row = next_row(c.depth.norm());
+  row.mesh = &c;
+  row.material = c.material;
+  row.before = contacts.memory(c.id);
+  row.radius = friction_radius(c.material, row.before.slipping);
+  row.axes = 3;
+  for (int i = 0; i < 3; ++i) row.g[static_cast<std::size_t>(i)] = c.J.row(i).transpose();
+  row.push = row.before.push;
+  if (row.radius > 0) row.friction = -friction_stiffness(c.material) * row.before.anchor;
+}
+
+template <int N>
+void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) {
+  const auto axes = static_cast<std::size_t>(row.axes);
+  for (std::size_t j = 0; j < axes; ++j) {
+    row.Z[j] = answer.respond(row.g[j]);
+    for (std::size_t i = 0; i < axes; ++i) {
+      row.W(static_cast<int>(i), static_cast<int>(j)) = row.g[i].dot(row.Z[j].u);
+    }
+  }
+  Vec<N> direction = row.g[0];
+  if (row.mesh != nullptr) {
+    const Vec3 along = row.push.isZero(0) ? row.mesh->direction.col(0) : row.push.normalized();
+    direction = row.mesh->J.transpose() * along;
+  }
+  const double mass = 1 / direction.dot(answer.inertia.solve(direction));
+  row.B = std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
+  row.known = true;
+}
+
+template <int N>
+Vec3 ContactSolve<N>::speed(const Row& row, const Vec<N>& u) {
+  Vec3 v = Vec3::Zero();
+  for (int i = 0; i < row.axes; ++i) v[i] = row.g[static_cast<std::size_t>(i)].dot(u);
+  return v;
+}
+
+template <int N>
+void ContactSolve<N>::apply(const Row& row, const Vec3& change, Motion<N>& motion) {
+  for (int i = 0; i < row.axes; ++i) {
+    if (change[i] != 0) motion.add(change[i], row.Z[static_cast<std::size_t>(i)]);
+  }
+}
+
+template <int N>
+double ContactSolve<N>::push_wall(Row& row, double T, Motion<N>& motion) {
+  const double c = T * row.W(0, 0);
+  const double a = -T * row.g[0].dot(motion.u) + c * row.push.x();
+  const double F = wall_force({row.material.stiffness, row.B, T, row.wall->depth, a, c});
+  const double change = F - row.push.x();
+  motion.add(change, row.Z[0]);
+  row.push.x() = F;
+  return std::abs(change) + rub(row, T, Vec3::UnitX(), F, motion);
+}
+
+template <int N>
+double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
+  const Vec3 before = row.push;
+  const Vec3 a = T * (speed(row, motion.u) - row.W * before);
+  room_force(row.mesh->touch, {row.material.stiffness, row.B, T, row.mesh->center, a, T * row.W},
+             row.push);
+  const Vec3 change = row.push - before;
+  apply(row, change, motion);
+  const double force = row.push.norm();
+  const Vec3 normal = force > 0 ? Vec3(row.push / force) : Vec3::UnitX();
+  return change.norm() + rub(row, T, normal, force, motion);
+}
+
+// Friction across the normal, in the row's axes.
+template <int N>
+double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force,
+                            Motion<N>& motion) {
+  if (row.radius == 0 || row.axes < 3) return 0;
+  const Mat3 frame = row.wall != nullptr ? Mat3::Identity() : frame_of(normal);
+  const auto across = frame.template rightCols<2>();
+  const Vec3 before = row.friction;
+  const Mat2 W = across.transpose() * row.W * across;
+  const Vec2 b = across.transpose() * (speed(row, motion.u) - row.W * before);
+  const Vec3 anchor = row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor)
+                                          : row.before.anchor;
+  const Vec2 l = friction_force(friction_stiffness(row.material), row.radius * force,
+                                across.transpose() * anchor, T, b, W);
+  row.friction = across * l;
+  const Vec3 change = row.friction - before;
+  apply(row, change, motion);
+  return change.norm();
+}
+
+// Nothing happens there, whatever the other contacts do by themselves.
+template <int N>
+bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
+  if (row.known || !row.push.isZero(0) || !row.friction.isZero(0)) return false;
+  if (row.wall != nullptr) {
+    return row.wall->depth <= 0 && row.wall->depth - T * row.g[0].dot(u) <= 0;
+  }
+  if (row.mesh->touch.held() || row.mesh->rank > 0) return false;
+  Vec3 x;
+  FreeSpace::Active by;
+  return row.mesh->touch.space().project(row.mesh->center + T * speed(row, u), x, by) &&
+         by.count == 0;
+}
+
+template <int N>
+void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>& motion) {
+  const std::span<Row> rows(rows_.data(), static_cast<std::size_t>(count_));
+  for (Row& row : rows) {
+    row.known = false;
+    if (row.push.isZero(0) && row.friction.isZero(0)) continue;
+    learn(row, answer, T);
+    apply(row, row.push + row.friction, motion);
+  }
+  double most = 0;
+  bool settled = false;
+  for (sweeps_ = 0; !settled && sweeps_ < kMostSweeps; ++sweeps_) {
+    settled = true;
+    for (Row& row : rows) {
+      if (apart(row, T, motion.u)) continue;
+      if (!row.known) learn(row, answer, T);
+      const double change =
+          row.wall != nullptr ? push_wall(row, T, motion) : push_mesh(row, T, motion);
+      most = std::max(most, row.push.norm());
+      settled = settled && change < kSettled * std::max(1.0, most);
+    }
+    if (count_ == 1 && rows_[0].radius == 0) {
+      ++sweeps_;
+      return;
+    }
+  }
+}
+
+template <int N>
+Vec<N> ContactSolve<N>::f2(Eigen::Index n) const {
+  Vec<N> f = Vec<N>::Zero(n);
+  for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    const Vec3 force = row.push + row.friction;
+    for (int i = 0; i < row.axes; ++i) f += force[i] * row.g[static_cast<std::size_t>(i)];
+  }
+  return f;
+}
+
+template <int N>
+void ContactSolve<N>::finish(Contacts<N>& contacts) const {
+  const auto keep = [&](std::size_t id, const Row* row) {
+    ContactMemory now;
+    if (row != nullptr) {
+      const double force = row->push.norm(), rubs = row->friction.norm();
+      now.push = row->push;
+      now.anchor = -(row->frame * row->friction) / friction_stiffness(row->material);
+      const double limit = row->radius * force * (1 - 1e-9);
+      // Without kinetic friction it slips until it is lifted.
+      now.slipping = force > 0 && (row->radius > 0 ? rubs >= limit : row->before.slipping);
+    }
+    contacts.memory(id) = now;
+  };
+  for (const Contact<N>& c : contacts.list()) keep(c.id, nullptr);
+  for (const MeshContact<N>& c : contacts.meshes()) keep(c.id, nullptr);
+  for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    if (row.wall != nullptr) {
+      row.wall->force = row.push.x();
+      row.wall->friction = row.frame * row.friction;
+      keep(row.wall->id, &row);
+    } else {
+      row.mesh->force = row.push + row.friction;
+      keep(row.mesh->id, &row);
+    }
+  }
+}
+
+template class ContactSolve<3>;
+template class ContactSolve<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,88 @@
+// The forces of all contacts over a tick together: walls and meshes, with damping and friction, by
+// Gauss-Seidel sweeps over forces that do exactly the work that the contacts' potentials lose.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/math/coupled_system.h"
+#include "core/touch/contacts.h"
+#include "core/touch/friction.h"
+
+namespace limpid {
+
+// How all that moves answers to a torque f2 of the contacts on the proxy.
+template <int N>
+struct ContactAnswer {
+  CoupledSystem<N> system;
+  Mat<N> on_device, on_proxy;  // of f2, what reaches each side [-]
+  Factor<N> inertia;           // of the device: how heavy a wall finds it
+  double damping = 0;          // that every wall has, as a part of its mass a tick, m_n/T [-]
+  double most_damping = 0;     // that a wall may have, in the same measure [-]
+
+  Motion<N> respond(const Vec<N>& f2) const {
+    return system.solve({on_device * f2, on_proxy * f2});
+  }
+};
+
+template <int N>
+class ContactSolve {
+ public:
+  static constexpr int kMost = 32;  // that push at a time; of more, the deepest
+  static constexpr int kMostSweeps = 30;
+
+  // The contacts that may touch within a tick of T [s] in which the proxy without them would move
+  // like this.
+  void collect(Contacts<N>& contacts, const Arm<N>& arm, const typename Arm<N>::Frames& f,
+               const Vec<N>& u, double T);
+  // motion: in, without contacts; out, with them. Starts from the last forces.
+  void solve(const ContactAnswer<N>& answer, double T, Motion<N>& motion);
+  // Their torque [N m].
+  Vec<N> f2(Eigen::Index n) const;
+  bool any() const { return count_ > 0; }
+  int sweeps() const { return sweeps_; }  // of the last solve
+
+  // The tick went like this: contacts and their memories learn of it.
+  void finish(Contacts<N>& contacts) const;
+
+ private:
+  // One contact: forces along the axes of a frame. A wall's is its normal and two tangents; without
+  // friction only the first is used. A mesh's is the world's.
+  struct Row {
+    Contact<N>* wall = nullptr;
+    MeshContact<N>* mesh = nullptr;
+    Material material;
+    ContactMemory before;
+    int axes = 1;
+    double radius = 0;  // of friction's disc, by the normal force [-]
+    Mat3 frame = Mat3::Identity();
+    std::array<Vec<N>, 3> g;       // torque of a unit force along each axis
+    std::array<Motion<N>, 3> Z;    // what it moves
+    Mat3 W = Mat3::Zero();         // g_i . Z_j.u [m/(N s)]
+    double B = 0;                  // damping [N s/m]
+    bool known = false;            // Z and W are
+    Vec3 push = Vec3::Zero();      // along the axes, without friction [N]
+    Vec3 friction = Vec3::Zero();  // [N]
+  };
+  Row& next_row(double depth);
+  void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
+           const typename Arm<N>::Frames& f);
+  void add(MeshContact<N>& c, Contacts<N>& contacts);
+  static void learn(Row& row, const ContactAnswer<N>& answer, double T);
+  static Vec3 speed(const Row& row, const Vec<N>& u);
+  static void apply(const Row& row, const Vec3& change, Motion<N>& motion);
+  static double push_wall(Row& row, double T, Motion<N>& motion);
+  static double push_mesh(Row& row, double T, Motion<N>& motion);
+  static double rub(Row& row, double T, const Vec3& normal, double force, Motion<N>& motion);
+  static bool apart(const Row& row, double T, const Vec<N>& u);
+
+  std::array<Row, kMost> rows_;
+  std::array<double, kMost> depths_{};
+  int count_ = 0;
+  int sweeps_ = 0;
+};
+
+extern template class ContactSolve<3>;
+extern template class ContactSolve<kAnyDof>;
+
+}  // namespace limpid

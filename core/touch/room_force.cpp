@@ -1,0 +1,100 @@
+#include "core/touch/room_force.h"
+
+#include <Eigen/LU>
+
+namespace limpid {
+namespace {
+
+constexpr int kMostSteps = 10;   // of Newton's method; two or three are usual
+constexpr int kFinest = 1 << 5;  // parts of a segment on which planes come or go
+
+// Where the room holds a point of the segment.
+struct Held {
+  Vec3 pull;               // from there to the nearest free place [m]
+  FreeSpace::Active by{};  // the planes
+};
+
+// Means over the segment, s from 0 to 1 along it.
+struct Mean {
+  Vec3 pull = Vec3::Zero();  // [m]
+  Mat3 held = Mat3::Zero();  // projection on the directions held
+  Mat3 later = Mat3::Zero();  // the same times s: how the pull's mean answers the segment's end
+};
+
+class Segment {
+ public:
+  Segment(const FreeSpace& space, const Vec3& from, const Vec3& D)
+      : space_(space), from_(from), D_(D) {}
+
+  Mean mean() const {
+    Mean m;
+    const Held a = at(0), b = at(1);
+    add(0, kFinest, a, b, m);
+    return m;
+  }
+
+ private:
+  Held at(double s) const {
+    const Vec3 c = from_ + s * D_;
+    Held h;
+    Vec3 x;
+    space_.project(c, x, h.by);
+    h.pull = x - c;
+    return h;
+  }
+
+  Mat3 projection(const FreeSpace::Active& by) const {
+    Mat3 e;
+    const int rank = space_.basis(by, e);
+    return e.leftCols(rank) * e.leftCols(rank).transpose();
+  }
+
+  // The pull is linear between two places that the same planes hold.
+  void add(int first, int last, const Held& a, const Held& b, Mean& m) const {
+    const double s0 = static_cast<double>(first) / kFinest;
+    const double s1 = static_cast<double>(last) / kFinest;
+    if (last - first > 1) {
+      const int half = (first + last) / 2;
+      const Held middle = at(0.5 * (s0 + s1));
+      if (!(a.by == b.by && a.by == middle.by)) {
+        add(first, half, a, middle, m);
+        add(half, last, middle, b, m);
+        return;
+      }
+    }
+    m.pull += 0.5 * (s1 - s0) * (a.pull + b.pull);
+    for (const Held* h : {&a, &b}) {
+      const Mat3 P = projection(h->by);
+      m.held += 0.5 * (s1 - s0) * P;
+      m.later += 0.25 * (s1 * s1 - s0 * s0) * P;
+    }
+  }
+
+  const FreeSpace& space_;
+  Vec3 from_, D_;
+};
+
+Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
+  if (!touch.held()) return Segment(touch.space(), center, D).mean();
+  return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
+}
+
+}  // namespace
+
+void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
+  const double b = tick.B / tick.T;
+  Vec3 pull = Vec3::Zero();
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vec3 D = tick.a + tick.W * F;
+    const Mean m = mean_of(touch, tick.center, D);
+    const Vec3 wanted = tick.K * m.pull - b * (m.held * D);
+    const Mat3 slope = Mat3::Identity() + (tick.K * m.later + b * m.held) * tick.W;
+    const Vec3 step = slope.inverse() * (wanted - F);
+    F += step;
+    pull = m.pull;
+    if (step.squaredNorm() <= 1e-20 * (1 + F.squaredNorm())) break;
+  }
+  if (F.dot(pull) <= 0) F.setZero();  // walls do not stick
+}
+
+}  // namespace limpid

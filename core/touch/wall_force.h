@@ -1,0 +1,36 @@
+// The normal force of a wall over a whole tick, such that making, keeping and breaking contact
+// neither gain nor lose energy (a discrete gradient).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+
+// A wall of stiffness K [N/m] and damper B [N s/m], the depth d at the tick's start [m], and over
+// the tick of T [s] the change of depth D = a - c F: a without this wall's force, c > 0 what a force
+// takes off it [m, m/N]. In joint space with [rad] and [N m].
+struct WallTick {
+  double K, B, T;
+  double d, a, c;
+};
+
+// The constant force F >= 0 [N] with F D = change of K max(0, d)^2 / 2 + work of B while inside.
+inline double wall_force(const WallTick& w) {
+  const double K = w.K, d = w.d, a = w.a, c = w.c, b = w.B / w.T;
+  if (d >= 0) {
+    const double F = std::max(0.0, (K * (d + a / 2) + b * a) / (1 + c * (K / 2 + b)));
+    if (d + a - c * F >= 0) return F;  // inside throughout
+    const double h = a - c * b * d;  // it breaks: of K d^2 / 2 nothing stays
+    const double root = h * h + 4 * c * (a * b * d + K * d * d / 2);
+    return root < 0 ? 0 : std::max(0.0, (h + std::sqrt(root)) / (2 * c));
+  }
+  const double s = d + a;
+  if (s <= 0) return 0;  // apart throughout
+  const double p = c * (c * (K / 2 + b) + 1);
+  const double q = c * (K * s + b * (s + a)) + a;
+  const double r = s * (K * s / 2 + b * a);
+  return 2 * r / (q + std::sqrt(std::max(0.0, q * q - 4 * p * r)));  // it is made
+}
+
+}  // namespace limpid
