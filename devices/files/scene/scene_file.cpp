@@ -37,7 +37,8 @@ void allow_with_material(const TomlTable& t, std::vector<const char*> keys) {
 Material material(const TomlTable& t) {
   Material out;
   for (const MaterialKey& each : kMaterialKeys) {
-    out.*each.field = t.need(t.number(each.key, each.range), each.key);
+    const auto value = t.number(each.key, each.range);
+    out.*each.field = each.required ? t.need(value, each.key) : value.value_or(out.*each.field);
   }
   return out;
 }
