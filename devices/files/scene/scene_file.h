@@ -9,6 +9,9 @@
 //     point = [0.2, 0.0, -0.04]    # on the surface
 //     normal = [0.0, 0.0, 1.0]     # out of the material, any length
 //     stiffness = 600.0            # N/m
+//     damping = 0.0                # N s/m, optional; as the next two, in all but joint contacts
+//     friction_static = 0.0        # tangential by normal force up to which it sticks
+//     friction_kinetic = 0.0       # the same while it slips
 //
 //     [[sphere]]
 //     name = "ball"

@@ -68,7 +68,10 @@ class Text {
 };
 
 void put_material(Text& text, const Material& material) {
-  for (const MaterialKey& each : kMaterialKeys) text.put(each.key, material.*each.field);
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double value = material.*each.field;
+    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
+  }
 }
 
 void put_joint(Text& text, const JointContact& contact, const ArmDescription& arm) {
