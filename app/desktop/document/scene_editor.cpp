@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 
 #include "devices/files/rpy.h"
@@ -181,6 +182,12 @@ void SceneEditor::set_tip_radius(double radius) {
 }
 
 void SceneEditor::add(MeshObstacle mesh, ModelFile file, std::shared_ptr<const Model> model) {
+  const std::map<std::string, ModelFile>& known = document().models;
+  const std::filesystem::path wanted = mesh.model;
+  for (int i = 2; known.contains(mesh.model) && *known.at(mesh.model).bytes != *file.bytes; ++i) {
+    const std::string number = fmt::format("{}-{}", wanted.stem().string(), i);
+    mesh.model = wanted.parent_path() / (number + wanted.extension().string());
+  }
   insert(std::move(mesh), std::move(model), &file);
 }
 

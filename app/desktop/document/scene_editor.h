@@ -67,7 +67,7 @@ class SceneEditor {
   // The name gets a number where another object has it already. All select what they made. Errors:
   // std::runtime_error if the scene is full.
   void add(SceneObject object) { insert(std::move(object), nullptr); }
-  // A mesh with its model; one of this name that is there already becomes this one.
+  // A mesh with its model. That gets a number, too, where its file was another one earlier.
   void add(MeshObstacle mesh, ModelFile file, std::shared_ptr<const Model> model);
   void duplicate(const ObjectRef& ref);
   void rename(const ObjectRef& ref, const std::string& name);

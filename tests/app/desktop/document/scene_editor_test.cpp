@@ -110,6 +110,21 @@ TEST(SceneEditor, KeepsFilesOfModelsAsLongAsAMeshHasThem) {
   EXPECT_TRUE(models().contains(name)) << "undone";
 }
 
+// A recording of both has to hold both.
+TEST(SceneEditor, TellsApartWhatOneFileHeldAtTwoTimes) {
+  SceneEditor editor = full();
+  const ModelFile later{file("gear").path, file("changed gear").bytes};
+  for (int i = 0; i < 2; ++i) editor.add(mesh("gear"), later, model());
+  const auto bytes_of = [&](std::size_t i) {
+    return *files_of(editor.document()).at(editor.scene().meshes.at(i).model);
+  };
+  EXPECT_EQ(bytes_of(0), *file("gear").bytes);
+  EXPECT_EQ(bytes_of(1), *later.bytes);
+  EXPECT_EQ(bytes_of(2), *later.bytes);
+  EXPECT_EQ(editor.scene().meshes[1].model, "/models/gear-2.glb");
+  EXPECT_EQ(files_of(editor.document()).size(), 2u) << "what is the same is there once";
+}
+
 TEST(SceneEditor, NeverHasTwoObjectsOfOneName) {
   SceneEditor editor = full();
   editor.add(Sphere{.name = "gear"});
