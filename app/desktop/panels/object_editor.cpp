@@ -200,7 +200,7 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
     mesh.scale = 1e-3 * millimetres / extent_;
     what = "scale";
   }
-  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.file.c_str());
+  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.model.c_str());
   const std::string health = mesh.shape->health().text();
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());

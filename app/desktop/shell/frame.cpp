@@ -114,7 +114,7 @@ void Frame::draw_side(ScreenRect rect) {
   begin_panel("side", rect);
   if (section("Scene", true)) {
     if (const PlayedSession* session = desktop_.playback().shown()) {
-      ScenePanel::draw_recorded(session->scene());
+      ScenePanel::draw_recorded(session->document());
     } else {
       scene_.draw(desktop_.document(), desk.stage().arm(), desk.recording(), act_,
                   [this](SceneObject object) { desktop_.add_object(std::move(object)); });
