@@ -115,5 +115,9 @@ Outcome saturation(Laboratory& lab);
 Outcome observer(Laboratory& lab);
 Outcome transparency(Laboratory& lab);
 Outcome eta_min_map(Laboratory& lab);
+Outcome lightness(Laboratory& lab);
+Outcome zwidth(Laboratory& lab);
+Outcome switching(Laboratory& lab);
+Outcome friction(Laboratory& lab);
 
 }  // namespace limpid
