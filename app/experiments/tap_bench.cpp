@@ -36,7 +36,7 @@ TapBench::TapBench(const TapSetting& setting, double wall, double grip, int taps
     : setting_(setting),
       wall_(wall),
       grip_(grip),
-      down_(kAbove + kPress / grip + kPress / wall),
+      down_(kAbove + setting.press / grip + setting.press / wall),
       taps_(taps) {}
 
 double TapBench::height(double t) const {
@@ -56,7 +56,7 @@ Trial TapBench::trial() const {
   if (!setting_.expects_a_mass) p.hand_mass = 0;
   p.hand_stiffness = grip_;
   p.hand_damping = kGripDamping;
-  p.torque_limit = 100;
+  p.torque_limit = setting_.torque_limit;
   const auto at = [&](double t) { return Vec3(kAhead, 0, kSurface + kAbove - height(t)); };
   const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
   Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};
@@ -66,7 +66,7 @@ Trial TapBench::trial() const {
 
 Touch TapBench::touch(const TrialResult& result) const {
   constexpr double kLost = std::numeric_limits<double>::infinity();
-  if (result.end.diverged) return {kLost, kLost, kLost, 0};
+  if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost};
   const Session& s = result.session;
   const double T = s.info.tick;
   const Arm<kAnyDof> arm(read_urdf(default_device()));
@@ -78,6 +78,8 @@ Touch TapBench::touch(const TrialResult& result) const {
   for (std::size_t k = 0; k < s.size(); ++k) {
     touch.energy = std::max(touch.energy, s.at(k, Column::energy_total)[0]);
     touch.port = std::max(touch.port, s.at(k, Column::energy_port)[0]);
+    touch.torque =
+        std::max(touch.torque, vector_at(s, k, Column::contact_torque).cwiseAbs().maxCoeff());
     const Vec3 tip = arm.tip_at(vector_at(s, k, Column::device_position));
     Vec3 v = (tip - before) / T;
     before = tip;
@@ -104,7 +106,8 @@ TipAtTable tip_at_table() {
   Jacobian<kAnyDof> J;
   arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
   const Eigen::VectorXd normal = J.row(2).transpose();
-  return {1 / normal.dot(inertia_at(description, x).inverse() * normal), normal.squaredNorm()};
+  return {1 / normal.dot(inertia_at(description, x).inverse() * normal), normal.squaredNorm(),
+          description.joints.front().damping};
 }
 
 }  // namespace limpid

@@ -15,6 +15,8 @@ struct TapSetting {
   double encoder_step = 0;     // [rad]
   double hand_mass = 0;        // at the tip [kg]
   bool expects_a_mass = true;  // a second predictor, for a hand with mass
+  double press = 4;            // of the hand while it holds, if the wall bears it [N]
+  double torque_limit = 100;   // of every motor [N m]
 
   friend bool operator==(const TapSetting&, const TapSetting&) = default;
 };
@@ -25,13 +27,13 @@ struct Touch {
   double port = 0;     // most that the human was given [J]
   double chatter = 0;  // rms speed of the tip above 20 Hz while it is held [m/s]
   double felt = 0;     // the wall's force over the device's depth, by the stiffness set [-]
+  double torque = 0;   // largest of the contact on any joint [N m]
 };
 
 class TapBench {
  public:
-  static constexpr double kPress = 4;        // of the hand while it holds, statically [N]
-  static constexpr double kSpeed = 0.15;     // [m/s]
-  static constexpr double kGripDamping = 2;  // [N s/m]
+  static constexpr double kSpeed = 0.15;                    // [m/s]
+  static constexpr double kGripDamping = 2;                 // [N s/m]
   static constexpr double kSurface = -0.04, kAbove = 0.01;  // the table's, and the hand's start [m]
   static constexpr double kFast = 20;                       // what chatter is above [Hz]
 
@@ -54,10 +56,11 @@ class TapBench {
   int taps_;
 };
 
-// How the tip meets the table there: its mass along the normal [kg], and what a torque's stiffness
-// or damping is divided by to be that of the tip [m^2].
+// How the tip meets the table there.
 struct TipAtTable {
-  double mass = 0, lever2 = 0;
+  double mass = 0;     // along the normal [kg]
+  double lever2 = 0;   // a joint's stiffness or damping over that at the tip [m^2]
+  double damping = 0;  // b_d, every joint's own [N m s/rad]
 };
 TipAtTable tip_at_table();
 

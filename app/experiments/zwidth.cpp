@@ -58,19 +58,18 @@ std::vector<Curve> all_curves() {
 struct Theory {
   Parameters p;
   TipAtTable tip = tip_at_table();
-  double b_d = 0;  // [N m s/rad]
 
   // The damping there is against the lag of the paper's contact, half a tick and b_v/k_vc.
   double proposed(double eta, double T, double hand) const {
-    const double b = (b_d + p.b_v + p.k_vc * T / 2) / tip.lever2 + hand;
+    const double b = (tip.damping + p.b_v + p.k_vc * T / 2) / tip.lever2 + hand;
     return eta * b / (T / 2 + p.b_v / p.k_vc);
   }
   // No linear law is passive in every hand beyond it (Colgate).
-  double any_linear(double T) const { return 2 * b_d / tip.lever2 / T; }
+  double any_linear(double T) const { return 2 * tip.damping / tip.lever2 / T; }
   // Where a hand is heavier than the predictor takes it for, by what its error gives away.
   double mistaken(double mass, double T, double hand) const {
     const double walls = 0.2 * tip.mass / T;
-    const double b = (b_d + p.b_v) / tip.lever2 + hand + walls;
+    const double b = (tip.damping + p.b_v) / tip.lever2 + hand + walls;
     const double share = tip.mass / (tip.mass + mass);
     return std::sqrt(2 * b * tip.mass / (T * T * T * (1 - share)));
   }
@@ -89,7 +88,7 @@ Series theory(const std::string& label, const char* ink, double from, double to,
 }
 
 std::vector<FigurePanel> empty_panels() {
-  const Theory law{.b_d = 0.012};
+  const Theory law;
   const double hand = TapBench::kGripDamping, T = TapSetting{}.tick;
   const auto panel = [](const std::string& title, const std::string& x, double from, double to) {
     return FigurePanel{.title = title,
@@ -183,7 +182,7 @@ Touch worst_tap(Laboratory& lab, double encoder_step, double mass) {
   }
   std::vector<Touch> touches(trials.size());
   lab.run(trials, [&](std::size_t i, const TrialResult& r) { touches[i] = benches[i].touch(r); });
-  Touch worst{0, 0, 0, 1};
+  Touch worst{.felt = 1};
   for (const Touch& t : touches) {
     worst.energy = std::max(worst.energy, t.energy);
     worst.port = std::max(worst.port, t.port);
@@ -219,7 +218,7 @@ Outcome zwidth(Laboratory& lab) {
       "encoders, no mass unless varied. Well: at most {} mJ given to the human, tip above {} Hz "
       "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
       "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them.",
-      TapBench::kSpeed, TapBench::kPress, kGrips[0], kGrips[1], TapBench::kGripDamping,
+      TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       1e3 * WellRendered::kPort, TapBench::kFast, 1e3 * WellRendered::kChatter,
       100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy, kSoftest, kStiffest);
   outcome.figure.columns = 2;
