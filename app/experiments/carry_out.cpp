@@ -18,6 +18,10 @@ Outcome saturation(Laboratory& lab);
 Outcome observer(Laboratory& lab);
 Outcome transparency(Laboratory& lab);
 Outcome eta_min_map(Laboratory& lab);
+Outcome lightness(Laboratory& lab);
+Outcome zwidth(Laboratory& lab);
+Outcome switching(Laboratory& lab);
+Outcome friction(Laboratory& lab);
 
 namespace {
 
@@ -34,6 +38,12 @@ constexpr std::array kExperiments{
     Experiment{"observer", "bandwidth of the human force estimate (section 3.1)", observer},
     Experiment{"transparency", "impedance felt at the handle", transparency},
     Experiment{"eta_min", "stability over eta and grip against theory (section 4.2)", eta_min_map},
+    Experiment{"lightness", "inertia and damping felt, and what a passive law pays for lightness",
+               lightness},
+    Experiment{"zwidth", "the stiffest wall that is rendered well", zwidth},
+    Experiment{"switching", "contacts made and broken, couplings switched while pressing",
+               switching},
+    Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,

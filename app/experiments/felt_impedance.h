@@ -20,6 +20,19 @@ struct Impedance {
 Impedance measured_impedance(const Session& session, std::size_t from, int joint,
                              const Multisine& shaking);
 
+// What a hand feels of the whole arm along its own motion, at one frequency.
+struct FeltMotion {
+  double f = 0;        // [Hz]
+  double inertia = 0;  // by that of M [-]
+  double damping = 0;  // [N m s/rad]
+  double mass = 0;     // of M along the motion [kg m^2]
+};
+
+// The same as measured_impedance(), of all joints together: the force's part in and against the
+// motion. M is the inertia matrix where the arm is shaken [kg m^2].
+std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from,
+                                        const Eigen::MatrixXd& M, const Multisine& shaking);
+
 // A joint of the locked system (23) as the loop in ticks of T makes it.
 //
 // Three things come on top of (23). The spring of (1) takes the proxy where it was half a tick

@@ -153,6 +153,7 @@ std::vector<Trial> all_trials(const Runs& runs, std::uint64_t seed) {
 Runs run_all(Laboratory& lab) {
   Runs runs;
   runs.cases.assign(passivity_cases().begin(), passivity_cases().end());
+  runs.cases.push_back({"predictive, eta = 0.6", "predictive-0.6", CouplingKind::predictive, 0.6});
   runs.cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
   runs.limit = grip_limit();
   const std::size_t many = runs.cases.size() * kTrialsOfACase;

@@ -7,11 +7,13 @@
 
 #include "app/experiments/excitation.h"
 #include "app/experiments/series.h"
+#include "app/experiments/tap_bench.h"
 
 namespace limpid {
 namespace {
 
 constexpr double kLimit = 0.2;  // of every motor [N m]
+constexpr double kPushLimit = 0.4;
 constexpr double kEta = 0.6;
 constexpr double kSurface = -0.04, kDeepest = -0.055, kAhead = 0.19;       // [m]
 constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kEnd = 1.7;  // [s]
@@ -93,7 +95,30 @@ class Run {
   const Session& session_;
 };
 
-std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& standard) {
+// The predictive coupling pushed with 8 N against motors of 0.4 N m: the worst over walls and etas.
+Touch worst_push(Laboratory& lab) {
+  std::vector<TapBench> benches;
+  std::vector<Trial> trials;
+  for (const double wall : {600.0, 5000.0}) {
+    for (const double eta : {1.0, 0.6, 0.3}) {
+      const TapSetting s{.eta = eta, .press = 8, .torque_limit = kPushLimit};
+      benches.emplace_back(s, wall, 300, 1);
+      trials.push_back(benches.back().trial());
+    }
+  }
+  std::vector<Touch> touches(trials.size());
+  lab.run(trials, [&](std::size_t i, const TrialResult& r) { touches[i] = benches[i].touch(r); });
+  Touch worst;
+  for (const Touch& t : touches) {
+    worst.energy = std::max(worst.energy, t.energy);
+    worst.chatter = std::max(worst.chatter, t.chatter);
+    worst.torque = std::max(worst.torque, t.torque);
+  }
+  return worst;
+}
+
+std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& standard,
+                                const Run& predicted) {
   using enum Series::Style;
   const auto curve = [](const Run& run, const std::string& label, const char* ink,
                         Series::Style style, Column column) {
@@ -111,20 +136,26 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       curve(without, "estimate, wound up", kContactInk, dashed, Column::hand_torque_estimate),
       curve(without, "true, wound up", kContactInk, line, Column::hand_torque),
       curve(with, "estimate, anti-windup", kProxyInk, dashed, Column::hand_torque_estimate),
-      curve(with, "true, anti-windup", kProxyInk, line, Column::hand_torque)};
+      curve(with, "true, anti-windup", kProxyInk, line, Column::hand_torque),
+      curve(predicted, "true, predictive", kHandInk, line, Column::hand_torque)};
   FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
                      .x_label = "time [s]",
                      .y_label = "tau1 [N m]"};
   motors.series = {curve(without, "asked, wound up", kContactInk, dashed, Column::commanded_torque),
                    curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
                    curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
-                   curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque)};
-  FigurePanel lurking{.title = "The proxy lurks: it goes on into the table with the device",
+                   curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque),
+                   curve(predicted, "given, predictive", kHandInk, line, Column::motor_torque)};
+  FigurePanel lurking{.title =
+                          "The proxy goes on into the table with the device, but not the "
+                          "predictive one",
                       .x_label = "time [s]",
                       .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, proposed", kDeviceInk, line, Column::device_position),
       depth(with, "proxy, proposed", kProxyInk, dashed, Column::proxy_position),
+      depth(predicted, "device, predictive", kHandInk, line, Column::device_position),
+      depth(predicted, "proxy, predictive", kHandInk, dashed, Column::proxy_position),
       depth(standard, "device, standard", kNeutralInk, line, Column::device_position),
       depth(standard, "proxy, standard", kNeutralInk, dashed, Column::proxy_position)};
   lurking.y_range = {-10, 15};
@@ -138,22 +169,23 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 
 Outcome saturation(Laboratory& lab) {
   using enum CouplingKind;
-  const std::vector<Trial> trials{press("anti-windup", proposed, true),
-                                  press("wound-up", proposed, false),
-                                  press("standard", standard, true)};
+  const std::vector<Trial> trials{
+      press("anti-windup", proposed, true), press("wound-up", proposed, false),
+      press("standard", standard, true), press("predictive", predictive, true)};
   const std::vector<TrialResult> results = lab.run(trials);
   const Run with(trials[0], results[0]), without(trials[1], results[1]),
-      spring(trials[2], results[2]);
+      spring(trials[2], results[2]), predicted(trials[3], results[3]);
 
   Outcome outcome;
   outcome.figure.title = "A contact pressed beyond the torque limit, held and pulled out of";
   outcome.figure.caption = fmt::format(
-      "Proposed coupling at the paper's gains, eta = {}, motors limited to {} N m, table 600 N/m. "
+      "Proposed and predictive coupling at the paper's gains, eta = {}, motors limited to {} N m, "
+      "table 600 N/m. "
       "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
       "them.",
       kEta, kLimit);
   outcome.figure.columns = 2;
-  outcome.figure.panels = panels(with, without, spring);
+  outcome.figure.panels = panels(with, without, spring, predicted);
 
   const auto estimated = [](const Run& run) {
     return rms_norm(run.session(), Column::hand_torque_estimate, run.row(kHeldFrom),
@@ -175,7 +207,16 @@ Outcome saturation(Laboratory& lab) {
       at_least("pull-out: rms error of the estimate wound up over that with anti-windup, at least",
                error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 3),
       at_least("pull-out: largest pull of the hand wound up over that with anti-windup, at least",
-               without.largest_pull() / with.largest_pull(), 1.2)};
+               without.largest_pull() / with.largest_pull(), 1.2),
+      at_least("pull-out: largest pull of the hand, proposed with anti-windup over predictive, at "
+               "least",
+               with.largest_pull() / predicted.largest_pull(), 1.2)};
+  const Touch push = worst_push(lab);
+  const std::string where = "predictive, pushed with 8 N, motors of 0.4 N m: ";
+  outcome.checks.push_back(at_most(where + "highest E_c [J]", push.energy, 5e-5));
+  outcome.checks.push_back(at_most(where + "largest contact torque over the motors' limit",
+                                   push.torque / kPushLimit, 1.3));
+  outcome.checks.push_back(at_most(where + "chatter [m/s]", push.chatter, 1e-4));
   return outcome;
 }
 

@@ -47,8 +47,7 @@ class InertiaNetwork {
       return;
     }
     const double w2 = 2 * std::numbers::pi * band;
-    const double scale =
-        side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) : gain * (eta - 1);
+    const double scale = side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) : gain * (eta - 1);
     R_ = std::sqrt(scale) * cholesky<N>(M_L);
     if (side < 0) {
       force_ = -w2 * (R_ * s_);

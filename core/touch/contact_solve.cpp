@@ -6,8 +6,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kNear = 2e-3;       // what is further off and does not come is left out [m]
-constexpr double kSettled = 1e-8;    // largest change of a force, as a part of it or of 1 N
+constexpr double kNear = 2e-3;     // what is further off and does not come is left out [m]
+constexpr double kSettled = 1e-8;  // largest change of a force, as a part of it or of 1 N
 
 // Two unit vectors across a unit vector.
 Mat3 frame_of(const Vec3& normal) {
@@ -107,7 +107,8 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
     direction = row.mesh->J.transpose() * along;
   }
   const double mass = 1 / direction.dot(answer.inertia.solve(direction));
-  row.B = std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
+  row.B =
+      std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
   row.known = true;
 }
 
@@ -159,8 +160,8 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
   const Vec3 before = row.friction;
   const Mat2 W = across.transpose() * row.W * across;
   const Vec2 b = across.transpose() * (speed(row, motion.u) - row.W * before);
-  const Vec3 anchor = row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor)
-                                          : row.before.anchor;
+  const Vec3 anchor =
+      row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor) : row.before.anchor;
   const Vec2 l = friction_force(friction_stiffness(row.material), row.radius * force,
                                 across.transpose() * anchor, T, b, W);
   row.friction = across * l;

@@ -57,6 +57,17 @@ TEST(FeltImpedance, OfAMassAndADamperIsTheirs) {
   EXPECT_NEAR(apparent_inertia(felt, 200), m, 1e-7 * m);
 }
 
+TEST(FeltImpedance, OfTheWholeMotionIsByTheInertiaThatIsGiven) {
+  const double m = 3e-4, b = 0.02;
+  const Multisine shaking = multisine(0.5, 0.5, 200, 30, 0.02, 5);
+  const Eigen::MatrixXd twice = Eigen::MatrixXd::Constant(1, 1, 2 * m);
+  for (const FeltMotion& felt : measured_motion(shaken(shaking, m, b, 4), 2000, twice, shaking)) {
+    EXPECT_NEAR(felt.inertia, 0.5, 1e-5) << felt.f << " Hz";
+    EXPECT_NEAR(felt.damping, b, 1e-6);
+    EXPECT_NEAR(felt.mass, 2 * m, 1e-12);
+  }
+}
+
 TEST(FeltJoint, IsTheInverseOf24WithoutTicksOrContact) {
   // A stiff coupling and no ticks: (24) itself.
   const FeltJoint joint{2e-4, 0.012, 0.012, 1e9, 0, 0, 0};

@@ -1,0 +1,267 @@
+// Friction: what sticks, what slips, in an edge and a corner too, and that it only ever takes
+// energy.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/experiments/rough_walls.h"
+#include "app/experiments/series.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kStatic = 0.5, kKinetic = 0.3;
+constexpr double kWall = 1000, kPress = 3;  // [N/m], [N]
+constexpr double kDrag = 0.03;              // there and back [m]
+constexpr double kDown = 0.5, kEnd = 3.5;   // [s]
+constexpr double kSlipping = 5e-3;          // of the tip, surely [m/s]
+constexpr double kEdgeWall = 3000, kEdgePress = 5, kEdgeEnd = 1.6;
+
+struct Case {
+  std::string label;
+  const char* ink;
+  RoughWalls walls;
+};
+
+std::vector<Case> drags() {
+  return {{fmt::format("{} sticking, {} slipping", kStatic, kKinetic),
+           kProxyInk,
+           {.stiffness = kWall, .friction_static = kStatic, .friction_kinetic = kKinetic}},
+          {"0.2 for both",
+           kDeviceInk,
+           {.stiffness = kWall, .friction_static = 0.2, .friction_kinetic = 0.2}},
+          {"smooth", kNeutralInk, {.stiffness = kWall}}};
+}
+
+// How far the hand is aside at t [m].
+double aside(double t) {
+  const double half = (kEnd - kDown) / 2;
+  return kDrag * (minimum_jerk((t - kDown) / half) - minimum_jerk((t - kDown - half) / half));
+}
+
+Trial drag(const RoughWalls& walls) {
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  const double deep = kPress / p.hand_stiffness + kPress / kWall;
+  const auto at = [deep](double t) {
+    return Vec3(kMeet + Vec3(0, aside(t), 0.005 - (0.005 + deep) * minimum_jerk(t / kDown)));
+  };
+  const std::string source = fmt::format("pressing {} N, {} m aside and back", kPress, kDrag);
+  return rubbing(walls, hand_path(source, p.tick, kEnd, at), p);
+}
+
+// Pressed into an edge or a corner, wandering about in it.
+Trial wander(const RoughWalls& walls, double eta, double grip) {
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  p.eta = eta;
+  p.hand_stiffness = grip;
+  p.torque_limit = 100;
+  const double press = kEdgePress / grip + kEdgePress / walls.stiffness;
+  Vec3 in = Vec3::Zero();
+  for (int i = 0; i < walls.walls; ++i) in -= kOutward[i];
+  in.normalize();
+  const auto at = [press, in](double t) {
+    const double part = minimum_jerk(t / 0.3);
+    const Vec3 about(std::sin(6 * t), std::sin(9 * t), std::cos(7 * t));
+    return Vec3(kMeet - 0.01 * (1 - part) * in + part * press * in +
+                0.5 * press * minimum_jerk((t - 0.3) / 0.3) * about);
+  };
+  const std::string source = fmt::format("wandering in {} walls, {:.6g} m", walls.walls, press);
+  return rubbing(walls, hand_path(source, p.tick, kEdgeEnd, at), p);
+}
+
+double ratio(const Rub& rub) { return rub.normal > 0 ? rub.friction.norm() / rub.normal : 0; }
+
+// What friction is judged by, over all of a trial's ticks and walls.
+struct Verdict {
+  double given = 0;         // most in a tick [J]
+  double beyond = 0;        // most that it is over the cone, of the normal force [-]
+  double off_kinetic = 0;   // furthest off the kinetic force while the tip slips, of it [-]
+  double crept = 0;         // most that the tip moved besides the spring while it stuck [m]
+  double broke_away = 0;    // highest tangential over normal force [-]
+  std::vector<double> sum;  // given up to each tick [J]
+};
+
+Verdict judge(const RoughWalls& walls, const std::vector<std::vector<Rub>>& rubs, double tick) {
+  Verdict v;
+  const double spring = std::min(walls.stiffness, 2000.0);
+  double sum = 0;
+  std::vector<Rub> before(static_cast<std::size_t>(walls.walls));
+  for (const auto& now : rubs) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double given = given_by_friction(walls, before[i], now[i]);
+      v.given = std::max(v.given, given);
+      sum += given;
+      if (now[i].normal == 0) continue;
+      v.broke_away = std::max(v.broke_away, ratio(now[i]));
+      v.beyond = std::max(v.beyond, ratio(now[i]) - walls.friction_static);
+      const double slip = (now[i].moved + (now[i].friction - before[i].friction) / spring).norm();
+      if (now[i].moved.norm() > kSlipping * tick && slip > 0.5 * kSlipping * tick &&
+          walls.friction_kinetic > 0) {
+        const double off = std::abs(ratio(now[i]) / walls.friction_kinetic - 1);
+        v.off_kinetic = std::max(v.off_kinetic, off);
+      }
+      // Strictly inside both cones nothing can slip.
+      if (ratio(now[i]) < 0.99 * walls.friction_kinetic && before[i].normal > 0) {
+        v.crept = std::max(v.crept, slip);
+      }
+    }
+    before = now;
+    v.sum.push_back(sum);
+  }
+  return v;
+}
+
+struct Dragged {
+  Case what;
+  TrialResult result;
+  std::vector<std::vector<Rub>> rubs;
+  Verdict verdict;
+};
+
+std::vector<Dragged> drag_all(Laboratory& lab) {
+  const std::vector<Case> cases = drags();
+  std::vector<Trial> trials;
+  for (const Case& c : cases) trials.push_back(drag(c.walls));
+  std::vector<TrialResult> results = lab.run(trials);
+  std::vector<Dragged> all;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto rubs = rubs_of(trials[i], cases[i].walls, results[i].session);
+    const Verdict verdict = judge(cases[i].walls, rubs, results[i].session.info.tick);
+    all.push_back({cases[i], std::move(results[i]), rubs, verdict});
+  }
+  return all;
+}
+
+FigurePanel ratio_panel(const std::vector<Dragged>& all) {
+  FigurePanel panel{.title = "Tangential over normal force, against the drag",
+                    .x_label = "hand aside of where it pressed [mm]",
+                    .y_label = "against the drag, over the normal force [-]"};
+  for (const Dragged& d : all) {
+    Series line{d.what.label, d.what.ink, Series::Style::line, {}};
+    for (std::size_t k = 0; k < d.rubs.size(); k += 2) {
+      const Rub& rub = d.rubs[k].front();
+      const double t = static_cast<double>(k) * d.result.session.info.tick;
+      if (t < kDown || rub.normal == 0) continue;
+      line.points.push_back({1e3 * aside(t), -rub.friction.y() / rub.normal});
+    }
+    panel.series.push_back(line);
+  }
+  for (const double mu : {kStatic, -kStatic, kKinetic, -kKinetic}) {
+    const bool named = mu == kStatic;
+    panel.series.push_back({named ? "static and kinetic coefficient" : "",
+                            kContactInk,
+                            Series::Style::dashed,
+                            {{-1, mu}, {31, mu}}});
+  }
+  panel.x_range = {-1, 31};
+  panel.y_range = {-0.6, 0.6};
+  return panel;
+}
+
+FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
+  FigurePanel panel{.title = fmt::format("Stick and slip: {}", d.what.label),
+                    .x_label = "time [s]",
+                    .y_label = "aside [mm]"};
+  const Session& s = d.result.session;
+  const auto tip = [&](Column c) {
+    return [&, c](std::size_t k) { return 1e3 * tip_at(trial.plan.arm, vector_at(s, k, c)).y(); };
+  };
+  panel.series = {
+      over_time(s, "hand", kHandInk, Series::Style::line,
+                [&](auto k) { return 1e3 * s.at(k, Column::hand_target)[1]; }),
+      over_time(s, "device", kDeviceInk, Series::Style::line, tip(Column::device_position), 700),
+      over_time(s, "proxy", kProxyInk, Series::Style::dashed, tip(Column::proxy_position), 700)};
+  panel.x_range = {kDown, kEnd};
+  return panel;
+}
+
+FigurePanel taken_panel(const std::vector<Dragged>& all) {
+  FigurePanel panel{.title = "Energy that friction gave: its work and what its spring holds",
+                    .x_label = "time [s]",
+                    .y_label = "energy [mJ]"};
+  for (const Dragged& d : all) {
+    const Session& s = d.result.session;
+    panel.series.push_back(over_time(s, d.what.label, d.what.ink, Series::Style::line, [&](auto k) {
+      return 1e3 * d.verdict.sum[std::min(k, d.verdict.sum.size() - 1)];
+    }));
+  }
+  panel.x_range = {0, kEnd};
+  return panel;
+}
+
+// Edge and corner: the panel of E_c, and what is promised of them.
+FigurePanel between_walls(Laboratory& lab, std::vector<Check>& checks) {
+  FigurePanel panel{.title = fmt::format("Wandering in an edge and a corner of {} N/m, grip of "
+                                         "300 N/m",
+                                         kEdgeWall),
+                    .x_label = "time [s]",
+                    .y_label = "E_c [mJ]"};
+  std::vector<RoughWalls> walls;
+  std::vector<Trial> trials;
+  for (const int count : {2, 3}) {
+    for (const double mu : {0.0, 0.5, 1.0}) {
+      for (const auto& [eta, grip] : {std::pair(0.3, 300.0), {1.0, 3000.0}}) {
+        walls.push_back({count, kEdgeWall, mu, mu});
+        trials.push_back(wander(walls.back(), eta, grip));
+      }
+    }
+  }
+  double energy = 0, given = 0, beyond = 0;
+  const std::vector<TrialResult> results = lab.run(trials);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const Session& s = results[i].session;
+    const Verdict v = judge(walls[i], rubs_of(trials[i], walls[i], s), s.info.tick);
+    given = std::max(given, v.given);
+    beyond = std::max(beyond, v.beyond);
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      energy = std::max(energy, s.at(k, Column::energy_total)[0]);
+    }
+    if (trials[i].plan.parameters.hand_stiffness != 300) continue;
+    const char* inks[] = {kProxyInk, kDeviceInk, kHandInk, kContactInk, kEnergyInk, kFamilyInk[5]};
+    panel.series.push_back(
+        over_time(s,
+                  fmt::format("{}, coefficient {}", walls[i].walls == 2 ? "edge" : "corner",
+                              walls[i].friction_static),
+                  inks[i / 2], walls[i].walls == 2 ? Series::Style::line : Series::Style::dashed,
+                  [&](auto k) { return 1e3 * s.at(k, Column::energy_total)[0]; }));
+  }
+  panel.x_range = {0, kEdgeEnd};
+  checks.push_back(at_most("edge and corner: highest E_c [J]", energy, 5e-5));
+  checks.push_back(at_most("edge and corner: most that friction gave in a tick [J]", given, 1e-7));
+  checks.push_back(
+      at_most("edge and corner: friction beyond its cone, of the normal force", beyond, 1e-6));
+  return panel;
+}
+
+}  // namespace
+
+Outcome friction(Laboratory& lab) {
+  const std::vector<Dragged> all = drag_all(lab);
+  const Verdict& rough = all.front().verdict;
+  Outcome outcome;
+  outcome.figure.title = "Friction: sticking, slipping, and the energy it takes";
+  outcome.figure.caption = fmt::format(
+      "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N and "
+      "drags {} mm aside and back. Edge and corner: pressed in with {} N, wandering; eta = 0.3.",
+      kWall, kPress, 1e3 * kDrag, kEdgePress);
+  outcome.figure.columns = 2;
+  double given = 0;
+  for (const Dragged& d : all) given = std::max(given, d.verdict.given);
+  outcome.checks = {
+      at_most("plane: tip moved in a tick, besides the spring of friction, while it stuck [m]",
+              rough.crept, 1e-9),
+      at_least("plane: highest tangential over normal force, of the static coefficient",
+               rough.broke_away / kStatic, 0.99),
+      at_most("plane: friction beyond the static cone, of the normal force", rough.beyond, 1e-6),
+      at_most("plane: tangential force while slipping off the kinetic one, of it",
+              rough.off_kinetic, 0.01),
+      at_most("plane: most that friction gave in a tick [J]", given, 1e-7)};
+  outcome.figure.panels = {ratio_panel(all), stick_panel(drag(all[0].what.walls), all[0]),
+                           taken_panel(all), between_walls(lab, outcome.checks)};
+  return outcome;
+}
+
+}  // namespace limpid

@@ -1,0 +1,44 @@
+// What of a signal is fast.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace limpid {
+
+// Butterworth's high pass of fourth order, sample by sample: two sections of second order, each the
+// bilinear transform of s^2 / (s^2 + s w/Q + w^2).
+class HighPass {
+ public:
+  // Passes what is above `corner`, of samples at `rate` [Hz].
+  HighPass(double corner, double rate) {
+    constexpr double kQ[] = {0.54119610014619698, 1.3065629648763766};
+    const double w = 2 * std::numbers::pi * corner / rate;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double slope = std::sin(w) / (2 * kQ[i]), a0 = 1 + slope;
+      sections_[i].b = (1 + std::cos(w)) / 2 / a0;
+      sections_[i].a1 = -2 * std::cos(w) / a0;
+      sections_[i].a2 = (1 - slope) / a0;
+    }
+  }
+
+  double operator()(double x) {
+    for (Section& s : sections_) x = s.pass(x);
+    return x;
+  }
+
+ private:
+  struct Section {
+    double b = 0, a1 = 0, a2 = 0, z1 = 0, z2 = 0;
+    double pass(double x) {
+      const double y = b * x + z1;
+      z1 = -2 * b * x - a1 * y + z2;
+      z2 = b * x - a2 * y;
+      return y;
+    }
+  };
+  std::array<Section, 2> sections_;
+};
+
+}  // namespace limpid

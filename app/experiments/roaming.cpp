@@ -1,0 +1,95 @@
+#include "app/experiments/roaming.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/experiments/series.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kStiffGrip = 3000;              // [N/m]
+constexpr double kTick = 0.001, kRoaming = 2.5;  // [s]
+constexpr double kLowest = 0.1;                  // eta
+
+// eta over time, for an arm that roams in a stiff undamped grip.
+struct Wobble {
+  std::string label;
+  double frequency;  // of a square wave [Hz]; 0: a sine of 0.8 Hz
+  CouplingKind kind = CouplingKind::predictive;
+
+  double eta(double t) const {
+    if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kLowest : 1;
+    return kLowest + (1 - kLowest) / 2 * (1 + std::sin(5 * t));
+  }
+};
+
+Trial roaming(const Wobble& wobble) {
+  Parameters p;
+  p.kind = wobble.kind;
+  p.eta = wobble.eta(0);
+  p.hand_stiffness = kStiffGrip;
+  p.hand_damping = 0;
+  p.torque_limit = 100;
+  const auto at = [](double t) {
+    return Vec3(kHome + 0.02 * Vec3(std::sin(9 * t), std::sin(7 * t), std::sin(8 * t)));
+  };
+  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kTick, kRoaming, at), p)};
+  trial.keep = false;
+  double before = p.eta;
+  for (std::uint64_t k = 1; k < trial.plan.rows; ++k) {
+    const double eta = wobble.eta(static_cast<double>(k) * kTick);
+    if (eta == before) continue;
+    trial.plan.changes.push_back({k, fmt::format("coupling.eta = {:.6f}", eta)});
+    before = eta;
+  }
+  return trial;
+}
+
+double highest_energy(const TrialResult& result) {
+  double most = 0;
+  for (std::size_t k = 0; k < result.session.size(); ++k) {
+    most = std::max(most, result.session.at(k, Column::energy_total)[0]);
+  }
+  return result.end.diverged ? std::numeric_limits<double>::infinity() : most;
+}
+
+}  // namespace
+
+void roam(Laboratory& lab, Outcome& outcome) {
+  const std::vector<Wobble> wobbles{{"proposed, sine", 0, CouplingKind::proposed},
+                                    {"predictive, sine of 0.8 Hz", 0},
+                                    {"square wave, 3 Hz", 3},
+                                    {"20 Hz", 20},
+                                    {"37 Hz", 37}};
+  std::vector<Trial> trials;
+  for (const Wobble& w : wobbles) trials.push_back(roaming(w));
+  const std::vector<TrialResult> results = lab.run(trials);
+  FigurePanel panel{.title = fmt::format("Energy while eta changes between {} and 1, "
+                                         "undamped grip of {} N/m",
+                                         kLowest, kStiffGrip),
+                    .x_label = "time [s]",
+                    .y_label = "E_c [mJ]"};
+  panel.x_range = {0, kRoaming};
+  double worst = 0, lowest = 0;
+  for (std::size_t i = 0; i < wobbles.size(); ++i) {
+    const Session& s = results[i].session;
+    const char* ink = i == 0 ? kContactInk : kFamilyInk[i == 3 ? 5 : i - 1];
+    panel.series.push_back(over_time(s, wobbles[i].label, ink, Series::Style::line, [&](auto k) {
+      return 1e3 * s.at(k, Column::energy_total)[0];
+    }));
+    if (i == 0) continue;
+    worst = std::max(worst, highest_energy(results[i]));
+    lowest = std::min(lowest, panel.series.back().points.back().y);
+  }
+  panel.y_range = {1.05 * lowest, -0.3 * lowest};
+  outcome.figure.panels.push_back(panel);
+  outcome.checks.push_back(
+      at_most("predictive: highest E_c in free motion while eta changes between 0.1 and 1 [J]",
+              worst, 1e-6));
+}
+
+}  // namespace limpid

@@ -1,0 +1,113 @@
+#include "app/experiments/tap_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/base/assets.h"
+#include "app/experiments/high_pass.h"
+#include "app/experiments/series.h"
+#include "core/dynamics/arm.h"
+#include "devices/files/arm/urdf_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kAhead = 0.2;  // [m]
+
+std::string table(double wall) {
+  return fmt::format(R"(title = "Table"
+about = "A table top below the tip."
+
+[[plane]]
+name = "table top"
+point = [{}, 0.0, {}]
+normal = [0.0, 0.0, 1.0]
+stiffness = {:.9g}
+)",
+                     kAhead, TapBench::kSurface, wall);
+}
+
+}  // namespace
+
+TapBench::TapBench(const TapSetting& setting, double wall, double grip, int taps)
+    : setting_(setting),
+      wall_(wall),
+      grip_(grip),
+      down_(kAbove + setting.press / grip + setting.press / wall),
+      taps_(taps) {}
+
+double TapBench::height(double t) const {
+  const double in = std::fmod(t, period());
+  return std::clamp(std::min(in - kRest, period() - kRest - in) * kSpeed, 0.0, down_);
+}
+
+Trial TapBench::trial() const {
+  Parameters p;
+  p.kind = setting_.kind;
+  p.eta = setting_.eta;
+  p.tick = setting_.tick;
+  // The device is stepped as finely whatever the tick.
+  p.substeps = std::max(1, static_cast<int>(std::lround(p.substeps * p.tick / 0.001)));
+  p.encoder_step = setting_.encoder_step;
+  p.hand_mass_at_tip = setting_.hand_mass;
+  if (!setting_.expects_a_mass) p.hand_mass = 0;
+  p.hand_stiffness = grip_;
+  p.hand_damping = kGripDamping;
+  p.torque_limit = setting_.torque_limit;
+  const auto at = [&](double t) { return Vec3(kAhead, 0, kSurface + kAbove - height(t)); };
+  const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
+  Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};
+  trial.keep = false;
+  return trial;
+}
+
+Touch TapBench::touch(const TrialResult& result) const {
+  constexpr double kLost = std::numeric_limits<double>::infinity();
+  if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost};
+  const Session& s = result.session;
+  const double T = s.info.tick;
+  const Arm<kAnyDof> arm(read_urdf(default_device()));
+  HighPass fast[] = {{kFast, 1 / T}, {kFast, 1 / T}, {kFast, 1 / T}};
+  Touch touch;
+  double fast2 = 0, force = 0, depth = 0;
+  std::size_t held = 0;
+  Vec3 before = arm.tip_at(vector_at(s, 0, Column::device_position));
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    touch.energy = std::max(touch.energy, s.at(k, Column::energy_total)[0]);
+    touch.port = std::max(touch.port, s.at(k, Column::energy_port)[0]);
+    touch.torque =
+        std::max(touch.torque, vector_at(s, k, Column::contact_torque).cwiseAbs().maxCoeff());
+    const Vec3 tip = arm.tip_at(vector_at(s, k, Column::device_position));
+    Vec3 v = (tip - before) / T;
+    before = tip;
+    for (int i = 0; i < 3; ++i) v[i] = fast[i](v[i]);
+    const double in = std::fmod(static_cast<double>(k) * T, period()) - start_of_hold();
+    if (in < kSettle || in >= kHold) continue;
+    fast2 += v.squaredNorm();
+    ++held;
+    if (tip.z() >= kSurface) continue;
+    depth += kSurface - tip.z();
+    force += s.at(k, Column::contact_force)[2];
+  }
+  touch.chatter = std::sqrt(fast2 / static_cast<double>(std::max<std::size_t>(1, held)));
+  touch.felt = depth > 0 ? force / depth / wall_ : 0;
+  return touch;
+}
+
+TipAtTable tip_at_table() {
+  const ArmDescription description = read_urdf(default_device());
+  const Arm<kAnyDof> arm(description);
+  const Eigen::VectorXd x = rest_at(description, Vec3(kAhead, 0, TapBench::kSurface)).x1;
+  Arm<kAnyDof>::Frames frames;
+  arm.frames(x, frames);
+  Jacobian<kAnyDof> J;
+  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
+  const Eigen::VectorXd normal = J.row(2).transpose();
+  return {1 / normal.dot(inertia_at(description, x).inverse() * normal), normal.squaredNorm(),
+          description.joints.front().damping};
+}
+
+}  // namespace limpid

@@ -1,0 +1,67 @@
+// A hand that taps a table top and holds it there, and what it felt.
+#pragma once
+
+#include <string>
+
+#include "app/experiments/excitation.h"
+#include "app/experiments/experiment.h"
+
+namespace limpid {
+
+struct TapSetting {
+  CouplingKind kind = CouplingKind::predictive;
+  double eta = 1;
+  double tick = 0.001;         // [s]
+  double encoder_step = 0;     // [rad]
+  double hand_mass = 0;        // at the tip [kg]
+  bool expects_a_mass = true;  // a second predictor, for a hand with mass
+  double press = 4;            // of the hand while it holds, if the wall bears it [N]
+  double torque_limit = 100;   // of every motor [N m]
+
+  friend bool operator==(const TapSetting&, const TapSetting&) = default;
+};
+
+// What came of a trial; for one that diverged all are infinite but the stiffness, which is zero.
+struct Touch {
+  double energy = 0;   // highest E_c [J]
+  double port = 0;     // most that the human was given [J]
+  double chatter = 0;  // rms speed of the tip above 20 Hz while it is held [m/s]
+  double felt = 0;     // the wall's force over the device's depth, by the stiffness set [-]
+  double torque = 0;   // largest of the contact on any joint [N m]
+};
+
+class TapBench {
+ public:
+  static constexpr double kSpeed = 0.15;                    // [m/s]
+  static constexpr double kGripDamping = 2;                 // [N s/m]
+  static constexpr double kSurface = -0.04, kAbove = 0.01;  // the table's, and the hand's start [m]
+  static constexpr double kFast = 20;                       // what chatter is above [Hz]
+
+  // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m].
+  TapBench(const TapSetting& setting, double wall, double grip, int taps);
+
+  Trial trial() const;
+  Touch touch(const TrialResult& result) const;
+
+ private:
+  double start_of_hold() const { return kRest + down_ / kSpeed; }
+  double period() const { return kRest + 2 * down_ / kSpeed + kHold + kRest; }
+  double height(double t) const;  // of the hand, below where it starts [m]
+
+  static constexpr double kRest = 0.1, kHold = 0.5;  // [s]
+  static constexpr double kSettle = 0.3;             // from the hold's beginning [s]
+
+  TapSetting setting_;
+  double wall_, grip_, down_;
+  int taps_;
+};
+
+// How the tip meets the table there.
+struct TipAtTable {
+  double mass = 0;     // along the normal [kg]
+  double lever2 = 0;   // a joint's stiffness or damping over that at the tip [m^2]
+  double damping = 0;  // b_d, every joint's own [N m s/rad]
+};
+TipAtTable tip_at_table();
+
+}  // namespace limpid

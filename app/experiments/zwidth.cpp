@@ -1,0 +1,239 @@
+// How stiff a wall each coupling renders well: against eta, tick, encoders and the hand's mass.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/experiments/wall_search.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kFine = 1e-4;  // of a fine encoder [rad]
+constexpr double kEtas[] = {0.2, 0.3, 0.45, 0.6, 0.8, 1, 2, 4};
+constexpr double kTicks[] = {0.00025, 0.0005, 0.001, 0.002};               // [s]
+constexpr double kSteps[] = {1e-5, 3e-5, 1e-4, 1.5e-4, 2e-4, 5e-4, 1e-3};  // [rad]
+constexpr double kMasses[] = {0.02, 0.05, 0.1, 0.2, 0.5, 1};               // [kg]
+
+// A boundary to be found: one point for each value of what its panel varies.
+struct Curve {
+  std::size_t panel;
+  std::string label;
+  const char* ink;
+  std::vector<std::pair<double, TapSetting>> points = {};
+};
+
+template <class Values, class Field>
+Curve curve(std::size_t panel, const std::string& label, const char* ink, const TapSetting& base,
+            Field TapSetting::*field, const Values& values) {
+  Curve c{panel, label, ink};
+  for (const double value : values) {
+    TapSetting s = base;
+    s.*field = value;
+    c.points.emplace_back(value, s);
+  }
+  return c;
+}
+
+std::vector<Curve> all_curves() {
+  using enum CouplingKind;
+  const TapSetting exact{}, fine{.encoder_step = kFine}, paper{.kind = proposed},
+      unprepared{.expects_a_mass = false};
+  const std::string quantised = fmt::format("predictive, encoder {} rad", kFine);
+  return {curve(0, "predictive", kProxyInk, exact, &TapSetting::eta, kEtas),
+          curve(0, quantised, kHandInk, fine, &TapSetting::eta, kEtas),
+          curve(0, "proposed", kContactInk, paper, &TapSetting::eta, kEtas),
+          curve(1, "predictive", kProxyInk, exact, &TapSetting::tick, kTicks),
+          curve(1, quantised, kHandInk, fine, &TapSetting::tick, kTicks),
+          curve(1, "proposed", kContactInk, paper, &TapSetting::tick, kTicks),
+          curve(2, "predictive", kHandInk, exact, &TapSetting::encoder_step, kSteps),
+          curve(2, "proposed", kContactInk, paper, &TapSetting::encoder_step, kSteps),
+          curve(3, "predictive", kProxyInk, exact, &TapSetting::hand_mass, kMasses),
+          curve(3, "predictive, one predictor", kEnergyInk, unprepared, &TapSetting::hand_mass,
+                kMasses),
+          curve(3, "proposed", kContactInk, paper, &TapSetting::hand_mass, kMasses)};
+}
+
+// What theory says, as stiffness at the tip. `hand` is the damping of the hand there [N s/m].
+struct Theory {
+  Parameters p;
+  TipAtTable tip = tip_at_table();
+
+  // The damping there is against the lag of the paper's contact, half a tick and b_v/k_vc.
+  double proposed(double eta, double T, double hand) const {
+    const double b = (tip.damping + p.b_v + p.k_vc * T / 2) / tip.lever2 + hand;
+    return eta * b / (T / 2 + p.b_v / p.k_vc);
+  }
+  // No linear law is passive in every hand beyond it (Colgate).
+  double any_linear(double T) const { return 2 * tip.damping / tip.lever2 / T; }
+  // Where a hand is heavier than the predictor takes it for, by what its error gives away.
+  double mistaken(double mass, double T, double hand) const {
+    const double walls = 0.2 * tip.mass / T;
+    const double b = (tip.damping + p.b_v) / tip.lever2 + hand + walls;
+    const double share = tip.mass / (tip.mass + mass);
+    return std::sqrt(2 * b * tip.mass / (T * T * T * (1 - share)));
+  }
+};
+
+template <class Value>
+Series theory(const std::string& label, const char* ink, double from, double to,
+              const Value& value) {
+  Series line{label, ink, Series::Style::dashed, {}};
+  constexpr int kPoints = 60;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double x = from * std::pow(to / from, static_cast<double>(i) / kPoints);
+    line.points.push_back({x, value(x)});
+  }
+  return line;
+}
+
+std::vector<FigurePanel> empty_panels() {
+  const Theory law;
+  const double hand = TapBench::kGripDamping, T = TapSetting{}.tick;
+  const auto panel = [](const std::string& title, const std::string& x, double from, double to) {
+    return FigurePanel{.title = title,
+                       .x_label = x,
+                       .y_label = "stiffest wall [N/m]",
+                       .log_x = true,
+                       .log_y = true,
+                       .x_range = std::pair(from, to),
+                       .y_range = std::pair(0.8 * kSoftest, 1.5 * kStiffest)};
+  };
+  std::vector<FigurePanel> panels{
+      panel("Against the scaling of the inertia", "eta [-]", 0.18, 4.4),
+      panel("Against the tick, eta = 1", "tick [ms]", 0.22, 2.3),
+      panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
+      panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
+            1.1)};
+  panels[0].series = {theory("proposed: damping over lag", kContactInk, 0.2, 4,
+                             [&](double eta) { return law.proposed(eta, T, hand); }),
+                      theory("passive in every hand, any linear law", kNeutralInk, 0.2, 4,
+                             [&](double) { return law.any_linear(T); })};
+  panels[1].series = {theory("proposed: damping over lag", kContactInk, 0.25, 2,
+                             [&](double ms) { return law.proposed(1, 1e-3 * ms, hand); }),
+                      theory("passive in every hand, any linear law", kNeutralInk, 0.25, 2,
+                             [&](double ms) { return law.any_linear(1e-3 * ms); })};
+  panels[3].series = {theory("one predictor: what its error gives away", kEnergyInk, 0.02, 1,
+                             [&](double m) { return law.mistaken(m, T, hand); })};
+  return panels;
+}
+
+struct Found {
+  std::vector<Curve> curves;
+  std::vector<std::vector<double>> walls;  // of each curve's points [N/m]
+
+  // The softest of a curve's walls where `which` holds for the value.
+  template <class Which>
+  double softest(std::size_t curve, const Which& which) const {
+    double least = kStiffest;
+    for (std::size_t i = 0; i < walls[curve].size(); ++i) {
+      if (which(curves[curve].points[i].first)) least = std::min(least, walls[curve][i]);
+    }
+    return least;
+  }
+};
+
+// Equal settings of different curves are looked at once.
+Found find_all(Laboratory& lab) {
+  Found found{all_curves(), {}};
+  std::vector<TapSetting> settings;
+  for (const Curve& c : found.curves) {
+    for (const auto& [x, s] : c.points) {
+      if (std::ranges::find(settings, s) == settings.end()) settings.push_back(s);
+    }
+  }
+  const std::vector<double> walls = stiffest_walls(lab, settings);
+  for (const Curve& c : found.curves) {
+    found.walls.emplace_back();
+    for (const auto& [x, s] : c.points) {
+      const auto at = std::ranges::find(settings, s) - settings.begin();
+      found.walls.back().push_back(walls[static_cast<std::size_t>(at)]);
+    }
+  }
+  return found;
+}
+
+std::vector<FigurePanel> draw(const Found& found) {
+  constexpr double kScale[] = {1, 1e3, 1e3, 1};  // of each panel's axis
+  std::vector<FigurePanel> panels = empty_panels();
+  for (std::size_t i = 0; i < found.curves.size(); ++i) {
+    const Curve& c = found.curves[i];
+    Series line{c.label, c.ink, Series::Style::line, {}};
+    for (std::size_t k = 0; k < c.points.size(); ++k) {
+      line.points.push_back({kScale[c.panel] * c.points[k].first, found.walls[i][k]});
+    }
+    Series dots{"", c.ink, Series::Style::points, line.points};
+    panels[c.panel].series.push_back(line);
+    panels[c.panel].series.push_back(dots);
+  }
+  return panels;
+}
+
+// The worst of taps at 5000 N/m over grips and etas.
+Touch worst_tap(Laboratory& lab, double encoder_step, double mass) {
+  std::vector<TapBench> benches;
+  std::vector<Trial> trials;
+  for (const double grip : kGrips) {
+    for (const double eta : {1.0, 0.6, 0.3}) {
+      const TapSetting s{.eta = eta, .encoder_step = encoder_step, .hand_mass = mass};
+      benches.emplace_back(s, 5000, grip, 3);
+      trials.push_back(benches.back().trial());
+    }
+  }
+  std::vector<Touch> touches(trials.size());
+  lab.run(trials, [&](std::size_t i, const TrialResult& r) { touches[i] = benches[i].touch(r); });
+  Touch worst{.felt = 1};
+  for (const Touch& t : touches) {
+    worst.energy = std::max(worst.energy, t.energy);
+    worst.port = std::max(worst.port, t.port);
+    worst.chatter = std::max(worst.chatter, t.chatter);
+    if (std::abs(t.felt - 1) > std::abs(worst.felt - 1)) worst.felt = t.felt;
+  }
+  return worst;
+}
+
+void judge_taps(Laboratory& lab, std::vector<Check>& checks) {
+  for (const auto& [mass, quiet] : {std::pair(0.0, 1e-4), {0.2, 4e-3}}) {
+    const std::string where = fmt::format("5000 N/m, eta 0.3 to 1, hand of {} kg", mass);
+    const Touch exact = worst_tap(lab, 0, mass), fine = worst_tap(lab, kFine, mass);
+    checks.push_back(at_most(where + ", exact encoders: highest E_c [J]", exact.energy, 5e-5));
+    checks.push_back(at_most(where + ", exact encoders: stiffness felt off that set, of it",
+                             std::abs(exact.felt - 1), 0.01));
+    checks.push_back(at_most(where + ", exact encoders: chatter [m/s]", exact.chatter, quiet));
+    checks.push_back(
+        at_most(where + ", encoders of 1e-4 rad: given to the human [J]", fine.port, 5e-5));
+    checks.push_back(at_most(where + ", encoders of 1e-4 rad: highest E_c [J]", fine.energy, 4e-3));
+    checks.push_back(at_most(where + ", encoders of 1e-4 rad: chatter [m/s]", fine.chatter, 0.02));
+  }
+}
+
+}  // namespace
+
+Outcome zwidth(Laboratory& lab) {
+  const Found found = find_all(lab);
+  Outcome outcome;
+  outcome.figure.title = "The stiffest wall that is rendered well";
+  outcome.figure.caption = fmt::format(
+      "Taps at {} m/s, {} N, held, in hands of {} and {} N/m and {} N s/m; tick 1 ms, exact "
+      "encoders, no mass unless varied. Well: at most {} mJ given to the human, tip above {} Hz "
+      "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
+      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them.",
+      TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
+      1e3 * WellRendered::kPort, TapBench::kFast, 1e3 * WellRendered::kChatter,
+      100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy, kSoftest, kStiffest);
+  outcome.figure.columns = 2;
+  outcome.figure.panels = draw(found);
+  const auto any = [](double) { return true; };
+  outcome.checks = {at_least("predictive: stiffest wall, exact encoders, eta 0.2 to 4 [N/m]",
+                             found.softest(0, any), 10000),
+                    at_least("predictive: stiffest wall, exact encoders, hands to 0.2 kg [N/m]",
+                             found.softest(8, [](double mass) { return mass <= 0.2; }), 10000),
+                    at_least("predictive: stiffest wall, encoders to 1e-4 rad [N/m]",
+                             found.softest(6, [](double step) { return step <= kFine; }), 5000),
+                    at_least("predictive: stiffest wall, encoders of 5e-4 rad [N/m]",
+                             found.softest(6, [](double step) { return step == 5e-4; }), 1000)};
+  judge_taps(lab, outcome.checks);
+  return outcome;
+}
+
+}  // namespace limpid
