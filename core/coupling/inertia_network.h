@@ -47,12 +47,7 @@ class InertiaNetwork {
       K_ = R_ = Mat<N>::Zero(n, n);
       return;
     }
-<<<<<<< HEAD
-    const double w2 = 2 * std::numbers::pi * band;
-    const double scale = side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) : gain * (eta - 1);
-=======
     const double scale = side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2_ * T / 2) : gain * (eta - 1);
->>>>>>> unit
     R_ = std::sqrt(scale) * cholesky<N>(M_L);
     if (side < 0) {
       force_ = -w2_ * (R_ * s_);
