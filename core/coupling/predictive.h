@@ -25,6 +25,7 @@ struct PredictiveLaw {
           "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
       .scales_inertia = true,
       .observes = false,
+      .keeps_ledger = true,
       .sliders = kSliders,
   };
 
