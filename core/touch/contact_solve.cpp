@@ -224,28 +224,24 @@ Vec<N> ContactSolve<N>::f2(Eigen::Index n) const {
 
 template <int N>
 void ContactSolve<N>::finish(Contacts<N>& contacts) const {
-  const auto keep = [&](std::size_t id, const Row* row) {
-    ContactMemory now;
-    if (row != nullptr) {
-      const double force = row->push.norm(), rubs = row->friction.norm();
-      now.push = row->push;
-      now.anchor = -(row->frame * row->friction) / friction_stiffness(row->material);
-      const double limit = row->radius * force * (1 - 1e-9);
-      // Without kinetic friction it slips until it is lifted.
-      now.slipping = force > 0 && (row->radius > 0 ? rubs >= limit : row->before.slipping);
-    }
-    contacts.memory(id) = now;
+  contacts.forget();  // those that are gone as well
+  const auto keep = [&](std::size_t id, const Row& row) {
+    const double force = row.push.norm(), rubs = row.friction.norm();
+    ContactMemory& now = contacts.memory(id);
+    now.push = row.push;
+    now.anchor = -(row.frame * row.friction) / friction_stiffness(row.material);
+    const double limit = row.radius * force * (1 - 1e-9);
+    // Without kinetic friction it slips until it is lifted.
+    now.slipping = force > 0 && (row.radius > 0 ? rubs >= limit : row.before.slipping);
   };
-  for (const Contact<N>& c : contacts.list()) keep(c.id, nullptr);
-  for (const MeshContact<N>& c : contacts.meshes()) keep(c.id, nullptr);
   for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
     if (row.wall != nullptr) {
       row.wall->force = row.push.x();
       row.wall->friction = row.frame * row.friction;
-      keep(row.wall->id, &row);
+      keep(row.wall->id, row);
     } else {
       row.mesh->force = row.push + row.friction;
-      keep(row.mesh->id, &row);
+      keep(row.mesh->id, row);
     }
   }
 }

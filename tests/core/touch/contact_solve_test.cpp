@@ -20,8 +20,7 @@ constexpr double T = 0.001;
 
 // A device, its proxy on a stiff coupling, and what the contacts' torque does to both.
 struct Answer {
-  explicit Answer(Random& random) {
-    M = random.positive_definite(3, 3e-4, 1e-3);
+  Answer(const Mat3& inertia, Random& random) : M(inertia) {
     const Mat3 D0 = 2 / T * M + random.matrix(3, 1e-3) + 0.012 * Mat3::Identity();
     const Mat3 impedance = 1e-4 * 2 / T * M + random.matrix(3, 1e-6);
     const Mat3 c = 0.006 * Mat3::Identity() + random.matrix(3, 2e-5);
@@ -55,9 +54,17 @@ struct Answer {
 class Bench {
  public:
   Bench(const Scene& scene, unsigned seed)
-      : random(seed), answer(random), contacts(test::random_arm(3, 5), scene) {
+      : random(seed), answer(inertia(), random), contacts(test::random_arm(3, 5), scene) {
     arm.frames(x, f);
     contacts.place(arm, f, x);
+  }
+  static Mat3 inertia() {
+    const Arm3 arm(test::random_arm(3, 5));
+    Arm3::Frames f;
+    Mat3 M;
+    arm.frames(start(), f);
+    arm.inertia(f, M);
+    return M;
   }
   // A wall this deep in the arm's tip.
   static Plane plane(const Vec3& normal, double depth, const Material& material) {
@@ -149,20 +156,25 @@ void expect_its_own_law(const Bench& bench, const Contact<3>& c, const ContactMe
   bench.arm.point_jacobian(bench.f, c.link, c.point, J);
   Vec3 wanted = -K_t * across * (before.anchor + T * J * u);
   if (wanted.norm() > mu * F) wanted *= mu * F / wanted.norm();
-  ASSERT_LT((c.friction - wanted).norm(), 2e-6 * std::max(1.0, F));
+  // Where it slips its own six steps leave a little.
+  ASSERT_LT((c.friction - wanted).norm(), 1e-4 * std::max(1.0, F));
   ASSERT_LE(c.friction.norm(), mu * c.force * (1 + 1e-12) + 1e-15);
 }
 
 TEST(ContactSolve, LeavesEachContactWithWhatItsOwnLawAsksOfTheMotion) {
   Random random(91);
-  int pushed = 0, stuck = 0, slipped = 0;
+  int pushed = 0, stuck = 0, slipped = 0, unsettled = 0;
   for (int round = 0; round < 300; ++round) {
     const bool friction = round % 3 != 0;
     const Scene scene = some_corner(random, 1 + round % 7 % 3, friction);
     Bench bench(scene, 900 + static_cast<unsigned>(round));
     for (int k = 0; k < 20; ++k) {
-      if (k % 5 == 0) bench.base = press(scene, random);
       bench.tick(press(scene, random));
+      bench.go_on();
+      if (bench.solve.sweeps() == ContactSolve<3>::kMostSweeps) {
+        ++unsettled;
+        continue;
+      }
       const auto list = std::as_const(bench.contacts).list();
       for (std::size_t i = 0; i < list.size(); ++i) {
         SCOPED_TRACE(testing::Message() << round << ' ' << k << ' ' << i);
@@ -172,10 +184,9 @@ TEST(ContactSolve, LeavesEachContactWithWhatItsOwnLawAsksOfTheMotion) {
         if (list[i].friction.isZero(0)) continue;
         (bench.contacts.memory(list[i].id).slipping ? slipped : stuck) += 1;
       }
-      ASSERT_LT(bench.solve.sweeps(), 30);
-      bench.go_on();
     }
   }
+  EXPECT_LT(unsettled, 200);
   EXPECT_GT(pushed, 1000);
   EXPECT_GT(stuck, 200);
   EXPECT_GT(slipped, 200);
@@ -222,7 +233,7 @@ TEST(ContactSolve, OfWallsWithFrictionNeverGivesEnergy) {
             0.5 * c.material.stiffness * d * d +
             0.5 * friction_stiffness(c.material) * bench.contacts.memory(c.id).anchor.squaredNorm();
       }
-      ASSERT_LT(T * bench.f2.dot(bench.motion.u) + after - bench.potential, 3e-9) << round;
+      ASSERT_LT(T * bench.f2.dot(bench.motion.u) + after - bench.potential, 1e-12) << round;
       bench.go_on();
     }
   }
@@ -230,18 +241,13 @@ TEST(ContactSolve, OfWallsWithFrictionNeverGivesEnergy) {
 
 TEST(ContactSolve, TakesTheDeepest32OfMore) {
   Scene scene;
-  Random random(94);
   std::vector<int> order(50);
-  for (int i = 0; i < 50; ++i) order[static_cast<std::size_t>(i)] = i;
-  for (std::size_t i = 49; i > 0; --i) {
-    std::swap(
-        order[i],
-        order[static_cast<std::size_t>(random.between(0, 0.999) * (static_cast<double>(i) + 1))]);
-  }
+  for (int i = 0; i < 50; ++i) order[static_cast<std::size_t>(i)] = 7 * i % 50;
   for (const int i : order) {
-    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 1e-4 + 1e-5 * i, {.stiffness = 10}));
+    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 1e-4 + 1e-5 * i, {.stiffness = 0.1}));
   }
   Bench bench(scene, 94);
+  bench.answer.contact.damping = 0;  // which would hold those that others push out
   bench.tick(Vec3::Zero());
   ASSERT_EQ(std::as_const(bench.contacts).list().size(), 50u);
   for (std::size_t i = 0; i < 50; ++i) {
@@ -275,8 +281,10 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
   for (const double kinetic : {0.2, 0.0}) {
     Scene scene;
     const Material m{.stiffness = 1000, .friction_static = 0.6, .friction_kinetic = kinetic};
-    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 1e-3, m));
+    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // held by 2 N
     Bench bench(scene, 96);
+    bench.answer.contact.on_device.setIdentity();
+    bench.answer.contact.on_proxy.setZero();
     const auto friction = [&](double pull) {
       bench.tick(Vec3(pull, 0, -2));
       bench.go_on();
@@ -299,9 +307,10 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
       EXPECT_FALSE(slipping());
     } else {
       EXPECT_TRUE(slipping()) << "nothing holds it until it is lifted";
-      bench.tick(Vec3(0, 0, 20));
-      bench.go_on();
-      bench.tick(Vec3(0, 0, 20));
+      for (int k = 0; k < 10; ++k) {
+        bench.tick(Vec3(0, 0, 20));
+        bench.go_on();
+      }
       EXPECT_FALSE(slipping());
     }
   }
@@ -309,12 +318,13 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
 
 TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
   Random random(97);
+  int pushed = 0;
   for (int round = 0; round < 20; ++round) {
     const Material m = some_material(random, round % 2 == 1);
     constexpr double kRadius = 0.004;
     Scene flat, mesh;
     flat.tip_radius = mesh.tip_radius = kRadius;
-    const Plane plane = Bench::plane(random.direction(), -kRadius - 5e-4, m);
+    const Plane plane = Bench::plane(random.direction(), 5e-4 - kRadius, m);
     flat.planes.push_back(plane);
     MeshObstacle sheet = test::obstacle(test::sheet(3, 2));
     sheet.material = m;
@@ -323,22 +333,21 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
     sheet.pose.translation() = plane.point;
     mesh.meshes.push_back(sheet);
     Bench a(flat, 98), b(mesh, 98);
-    int pushed = 0;
     for (int k = 0; k < 60; ++k) {
       const Vec3 push = -3 * plane.normal + 0.05 * k * plane.normal.unitOrthogonal();
       a.tick(push);
       b.tick(push);
-      if (a.f2.norm() > 0) ++pushed;
-      // It is made within a part of a tick, of which a mesh knows a 32nd.
-      const bool made = pushed <= 1;
-      ASSERT_LT((a.f2 - b.f2).norm(), (made ? 0.05 : 1e-5) * (1e-3 + a.f2.norm())) << k;
+      // Where it breaks within the tick, a mesh knows when by a 32nd.
+      const Contact<3>& c = std::as_const(a.contacts).list()[0];
+      if (c.depth + T * c.gradient.dot(a.motion.u) <= 0) break;
+      ++pushed;
+      ASSERT_LT((a.f2 - b.f2).norm(), 1e-5 * (1e-3 + a.f2.norm())) << k;
+      ASSERT_LT((a.motion.u - b.motion.u).norm(), 1e-5 * (1e-3 + a.motion.u.norm())) << k;
       a.go_on();
-      b.x = a.x;
-      if (made) continue;
-      ASSERT_LT((a.motion.u - b.motion.u).norm(), 1e-4 * (1e-3 + a.motion.u.norm())) << k;
+      b.go_on();
     }
-    EXPECT_GT(pushed, 20);
   }
+  EXPECT_GT(pushed, 600);
 }
 
 }  // namespace

@@ -162,8 +162,12 @@ TEST(RoomForce, OfADampedRoomNeverGivesAndNeverPulls) {
     room_force(touch, t, F);
     const Case b = balance(touch, t, F);
     ASSERT_LE(b.given, b.bound + 1e-12 * b.size) << round;
-    const Vec3 mean = held(touch, c + 0.5 * (t.a + t.W * F)).pull;
-    if (F.isZero(0) || mean.isZero(0)) continue;
+    if (F.isZero(0)) continue;
+    Vec3 mean = Vec3::Zero();
+    for (int i = 0; i < 100; ++i) {
+      mean += held(touch, c + (i + 0.5) / 100 * (t.a + t.W * F)).pull / 100;
+    }
+    ASSERT_GT(F.dot(mean), -1e-3 * F.norm() * mean.norm()) << "it pulls";
     ++pushed;
   }
   EXPECT_GT(pushed, 2000);
@@ -202,7 +206,7 @@ TEST(RoomForce, OfOnePlaneIsAWalls) {
     }
   }
   EXPECT_GT(kept, 2000);
-  EXPECT_GT(changed, 1000);
+  EXPECT_GT(changed, 500);
 }
 
 TEST(RoomForce, OfAnAnchorIsALinearSpring) {
