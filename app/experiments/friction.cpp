@@ -86,9 +86,9 @@ struct Verdict {
 
 Verdict judge(const RoughWalls& walls, const std::vector<std::vector<Rub>>& rubs, double tick) {
   Verdict v;
-  const double spring = std::min(walls.stiffness, 2000.0);
   double sum = 0;
   std::vector<Rub> before(static_cast<std::size_t>(walls.walls));
+  std::vector<double> last(before.size());
   for (const auto& now : rubs) {
     for (std::size_t i = 0; i < now.size(); ++i) {
       const double given = given_by_friction(walls, before[i], now[i]);
@@ -97,12 +97,12 @@ Verdict judge(const RoughWalls& walls, const std::vector<std::vector<Rub>>& rubs
       if (now[i].normal == 0) continue;
       v.broke_away = std::max(v.broke_away, ratio(now[i]));
       v.beyond = std::max(v.beyond, ratio(now[i]) - walls.friction_static);
-      const double slip = (now[i].moved + (now[i].friction - before[i].friction) / spring).norm();
-      if (now[i].moved.norm() > kSlipping * tick && slip > 0.5 * kSlipping * tick &&
-          walls.friction_kinetic > 0) {
-        const double off = std::abs(ratio(now[i]) / walls.friction_kinetic - 1);
-        v.off_kinetic = std::max(v.off_kinetic, off);
+      const double slip = slipped(walls, before[i], now[i]);
+      if (slip > kSlipping * tick && last[i] > kSlipping * tick && walls.friction_kinetic > 0) {
+        v.off_kinetic =
+            std::max(v.off_kinetic, std::abs(ratio(now[i]) / walls.friction_kinetic - 1));
       }
+      last[i] = slip;
       // Strictly inside both cones nothing can slip.
       if (ratio(now[i]) < 0.99 * walls.friction_kinetic && before[i].normal > 0) {
         v.crept = std::max(v.crept, slip);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -15,18 +16,44 @@ namespace {
 // Of friction: as stiff as the wall, up to 2000 N/m.
 double spring_of(const RoughWalls& walls) { return std::min(walls.stiffness, 2000.0); }
 
-// Which of the walls pushed like this: the one whose spring, so deep, gives that normal force.
-std::size_t pusher(const RoughWalls& walls, const Vec3& force, const Vec3& tip,
-                   const std::vector<Rub>& taken) {
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
+// Mean spring force of each wall over a tick from one place of the tip to another; less than
+// nothing where the tip stays outside.
+std::vector<double> springs(const RoughWalls& walls, const Vec3& from, const Vec3& to) {
+  std::vector<double> mean;
   for (std::size_t i = 0; i < static_cast<std::size_t>(walls.walls); ++i) {
-    if (taken[i].normal > 0) continue;
-    const double depth = std::max(0.0, kOutward[i].dot(kMeet - tip));
-    const double off = std::abs(force.dot(kOutward[i]) - walls.stiffness * depth);
+    const double d = kOutward[i].dot(kMeet - from), next = kOutward[i].dot(kMeet - to);
+    const double inside = (std::max(d, 0.0) + std::max(next, 0.0)) / 2;
+    mean.push_back(inside > 0 ? walls.stiffness * inside : -1);
+  }
+  return mean;
+}
+
+// The forces of a row, which are in the order of the walls, each with the wall it is of: of all
+// choices the one that comes nearest to what the springs do.
+std::vector<std::pair<std::size_t, Vec3>> pushes(const std::vector<double>& springs,
+                                                 std::span<const double> columns) {
+  std::vector<Vec3> forces;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(kRowContacts); ++c) {
+    const Vec3 force(columns[3 * c], columns[3 * c + 1], columns[3 * c + 2]);
+    if (!force.isZero(0)) forces.push_back(force);
+  }
+  std::vector<std::pair<std::size_t, Vec3>> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (unsigned chosen = 0; chosen < 1u << springs.size(); ++chosen) {
+    if (static_cast<std::size_t>(std::popcount(chosen)) != forces.size()) continue;
+    std::vector<std::pair<std::size_t, Vec3>> choice;
+    double off = 0;
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      if ((chosen >> i & 1u) == 0) {
+        off += std::max(0.0, springs[i]);
+        continue;
+      }
+      choice.emplace_back(i, forces[choice.size()]);
+      off += springs[i] < 0 ? 1e3 : std::abs(choice.back().second.dot(kOutward[i]) - springs[i]);
+    }
     if (off < least) {
       least = off;
-      best = i;
+      best = std::move(choice);
     }
   }
   return best;
@@ -63,13 +90,11 @@ std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& wall
     arm.frames(x2, frames);
     const Vec3 tip = arm.tip(frames);
     arm.point_jacobian(frames, arm.dof() - 1, tip, J);
-    const Vec3 moved = J * (vector_at(s, k + 1, Column::proxy_position) - x2);
+    const Eigen::VectorXd next = vector_at(s, k + 1, Column::proxy_position);
+    const Vec3 moved = J * (next - x2);
+    const std::vector<double> pushing = springs(walls, tip, arm.tip_at(next));
     std::vector<Rub> rubs(static_cast<std::size_t>(walls.walls));
-    const auto forces = s.at(k, Column::contact_force);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(kRowContacts); ++c) {
-      const Vec3 force(forces[3 * c], forces[3 * c + 1], forces[3 * c + 2]);
-      if (force.isZero(0)) continue;
-      const std::size_t i = pusher(walls, force, tip, rubs);
+    for (const auto& [i, force] : pushes(pushing, s.at(k, Column::contact_force))) {
       const Vec3& n = kOutward[i];
       rubs[i] = {force.dot(n), force - force.dot(n) * n, moved - moved.dot(n) * n};
     }
@@ -82,6 +107,10 @@ double given_by_friction(const RoughWalls& walls, const Rub& before, const Rub& 
   const double k_t = spring_of(walls);
   const double stored = (now.friction.squaredNorm() - before.friction.squaredNorm()) / (2 * k_t);
   return now.friction.dot(now.moved) + stored;
+}
+
+double slipped(const RoughWalls& walls, const Rub& before, const Rub& now) {
+  return (now.moved + (now.friction - before.friction) / spring_of(walls)).norm();
 }
 
 }  // namespace limpid
