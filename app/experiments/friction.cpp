@@ -138,7 +138,7 @@ std::vector<Dragged> drag_all(Laboratory& lab) {
 FigurePanel ratio_panel(const std::vector<Dragged>& all) {
   FigurePanel panel{.title = "Tangential over normal force, against the drag",
                     .x_label = "hand aside of where it pressed [mm]",
-                    .y_label = "against the drag, over the normal force [-]"};
+                    .y_label = "tangential over normal force [-]"};
   for (const Dragged& d : all) {
     Series line{d.what.label, d.what.ink, Series::Style::line, {}};
     for (std::size_t k = 0; k < d.rubs.size(); k += 2) {
@@ -194,9 +194,7 @@ FigurePanel taken_panel(const std::vector<Dragged>& all) {
 
 // Edge and corner: the panel of E_c, and what is promised of them.
 FigurePanel between_walls(Laboratory& lab, std::vector<Check>& checks) {
-  FigurePanel panel{.title = fmt::format("Wandering in an edge and a corner of {} N/m, grip of "
-                                         "300 N/m",
-                                         kEdgeWall),
+  FigurePanel panel{.title = fmt::format("Wandering in an edge and a corner of {} N/m", kEdgeWall),
                     .x_label = "time [s]",
                     .y_label = "E_c [mJ]"};
   std::vector<RoughWalls> walls;
@@ -245,7 +243,8 @@ Outcome friction(Laboratory& lab) {
   outcome.figure.title = "Friction: sticking, slipping, and the energy it takes";
   outcome.figure.caption = fmt::format(
       "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N and "
-      "drags {} mm aside and back. Edge and corner: pressed in with {} N, wandering; eta = 0.3.",
+      "drags {} mm aside and back. Edge and corner: pressed in with {} N, "
+      "wandering, in a grip of 300 N/m; eta = 0.3.",
       kWall, kPress, 1e3 * kDrag, kEdgePress);
   outcome.figure.columns = 2;
   double given = 0;

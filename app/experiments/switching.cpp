@@ -192,9 +192,10 @@ FigurePanel torque_panel(const Session& s) {
   for (std::size_t i = 0; i < kOrder.size(); ++i) {
     const double t = kFirst + kEvery * static_cast<double>(i);
     panel.series.push_back(
-        {i == 0 ? "switched" : "", kNeutralInk, Series::Style::dashed, {{t, -0.05}, {t, 0.45}}});
+        {i == 0 ? "switched" : "", kNeutralInk, Series::Style::dashed, {{t, -0.3}, {t, 0.05}}});
   }
   panel.x_range = {0.6, s.at(s.size() - 1, Column::time)[0]};
+  panel.y_range = {-0.3, 0.05};
   return panel;
 }
 

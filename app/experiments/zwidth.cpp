@@ -100,8 +100,8 @@ std::vector<FigurePanel> empty_panels() {
                        .y_range = std::pair(0.8 * kSoftest, 1.5 * kStiffest)};
   };
   std::vector<FigurePanel> panels{
-      panel("Against the scaling of the inertia", "eta [-]", 0.18, 4.4),
-      panel("Against the tick, eta = 1", "tick [ms]", 0.22, 2.3),
+      panel("Against the scaling of the inertia", "eta [-]", 0.1, 10),
+      panel("Against the tick, eta = 1", "tick [ms]", 0.1, 10),
       panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
       panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
             1.1)};
