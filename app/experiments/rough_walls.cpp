@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "app/experiments/series.h"
 #include "core/dynamics/arm.h"
@@ -16,47 +14,33 @@ namespace {
 // Of friction: as stiff as the wall, up to 2000 N/m.
 double spring_of(const RoughWalls& walls) { return std::min(walls.stiffness, 2000.0); }
 
-// Mean spring force of each wall over a tick from one place of the tip to another; less than
-// nothing where the tip stays outside.
-std::vector<double> springs(const RoughWalls& walls, const Vec3& from, const Vec3& to) {
-  std::vector<double> mean;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(walls.walls); ++i) {
-    const double d = kOutward[i].dot(kMeet - from), next = kOutward[i].dot(kMeet - to);
-    const double inside = (std::max(d, 0.0) + std::max(next, 0.0)) / 2;
-    mean.push_back(inside > 0 ? walls.stiffness * inside : -1);
-  }
-  return mean;
+// How deep a wall is entered over a tick from one place of the tip to another [m]; where it is not,
+// how far from it that stays, less than nothing.
+double entered(int wall, const Vec3& from, const Vec3& to) {
+  const Vec3& n = kOutward[wall];
+  const double d = n.dot(kMeet - from), next = n.dot(kMeet - to);
+  const double inside = (std::max(d, 0.0) + std::max(next, 0.0)) / 2;
+  return inside > 0 ? inside : std::max(d, next);
 }
 
-// The forces of a row, which are in the order of the walls, each with the wall it is of: of all
-// choices the one that comes nearest to what the springs do.
-std::vector<std::pair<std::size_t, Vec3>> pushes(const std::vector<double>& springs,
-                                                 std::span<const double> columns) {
+// The forces of a row, which are in the order of the walls, each with the wall it is of: of as many
+// walls as there are forces, those that are entered the deepest.
+std::vector<std::pair<int, Vec3>> pushes(const std::vector<double>& depths,
+                                         std::span<const double> columns) {
   std::vector<Vec3> forces;
   for (std::size_t c = 0; c < static_cast<std::size_t>(kRowContacts); ++c) {
     const Vec3 force(columns[3 * c], columns[3 * c + 1], columns[3 * c + 2]);
     if (!force.isZero(0)) forces.push_back(force);
   }
-  std::vector<std::pair<std::size_t, Vec3>> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (unsigned chosen = 0; chosen < 1u << springs.size(); ++chosen) {
-    if (static_cast<std::size_t>(std::popcount(chosen)) != forces.size()) continue;
-    std::vector<std::pair<std::size_t, Vec3>> choice;
-    double off = 0;
-    for (std::size_t i = 0; i < springs.size(); ++i) {
-      if ((chosen >> i & 1u) == 0) {
-        off += std::max(0.0, springs[i]);
-        continue;
-      }
-      choice.emplace_back(i, forces[choice.size()]);
-      off += springs[i] < 0 ? 1e3 : std::abs(choice.back().second.dot(kOutward[i]) - springs[i]);
-    }
-    if (off < least) {
-      least = off;
-      best = std::move(choice);
-    }
+  std::vector<std::pair<int, Vec3>> pairs;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const auto deeper =
+        std::ranges::count_if(depths, [&](double other) { return other > depths[i]; });
+    if (static_cast<std::size_t>(deeper) >= forces.size() || pairs.size() == forces.size())
+      continue;
+    pairs.emplace_back(static_cast<int>(i), forces[pairs.size()]);
   }
-  return best;
+  return pairs;
 }
 
 }  // namespace
@@ -92,11 +76,13 @@ std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& wall
     arm.point_jacobian(frames, arm.dof() - 1, tip, J);
     const Eigen::VectorXd next = vector_at(s, k + 1, Column::proxy_position);
     const Vec3 moved = J * (next - x2);
-    const std::vector<double> pushing = springs(walls, tip, arm.tip_at(next));
+    std::vector<double> depths;
+    for (int i = 0; i < walls.walls; ++i) depths.push_back(entered(i, tip, arm.tip_at(next)));
     std::vector<Rub> rubs(static_cast<std::size_t>(walls.walls));
-    for (const auto& [i, force] : pushes(pushing, s.at(k, Column::contact_force))) {
+    for (const auto& [i, force] : pushes(depths, s.at(k, Column::contact_force))) {
       const Vec3& n = kOutward[i];
-      rubs[i] = {force.dot(n), force - force.dot(n) * n, moved - moved.dot(n) * n};
+      rubs[static_cast<std::size_t>(i)] = {force.dot(n), force - force.dot(n) * n,
+                                           moved - moved.dot(n) * n};
     }
     all.push_back(std::move(rubs));
   }

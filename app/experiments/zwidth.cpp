@@ -217,7 +217,8 @@ Outcome zwidth(Laboratory& lab) {
       "Taps at {} m/s, {} N, held, in hands of {} and {} N/m and {} N s/m; tick 1 ms, exact "
       "encoders, no mass unless varied. Well: at most {} mJ given to the human, tip above {} Hz "
       "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
-      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them.",
+      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them, one at the "
+      "bottom renders none.",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       1e3 * WellRendered::kPort, TapBench::kFast, 1e3 * WellRendered::kChatter,
       100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy, kSoftest, kStiffest);
