@@ -1,4 +1,4 @@
-// The paper's experiments: what each needs, finds and promises.
+// The experiments: what each needs, finds and promises.
 #pragma once
 
 #include <atomic>
@@ -96,7 +96,7 @@ struct Experiment {
   Outcome (*run)(Laboratory&);
 };
 
-// In the order of the paper.
+// The paper's in its order, then those of the predictive coupling.
 std::span<const Experiment> experiments();
 const Experiment* find_experiment(const std::string& name);
 

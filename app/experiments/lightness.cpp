@@ -101,13 +101,14 @@ FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& titl
   panel.x_range = {0.45, 11};
   std::size_t ink = 0;
   for (const Law& law : laws) {
-    const char* color = kFamilyInk[ink++];
+    const bool standard = law.kind == CouplingKind::standard;
+    const char* color = standard ? kNeutralInk : kFamilyInk[ink++];
     Series line{law.label(), color, Series::Style::line, {}}, dots = line, wanted = line;
     for (const FeltMotion& m : law.felt) line.points.push_back({m.f, m.*value});
     dots = {"", color, Series::Style::points, line.points};
     panel.series.push_back(line);
     panel.series.push_back(dots);
-    if (value != &FeltMotion::inertia) continue;
+    if (value != &FeltMotion::inertia || standard) continue;
     wanted = {"", color, Series::Style::dashed, {{0.45, law.eta}, {5.3, law.eta}}};
     panel.series.push_back(wanted);
   }
@@ -118,13 +119,13 @@ FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& titl
 FigurePanel against_eta(const std::vector<Law>& laws, double f, const std::string& title,
                         const std::string& y, double FeltMotion::*value) {
   FigurePanel panel{.title = title, .x_label = "eta [-]", .y_label = y, .log_x = true};
-  panel.x_range = {0.18, 5.6};
+  panel.x_range = {0.1, 10};
   const auto add = [&](CouplingKind kind, const char* ink) {
     Series line{name(kind), ink, Series::Style::line, {}};
     for (const Law& law : of(laws, kind)) line.points.push_back({law.eta, law.at(f).*value});
     if (line.points.size() == 1) {
       line.style = Series::Style::dashed;
-      line.points = {{0.18, line.points[0].y}, {5.6, line.points[0].y}};
+      line.points = {{0.1, line.points[0].y}, {10, line.points[0].y}};
       panel.series.push_back(line);
       return;
     }
@@ -162,28 +163,38 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
 }
 
 std::vector<FigurePanel> panels(const std::vector<Law>& laws) {
+  constexpr const char *kInertia = "inertia, of the arm's own [-]",
+                       *kDamping = "damping [N m s/rad]";
   const std::vector<Law> ours = of(laws, CouplingKind::predictive);
-  FigurePanel inertia = over_frequency(ours, "Predictive: inertia felt (dashed: eta)",
-                                       "inertia, of the arm's own [-]", &FeltMotion::inertia);
+  std::vector<Law> papers = of(laws, CouplingKind::proposed);
+  papers.push_back(laws.front());
+  FigurePanel inertia = over_frequency(ours, "Predictive: inertia felt (dashed: eta)", kInertia,
+                                       &FeltMotion::inertia);
   inertia.log_y = true;
+  inertia.y_range = {0.1, 10};
   FigurePanel damping =
-      over_frequency(ours, "Predictive: damping felt", "damping [N m s/rad]", &FeltMotion::damping);
-  damping.y_range = {0, 0.04};
-  FigurePanel scaled = against_eta(laws, 2, "Inertia felt at 2 Hz", "inertia, of the arm's own [-]",
-                                   &FeltMotion::inertia);
+      over_frequency(ours, "Predictive: damping felt", kDamping, &FeltMotion::damping);
+  damping.y_range = {0, 0.06};
+  FigurePanel before = over_frequency(papers, "Proposed and standard: inertia felt (dashed: eta)",
+                                      kInertia, &FeltMotion::inertia);
+  before.y_range = {-3, 6};
+  FigurePanel drag =
+      over_frequency(papers, "Proposed and standard: damping felt", kDamping, &FeltMotion::damping);
+  drag.y_range = {0, 0.06};
+  FigurePanel scaled = against_eta(laws, 2, "Inertia felt at 2 Hz", kInertia, &FeltMotion::inertia);
   scaled.y_range = {-3, 6};
   scaled.series.insert(scaled.series.begin(), {"eta", kHandInk, Series::Style::dashed, {}});
   FigurePanel damped =
-      against_eta(laws, 0.5, "Damping felt at 0.5 Hz", "damping [N m s/rad]", &FeltMotion::damping);
+      against_eta(laws, 0.5, "Damping felt at 0.5 Hz", kDamping, &FeltMotion::damping);
   damped.y_range = {0, 0.06};
   Series least{"least of any passive law with that inertia", kHandInk, Series::Style::dashed, {}};
   const double mass = ours.front().at(0.5).mass;
-  for (double eta = 0.18; eta < 5.6; eta *= 1.05) {
+  for (double eta = 0.1; eta < 10; eta *= 1.05) {
     scaled.series.front().points.push_back({eta, eta});
     if (eta < 1) least.points.push_back({eta, least_damping(eta, mass)});
   }
   damped.series.insert(damped.series.begin(), least);
-  return {inertia, damping, scaled, damped, price_panel(laws)};
+  return {inertia, damping, before, drag, scaled, damped, price_panel(laws)};
 }
 
 }  // namespace
@@ -196,7 +207,8 @@ Outcome lightness(Laboratory& lab) {
       "Free motion, the tip shaken at seven frequencies at once, {} mm at 1 Hz and less above, in "
       "a grip of {} N/m and {} N s/m; exact encoders. Inertia and damping: the hand's torque "
       "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
-      "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s.",
+      "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
+      "Last: the arm roams in an undamped grip of 3000 N/m.",
       1e3 * kAmplitude, kGrip, kGripDamping, Parameters{}.band);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(laws);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -68,16 +69,14 @@ void roam(Laboratory& lab, Outcome& outcome) {
   std::vector<Trial> trials;
   for (const Wobble& w : wobbles) trials.push_back(roaming(w));
   const std::vector<TrialResult> results = lab.run(trials);
-  FigurePanel panel{.title = fmt::format("Energy while eta changes between {} and 1, "
-                                         "undamped grip of {} N/m",
-                                         kLowest, kStiffGrip),
+  FigurePanel panel{.title = "Energy while eta changes between 0.1 and 1",
                     .x_label = "time [s]",
                     .y_label = "E_c [mJ]"};
   panel.x_range = {0, kRoaming};
   double worst = 0, lowest = 0;
   for (std::size_t i = 0; i < wobbles.size(); ++i) {
     const Session& s = results[i].session;
-    const char* ink = i == 0 ? kContactInk : kFamilyInk[i == 3 ? 5 : i - 1];
+    const char* ink = i == 0 ? kContactInk : kFamilyInk[std::array{0, 0, 1, 2, 4}[i]];
     panel.series.push_back(over_time(s, wobbles[i].label, ink, Series::Style::line, [&](auto k) {
       return 1e3 * s.at(k, Column::energy_total)[0];
     }));

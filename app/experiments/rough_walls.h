@@ -35,4 +35,7 @@ std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& wall
 // stores, `before` the tick before [J].
 double given_by_friction(const RoughWalls& walls, const Rub& before, const Rub& now);
 
+// How far the tip slipped over the wall in that tick: what it moved besides the spring [m].
+double slipped(const RoughWalls& walls, const Rub& before, const Rub& now);
+
 }  // namespace limpid

@@ -146,11 +146,10 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
                    curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
                    curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque),
                    curve(predicted, "given, predictive", kHandInk, line, Column::motor_torque)};
-  FigurePanel lurking{.title =
-                          "The proxy goes on into the table with the device, but not the "
-                          "predictive one",
-                      .x_label = "time [s]",
-                      .y_label = "tip below the surface [mm]"};
+  FigurePanel lurking{
+      .title = "The proxy goes into the table with the device; the predictive one not",
+      .x_label = "time [s]",
+      .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, proposed", kDeviceInk, line, Column::device_position),
       depth(with, "proxy, proposed", kProxyInk, dashed, Column::proxy_position),

@@ -34,7 +34,7 @@ class TapBench {
  public:
   static constexpr double kSpeed = 0.15;                    // [m/s]
   static constexpr double kGripDamping = 2;                 // [N s/m]
-  static constexpr double kSurface = -0.04, kAbove = 0.01;  // the table's, and the hand's start [m]
+  static constexpr double kSurface = -0.04, kAbove = 0.02;  // the table's, and the hand's start [m]
   static constexpr double kFast = 20;                       // what chatter is above [Hz]
 
   // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m].

@@ -100,8 +100,8 @@ std::vector<FigurePanel> empty_panels() {
                        .y_range = std::pair(0.8 * kSoftest, 1.5 * kStiffest)};
   };
   std::vector<FigurePanel> panels{
-      panel("Against the scaling of the inertia", "eta [-]", 0.18, 4.4),
-      panel("Against the tick, eta = 1", "tick [ms]", 0.22, 2.3),
+      panel("Against the scaling of the inertia", "eta [-]", 0.1, 10),
+      panel("Against the tick, eta = 1", "tick [ms]", 0.1, 10),
       panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
       panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
             1.1)};
@@ -217,7 +217,8 @@ Outcome zwidth(Laboratory& lab) {
       "Taps at {} m/s, {} N, held, in hands of {} and {} N/m and {} N s/m; tick 1 ms, exact "
       "encoders, no mass unless varied. Well: at most {} mJ given to the human, tip above {} Hz "
       "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
-      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them.",
+      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them, one at the "
+      "bottom renders none.",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       1e3 * WellRendered::kPort, TapBench::kFast, 1e3 * WellRendered::kChatter,
       100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy, kSoftest, kStiffest);

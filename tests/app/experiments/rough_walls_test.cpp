@@ -56,5 +56,27 @@ TEST(RoughWalls, AreToldApartByTheirForces) {
   }
 }
 
+// From the tick in which it is touched on, the second wall's force is its own.
+TEST(RoughWalls, ThatAreNotTouchedDoNotPush) {
+  const RoughWalls edge{
+      .walls = 2, .stiffness = 2000, .friction_static = 0.5, .friction_kinetic = 0.5};
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  const auto at = [](double t) {
+    return Vec3(kMeet + Vec3(0, 0.02 * minimum_jerk(t / 0.2) - 0.008, 0.004));
+  };
+  const Trial trial = rubbing(edge, hand_path("beside the edge", p.tick, 0.5, at), p);
+  const test::TempDir temp;
+  Laboratory lab("edge", {.dir = temp / "."});
+  int touched = 0;
+  for (const std::vector<Rub>& rubs : rubs_of(trial, edge, lab.run({trial}).front().session)) {
+    EXPECT_EQ(rubs[0].normal, 0);
+    if (rubs[1].normal == 0) continue;
+    ++touched;
+    EXPECT_LE(rubs[1].friction.norm(), 0.5 * rubs[1].normal + 1e-9);
+  }
+  EXPECT_GT(touched, 300);
+}
+
 }  // namespace
 }  // namespace limpid
