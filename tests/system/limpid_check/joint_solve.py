@@ -62,6 +62,7 @@ class Affine:
 class Law:
     """tau1 = tE + tL and tau2 of the sheet."""
 
+    shared: Affine  # C_LE v_E + u_N - K_N w, of which each side gets a part
     spring: Affine  # tE
     locked: Affine  # tL
     proxy: Affine  # tau2
@@ -80,7 +81,6 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
     f1 = apply(phi_t, s["/hand/torque_estimate"])
     # v_E = w - u, v_L = (1 - phi) w + phi u
     spring = Affine(c_el @ (one - phi) - c, c + c_el @ phi, gf - phi_t, -s0 - f1)
-    # what both share: C_LE v_E + u_N - K_N w
     shared = Affine(c_le - r.k_n, -c_le, 0 * one, r.u_n)
     locked = Affine(
         (one - phi_t) @ shared.w - r.b_w[:, :, None] * one,
@@ -94,7 +94,7 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
         phi_t - gf,
         s0 + apply(phi_t, shared.rest) + f1,
     )
-    return Law(spring, locked, tau2)
+    return Law(shared, spring, locked, tau2)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ so the recursion is repeated with the model at its own last answer until nothing
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,11 @@ _COARSE = 1.5e-4  # encoders coarser than this take the coarse preset [rad]
 _FORGETTING = 0.05  # of the predictors' errors [s]
 _PRESETS = {"fine": (0.2, 1.0, 0.2), "coarse": (0.45, 0.5, 0.1)}
 _ROUNDS = 20
+# Ticks that are brought to agree with their model at a time. Between two encoder steps nothing
+# corrects a predictor, and what it is off by grows: rounds over the whole session need not settle.
+_WINDOW = 32
+_SETTLED = 1e-15  # [rad]
+_SAME = 1e-9  # a predictor this near to what was seen was the active one [rad]
 
 
 @dataclass(frozen=True)
@@ -38,12 +44,12 @@ class Prediction:
     x: Array
     v: Array
     f: Array  # external torque [N m]
+    w: Array  # mean velocity over the tick, with the torque as applied
     heavy: Array  # bool (N,): the one with a hand's mass
     m1: Array  # M1 and C1 as the controller believes them, at (x, v)
     c1: Array
     mp: Array  # inertia of the predictor
     d0: Array  # 2/T Mp + C1 + b_d
-    w: Array  # mean velocity over the tick, with the torque as applied
     surprise: Array  # delta_k = y_k - y_{k-1} - T w_{k-1}
 
     def drive(self, tick: float) -> Array:
@@ -101,52 +107,145 @@ def _masses(s: Session, x: Array, m1: Array, mu: Array) -> Array:
     return np.stack([light, light + hand], axis=1)
 
 
-def _recursion(s: Session, g: Gains, mp: Array, d0: Array) -> tuple[Array, ...]:
-    """x, v, f, w and which one, of the active predictor at every row."""
-    t, rows, n = s.tick, len(s), s.dof
-    y, tau = s["/device/measured_position"], s["/device/motor_torque"]
-    half = s.number("device.encoder_step")[:, 0] / 2
-    both = s.number("predictor.hand_mass")[:, 0] > 0
-    keep = float(np.exp(-t / _FORGETTING))
-    inverse = np.linalg.inv(d0)
-    pair = _Pair(
-        *(np.tile(start, (2, 1)) for start in
-          (y[0], s["/device/velocity"][0], s["/hand/torque_estimate"][0])),
-        np.zeros(2),
-    )  # fmt: skip
-    out = np.zeros((4, rows, n))
-    heavy = np.zeros(rows, dtype=bool)
-    for k in range(rows):
-        e = y[k] - pair.x
-        e = e - np.clip(e, -half[k], half[k])
-        pair.correct(e, g.p[k], t, keep, bool(both[k]))
-        pair.f = pair.f + (1 - g.p[k]) ** 3 / t**2 * (mp[k] @ e[..., None])[..., 0]
-        push = 2 / t * (mp[k] @ pair.v[..., None])[..., 0] + pair.f + tau[k]
-        w = (inverse[k] @ push[..., None])[..., 0]
+@dataclass(frozen=True)
+class Seen:
+    """What the rows' torques say of the active predictor: where it was and what it foretold."""
+
+    x: Array  # (N, n) [rad]
+    w: Array
+    known: Array  # bool (N,)
+
+
+@dataclass(frozen=True)
+class _Input:
+    """What the recursion is fed with, of every row."""
+
+    y: Array
+    tau: Array
+    gains: Gains
+    half: Array  # of an encoder's step (N,) [rad]
+    both: Array  # bool (N,): there is a heavy one
+    tick: float
+    seen: Seen | None = None
+
+    def recur(self, pair: _Pair, rows: range, mp: Array, d0: Array) -> tuple[Array, ...]:
+        """x, v, f, w and which one, of the active predictor at these rows; `pair` goes on."""
+        p, t, keep = self.gains.p, self.tick, float(np.exp(-self.tick / _FORGETTING))
+        inverse = np.linalg.inv(d0)
+        out = np.zeros((4, len(rows), self.y.shape[1]))
+        heavy = np.zeros(len(rows), dtype=bool)
+        for i, k in enumerate(rows):
+            e = self.y[k] - pair.x
+            e = e - np.clip(e, -self.half[k], self.half[k])
+            stayed = pair.active
+            pair.correct(e, p[k], t, keep, bool(self.both[k]))
+            pair.f = pair.f + (1 - p[k]) ** 3 / t**2 * (mp[i] @ e[..., None])[..., 0]
+            push = 2 / t * (mp[i] @ pair.v[..., None])[..., 0] + pair.f + self.tau[k]
+            w = (inverse[i] @ push[..., None])[..., 0]
+            if self.seen is not None and self.seen.known[k]:
+                if self.both[k]:
+                    pair.active = self._which(k, pair.x, w, stayed)
+                a = pair.active
+                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a]
+                self._believe(k, pair, w, mp[i, a], d0[i, a])
+            else:
+                a = pair.active
+                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a]
+            heavy[i] = a == 1
+            pair.x = pair.x + t * w
+            pair.v = 2 * w - pair.v
+        return *out, heavy
+
+    def _which(self, k: int, x: Array, w: Array, stayed: int) -> int:
+        """The one that the row is of: that of the row before, if it can be."""
+        off = np.max(np.abs(x - self.seen.x[k]) + self.tick * np.abs(w - self.seen.w[k]), axis=1)
+        return stayed if off[stayed] < _SAME else int(np.argmin(off))
+
+    def _believe(self, k: int, pair: _Pair, w: Array, mp: Array, d0: Array) -> None:
+        """Takes over what was seen. x and w are; of v and f only the sum is, 2/T Mp v + f, and of
+        the sum's error each gets half: then both are right after two rows."""
         a = pair.active
-        heavy[k] = a == 1
-        out[:, k] = pair.x[a], pair.v[a], pair.f[a], w[a]
-        pair.x = pair.x + t * w
-        pair.v = 2 * w - pair.v
-    return *out, heavy
+        half = d0 @ (self.seen.w[k] - w[a]) / 2
+        pair.f[a] += half
+        pair.v[a] += self.tick / 2 * np.linalg.solve(mp, half)
+        pair.x[a], w[a] = self.seen.x[k], self.seen.w[k]
+
+
+def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
+    """And the pair at the first row. A simulated device starts where it is, not where its encoders
+    say."""
+    given = _Input(s["/device/measured_position"], s["/device/motor_torque"], gains(s),
+                   s.number("device.encoder_step")[:, 0] / 2,
+                   s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen)  # fmt: skip
+    start = (s[f"/{name}"][0] for name in ("device/position", "device/velocity",
+                                           "hand/torque_estimate"))  # fmt: skip
+    return given, _Pair(*(np.tile(value, (2, 1)) for value in start), np.zeros(2))
+
+
+def _dynamics(s: Session, x: Array, v: Array) -> tuple[Array, Array, Array, Array]:
+    """M1, C1, and Mp and D0 of both predictors."""
+    m1, c1 = _model(s, x, v)
+    mp = _masses(s, x, m1, gains(s).mu)
+    return m1, c1, mp, 2 / s.tick * mp + (c1 + np.eye(s.dof) * s.damping[:, :, None])[:, None]
+
+
+def _apart(s: Session, a: tuple[Array, Array], b: tuple[Array, Array]) -> float:
+    return max(np.max(np.abs(a[0] - b[0])), s.tick * np.max(np.abs(a[1] - b[1])))
+
+
+_Fields = tuple[Array, ...]  # x, v, f, w, heavy, M1, C1, Mp, D0
+
+
+def _window(s: Session, given: _Input, pair: _Pair, rows: range) -> tuple[_Pair, _Fields]:
+    """The pair after these rows, and what they have."""
+    part = s.rows(slice(rows.start, rows.stop))
+    x, v = given.y[rows.start : rows.stop], np.tile(pair.v[pair.active], (len(rows), 1))
+    for _ in range(_ROUNDS):
+        m1, c1, mp, d0 = _dynamics(part, x, v)
+        after, before = copy.copy(pair), (x, v)
+        x, v, f, w, heavy = given.recur(after, rows, mp, d0)
+        if _apart(s, (x, v), before) < _SETTLED:
+            break
+    each, which = np.arange(len(rows)), heavy.astype(int)
+    return after, (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
+
+
+def _prediction(s: Session, fields: _Fields, w: Array) -> Prediction:
+    surprise = np.diff(s["/device/measured_position"], axis=0, prepend=0)
+    surprise[0] = 0
+    surprise[1:] -= s.tick * w[:-1]
+    return Prediction(*fields, surprise)
 
 
 def predict(s: Session) -> Prediction:
     """Both predictors over the whole session, which the law is in force in from the first row."""
-    g, t, y = gains(s), s.tick, s["/device/measured_position"]
-    x, v = y, np.diff(y, axis=0, prepend=y[:1]) / t
-    own = np.eye(s.dof) * s.damping[:, :, None]
-    for _ in range(_ROUNDS):
-        m1, c1 = _model(s, x, v)
-        mp = _masses(s, x, m1, g.mu)
-        d0 = 2 / t * mp + (c1 + own)[:, None]
-        before = x, v
-        x, v, f, w, heavy = _recursion(s, g, mp, d0)
-        moved = max(np.max(np.abs(x - before[0])), t * np.max(np.abs(v - before[1])))
-        if moved < 1e-15:
-            break
-    rows = np.arange(len(s))
-    which = heavy.astype(int)
-    surprise = np.diff(y, axis=0, prepend=y[:1])
-    surprise[1:] -= t * w[:-1]
-    return Prediction(x, v, f, heavy, m1, c1, mp[rows, which], d0[rows, which], w, surprise)
+    given, pair = _input(s)
+    parts = []
+    for begin in range(0, len(s), _WINDOW):
+        pair, part = _window(s, given, pair, range(begin, min(begin + _WINDOW, len(s))))
+        parts.append(part)
+    fields = tuple(np.concatenate(field) for field in zip(*parts))
+    return _prediction(s, fields, fields[3])
+
+
+def unseen(s: Session) -> Prediction:
+    """Something to begin with: the model where the readings are, at rest."""
+    y = s["/device/measured_position"]
+    return _from(s, y, 0 * y, Seen(y, y, np.zeros(len(s), dtype=bool)))
+
+
+def predict_seen(s: Session, model: Prediction, seen: Seen) -> tuple[Prediction, float]:
+    """Every row from what was seen until the row before, with the model where `model` is; and how
+    far from there it leads."""
+    p = _from(s, model.x, model.v, seen)
+    return p, _apart(s, (p.x, p.v), (model.x, model.v))
+
+
+def _from(s: Session, model_x: Array, model_v: Array, seen: Seen) -> Prediction:
+    given, pair = _input(s, seen)
+    m1, c1, mp, d0 = _dynamics(s, model_x, model_v)
+    x, v, f, w, heavy = given.recur(pair, range(len(s)), mp, d0)
+    each, which = np.arange(len(s)), heavy.astype(int)
+    fields = (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
+    used = np.where(seen.known[:, None], seen.w, w)
+    return _prediction(s, fields, used)

@@ -133,6 +133,8 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
     rows, n, t = len(s), s.dof, s.tick
     y, eta = s["/device/measured_position"], s["/coupling/eta"]
     moved = np.diff(y, axis=0, prepend=y[:1])
+    if rows > 1:  # a simulated device starts where it is, not where its encoders say
+        moved[1] = y[1] - s["/device/position"][0]
     edge = 2 * np.pi * s.number("coupling.band")[:, 0]
     step = s.number("device.encoder_step")[:, 0]
     held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.torque_limit)
@@ -158,10 +160,11 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
             account = energy0 + stored
         account = min(account, stored + _CAP)
         h = account - stored
-        held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
-        gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
-        wanted = np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1)
-        gb = _follow(gb, float(wanted), t / _DAMPING_RECOVERY)
+        if k > 0:
+            held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
+            gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
+            wanted = float(np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1))
+            gb = _follow(gb, wanted, t / _DAMPING_RECOVERY)
         out[:, k] = h, stored, gf, gb
         less = 0.0 if touching[k] else gb * cancelled[k]
         b_w[k] = b_v[k] - less * (s.damping[k] + b_v[k])

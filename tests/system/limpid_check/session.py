@@ -101,6 +101,12 @@ class Session:
     def __len__(self) -> int:
         return len(self.data["/time"])
 
+    def rows(self, part: slice) -> Session:
+        """A session of these rows alone."""
+        data = {path: values[part] for path, values in self.data.items()}
+        settings = {key: values[part] for key, values in self.settings.items()}
+        return Session(data, settings, self.attributes, self.chain)
+
     @property
     def tick(self) -> float:
         """T [s]."""
