@@ -7,7 +7,8 @@ proxy's recorded states. What comes out of a tick is then compared with what the
 With encoder steps the predictors are now and then left alone between two steps and then corrected
 hard; what they are off by may grow from tick to tick until round-off decides what they do. So there
 each tick is recomputed from what the torques of the row before say of the active predictor. Where
-they say nothing, at the motors' limits, and where the other one takes over, rows go unchecked.
+they say nothing, and where the other one takes over, rows go unchecked; where motors are at their
+limit, torques are not recomputed at all.
 """
 
 from __future__ import annotations
@@ -72,9 +73,20 @@ def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array]:
         p, moved = predict_seen(s, p, seen)
         if moved < 1e-14:
             break
+    return p, _sure(p, seen.known)
+
+
+def _sure(p: Prediction, known: Array) -> Array:
+    """Rows that say something and whose predictor is known: it is the one of the row before, and
+    has been seen twice where it should be since it last was not known."""
     changed = np.diff(p.heavy.astype(int), prepend=0) != 0
-    unknown = np.concatenate([[False, False], ~seen.known])[: len(s) + 1]
-    return p, ~(changed | np.roll(changed, 1) | unknown[:-1] | unknown[1:])
+    sure, seen = np.zeros(len(known), dtype=bool), 2
+    for k in range(len(known)):
+        seen = 0 if changed[k] or not known[k] else seen
+        sure[k] = seen >= 2
+        if known[k] and (seen >= 2 or p.confirmed[k]):
+            seen += 1
+    return sure
 
 
 def replay(s: Session) -> Replayed:
@@ -161,6 +173,10 @@ def check_predictive(s: Session) -> list[Check]:
         *_reserve_checks(s, done.reserve, done.sure),
         Check("unchecked rows", unsure, 1, "of all: what the predictor was is not known"),
     ]
+    coarse = np.any(s.number("device.encoder_step") > 0)
+    if coarse and np.any(done.given.marks):
+        why = "encoder steps and motors at their limit: the predictor is not known"
+        return checks + [not_applicable("torques, wall force", why)]
     # Which motors are at their limit comes of the forces meanwhile, which are not recorded.
     if not np.any(done.given.marks):
         checks += _torque_checks(s, done.given, done.sure, "predictive")

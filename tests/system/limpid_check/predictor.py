@@ -51,6 +51,7 @@ class Prediction:
     mp: Array  # inertia of the predictor
     d0: Array  # 2/T Mp + C1 + b_d
     surprise: Array  # delta_k = y_k - y_{k-1} - T w_{k-1}
+    confirmed: Array  # bool (N,): it is where it was seen
 
     def drive(self, tick: float) -> Array:
         """What moves the device besides the motors."""
@@ -126,7 +127,8 @@ class _Input:
     half: Array  # of an encoder's step (N,) [rad]
     both: Array  # bool (N,): there is a heavy one
     tick: float
-    seen: Seen | None = None
+    seen: Seen | None
+    confirmed: Array  # filled in
 
     def recur(self, pair: _Pair, rows: range, mp: Array, d0: Array) -> tuple[Array, ...]:
         """x, v, f, w and which one, of the active predictor at these rows; `pair` goes on."""
@@ -143,9 +145,11 @@ class _Input:
             push = 2 / t * (mp[i] @ pair.v[..., None])[..., 0] + pair.f + self.tau[k]
             w = (inverse[i] @ push[..., None])[..., 0]
             if self.seen is not None and self.seen.known[k]:
+                off = self._off(k, pair.x, w)
                 if self.both[k]:
-                    pair.active = self._which(k, pair.x, w, stayed)
+                    pair.active = stayed if off[stayed] < _SAME else int(np.argmin(off))
                 a = pair.active
+                self.confirmed[k] = off[a] < _SAME
                 out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a]
                 self._believe(k, pair, w, mp[i, a], d0[i, a])
             else:
@@ -156,10 +160,9 @@ class _Input:
             pair.v = 2 * w - pair.v
         return *out, heavy
 
-    def _which(self, k: int, x: Array, w: Array, stayed: int) -> int:
-        """The one that the row is of: that of the row before, if it can be."""
-        off = np.max(np.abs(x - self.seen.x[k]) + self.tick * np.abs(w - self.seen.w[k]), axis=1)
-        return stayed if off[stayed] < _SAME else int(np.argmin(off))
+    def _off(self, k: int, x: Array, w: Array) -> Array:
+        """How far each is from what was seen (2,) [rad]."""
+        return np.max(np.abs(x - self.seen.x[k]) + self.tick * np.abs(w - self.seen.w[k]), axis=1)
 
     def _believe(self, k: int, pair: _Pair, w: Array, mp: Array, d0: Array) -> None:
         """Takes over what was seen. x and w are; of v and f only the sum is, 2/T Mp v + f, and of
@@ -176,7 +179,8 @@ def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
     say."""
     given = _Input(s["/device/measured_position"], s["/device/motor_torque"], gains(s),
                    s.number("device.encoder_step")[:, 0] / 2,
-                   s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen)  # fmt: skip
+                   s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen,
+                   np.zeros(len(s), dtype=bool))  # fmt: skip
     start = (s[f"/{name}"][0] for name in ("device/position", "device/velocity",
                                            "hand/torque_estimate"))  # fmt: skip
     return given, _Pair(*(np.tile(value, (2, 1)) for value in start), np.zeros(2))
@@ -210,11 +214,11 @@ def _window(s: Session, given: _Input, pair: _Pair, rows: range) -> tuple[_Pair,
     return after, (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
 
 
-def _prediction(s: Session, fields: _Fields, w: Array) -> Prediction:
+def _prediction(s: Session, fields: _Fields, w: Array, confirmed: Array) -> Prediction:
     surprise = np.diff(s["/device/measured_position"], axis=0, prepend=0)
     surprise[0] = 0
     surprise[1:] -= s.tick * w[:-1]
-    return Prediction(*fields, surprise)
+    return Prediction(*fields, surprise, confirmed)
 
 
 def predict(s: Session) -> Prediction:
@@ -225,7 +229,7 @@ def predict(s: Session) -> Prediction:
         pair, part = _window(s, given, pair, range(begin, min(begin + _WINDOW, len(s))))
         parts.append(part)
     fields = tuple(np.concatenate(field) for field in zip(*parts))
-    return _prediction(s, fields, fields[3])
+    return _prediction(s, fields, fields[3], given.confirmed)
 
 
 def unseen(s: Session) -> Prediction:
@@ -248,4 +252,4 @@ def _from(s: Session, model_x: Array, model_v: Array, seen: Seen) -> Prediction:
     each, which = np.arange(len(s)), heavy.astype(int)
     fields = (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
     used = np.where(seen.known[:, None], seen.w, w)
-    return _prediction(s, fields, used)
+    return _prediction(s, fields, used, given.confirmed)
