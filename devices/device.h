@@ -41,8 +41,8 @@ struct DeviceReading {
 
 // What only a simulated device knows of itself.
 struct DeviceTruth {
-  std::span<const double> x, v;         // where it is, not rounded by encoders [rad, rad/s]
-  std::span<const double> hand_torque;  // f1, the mean over the last tick [N m]
+  std::span<const double> x, v;          // where it is, not rounded by encoders [rad, rad/s]
+  std::span<const double> hand_torque;   // f1, the mean over the last tick [N m]
   std::span<const double> motor_torque;  // that acted over it [N m]
 };
 

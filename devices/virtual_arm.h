@@ -10,10 +10,10 @@
 
 namespace limpid {
 
-// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass at
-// the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor torque
-// held: linearly implicit midpoint rule, second order and without numerical damping, stable for
-// every grip.
+// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
+// at the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor
+// torque held: linearly implicit midpoint rule, second order and without numerical damping, stable
+// for every grip.
 template <int N>
 class VirtualArm {
  public:

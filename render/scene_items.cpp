@@ -103,9 +103,10 @@ Item slab(const Plane& plane, double reach) {
   return {make_box({edge, edge, thickness}, 0.25 * thickness, kObject), pose, -1};
 }
 
-void add_scene(const Scene& scene, double reach, SceneItems& items) {
+void add_scene(const Scene& scene, std::span<const VisualPicture> seen, double reach,
+               SceneItems& items) {
   std::vector<Bounds> visuals;
-  for (const SceneVisual& visual : scene.visuals) {
+  for (const VisualPicture& visual : seen) {
     Item item{load_gltf(visual.file), visual.pose, -1};
     transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
     visuals.push_back(moved(item.model.bounds(), item.pose));
@@ -222,12 +223,13 @@ Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>&
   return around;
 }
 
-void collect_scene_items(const ArmDescription& arm, const Scene& scene, SceneItems& items) {
+void collect_scene_items(const ArmDescription& arm, const Scene& scene,
+                         std::span<const VisualPicture> visuals, SceneItems& items) {
   items.world.clear();
   items.walls.clear();
   items.probes.clear();
   items.level_planes.clear();
-  add_scene(scene, items.reach, items);
+  add_scene(scene, visuals, items.reach, items);
   add_joint_walls(arm, scene, items);
   for (const Probe& probe : scene.probes)
     items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
@@ -236,12 +238,13 @@ void collect_scene_items(const ArmDescription& arm, const Scene& scene, SceneIte
     if (plane.normal.normalized().z() > 0.999) items.level_planes.push_back(plane.point.z());
 }
 
-SceneItems collect_items(const ArmDescription& arm, const Scene& scene) {
+SceneItems collect_items(const ArmDescription& arm, const Scene& scene,
+                         std::span<const VisualPicture> visuals) {
   SceneItems items;
   items.reach = reach_of(arm);
   add_arm(arm, items);
   items.arm_bounds = bounds_of_arm(arm, items);
-  collect_scene_items(arm, scene, items);
+  collect_scene_items(arm, scene, visuals, items);
   return items;
 }
 

@@ -1,12 +1,14 @@
 // What there is to draw for an arm and a scene, as meshes fixed to links.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/dynamics/arm_description.h"
 #include "core/touch/scene.h"
 #include "render/camera.h"
 #include "render/model/model.h"
+#include "render/visual_picture.h"
 
 namespace limpid {
 
@@ -28,9 +30,11 @@ struct SceneItems {
 };
 
 // Throws std::runtime_error naming the file that cannot be loaded.
-SceneItems collect_items(const ArmDescription& arm, const Scene& scene);
+SceneItems collect_items(const ArmDescription& arm, const Scene& scene,
+                         std::span<const VisualPicture> visuals);
 // The same where only the scene is another one; `items` came from this arm.
-void collect_scene_items(const ArmDescription& arm, const Scene& scene, SceneItems& items);
+void collect_scene_items(const ArmDescription& arm, const Scene& scene,
+                         std::span<const VisualPicture> visuals, SceneItems& items);
 
 // What follows from all that is drawn together.
 struct Surroundings {

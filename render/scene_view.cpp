@@ -67,9 +67,10 @@ bool drawable(const MeshPicture& mesh) {
 }  // namespace
 
 struct SceneView::Impl {
-  Impl(const std::filesystem::path& shaders, const ArmDescription& description, const Scene& scene)
+  Impl(const std::filesystem::path& shaders, const ArmDescription& description, const Scene& scene,
+       std::span<const VisualPicture> visuals)
       : arm(description),
-        items(collect_items(arm, scene)),
+        items(collect_items(arm, scene, visuals)),
         surroundings(surroundings_of(items, {})),
         painter(shaders, items, surroundings),
         target(shaders) {}
@@ -96,15 +97,15 @@ struct SceneView::Impl {
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,
-                     const Scene& scene)
-    : impl_(std::make_unique<Impl>(shaders, arm, scene)) {}
+                     const Scene& scene, std::span<const VisualPicture> visuals)
+    : impl_(std::make_unique<Impl>(shaders, arm, scene, visuals)) {}
 SceneView::~SceneView() = default;
 SceneView::SceneView(SceneView&&) noexcept = default;
 SceneView& SceneView::operator=(SceneView&&) noexcept = default;
 
-void SceneView::set_scene(const Scene& scene) {
+void SceneView::set_scene(const Scene& scene, std::span<const VisualPicture> visuals) {
   SceneItems items = impl_->items;
-  collect_scene_items(impl_->arm, scene, items);
+  collect_scene_items(impl_->arm, scene, visuals, items);
   impl_->painter.set_scene_items(items);
   impl_->items = std::move(items);
   impl_->use_surroundings();

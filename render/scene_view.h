@@ -2,8 +2,8 @@
 //
 // Needs a current OpenGL 3.3 core context from construction to destruction, always the same one.
 //
-//   SceneView view(shaders, arm, scene);
-//   view.set_scene(other_scene);                    // the arm and the shaders stay
+//   SceneView view(shaders, arm, scene, visuals);
+//   view.set_scene(other_scene, its_visuals);       // the arm and the shaders stay
 //   auto bunny = std::make_shared<const Model>(load_gltf("bunny.glb"));   // on any thread
 //   view.set_meshes(std::vector<MeshPicture>{{.model = bunny, .pose = pose, .scale = 0.1}});
 //   view.draw(state, camera, 0, 0, width, height);
@@ -19,6 +19,7 @@
 #include "render/model/model.h"
 #include "render/quality.h"
 #include "render/view_state.h"
+#include "render/visual_picture.h"
 
 namespace limpid {
 
@@ -32,17 +33,18 @@ struct MeshPicture {
 
 class SceneView {
  public:
-  // Loads the shaders, every visual of the arm and of the scene. An arm without visuals is drawn
-  // as capsules from joint to joint. Throws std::runtime_error naming the file (and line of a
+  // Loads the shaders, every visual of the arm and these of the scene. An arm without visuals is
+  // drawn as capsules from joint to joint. Throws std::runtime_error naming the file (and line of a
   // shader) that is missing or wrong. Chooses the quality that suits GL_RENDERER.
-  SceneView(const std::filesystem::path& shaders, const ArmDescription& arm, const Scene& scene);
+  SceneView(const std::filesystem::path& shaders, const ArmDescription& arm, const Scene& scene,
+            std::span<const VisualPicture> visuals);
   ~SceneView();
   SceneView(SceneView&&) noexcept;
   SceneView& operator=(SceneView&&) noexcept;
 
   // Another scene around the same arm: what can be touched, seen and stopped at. The meshes of
   // set_meshes stay. Throws as the constructor does, and leaves everything as it was then.
-  void set_scene(const Scene& scene);
+  void set_scene(const Scene& scene, std::span<const VisualPicture> visuals);
 
   // Replaces the meshes drawn besides the scene's own items. A model is uploaded once for as long
   // as it stays in the list, however often it is in it; a null model is left out. Cheap when only

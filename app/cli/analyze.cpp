@@ -38,8 +38,8 @@ void print(const Analysis& a, const Parameters& p) {
 int analyze_command(const AnalyzeOptions& options) {
   const Parameters p = make_parameters(options.input);
   ArmDescription arm;
-  Scene scene;
-  read_world(options.input, arm, scene);
+  SceneDocument document;
+  read_world(options.input, arm, document);
   const std::optional<double> w_b =
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =

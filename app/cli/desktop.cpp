@@ -40,8 +40,8 @@ int open_window(const WindowOptions& options) {
   const InputOptions& input = options.input;
   // What is wrong with the input is said before a window opens.
   ArmDescription arm;
-  Scene scene;
-  read_world(input, arm, scene);
+  SceneDocument document;
+  read_world(input, arm, document);
   desktop.device = input.device;
   desktop.scene = input.scene;
   const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||

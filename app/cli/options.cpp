@@ -100,8 +100,8 @@ RunPlan plan_from_session(const InputOptions& options) {
   if (!options.device.empty()) {
     plan.arm = read_urdf(options.device);
     if (options.scene.empty()) {  // its joints and links may have other names here
-      plan.scene = parse_scene(session.info.scene, options.hand + " (scene)",
-                               data_dir() / "assets/scenes", plan.arm, session.info.models);
+      plan.document = parse_scene(session.info.scene, options.hand + " (scene)",
+                                  data_dir() / "assets/scenes", plan.arm, session.info.models);
     }
     if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
     if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
@@ -110,8 +110,8 @@ RunPlan plan_from_session(const InputOptions& options) {
                       options.device, plan.arm.dof(), options.hand, session.info.dof));
     }
   }
-  if (!options.scene.empty()) plan.scene = read_scene(options.scene, plan.arm);
-  if (!options.device.empty() || !options.scene.empty()) plan.models = build_meshes(plan.scene);
+  if (!options.scene.empty()) plan.document = read_scene(options.scene, plan.arm);
+  if (!options.device.empty() || !options.scene.empty()) plan.models = build_meshes(plan.document);
   return plan;
 }
 
@@ -181,10 +181,10 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
   return base;
 }
 
-MeshModels read_world(const InputOptions& options, ArmDescription& arm, Scene& scene) {
+MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {
   arm = read_urdf(options.device.empty() ? default_device().string() : options.device);
-  scene = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
-  return build_meshes(scene);
+  document = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
+  return build_meshes(document);
 }
 
 RunPlan make_plan(const InputOptions& options) {
@@ -192,7 +192,7 @@ RunPlan make_plan(const InputOptions& options) {
   if (is_session(options.hand)) {
     plan = plan_from_session(options);
   } else {
-    plan.models = read_world(options, plan.arm, plan.scene);
+    plan.models = read_world(options, plan.arm, plan.document);
     plan.parameters = make_parameters(options);
     plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
   }

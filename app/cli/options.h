@@ -46,7 +46,7 @@ RunPlan make_plan(const InputOptions& options);
 // Parameters alone, over `base`.
 Parameters make_parameters(const InputOptions& options, Parameters base = {});
 // Device and scene alone.
-MeshModels read_world(const InputOptions& options, ArmDescription& arm, Scene& scene);
+MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();

@@ -12,9 +12,10 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
                   std::span<const double> row) {
   constexpr int kWidth = 1280, kHeight = 800;
   const OffscreenContext context(kWidth, kHeight);
-  SceneView picture(data_dir() / "shaders", plan.arm, plan.scene);
+  SceneView picture(data_dir() / "shaders", plan.arm, plan.document.scene,
+                    visual_pictures(plan.document));
   picture.set_quality(Quality::level(0));  // there is time
-  picture.set_meshes(mesh_pictures(plan.scene, plan.models));
+  picture.set_meshes(mesh_pictures(plan.document.scene, plan.models));
   const RowLayout layout(plan.arm.dof());
   const RowView rows(plan.arm);
   ViewState view = rows.view(layout, row);

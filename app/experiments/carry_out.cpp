@@ -8,6 +8,21 @@
 #include "app/experiments/experiment.h"
 
 namespace limpid {
+
+// Each in its own file, NAME.cpp.
+Outcome coordination(Laboratory& lab);
+Outcome inertia(Laboratory& lab);
+Outcome passivity(Laboratory& lab);
+Outcome spectrum(Laboratory& lab);
+Outcome saturation(Laboratory& lab);
+Outcome observer(Laboratory& lab);
+Outcome transparency(Laboratory& lab);
+Outcome eta_min_map(Laboratory& lab);
+Outcome lightness(Laboratory& lab);
+Outcome zwidth(Laboratory& lab);
+Outcome switching(Laboratory& lab);
+Outcome friction(Laboratory& lab);
+
 namespace {
 
 constexpr std::array kExperiments{

@@ -59,7 +59,7 @@ HandPath hand_path(const std::string& source, double tick, double seconds,
 RunPlan plan_in(const std::string& scene_toml, HandPath hand, const Parameters& parameters) {
   RunPlan plan;
   plan.arm = read_urdf(default_device());
-  plan.scene = parse_scene(scene_toml, "scene", {}, plan.arm);
+  plan.document = parse_scene(scene_toml, "scene", {}, plan.arm);
   plan.hand = std::move(hand);
   plan.parameters = parameters;
   plan.rows = plan.hand.time.size();

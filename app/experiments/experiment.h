@@ -107,17 +107,4 @@ Outcome carry_out(const Experiment& experiment, const Laboratory::Options& optio
 // Writes DIR/report.html over every verdict found in DIR.
 void write_report(const std::filesystem::path& dir);
 
-Outcome coordination(Laboratory& lab);
-Outcome inertia(Laboratory& lab);
-Outcome passivity(Laboratory& lab);
-Outcome spectrum(Laboratory& lab);
-Outcome saturation(Laboratory& lab);
-Outcome observer(Laboratory& lab);
-Outcome transparency(Laboratory& lab);
-Outcome eta_min_map(Laboratory& lab);
-Outcome lightness(Laboratory& lab);
-Outcome zwidth(Laboratory& lab);
-Outcome switching(Laboratory& lab);
-Outcome friction(Laboratory& lab);
-
 }  // namespace limpid

@@ -51,16 +51,12 @@ Trial rubbing(const RoughWalls& walls, HandPath hand, const Parameters& p) {
     const Vec3& n = kOutward[i];
     text += fmt::format(
         "\n[[plane]]\nname = \"wall {}\"\npoint = [{:.3f}, {:.3f}, {:.3f}]\n"
-        "normal = [{:.1f}, {:.1f}, {:.1f}]\nstiffness = {:.1f}\n",
-        i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness);
+        "normal = [{:.1f}, {:.1f}, {:.1f}]\nstiffness = {:.1f}\n"
+        "friction_static = {}\nfriction_kinetic = {}\n",
+        i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness,
+        walls.friction_static, walls.friction_kinetic);
   }
-  Trial trial{"", plan_in(text, std::move(hand), p)};
-  for (Plane& plane : trial.plan.scene.planes) {
-    plane.material.friction_static = walls.friction_static;
-    plane.material.friction_kinetic = walls.friction_kinetic;
-  }
-  trial.keep = false;  // the scene's text knows nothing of friction
-  return trial;
+  return {"", plan_in(text, std::move(hand), p)};
 }
 
 std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& walls,

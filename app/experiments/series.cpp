@@ -12,7 +12,7 @@ namespace limpid {
 RunPlan plan_of(const std::string& scene, const std::string& hand, const Parameters& parameters) {
   RunPlan plan;
   plan.arm = read_urdf(default_device());
-  plan.scene = read_scene(data_dir() / "assets/scenes" / (scene + ".toml"), plan.arm);
+  plan.document = read_scene(data_dir() / "assets/scenes" / (scene + ".toml"), plan.arm);
   plan.hand = read_hand(data_dir() / "assets/hands" / (hand + ".csv"));
   plan.hand.source = "assets/hands/" + hand + ".csv";
   plan.parameters = parameters;

@@ -21,8 +21,8 @@ SessionInfo session_info(const RunPlan& plan) {
   info.source = plan.hand.source;
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
-  info.scene = plan.scene.toml;
-  for (const MeshObstacle& mesh : plan.scene.meshes) info.models[mesh.file] = mesh.source;
+  info.scene = plan.document.toml;
+  info.models = files_of(plan.document);
   return info;
 }
 
@@ -53,11 +53,11 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.arm = with_pictures(assets / "devices", [&](const std::filesystem::path& folder) {
     return parse_urdf(session.info.device_urdf, where + " (device_urdf)", folder);
   });
-  plan.scene = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
+  plan.document = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
     return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm,
                        session.info.models);
   });
-  plan.models = build_meshes(plan.scene);
+  plan.models = build_meshes(plan.document);
   plan.hand = hand_of(session, where);
   plan.parameters = chosen;
   plan.parameters.tick = session.info.tick;

@@ -22,37 +22,43 @@ std::shared_ptr<const TriangleMesh> shape_of(const Model& model, const std::stri
   }
 }
 
-std::string where(const MeshObstacle& mesh) { return mesh.path.empty() ? mesh.file : mesh.path; }
+std::string where(const SceneDocument& document, const MeshObstacle& mesh) {
+  const std::string& path = document.models.at(mesh.model).path;
+  return path.empty() ? mesh.model : path;
+}
 
 }  // namespace
 
-MeshModels build_meshes(Scene& scene, const LoadProgress& progress) {
+MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
   MeshModels models;
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    MeshObstacle& mesh = scene.meshes[i];
+  std::vector<MeshObstacle>& meshes = document.scene.meshes;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    MeshObstacle& mesh = meshes[i];
+    ModelFile& file = document.models.at(mesh.model);
+    const std::string name = where(document, mesh);
     std::size_t same = 0;
-    while (same < i && where(scene.meshes[same]) != where(mesh)) ++same;
+    while (same < i && where(document, meshes[same]) != name) ++same;
     if (same < i) {
-      mesh.source = scene.meshes[same].source;
-      mesh.shape = scene.meshes[same].shape;
+      file.bytes = document.models.at(meshes[same].model).bytes;
+      mesh.shape = meshes[same].shape;
       models.push_back(models[same]);
       continue;
     }
-    const std::filesystem::path folder = std::filesystem::path(mesh.path).parent_path();
+    const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
     try {
       models.push_back(
-          std::make_shared<const Model>(parse_gltf(*mesh.source, where(mesh), folder, progress)));
+          std::make_shared<const Model>(parse_gltf(*file.bytes, name, folder, progress)));
       // What it refers to is not there any more when a recording is opened; so recordings get one
       // file.
-      if (auto whole = pack_gltf(*mesh.source, where(mesh), folder); !whole.empty()) {
-        mesh.source = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
+      if (auto whole = pack_gltf(*file.bytes, name, folder); !whole.empty()) {
+        file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }
     } catch (const LoadCancelled&) {
       throw;
     } catch (const std::exception& e) {
       throw FileError(e.what());
     }
-    if (!mesh.shape) mesh.shape = shape_of(*models.back(), where(mesh), progress.cancel);
+    if (!mesh.shape) mesh.shape = shape_of(*models.back(), name, progress.cancel);
   }
   return models;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/touch/scene.h"
+#include "devices/files/scene/scene_document.h"
 #include "render/model/gltf_model.h"
 
 namespace limpid {
@@ -13,10 +13,10 @@ namespace limpid {
 // What a scene's meshes look like, in their order.
 using MeshModels = std::vector<std::shared_ptr<const Model>>;
 
-// Reads the source of every mesh and builds its shape, if it has none yet. Equal files share both.
-// A source that refers to other files then has them in it, so that it can be read anywhere.
+// Reads the model of every mesh and builds its shape, if it has none yet. Equal files share both.
+// A model that refers to other files then has them in it, so that it can be read anywhere.
 // Errors: FileError naming the file; LoadCancelled.
-MeshModels build_meshes(Scene& scene, const LoadProgress& progress = {});
+MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress = {});
 
 // What the loader and the builder mended or left out, a line each for people.
 std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& models);

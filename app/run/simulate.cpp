@@ -28,7 +28,7 @@ class Run {
       : plan_(plan),
         pace_(pace),
         sink_(sink),
-        rig_(plan.arm, plan.scene),
+        rig_(plan.arm, plan.document.scene),
         watch_(rig_.layout()),
         parameters_(plan.parameters),
         row_(static_cast<std::size_t>(rig_.layout().stride())) {

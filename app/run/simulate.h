@@ -19,7 +19,7 @@ namespace limpid {
 // All that decides a run: the same plan gives the same rows, bit for bit.
 struct RunPlan {
   ArmDescription arm;
-  Scene scene;
+  SceneDocument document;
   MeshModels models;  // what the scene's meshes look like
   HandPath hand;
   Parameters parameters;               // at the first row

@@ -1,4 +1,4 @@
-// A scene's meshes as the 3D view wants them.
+// A scene's models as the 3D view wants them.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +17,14 @@ inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshMode
   for (std::size_t i = 0; i < std::min(scene.meshes.size(), models.size()); ++i) {
     const MeshObstacle& mesh = scene.meshes[i];
     pictures.push_back({models[i], mesh.pose, mesh.scale, highlighted == i});
+  }
+  return pictures;
+}
+
+inline std::vector<VisualPicture> visual_pictures(const SceneDocument& document) {
+  std::vector<VisualPicture> pictures;
+  for (const SceneVisual& visual : document.visuals) {
+    pictures.push_back({visual.file, visual.pose, visual.scale});
   }
   return pictures;
 }

@@ -21,11 +21,11 @@ class InertiaNetwork {
   }
 
   // Over the tick of T [s] just ended, in which the device moved by dx [rad].
-  void advance(const Vec<N>& dx, double T, double band) {
+  void advance(const Vec<N>& dx, double T) {
     if (side_ == 0) return;
     const Vec<N> nu = R_.transpose() * dx / T;
     if (side_ < 0) {
-      climb(nu, T, 2 * std::numbers::pi * band);
+      climb(nu, T * w2_);
     } else {
       const double h = T * kGhost;
       const Vec<N> d = (nu - g_ - h / 2 * s_) / (1 + kZeta * h + h * h / 4);
@@ -40,18 +40,17 @@ class InertiaNetwork {
     const int side = eta < 1 ? -1 : eta > 1 ? 1 : 0;
     if (side != side_) start(M_L.rows());  // what was stored is lost, never gained
     side_ = side;
+    w2_ = 2 * std::numbers::pi * band;
     const Eigen::Index n = M_L.rows();
     if (side == 0) {
       force_ = Vec<N>::Zero(n);
       K_ = R_ = Mat<N>::Zero(n, n);
       return;
     }
-    const double w2 = 2 * std::numbers::pi * band;
-    const double scale =
-        side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) : gain * (eta - 1);
+    const double scale = side < 0 ? (1 - eta) / (1 + (kR + kR1) * w2_ * T / 2) : gain * (eta - 1);
     R_ = std::sqrt(scale) * cholesky<N>(M_L);
     if (side < 0) {
-      force_ = -w2 * (R_ * s_);
+      force_ = -w2_ * (R_ * s_);
       K_ = Mat<N>::Zero(n, n);
     } else {
       const double h = T * kGhost;
@@ -78,9 +77,8 @@ class InertiaNetwork {
   static constexpr double kGhost = 2 * std::numbers::pi * 25;  // of the added mass [rad/s]
   static constexpr double kZeta = 0.7;
 
-  // Midpoint rule of q' = w2 (A q + (nu / a1, 0, 0)), q = (s, v, g) of each joint.
-  void climb(const Vec<N>& nu, double T, double w2) {
-    const double step = T * w2;
+  // Midpoint rule of q' = w2 (A q + (nu / a1, 0, 0)), q = (s, v, g) of each joint; step = T w2.
+  void climb(const Vec<N>& nu, double step) {
     if (step != step_) {
       Mat3 A;
       A << 0, -1 / kA1, 0, 1 / kA2, -kR1 / kA2, -1 / kA2, 0, 1 / kA3, -1 / (kA3 * kR);
@@ -98,7 +96,8 @@ class InertiaNetwork {
 
   Vec<N> s_, v_, g_;
   Mat<N> R_;
-  int side_ = 0;  // -1 ladder, +1 added mass, 0 neither
+  int side_ = 0;   // -1 ladder, +1 added mass, 0 neither
+  double w2_ = 0;  // edge of the band, of the tick that R_ is of [rad/s]
   double step_ = 0;
   Mat3 middle_;
   Vec<N> force_;

@@ -21,6 +21,8 @@ struct LawInfo {
   bool scales_inertia;
   // By feeding the observed human force forward: then the conditions of (25) are its own.
   bool observes;
+  // It accounts for the energy that the human is given, and bounds it.
+  bool keeps_ledger;
   std::span<const char* const> sliders;  // keys, in the panel
 };
 

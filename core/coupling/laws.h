@@ -56,9 +56,7 @@ using LawSettings = detail::AllLaws::Settings;
 template <class P>
 constexpr auto law_settings() {
   return std::apply(
-      [](auto... law) {
-        return joined<P>(decltype(law)::Settings::template settings<P>()...);
-      },
+      [](auto... law) { return joined<P>(decltype(law)::Settings::template settings<P>()...); },
       Laws{});
 }
 

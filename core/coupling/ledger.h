@@ -15,10 +15,10 @@ struct LedgerSettings {
 
   template <class P>
   static constexpr std::array<Setting<P>, 1> settings() {
-    return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 1, 1e-3, 0.1, true,
-              true,
-              "Predictive coupling: energy that the human may ever be given beyond what came in. "
-              "When the reserve runs low the contact force and the cancelled damping are cut."}}};
+    return {
+        {{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 1, 1e-3, 0.1, true, true,
+          "Predictive coupling: energy that the human may ever be given beyond what came in. "
+          "When the reserve runs low the contact force and the cancelled damping are cut."}}};
   }
 };
 
@@ -77,7 +77,7 @@ class Ledger {
   const Vec<N>& dy() const { return dy_; }     // [rad]
 
  private:
-  static constexpr double kCap = 0.02;       // [J]
+  static constexpr double kCap = 0.02;      // [J]
   static constexpr double kSurprise = 0.5;  // change of velocity in a tick [rad/s]
 
   // At once down, slowly up.

@@ -148,7 +148,7 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
                                    const Proxy<N>& proxy) {
   if (elapsed_ > 0) {
     ledger_.add(y_, acted_, in.b_d_sure, in.encoder_step, elapsed_);
-    network_.advance(ledger_.dy(), elapsed_, p.band);
+    network_.advance(ledger_.dy(), elapsed_);
   }
   const Vec<N> apart = y_ - proxy.x();
   ledger_.settle(p.energy, spring_energy<N>(c.k_vc, apart, in.limit) + network_.storage() +

@@ -20,10 +20,12 @@ struct PredictiveLaw {
   static constexpr LawInfo kInfo{
       .key = "predictive",
       .label = "Predictive",
-      .meaning = "device and proxy solved together for the coming tick, inertia shaped by passive "
-                 "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
+      .meaning =
+          "device and proxy solved together for the coming tick, inertia shaped by passive "
+          "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
       .scales_inertia = true,
       .observes = false,
+      .keeps_ledger = true,
       .sliders = kSliders,
   };
 
@@ -44,8 +46,8 @@ struct PredictiveLaw {
     template <class P>
     static constexpr auto settings() {
       constexpr std::array<Setting<P>, 2> own{
-          {{"coupling.damping", "damping", &P::felt_damping, "-", kLeastDamping, 1, kLeastDamping, 1,
-            false, true,
+          {{"coupling.damping", "damping", &P::felt_damping, "-", kLeastDamping, 1, kLeastDamping,
+            1, false, true,
             "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
             "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
            {"coupling.band", "band", &P::band, "Hz", 0.5, 20, 1, 10, true, true,
@@ -82,12 +84,12 @@ struct PredictiveLaw {
     InertiaNetwork<N> network_;
     Ledger<N> ledger_;
     ContactSolve<N> contacts_;
-    Vec<N> y_;             // the last reading [rad]
-    Vec<N> acted_;         // torque of the tick just ended [N m]
-    Vec<N> slip_;          // how far its prediction was off [rad]
-    Vec<N> tau1_;          // as wanted, this tick [N m]
-    double elapsed_ = 0;   // since the reading before; 0 at the first [s]
-    bool both_ = true;     // predictors
+    Vec<N> y_;            // the last reading [rad]
+    Vec<N> acted_;        // torque of the tick just ended [N m]
+    Vec<N> slip_;         // how far its prediction was off [rad]
+    Vec<N> tau1_;         // as wanted, this tick [N m]
+    double elapsed_ = 0;  // since the reading before; 0 at the first [s]
+    bool both_ = true;    // predictors
   };
 };
 

@@ -22,10 +22,10 @@ struct PredictorGains {
 
 struct PredictorSettings {
   PredictorPreset preset = PredictorPreset::by_encoder;
-  double memory = kAsPreset;  // p [-]
-  double inertia = kAsPreset; // mu [-]
-  double hand_mass = 0.2;     // of the second predictor [kg]
-  int delay = 0;              // between command and motor, as far as it is known [ticks]
+  double memory = kAsPreset;   // p [-]
+  double inertia = kAsPreset;  // mu [-]
+  double hand_mass = 0.2;      // of the second predictor [kg]
+  int delay = 0;               // between command and motor, as far as it is known [ticks]
 
   // Not a number stands for "as the preset has it".
   static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();

@@ -31,6 +31,7 @@ struct ProposedLaw {
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
       .scales_inertia = true,
       .observes = true,
+      .keeps_ledger = false,
       .sliders = kPaperSliders,
   };
 

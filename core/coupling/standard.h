@@ -12,6 +12,7 @@ struct StandardLaw {
       .meaning = "spring and damper alone, (1)-(2).",
       .scales_inertia = false,
       .observes = false,
+      .keeps_ledger = false,
       .sliders = kPaperSliders,
   };
 

@@ -284,8 +284,8 @@ Vec3 Arm<N>::point_drift(const Frames& f, int link, const Vec3& world, const Vec
   for (int j = 0; j <= link; ++j) {
     const auto i = static_cast<std::size_t>(j);
     const Vec3 origin = moving + turning.cross(f.p[i]);  // of the joint
-    drift += v[j] * turning.cross(f.a[i]).cross(world - f.p[i]) +
-             v[j] * f.a[i].cross(speed - origin);
+    drift +=
+        v[j] * turning.cross(f.a[i]).cross(world - f.p[i]) + v[j] * f.a[i].cross(speed - origin);
     moving += v[j] * f.o[i];
     turning += v[j] * f.a[i];
   }

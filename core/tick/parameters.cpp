@@ -48,8 +48,7 @@ constexpr std::array kOthers{
                   "Largest torque of every motor (section 3.1); default: the arm's file."},
 };
 
-constexpr auto kTable =
-    joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers);
+constexpr auto kTable = joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers);
 
 std::string number(double x) {
   std::array<char, 40> text{};

@@ -86,7 +86,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   }
   if (p.kind != kind_) switch_law(p.kind, in.measured);
   const Whereabouts<N> at = coupling_.locate(
-      p.kind, p, {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
+      p.kind, p,
+      {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
   fresh_law_ = false;
   device_.v = at.v;
   arm_.frames(at.x, frames_);
@@ -96,16 +97,17 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   const Vec<N>& v1 = velocity_.raw();
 
   // Human force, (16)-(18).
-  f1_hat_ = goes_on ? observer_.estimate(p.alpha, T, device_.M, device_.C, velocity_.estimate(), b_d_)
-                    : observer_.present();
+  f1_hat_ = goes_on
+                ? observer_.estimate(p.alpha, T, device_.M, device_.C, velocity_.estimate(), b_d_)
+                : observer_.present();
 
   // The coupling, (1)-(2), (7)-(15), and with it the proxy, (4).
   x2_ = proxy_.x();
   v2_ = proxy_.v();
   kinetic_ = proxy_.kinetic_energy();
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured, v1,     device_, f1_hat_,      vbar2_, T,           frames_,
-                        b_d_,        b_d_sure, limit_, gate_.gain(), p.tick, p.encoder_step};
+  const LawInput<N> now{in.measured, v1,     device_,      f1_hat_, vbar2_,        T, frames_, b_d_,
+                        b_d_sure,    limit_, gate_.gain(), p.tick,  p.encoder_step};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;

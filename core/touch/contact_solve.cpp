@@ -6,8 +6,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kNear = 2e-3;       // what is further off and does not come is left out [m]
-constexpr double kSettled = 1e-8;    // largest change of a force, as a part of it or of 1 N
+constexpr double kNear = 2e-3;     // what is further off and does not come is left out [m]
+constexpr double kSettled = 1e-8;  // largest change of a force, as a part of it or of 1 N
 
 // Two unit vectors across a unit vector.
 Mat3 frame_of(const Vec3& normal) {
@@ -107,7 +107,8 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
     direction = row.mesh->J.transpose() * along;
   }
   const double mass = 1 / direction.dot(answer.inertia.solve(direction));
-  row.B = std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
+  row.B =
+      std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
   row.known = true;
 }
 
@@ -159,8 +160,8 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
   const Vec3 before = row.friction;
   const Mat2 W = across.transpose() * row.W * across;
   const Vec2 b = across.transpose() * (speed(row, motion.u) - row.W * before);
-  const Vec3 anchor = row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor)
-                                          : row.before.anchor;
+  const Vec3 anchor =
+      row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor) : row.before.anchor;
   const Vec2 l = friction_force(friction_stiffness(row.material), row.radius * force,
                                 across.transpose() * anchor, T, b, W);
   row.friction = across * l;
@@ -223,28 +224,24 @@ Vec<N> ContactSolve<N>::f2(Eigen::Index n) const {
 
 template <int N>
 void ContactSolve<N>::finish(Contacts<N>& contacts) const {
-  const auto keep = [&](std::size_t id, const Row* row) {
-    ContactMemory now;
-    if (row != nullptr) {
-      const double force = row->push.norm(), rubs = row->friction.norm();
-      now.push = row->push;
-      now.anchor = -(row->frame * row->friction) / friction_stiffness(row->material);
-      const double limit = row->radius * force * (1 - 1e-9);
-      // Without kinetic friction it slips until it is lifted.
-      now.slipping = force > 0 && (row->radius > 0 ? rubs >= limit : row->before.slipping);
-    }
-    contacts.memory(id) = now;
+  contacts.forget();  // those that are gone as well
+  const auto keep = [&](std::size_t id, const Row& row) {
+    const double force = row.push.norm(), rubs = row.friction.norm();
+    ContactMemory& now = contacts.memory(id);
+    now.push = row.push;
+    now.anchor = -(row.frame * row.friction) / friction_stiffness(row.material);
+    const double limit = row.radius * force * (1 - 1e-9);
+    // Without kinetic friction it slips until it is lifted.
+    now.slipping = force > 0 && (row.radius > 0 ? rubs >= limit : row.before.slipping);
   };
-  for (const Contact<N>& c : contacts.list()) keep(c.id, nullptr);
-  for (const MeshContact<N>& c : contacts.meshes()) keep(c.id, nullptr);
   for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
     if (row.wall != nullptr) {
       row.wall->force = row.push.x();
       row.wall->friction = row.frame * row.friction;
-      keep(row.wall->id, &row);
+      keep(row.wall->id, row);
     } else {
       row.mesh->force = row.push + row.friction;
-      keep(row.mesh->id, &row);
+      keep(row.mesh->id, row);
     }
   }
 }

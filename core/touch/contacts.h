@@ -24,7 +24,7 @@ struct Contact {
   int link = 0;                // that touches
   std::size_t id = 0;          // the same as long as the scene is
   bool touching = false;
-  double force = 0;               // over the last tick [N] or [N m]
+  double force = 0;              // over the last tick [N] or [N m]
   Vec3 friction = Vec3::Zero();  // the same, along the surface [N]
 };
 

@@ -8,9 +8,9 @@ namespace limpid {
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-// The tangential force l = disc[-K_t (z + T (b + W l))] [N], disc the projection on the disc of this
-// radius [N]: z the stretch of the spring [m], b the tangential velocity without l [m/s], W what a
-// force adds to it [m/(N s)]. With z' = -l/K_t the work of l over the tick and the change of
+// The tangential force l = disc[-K_t (z + T (b + W l))] [N], disc the projection on the disc of
+// this radius [N]: z the stretch of the spring [m], b the tangential velocity without l [m/s], W
+// what a force adds to it [m/(N s)]. With z' = -l/K_t the work of l over the tick and the change of
 // K_t |z|^2/2 are together not positive.
 inline Vec2 friction_force(double K_t, double radius, const Vec2& z, double T, const Vec2& b,
                            const Mat2& W) {

@@ -5,9 +5,9 @@
 namespace limpid {
 
 struct Material {
-  double stiffness = 600;      // [N/m]
-  double damping = 0;          // while pressed in or let out [N s/m]
-  double friction_static = 0;  // largest tangential force that sticks, by the normal one [-]
+  double stiffness = 600;       // [N/m]
+  double damping = 0;           // while pressed in or let out [N s/m]
+  double friction_static = 0;   // largest tangential force that sticks, by the normal one [-]
   double friction_kinetic = 0;  // the tangential force while slipping, by the normal one [-]
 };
 

@@ -16,8 +16,8 @@ struct Held {
 
 // Means over the segment, s from 0 to 1 along it.
 struct Mean {
-  Vec3 pull = Vec3::Zero();  // [m]
-  Mat3 held = Mat3::Zero();  // projection on the directions held
+  Vec3 pull = Vec3::Zero();   // [m]
+  Mat3 held = Mat3::Zero();   // projection on the directions held
   Mat3 later = Mat3::Zero();  // the same times s: how the pull's mean answers the segment's end
 };
 

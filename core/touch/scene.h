@@ -2,7 +2,6 @@
 // z up), SI.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,32 +53,17 @@ struct Probe {
   double radius = 0;         // [m]
 };
 
-// Bytes of models by the names that a scene's text has for them.
-using SceneFiles = std::map<std::string, std::shared_ptr<const std::vector<unsigned char>>>;
-
 // A model of triangles. Its points are pose * (scale * p).
 struct MeshObstacle {
   std::string name;
-  std::string file;              // glTF, as the scene's text names it
-  std::string path;              // where that was found; empty: inside a recorded session
+  std::string model;             // which one: the name that the scene's text has for its file
   Pose pose = Pose::Identity();  // [m]
   double scale = 1;
   Material material{};
-  std::shared_ptr<const std::vector<unsigned char>>
-      source;                                 // the file's bytes, with all it refers to
-  std::shared_ptr<const TriangleMesh> shape;  // built from them before it is touched
-};
-
-// Something to look at only.
-struct SceneVisual {
-  std::string file;  // glTF, absolute path
-  Pose pose = Pose::Identity();
-  double scale = 1;
+  std::shared_ptr<const TriangleMesh> shape;  // the model's, built before it is touched
 };
 
 struct Scene {
-  std::string title;
-  std::string about;      // one sentence for people
   double tip_radius = 0;  // [m]; the tip is always a probe
   std::vector<Plane> planes;
   std::vector<Sphere> spheres;
@@ -87,8 +71,6 @@ struct Scene {
   std::vector<MeshObstacle> meshes;
   std::vector<JointContact> joint_contacts;
   std::vector<Probe> probes;  // besides the tip
-  std::vector<SceneVisual> visuals;
-  std::string toml;  // the text it came from
 };
 
 }  // namespace limpid

@@ -8,8 +8,8 @@
 namespace limpid {
 
 // A wall of stiffness K [N/m] and damper B [N s/m], the depth d at the tick's start [m], and over
-// the tick of T [s] the change of depth D = a - c F: a without this wall's force, c > 0 what a force
-// takes off it [m, m/N]. In joint space with [rad] and [N m].
+// the tick of T [s] the change of depth D = a - c F: a without this wall's force, c > 0 what a
+// force takes off it [m, m/N]. In joint space with [rad] and [N m].
 struct WallTick {
   double K, B, T;
   double d, a, c;
@@ -21,9 +21,11 @@ inline double wall_force(const WallTick& w) {
   if (d >= 0) {
     const double F = std::max(0.0, (K * (d + a / 2) + b * a) / (1 + c * (K / 2 + b)));
     if (d + a - c * F >= 0) return F;  // inside throughout
-    const double h = a - c * b * d;  // it breaks: of K d^2 / 2 nothing stays
-    const double root = h * h + 4 * c * (a * b * d + K * d * d / 2);
-    return root < 0 ? 0 : std::max(0.0, (h + std::sqrt(root)) / (2 * c));
+    const double h = a - c * b * d;    // it breaks: of K d^2 / 2 nothing stays
+    const double rest = d * (K * d / 2 + b * a);
+    const double root = std::sqrt(std::max(0.0, h * h + 4 * c * rest));
+    // The larger root, in the form that does not subtract what is nearly equal.
+    return std::max(0.0, h < 0 ? 2 * rest / (root - h) : (h + root) / (2 * c));
   }
   const double s = d + a;
   if (s <= 0) return 0;  // apart throughout

@@ -32,6 +32,8 @@ class HidTransport {
   virtual void ask(std::span<const std::uint8_t> question) noexcept = 0;
 
   virtual const std::vector<std::uint8_t>& report_descriptor() const = 0;
+  // USB's number for the maker; 0 where there is none.
+  virtual std::uint16_t vendor() const { return 0; }
 };
 
 }  // namespace limpid

@@ -159,6 +159,11 @@ class HidapiTransport final : public HidTransport {
 
   const std::vector<std::uint8_t>& report_descriptor() const override { return descriptor_; }
 
+  std::uint16_t vendor() const override {
+    const hid_device_info* info = hid_get_device_info(device_.get());
+    return info != nullptr ? info->vendor_id : std::uint16_t{0};
+  }
+
  private:
   std::vector<std::uint8_t> descriptor_;
   bool numbered_;

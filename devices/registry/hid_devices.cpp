@@ -38,13 +38,19 @@ std::string value_of(const std::string& uevent, const std::string& key) {
   return text.substr(start, text.find('\n', start) - start);
 }
 
+struct Product {
+  unsigned vendor = 0;
+  std::string id;
+};
+
 // HID_ID=bus:vendor:product in hexadecimal, HID_UNIQ=serial number.
-std::string id_of(const std::string& uevent) {
+Product product_of(const std::string& uevent) {
   const std::string hid = value_of(uevent, "HID_ID");
   unsigned bus = 0, vendor = 0, product = 0;
   if (std::sscanf(hid.c_str(), "%x:%x:%x", &bus, &vendor, &product) != 3) return {};
   const std::string serial = value_of(uevent, "HID_UNIQ");
-  return fmt::format("{:04x}:{:04x}{}{}", vendor, product, serial.empty() ? "" : ":", serial);
+  return {vendor,
+          fmt::format("{:04x}:{:04x}{}{}", vendor, product, serial.empty() ? "" : ":", serial)};
 }
 
 std::optional<ReportDescriptor> read_descriptor(const fs::path& path) {
@@ -71,7 +77,7 @@ std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSetti
   try {
     auto transport = open_hidraw(found.place.path);
     const auto descriptor = parse_report_descriptor(transport->report_descriptor());
-    const HidProtocolEntry* entry = find_protocol(descriptor);
+    const HidProtocolEntry* entry = find_protocol(descriptor, transport->vendor());
     // Another device may have come to this path since the list was made.
     if (entry == nullptr || &entry->kind != found.kind) throw HidError("it has been unplugged");
     auto protocol = entry->make(descriptor, settings);
@@ -90,13 +96,16 @@ std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRo
        entry.increment(error)) {
     const fs::path device = entry->path() / "device";
     const auto descriptor = read_descriptor(device / "report_descriptor");
-    const HidProtocolEntry* protocol = descriptor ? find_protocol(*descriptor) : nullptr;
+    const std::string uevent = read_file(device / "uevent");
+    const Product product = product_of(uevent);
+    const HidProtocolEntry* protocol =
+        descriptor ? find_protocol(*descriptor, static_cast<std::uint16_t>(product.vendor))
+                   : nullptr;
     if (protocol == nullptr) continue;
     std::string missing = protocol->objection(*descriptor);
-    const std::string uevent = read_file(device / "uevent");
     const std::string path = (roots.dev / entry->path().filename()).string();
     if (missing.empty()) missing = what_is_missing(path, udev_rule);
-    found.push_back({{value_of(uevent, "HID_NAME"), id_of(uevent), path},
+    found.push_back({{value_of(uevent, "HID_NAME"), product.id, path},
                      &protocol->kind,
                      missing,
                      open_hid_device});

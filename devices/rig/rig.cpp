@@ -88,8 +88,8 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   x_before = x;
   const auto truth = device->truth();
   if (!truth) return {x, x, v, health, now.periods, now.dt, {}};
-  return {x,           of_joints(truth->x), of_joints(truth->v),           health,
-          now.periods, now.dt,              of_joints(truth->motor_torque)};
+  return {x,      of_joints(truth->x),           of_joints(truth->v), health, now.periods,
+          now.dt, of_joints(truth->motor_torque)};
 }
 
 template <int N>

@@ -83,7 +83,7 @@ void run(const char* folder) {
   const ArmDescription arm = two_links();
   Scene scene;
   scene.planes.push_back({"table", Vec3(0, 0, -0.1), Vec3::UnitZ(), 600});
-  SceneView view(std::string(LIMPID_SOURCE_DIR) + "/shaders", arm, scene);
+  SceneView view(std::string(LIMPID_SOURCE_DIR) + "/shaders", arm, scene, {});
   Camera camera;
   camera.resize(kWidth, kHeight);
   ViewState state;

@@ -107,7 +107,7 @@ void print_chain(int joints) {
 RunPlan touching_the_table() {
   RunPlan plan;
   plan.arm = read_urdf(default_device());
-  plan.scene = read_scene(default_scene(), plan.arm);
+  plan.document = read_scene(default_scene(), plan.arm);
   plan.hand = read_hand(default_hand());
   plan.rows = 60000;
   return plan;
@@ -143,7 +143,7 @@ void print_recorded_run() {
   info.dof = plan.arm.dof();
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
-  info.scene = plan.scene.toml;
+  info.scene = plan.document.toml;
   const std::filesystem::path out = std::filesystem::temp_directory_path() / "limpid_tick_bench.h5";
 
   std::vector<double> rows(plan.rows * static_cast<std::size_t>(RowLayout(info.dof).stride()));

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
 const std::filesystem::path kRoot = LIMPID_SOURCE_DIR;
+const std::vector<VisualPicture> kNoVisuals, kMissing{{"/nowhere/table.glb", Pose::Identity(), 1}};
 
 // Two links of 0.2 m in the xz plane, without visuals: drawn as capsules.
 ArmDescription two_links() {
@@ -44,7 +45,7 @@ class Picture : public testing::Test {
     } catch (const std::runtime_error& error) {
       GTEST_SKIP() << error.what();
     }
-    view_.emplace(kRoot / "shaders", arm_, Scene{});
+    view_.emplace(kRoot / "shaders", arm_, Scene{}, kNoVisuals);
     camera_.resize(kWidth, kHeight);
     camera_.look(Camera::View::side);
     camera_.frame(Bounds(Vec3(-0.1, -0.1, -0.3), Vec3(0.4, 0.1, 0.3)));
@@ -98,7 +99,7 @@ TEST_F(Picture, ShowsAGhostInsideOfWhatItTouches) {
   scene.boxes.emplace_back();
   scene.boxes[0].pose.translation() = kMiddleOfSecondLink;
   scene.boxes[0].size = Vec3(0.12, 0.15, 0.12);
-  view_.emplace(kRoot / "shaders", arm_, scene);
+  view_.emplace(kRoot / "shaders", arm_, scene, kNoVisuals);
   const Eigen::Vector3i without = seen_at(kMiddleOfSecondLink);
   state_.device = pose_of(arm_, 0, 0);
   const Eigen::Vector3i with = seen_at(kMiddleOfSecondLink);
@@ -153,7 +154,7 @@ TEST_F(Picture, NamesFileAndLineOfABrokenShader) {
   std::filesystem::copy(kRoot / "shaders", copy);
   std::ofstream(copy / "ghost.frag") << "out vec4 color;\nvoid main() { color = nonsense; }\n";
   try {
-    SceneView broken(copy, arm_, Scene{});
+    SceneView broken(copy, arm_, Scene{}, kNoVisuals);
     FAIL() << "a broken shader was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("ghost.frag:2"), std::string::npos) << error.what();
@@ -161,9 +162,7 @@ TEST_F(Picture, NamesFileAndLineOfABrokenShader) {
 }
 
 TEST_F(Picture, NamesTheModelThatIsMissing) {
-  Scene scene;
-  scene.visuals.push_back({"/nowhere/table.glb", Pose::Identity(), 1});
-  EXPECT_THROW(SceneView(kRoot / "shaders", arm_, scene), std::runtime_error);
+  EXPECT_THROW(SceneView(kRoot / "shaders", arm_, Scene{}, kMissing), std::runtime_error);
 }
 
 std::shared_ptr<const Model> patch_of(const Eigen::Vector3f& color) {
@@ -259,13 +258,12 @@ TEST_F(Picture, ExchangesTheSceneAndKeepsTheRest) {
   Scene scene;
   scene.boxes.emplace_back();
   scene.boxes[0].pose = at(there);
-  view_->set_scene(scene);
+  view_->set_scene(scene, kNoVisuals);
   EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
   EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
-  scene.visuals.push_back({"/nowhere/table.glb", Pose::Identity(), 1});
-  EXPECT_THROW(view_->set_scene(scene), std::runtime_error);
+  EXPECT_THROW(view_->set_scene({}, kMissing), std::runtime_error);
   EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
-  view_->set_scene({});
+  view_->set_scene({}, kNoVisuals);
   EXPECT_LE((seen_at(there) - empty).cwiseAbs().maxCoeff(), 2);
 }
 

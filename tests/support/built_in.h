@@ -11,9 +11,10 @@ namespace limpid::test {
 
 inline std::filesystem::path assets_dir() { return LIMPID_ASSETS_DIR; }
 inline ArmDescription omni() { return read_urdf(assets_dir() / "devices/omni.urdf"); }
-inline Scene omni_scene(const char* name) {
+inline SceneDocument omni_document(const char* name) {
   return read_scene(assets_dir() / "scenes" / name, omni());
 }
+inline Scene omni_scene(const char* name) { return omni_document(name).scene; }
 inline HandPath hand(const char* name) { return read_hand(assets_dir() / "hands" / name); }
 
 }  // namespace limpid::test

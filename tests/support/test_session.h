@@ -14,7 +14,7 @@ namespace limpid::test {
 inline RunPlan plan(const char* scene, const char* hand_file, double seconds) {
   RunPlan plan;
   plan.arm = omni();
-  plan.scene = omni_scene(scene);
+  plan.document = omni_document(scene);
   plan.hand = hand(hand_file);
   plan.rows = static_cast<std::uint64_t>(seconds / plan.parameters.tick);
   return plan;

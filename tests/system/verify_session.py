@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Recomputes a session file from the file alone and prints what agrees.
 
-    verify_session.py FILE.h5 [--checks layout,energy,proxy,torques,motors,observer,slopes]
+    verify_session.py FILE.h5 [--checks layout,energy,proxy,torques,motors,observer,slopes,
+                                       predictive]
 
 Exit status 0 when every check passes, 1 when one fails, 2 when the file cannot be read.
 """

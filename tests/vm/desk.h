@@ -42,7 +42,7 @@ bool wait_until(Done done, Time longest = 3s) {
 }
 
 inline ArmDescription joystick_arm() { return read_urdf("joystick.urdf"); }
-inline Scene joystick_gate() { return read_scene("joystick.toml", joystick_arm()); }
+inline SceneDocument joystick_gate() { return read_scene("joystick.toml", joystick_arm()); }
 
 template <class Model>
 std::unique_ptr<Model> make_model(double effort = kEffort) {
@@ -89,7 +89,7 @@ class Desk {
   void open() { open(connect()); }
   void open(std::unique_ptr<Device> one) {
     await_reading(*one, 200ms);
-    loop.open(arm, scene, controls.parameters, std::move(one));
+    loop.open(arm, document.scene, controls.parameters, std::move(one));
     window = std::jthread([this](const std::stop_token& closed) {
       while (!closed.stop_requested()) {
         if (!hangs) {
@@ -131,7 +131,7 @@ class Desk {
   }
 
   ArmDescription arm = joystick_arm();
-  Scene scene = joystick_gate();
+  SceneDocument document = joystick_gate();
   std::unique_ptr<Model> model;
   std::unique_ptr<UhidDevice> device;
   // What the window sets, from its next frame on.

@@ -22,8 +22,8 @@ struct LimitedLoop : testing::Test {
     desk->device->with([&](Time) { desk->model->hand().axis(0) = physics; });
     desk->arm = arm;
     for (Joint& joint : desk->arm.joints) joint.effort = effort;
-    desk->scene = Scene{};
-    desk->scene.joint_contacts.push_back({"", 0, -1, 1, 100});
+    desk->document = {};
+    desk->document.scene.joint_contacts.push_back({"", 0, -1, 1, 100});
     desk->controls.parameters.k_vc = 100;
     desk->set([&](Controls& controls) { controls.limits = limits; });
     desk->open(Desk<Model>::connect(effort));

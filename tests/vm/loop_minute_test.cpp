@@ -52,7 +52,7 @@ Minute run_on_device(Desk<Model>& desk) {
   desk.arm_force(true);
   RunPlan plan;
   plan.arm = desk.arm;
-  plan.scene = desk.scene;
+  plan.document = desk.document;
   plan.hand.source = "device";
   desk.record(dir / "a.h5", plan);
   wait(std::chrono::seconds(static_cast<int>(kMinute + Circling::kRest)));
@@ -94,14 +94,16 @@ TYPED_TEST_SUITE(PidMinute, Models, Names);
 
 TYPED_TEST(PidMinute, AgreesWithTheVirtualArm) {
   Desk<TypeParam> desk;
-  desk.scene.spheres.clear();  // around its edge the torque changes faster than the hand moves
+  desk.document.scene.spheres
+      .clear();  // around its edge the torque changes faster than the hand moves
   const Minute minute = run_on_device(desk);
   ASSERT_GE(minute.session.size(), 60'000u);
   desk.device->with(
       [&](Time) { EXPECT_TRUE(desk.model->violations().empty()) << desk.model->violations()[0]; });
   Rows rows(minute.session.layout);
   for (std::size_t k = 0; k < minute.session.size(); ++k) rows.add(minute.session.row(k));
-  const Difference d = difference(rows, circle_virtually(desk.arm, desk.scene, minute.times));
+  const Difference d =
+      difference(rows, circle_virtually(desk.arm, desk.document.scene, minute.times));
   const Allowed allowed = allowed_difference(2e-3, TypeParam::kTorqueLevels);
   std::printf(
       "| %zu ticks, torque up to %.3f N m; difference rms %.3f (allowed %.2f), at most "

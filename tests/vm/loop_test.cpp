@@ -84,7 +84,7 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   wait(50ms);
   RunPlan plan;
   plan.arm = desk.arm;
-  plan.scene = desk.scene;
+  plan.document = desk.document;
   plan.hand.source = "device";
   desk.record(dir / "a.h5", plan);
   ASSERT_TRUE(wait_until([&] { return desk.loop.update() && desk.loop.snapshot().recording; }));

@@ -17,7 +17,7 @@ constexpr Time kTickLife = 10ms;
 ArmDescription joystick() { return read_urdf(assets_dir() / "devices/joystick.urdf"); }
 // Without the bump: around its edge the torque changes faster than the hand moves.
 Scene gate() {
-  Scene scene = read_scene(assets_dir() / "devices/joystick.toml", joystick());
+  Scene scene = read_scene(assets_dir() / "devices/joystick.toml", joystick()).scene;
   scene.spheres.clear();
   return scene;
 }

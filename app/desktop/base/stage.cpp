@@ -9,7 +9,8 @@ namespace limpid {
 namespace {
 
 // Everything SceneView::set_scene() looks at, which reads files and builds shapes.
-bool same_items(const Scene& a, const Scene& b) {
+bool same_items(const SceneDocument& first, const SceneDocument& second) {
+  const Scene &a = first.scene, &b = second.scene;
   const auto same = [](const auto& x, const auto& y, const auto& equal) {
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
   };
@@ -29,18 +30,19 @@ bool same_items(const Scene& a, const Scene& b) {
               [](const JointContact& p, const JointContact& q) {
                 return p.joint == q.joint && p.angle == q.angle && p.direction == q.direction;
               }) &&
-         same(a.visuals, b.visuals,
+         same(first.visuals, second.visuals,
               [](const SceneVisual& p, const SceneVisual& q) { return p.file == q.file; });
 }
 
 }  // namespace
 
-Stage::Stage(ArmDescription arm, Scene scene, MeshModels models, History past, double shown)
-    : picture(data_dir() / "shaders", arm, scene),
+Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, History past,
+             double shown)
+    : picture(data_dir() / "shaders", arm, document.scene, visual_pictures(document)),
       history(std::move(past)),
       group(shown),
       arm_(std::move(arm)),
-      scene_(std::move(scene)),
+      document_(std::move(document)),
       rows_(arm_),
       channels_(RowLayout(arm_.dof())) {
   for (PlotSpec& spec : channels_.plots(history.channels() > channels_.count())) {
@@ -49,15 +51,17 @@ Stage::Stage(ArmDescription arm, Scene scene, MeshModels models, History past, d
   show_meshes(models, std::nullopt);
 }
 
-void Stage::show(const Scene& scene, const MeshModels& models,
+void Stage::show(const SceneDocument& document, const MeshModels& models,
                  std::optional<std::size_t> highlighted) {
-  if (!same_items(scene_, scene)) picture.set_scene(scene);
-  scene_ = scene;
+  if (!same_items(document_, document)) {
+    picture.set_scene(document.scene, visual_pictures(document));
+  }
+  document_ = document;
   show_meshes(models, highlighted);
 }
 
 void Stage::show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted) {
-  picture.set_meshes(mesh_pictures(scene_, models, highlighted));
+  picture.set_meshes(mesh_pictures(document_.scene, models, highlighted));
 }
 
 void Stage::draw_at(int quality) {

@@ -20,16 +20,18 @@ class Stage {
   // `models` are what the scene's meshes look like; `history`: of the arm's channels, or twice as
   // many, for a second run beside the first; `shown`: how much of it at first [s]. Needs a current
   // OpenGL context. Errors: std::runtime_error naming the file of a picture.
-  Stage(ArmDescription arm, Scene scene, MeshModels models, History history, double shown);
+  Stage(ArmDescription arm, SceneDocument document, MeshModels models, History history,
+        double shown);
 
   // The same arm in another scene; `highlighted` is the number of a mesh. Errors as above; the
   // picture stays as it was then.
-  void show(const Scene& scene, const MeshModels& models, std::optional<std::size_t> highlighted);
+  void show(const SceneDocument& document, const MeshModels& models,
+            std::optional<std::size_t> highlighted);
   // A level of Quality.
   void draw_at(int quality);
 
   const ArmDescription& arm() const { return arm_; }
-  const Scene& scene() const { return scene_; }
+  const SceneDocument& document() const { return document_; }
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
@@ -46,7 +48,7 @@ class Stage {
   void show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted);
 
   ArmDescription arm_;
-  Scene scene_;
+  SceneDocument document_;
   int quality_ = -1;
   RowView rows_;
   TraceChannels channels_;

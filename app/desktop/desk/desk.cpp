@@ -43,23 +43,24 @@ Desk::~Desk() {
   }
 }
 
-void Desk::open(ArmDescription arm, Scene scene, const MeshModels& models, const Parameters& p,
-                double shown, std::unique_ptr<Device> device) {
-  auto fresh = make_stage(std::move(arm), std::move(scene), models, p, shown);
+void Desk::open(ArmDescription arm, SceneDocument document, const MeshModels& models,
+                const Parameters& p, double shown, std::unique_ptr<Device> device) {
+  auto fresh = make_stage(std::move(arm), std::move(document), models, p, shown);
   const Vec3 rest = home(fresh->arm());
   if (device) {
-    loop_.open(fresh->arm(), fresh->scene(), p, std::move(device));
+    loop_.open(fresh->arm(), fresh->document().scene, p, std::move(device));
   } else {
-    loop_.open(fresh->arm(), fresh->scene(), p, rest);
+    loop_.open(fresh->arm(), fresh->document().scene, p, rest);
   }
   controls_.grab = false;
   controls_.goal = rest;
   take_stage(std::move(fresh));
 }
 
-void Desk::open_beside(Scene scene, const MeshModels& models, const Parameters& p, double shown) {
-  auto fresh = make_stage(stage_->arm(), std::move(scene), models, p, shown);
-  touch(fresh->scene());
+void Desk::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
+                       double shown) {
+  auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
+  touch(fresh->document().scene);
   take_stage(std::move(fresh));
 }
 
@@ -67,10 +68,11 @@ void Desk::touch(const Scene& scene) {
   loop_.exchange(std::make_unique<TouchWorld>(stage_->arm(), scene));
 }
 
-std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, Scene scene, const MeshModels& models,
-                                        const Parameters& p, double shown) const {
+std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, SceneDocument document,
+                                        const MeshModels& models, const Parameters& p,
+                                        double shown) const {
   const int channels = TraceChannels(RowLayout(arm.dof())).count();
-  return std::make_unique<Stage>(std::move(arm), std::move(scene), models,
+  return std::make_unique<Stage>(std::move(arm), std::move(document), models,
                                  History({.channels = channels, .tick = p.tick}), shown);
 }
 

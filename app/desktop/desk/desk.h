@@ -28,10 +28,11 @@ class Desk {
 
   // Another world and its loop, with a real device or the virtual arm. `shown` as Stage's. Errors:
   // as Stage and LiveLoop::open(); what there was before goes on then.
-  void open(ArmDescription arm, Scene scene, const MeshModels& models, const Parameters& p,
-            double shown, std::unique_ptr<Device> device);
+  void open(ArmDescription arm, SceneDocument document, const MeshModels& models,
+            const Parameters& p, double shown, std::unique_ptr<Device> device);
   // The same arm, and the loop that runs, in another scene.
-  void open_beside(Scene scene, const MeshModels& models, const Parameters& p, double shown);
+  void open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
+                   double shown);
   // Another state of the scene, for the loop.
   void touch(const Scene& scene);
 
@@ -75,8 +76,9 @@ class Desk {
   void drop_pictures();
 
  private:
-  std::unique_ptr<Stage> make_stage(ArmDescription arm, Scene scene, const MeshModels& models,
-                                    const Parameters& p, double shown) const;
+  std::unique_ptr<Stage> make_stage(ArmDescription arm, SceneDocument document,
+                                    const MeshModels& models, const Parameters& p,
+                                    double shown) const;
   void take_stage(std::unique_ptr<Stage> fresh);
   void follow_recording();
   void follow_saving();

@@ -30,9 +30,10 @@ bool share_a_workspace(const ArmDescription& a, const ArmDescription& b) {
 
 }  // namespace
 
-void Document::open(const ArmDescription& arm, Scene scene, MeshModels models, bool saved) {
+void Document::open(const ArmDescription& arm, SceneDocument document, MeshModels models,
+                    bool saved) {
   arm_ = arm;
-  editor_.open(std::move(scene), std::move(models), saved);
+  editor_.open(std::move(document), std::move(models), saved);
   known_.scene = editor_.version();
   // Steps of other scenes cannot be undone in this one.
   history_.rewrite(
@@ -77,7 +78,7 @@ void Document::add_model(LoadedModel loaded, const Workplace& at) {
   const double scale = loaded.mesh.scale;
   const std::size_t triangles = loaded.mesh.shape->triangles();
   const double centimetres = 100 * scale * bounds.sizes().maxCoeff();
-  editor_.add(std::move(loaded.mesh), loaded.model);
+  editor_.add(std::move(loaded.mesh), std::move(loaded.file), loaded.model);
   std::string text =
       fmt::format("Added {}: {} triangles, {:.3g} cm{}. Ctrl+Z removes it.",
                   name_of(scene(), *editor_.selected()), with_commas(triangles), centimetres,
@@ -151,8 +152,9 @@ void Document::redo() {
 }
 
 std::string Document::toml() const {
-  if (!scene().toml.empty()) return scene().toml;
-  return scene_text(scene(), arm_, fs::path(file_).parent_path());
+  const SceneDocument& present = editor_.document();
+  if (!present.toml.empty()) return present.toml;
+  return scene_text(present, arm_, fs::path(file_).parent_path());
 }
 
 fs::path Document::own_file() const {
@@ -165,7 +167,7 @@ fs::path Document::own_file() const {
 bool Document::save_as(const fs::path& file) {
   if (!may_edit()) return false;
   try {
-    editor_.saved(save_scene(scene(), arm_, file));
+    editor_.saved(save_scene(editor_.document(), arm_, file));
     // The names of files are other ones, what can be touched is not.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());
@@ -185,24 +187,23 @@ void Document::leave(std::function<void()> then) {
 void Document::leave_now() { std::exchange(after_question_, nullptr)(); }
 
 void Document::discard_and_leave() {
-  editor_.saved(scene());
+  editor_.saved(editor_.document());
   leave_now();
 }
 
 // Shapes and pictures of meshes are the same for every arm.
 std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm) const {
-  const Scene& present = scene();
+  const SceneDocument& present = editor_.document();
   if (arm.urdf == arm_.urdf) return SceneEditor::World{present, editor_.models()};
   if (!share_a_workspace(arm, arm_)) return std::nullopt;
-  SceneFiles sources;
-  for (const MeshObstacle& mesh : present.meshes) sources[mesh.file] = mesh.source;
   try {
-    Scene scene = parse_scene(toml(), file_, fs::path(file_).parent_path(), arm, sources);
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-      scene.meshes[i].shape = present.meshes.at(i).shape;
-      scene.meshes[i].path = present.meshes.at(i).path;
+    SceneDocument document =
+        parse_scene(toml(), file_, fs::path(file_).parent_path(), arm, files_of(present));
+    document.models = present.models;
+    for (std::size_t i = 0; i < document.scene.meshes.size(); ++i) {
+      document.scene.meshes[i].shape = present.scene.meshes.at(i).shape;
     }
-    return SceneEditor::World{std::move(scene), editor_.models()};
+    return SceneEditor::World{std::move(document), editor_.models()};
   } catch (const std::exception&) {  // it names joints or links that this arm does not have
     return std::nullopt;
   }

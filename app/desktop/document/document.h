@@ -36,7 +36,7 @@ class Document {
   }
 
   // From now on this scene for this arm is edited, as its file has it; not `saved`: no file has it.
-  void open(const ArmDescription& arm, Scene scene, MeshModels models, bool saved);
+  void open(const ArmDescription& arm, SceneDocument document, MeshModels models, bool saved);
 
   SceneEditor& editor() { return editor_; }
   const SceneEditor& editor() const { return editor_; }

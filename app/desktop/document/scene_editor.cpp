@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 
 #include "devices/files/rpy.h"
@@ -123,8 +124,9 @@ Eigen::AlignedBox3d bounds_of(const SceneObject& object, const Model* model) {
   return box;
 }
 
-void SceneEditor::open(Scene scene, MeshModels models, bool saved) {
-  now_ = {std::make_shared<const World>(World{std::move(scene), std::move(models)}), std::nullopt};
+void SceneEditor::open(SceneDocument document, MeshModels models, bool saved) {
+  now_ = {std::make_shared<const World>(World{std::move(document), std::move(models)}),
+          std::nullopt};
   saved_ = saved ? now_.world : nullptr;
   last_change_.clear();
 }
@@ -134,8 +136,8 @@ void SceneEditor::restore(const Version& version) {
   last_change_.clear();
 }
 
-void SceneEditor::saved(Scene scene) {
-  now_.world = std::make_shared<const World>(World{std::move(scene), models()});
+void SceneEditor::saved(SceneDocument document) {
+  now_.world = std::make_shared<const World>(World{std::move(document), models()});
   saved_ = now_.world;
 }
 
@@ -144,9 +146,10 @@ void SceneEditor::change(std::string what, Change&& change) {
   World next = *now_.world;
   change(next);
   // The text no longer tells what is there; settled rotations are those that a new one can.
-  next.scene.toml.clear();
-  for (Box& box : next.scene.boxes) box.pose.linear() = settled(box.pose.linear());
-  for (MeshObstacle& mesh : next.scene.meshes) mesh.pose.linear() = settled(mesh.pose.linear());
+  next.document.toml.clear();
+  Scene& scene = next.document.scene;
+  for (Box& box : scene.boxes) box.pose.linear() = settled(box.pose.linear());
+  for (MeshObstacle& mesh : scene.meshes) mesh.pose.linear() = settled(mesh.pose.linear());
   now_.world = std::make_shared<const World>(std::move(next));
   last_change_ = std::move(what);
 }
@@ -166,7 +169,7 @@ void SceneEditor::set(const ObjectRef& ref, SceneObject object, const std::strin
   std::visit([](auto& o) { hold(o); }, object);
   const std::string full = fmt::format("{} {} {}", kind_name(ref.kind), ref.index, what);
   change(full, [&](World& world) {
-    with_list(world.scene, ref.kind, [&](auto& list) {
+    with_list(world.document.scene, ref.kind, [&](auto& list) {
       using Object = typename std::remove_reference_t<decltype(list)>::value_type;
       list.at(ref.index) = std::get<Object>(std::move(object));
     });
@@ -174,10 +177,22 @@ void SceneEditor::set(const ObjectRef& ref, SceneObject object, const std::strin
 }
 
 void SceneEditor::set_tip_radius(double radius) {
-  change("tip radius", [&](World& world) { world.scene.tip_radius = kRadius.hold(radius, 0); });
+  change("tip radius",
+         [&](World& world) { world.document.scene.tip_radius = kRadius.hold(radius, 0); });
 }
 
-void SceneEditor::add(SceneObject object, std::shared_ptr<const Model> model) {
+void SceneEditor::add(MeshObstacle mesh, ModelFile file, std::shared_ptr<const Model> model) {
+  const std::map<std::string, ModelFile>& known = document().models;
+  const std::filesystem::path wanted = mesh.model;
+  for (int i = 2; known.contains(mesh.model) && *known.at(mesh.model).bytes != *file.bytes; ++i) {
+    const std::string number = fmt::format("{}-{}", wanted.stem().string(), i);
+    mesh.model = wanted.parent_path() / (number + wanted.extension().string());
+  }
+  insert(std::move(mesh), std::move(model), &file);
+}
+
+void SceneEditor::insert(SceneObject object, std::shared_ptr<const Model> model,
+                         const ModelFile* file) {
   if (objects_of(scene()).size() >= kMostContacts) {
     throw std::runtime_error(
         fmt::format("A scene holds at most {} objects; remove one first.", kMostContacts));
@@ -192,7 +207,8 @@ void SceneEditor::add(SceneObject object, std::shared_ptr<const Model> model) {
   const std::size_t index = count(scene(), kind);
   change("", [&](World& world) {
     if (kind == ObjectKind::mesh) world.models.push_back(std::move(model));
-    with_list(world.scene, kind, [&](auto& list) {
+    if (file != nullptr) world.document.models[std::get<MeshObstacle>(object).model] = *file;
+    with_list(world.document.scene, kind, [&](auto& list) {
       using Object = typename std::remove_reference_t<decltype(list)>::value_type;
       list.push_back(std::get<Object>(std::move(object)));
     });
@@ -205,14 +221,15 @@ void SceneEditor::duplicate(const ObjectRef& ref) {
   const auto model = ref.kind == ObjectKind::mesh ? models().at(ref.index) : nullptr;
   const Eigen::AlignedBox3d box = bounds_of(copy, model.get());
   move_aside(copy, box.isEmpty() ? 0.02 : 1.1 * box.sizes().y());
-  add(std::move(copy), model);
+  insert(std::move(copy), model);
 }
 
 void SceneEditor::rename(const ObjectRef& ref, const std::string& name) {
   if (name.empty() || name == name_of(scene(), ref)) return;
   const std::string wanted = free_name(name, ref);
   change("", [&](World& world) {
-    with_list(world.scene, ref.kind, [&](auto& list) { list.at(ref.index).name = wanted; });
+    with_list(world.document.scene, ref.kind,
+              [&](auto& list) { list.at(ref.index).name = wanted; });
   });
 }
 
@@ -220,7 +237,11 @@ void SceneEditor::remove(const ObjectRef& ref) {
   const auto at = static_cast<std::ptrdiff_t>(ref.index);
   change("", [&](World& world) {
     if (ref.kind == ObjectKind::mesh) world.models.erase(world.models.begin() + at);
-    with_list(world.scene, ref.kind, [&](auto& list) { list.erase(list.begin() + at); });
+    with_list(world.document.scene, ref.kind, [&](auto& list) { list.erase(list.begin() + at); });
+    std::erase_if(world.document.models, [&](const auto& known) {
+      return std::ranges::find(world.document.scene.meshes, known.first, &MeshObstacle::model) ==
+             world.document.scene.meshes.end();
+    });
   });
   now_.selected.reset();
 }

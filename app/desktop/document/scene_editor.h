@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/run/scene_meshes.h"
-#include "core/touch/scene.h"
+#include "devices/files/scene/scene_document.h"
 
 namespace limpid {
 
@@ -36,7 +36,7 @@ class SceneEditor {
  public:
   // A scene at one time. Versions share what they have in common; equal pointers: nothing changed.
   struct World {
-    Scene scene;
+    SceneDocument document;
     MeshModels models;  // of the scene's meshes, in their order
   };
   struct Version {
@@ -45,9 +45,10 @@ class SceneEditor {
   };
 
   // Another scene, as its file has it; not `saved`: no file has it yet.
-  void open(Scene scene, MeshModels models, bool saved = true);
+  void open(SceneDocument document, MeshModels models, bool saved = true);
 
-  const Scene& scene() const { return now_.world->scene; }
+  const SceneDocument& document() const { return now_.world->document; }
+  const Scene& scene() const { return document().scene; }
   const MeshModels& models() const { return now_.world->models; }
   const Version& version() const { return now_; }
   void restore(const Version& version);  // an earlier one
@@ -65,15 +66,19 @@ class SceneEditor {
   void set_tip_radius(double radius);
   // The name gets a number where another object has it already. All select what they made. Errors:
   // std::runtime_error if the scene is full.
-  void add(SceneObject object, std::shared_ptr<const Model> model = nullptr);
+  void add(SceneObject object) { insert(std::move(object), nullptr); }
+  // A mesh with its model. That gets a number, too, where its file was another one earlier.
+  void add(MeshObstacle mesh, ModelFile file, std::shared_ptr<const Model> model);
   void duplicate(const ObjectRef& ref);
   void rename(const ObjectRef& ref, const std::string& name);
   void remove(const ObjectRef& ref);
 
   // The scene was written, and has become this one by that.
-  void saved(Scene scene);
+  void saved(SceneDocument document);
 
  private:
+  void insert(SceneObject object, std::shared_ptr<const Model> model,
+              const ModelFile* file = nullptr);
   template <class Change>
   void change(std::string what, Change&& change);
   std::string free_name(const std::string& wanted, const std::optional<ObjectRef>& except) const;

@@ -30,21 +30,23 @@ LoadProgress progress_of(BackgroundProgress& progress) {
 LoadedScene load_scene(const fs::path& file, const ArmDescription& arm,
                        const LoadProgress& progress) {
   LoadedScene loaded{file, read_scene(file, arm), {}, {}};
-  loaded.models = build_meshes(loaded.scene, progress);
-  loaded.warnings = mesh_warnings(loaded.scene, loaded.models);
+  loaded.models = build_meshes(loaded.document, progress);
+  loaded.warnings = mesh_warnings(loaded.document.scene, loaded.models);
   return loaded;
 }
 
 LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
-  Scene one;
-  MeshObstacle& mesh = one.meshes.emplace_back();
+  SceneDocument one;
+  MeshObstacle& mesh = one.scene.meshes.emplace_back();
   mesh.name = file.stem().string();
-  mesh.file = mesh.path = fs::absolute(file).lexically_normal().string();
+  mesh.model = fs::absolute(file).lexically_normal().string();
   const std::string bytes = read_text(file, scene_limits::kLargestModel);
-  mesh.source = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
+  ModelFile& model = one.models[mesh.model];
+  model.path = mesh.model;
+  model.bytes = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
   const MeshModels models = build_meshes(one, progress);
-  std::vector<std::string> warnings = mesh_warnings(one, models);
-  return {std::move(mesh), models.front(), std::move(warnings)};
+  std::vector<std::string> warnings = mesh_warnings(one.scene, models);
+  return {std::move(mesh), std::move(model), models.front(), std::move(warnings)};
 }
 
 void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {

@@ -16,12 +16,13 @@ namespace limpid {
 // What was asked for, ready to be touched and drawn.
 struct LoadedScene {
   std::filesystem::path file;
-  Scene scene;
+  SceneDocument document;
   MeshModels models;
   std::vector<std::string> warnings;
 };
 struct LoadedModel {
   MeshObstacle mesh;  // named for its file; without a place
+  ModelFile file;
   std::shared_ptr<const Model> model;
   std::vector<std::string> warnings;
 };

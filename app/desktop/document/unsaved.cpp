@@ -23,11 +23,11 @@ fs::path free_name(const fs::path& folder, const std::string& stem) {
 
 }  // namespace
 
-fs::path keep_unsaved(const Scene& scene, const ArmDescription& arm, const std::string& name,
-                      const fs::path& folder) {
+fs::path keep_unsaved(const SceneDocument& document, const ArmDescription& arm,
+                      const std::string& name, const fs::path& folder) {
   fs::create_directories(folder);
   const fs::path file = free_name(folder, name + std::string(kUnsaved));
-  save_scene(scene, arm, file);
+  save_scene(document, arm, file);
   return file;
 }
 

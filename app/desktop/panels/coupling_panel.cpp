@@ -14,7 +14,7 @@ namespace {
 
 // What is broken, by how much, and what would mend it; empty while the promise holds.
 std::string eta_broken(const Parameters& p, const Analysis& a) {
-  if (!info(p.kind).scales_inertia || a.passive) return {};
+  if (!info(p.kind).observes || a.passive) return {};
   return fmt::format(
       "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
       "{:.3f}, lower alpha, or raise b_v.",
@@ -84,7 +84,7 @@ void draw_passivity(const Parameters& p, const Analysis& a) {
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "alpha / m over the modes of the inertia at the rest pose, (18)");
-  const bool standard = !info(p.kind).scales_inertia;
+  const bool standard = !info(p.kind).observes;
   read_out("\xCE\xB7_min, all frequencies",
            fmt::format("{:.3f}{}", a.eta_min,
                        standard    ? ""
@@ -110,14 +110,38 @@ void draw_passivity(const Parameters& p, const Analysis& a) {
            "b_v - k_vc T / 2 [N m s/rad]: not negative");
 }
 
+// What bounds the energy that the human is given, for a law that keeps account of it.
+void draw_ledger(const CouplingReading& now) {
+  heading("Energy ledger");
+  read_out("reserve", fmt::format("{:.2f} mJ", 1e3 * now.reserve), {},
+           "What the human may still be given; more after dissipating, 20 mJ at most");
+  const auto share = [](const char* label, double part, const char* cut, const char* meaning) {
+    read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
+  };
+  share("wall force let through", now.contact_governor,
+        "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
+        "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
+        "keep it from acting.",
+        "100 % unless the reserve runs low; then the proxy leaves the device for a while");
+  share("damping cancelled", now.damping_governor,
+        "The reserve runs low: less of the device's damping is cancelled.",
+        "Of what the damping slider asks for");
+}
+
 }  // namespace
 
-void draw_coupling_panel(Parameters& p, const Analysis& analysis, double energy, ScreenRect rect) {
+void draw_coupling_panel(Parameters& p, const Analysis& analysis, const CouplingReading& now,
+                         ScreenRect rect) {
   begin_panel("coupling", rect);
   kind_buttons(p);
   ImGui::Spacing();
   draw_sliders(p, analysis);
-  draw_passivity(p, analysis);
+  if (info(p.kind).keeps_ledger) {
+    draw_ledger(now);
+  } else {
+    draw_passivity(p, analysis);
+  }
+  const double energy = now.energy;
   const std::string active =
       energy > 1e-4
           ? "The coupling has given more energy than it took. Either it is not passive, or it was "

@@ -7,7 +7,16 @@
 
 namespace limpid {
 
-// `analysis` of these parameters; `energy`: what the controller has given in all [J].
-void draw_coupling_panel(Parameters& p, const Analysis& analysis, double energy, ScreenRect rect);
+// What the present row says of it.
+struct CouplingReading {
+  double energy;            // given by the controller in all [J]
+  double reserve;           // of the ledger [J]
+  double contact_governor;  // shares let through, 0 to 1
+  double damping_governor;
+};
+
+// `analysis` of these parameters.
+void draw_coupling_panel(Parameters& p, const Analysis& analysis, const CouplingReading& now,
+                         ScreenRect rect);
 
 }  // namespace limpid

@@ -10,6 +10,7 @@
 #include "app/style/parameter_slider.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_limits.h"
 
 namespace limpid {
@@ -58,38 +59,38 @@ bool slider(double& value, const ParameterInfo& info, double usual, const char* 
   return changed;
 }
 
-constexpr const char* kStiffnessHelp =
-    "How hard it pushes back. Double click to type, right click for the usual value. A hard "
-    "surface is felt as hard as the coupling lets through.";
-constexpr ParameterInfo kStiffnessSlider{
-    .key = "stiffness",
-    .label = "Stiffness",
-    .field = &Parameters::eta,
-    .unit = "N/m",
-    .minimum = 1e-3,
-    .maximum = kStiffness.maximum,
-    .slider_minimum = 1,
-    .slider_maximum = 1e4,
-    .logarithmic = true,
-    .live = true,
-    .meaning = "",
-};
+ParameterInfo slider_of(const MaterialKey& each) {
+  constexpr double kAboveZero = 1e-3;  // the least where zero is not allowed
+  return {.key = each.key,
+          .label = each.label,
+          .field = &Parameters::eta,
+          .unit = *each.range.unit != '\0' ? each.range.unit : "-",
+          .minimum = each.range.exclusive_minimum ? kAboveZero : each.range.minimum,
+          .maximum = each.range.maximum,
+          .slider_minimum = each.slider_minimum,
+          .slider_maximum = each.slider_maximum,
+          .logarithmic = each.logarithmic,
+          .live = true,
+          .meaning = ""};
+}
 
 // What was changed; nothing, as a rule.
 std::string_view edit_material(Material& material) {
   std::string_view what;
-  if (slider(material.stiffness, kStiffnessSlider, Material{}.stiffness, kStiffnessHelp)) {
-    what = "stiffness";
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double usual = Material{}.*each.field;
+    if (slider(material.*each.field, slider_of(each), usual, each.meaning)) what = each.key;
   }
   return what;
 }
 
 bool joint_stiffness(double& value) {
-  ParameterInfo info = kStiffnessSlider;
+  const MaterialKey& of_material = kMaterialKeys.front();
+  ParameterInfo info = slider_of(of_material);
   info.unit = "N m/rad";
   info.slider_minimum = 0.1;
   info.slider_maximum = 1e3;
-  return slider(value, info, JointContact{}.stiffness, kStiffnessHelp);
+  return slider(value, info, JointContact{}.stiffness, of_material.meaning);
 }
 
 }  // namespace
@@ -199,7 +200,7 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
     mesh.scale = 1e-3 * millimetres / extent_;
     what = "scale";
   }
-  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.file.c_str());
+  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.model.c_str());
   const std::string health = mesh.shape->health().text();
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());

@@ -35,10 +35,10 @@ void draw_icon(ObjectKind kind, const ImVec2& middle, float r, ImU32 ink) {
   }
 }
 
-void draw_title(const Scene& scene) {
-  const std::string title = scene.title.empty() ? "untitled" : scene.title;
+void draw_title(const SceneDocument& document) {
+  const std::string title = document.title.empty() ? "untitled" : document.title;
   ImGui::TextUnformatted(title.c_str());
-  tooltip(scene.about.c_str());
+  tooltip(document.about.c_str());
 }
 
 void draw_why_fixed(const char* why) {
@@ -111,18 +111,18 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
 
 }  // namespace
 
-void ScenePanel::draw_recorded(const Scene& scene) {
-  draw_title(scene);
+void ScenePanel::draw_recorded(const SceneDocument& document) {
+  draw_title(document);
   draw_why_fixed("The recording's scene; it stays as it was.");
   ImGui::BeginDisabled();
-  draw_list(scene, nullptr, {});
+  draw_list(document.scene, nullptr, {});
   ImGui::EndDisabled();
 }
 
 void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
                       const AddObject& add) {
   SceneEditor& editor = document.editor();
-  draw_title(editor.scene());
+  draw_title(editor.document());
   if (editor.dirty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("changed");

@@ -16,7 +16,7 @@ class ScenePanel {
   void draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
             const AddObject& add);
   // A recording's scene, which stays as it was.
-  static void draw_recorded(const Scene& scene);
+  static void draw_recorded(const SceneDocument& document);
 
  private:
   ObjectEditor object_;

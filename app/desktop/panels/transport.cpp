@@ -152,7 +152,7 @@ void recording_controls(const Desk& desk, double tick, const Act& act) {
 void live_controls(Desk& desk, double tick, double& plot_length, const Act& act) {
   recording_controls(desk, tick, act);
   if (button("Open...", "Choose a recorded session (Ctrl+O).")) act(Action::open_session);
-  if (button("A/B", "Switch between standard and proposed coupling without a jump (C).")) {
+  if (button("A/B", "To the next coupling law, without a jump (C).")) {
     act(Action::toggle_coupling);
   }
   PlotGroup& group = desk.stage().group;

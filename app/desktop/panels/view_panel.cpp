@@ -68,7 +68,7 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
   const float size = face->FontSize * 1.15f;
   const char* lines[] = {"Drag with the left button: your hand pulls the arm onto the table.",
                          "Wheel while dragging: nearer and farther.",
-                         "C switches between the standard and the proposed coupling."};
+                         "C switches between the coupling laws."};
   float line_y = rect.max.y - 5.2f * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);

@@ -38,7 +38,7 @@ LoadedSession load_session(const fs::path& file) {
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
-          .scene = std::move(world.scene),
+          .document = std::move(world.document),
           .models = std::move(world.models),
           .history = std::move(history)};
 }
@@ -67,14 +67,14 @@ PlayedSession::PlayedSession(LoadedSession loaded)
     : file_(std::move(loaded.file)),
       player_(std::move(loaded.session)),
       arm_(std::move(loaded.arm)),
-      scene_(std::move(loaded.scene)),
+      document_(std::move(loaded.document)),
       models_(std::move(loaded.models)),
-      stage_(std::make_unique<Stage>(arm_, scene_, models_, std::move(loaded.history),
+      stage_(std::make_unique<Stage>(arm_, document_, models_, std::move(loaded.history),
                                      player_.duration())) {}
 
 void PlayedSession::show(Rerun again) {
-  stage_ =
-      std::make_unique<Stage>(arm_, scene_, models_, std::move(again.history), player_.duration());
+  stage_ = std::make_unique<Stage>(arm_, document_, models_, std::move(again.history),
+                                   player_.duration());
   rerun_ = std::move(again.rows);
 }
 

@@ -18,7 +18,7 @@ struct LoadedSession {
   std::filesystem::path file;
   std::shared_ptr<const Session> session;
   ArmDescription arm;
-  Scene scene;
+  SceneDocument document;
   MeshModels models;
   History history;
 };
@@ -42,7 +42,7 @@ class PlayedSession {
   explicit PlayedSession(LoadedSession loaded);
 
   const std::filesystem::path& file() const { return file_; }
-  const Scene& scene() const { return scene_; }
+  const SceneDocument& document() const { return document_; }
   Player& player() { return player_; }
   const Player& player() const { return player_; }
   Stage& stage() { return *stage_; }
@@ -58,7 +58,7 @@ class PlayedSession {
   std::filesystem::path file_;
   Player player_;
   ArmDescription arm_;
-  Scene scene_;
+  SceneDocument document_;
   MeshModels models_;
   std::vector<double> rerun_;  // rows of the second run; or none
   std::unique_ptr<Stage> stage_;

@@ -29,11 +29,12 @@ void Desktop::open_world(const std::string& device, const std::string& scene) {
   device_file_ = device.empty() ? default_device().string() : device;
   document_.set_file(scene.empty() ? default_scene().string() : fs::absolute(scene).string());
   ArmDescription arm = read_urdf(device_file_);
-  Scene whole = read_scene(document_.file(), arm);
-  if (whole.meshes.empty()) return open(std::move(arm), std::move(whole), {});
+  SceneDocument whole = read_scene(document_.file(), arm);
+  if (whole.scene.meshes.empty()) return open(std::move(arm), std::move(whole), {});
   // Models may be large: they come in while the window is there already.
-  Scene first = whole;
-  first.meshes.clear();
+  SceneDocument first = whole;
+  first.scene.meshes.clear();
+  first.models.clear();
   open(std::move(arm), std::move(first), {});
   document_.loader().open_scene(document_.file(), desk_.stage().arm());
 }
@@ -50,10 +51,10 @@ void Desktop::open_last_world(const std::string& device, const std::string& scen
   }
 }
 
-void Desktop::open(ArmDescription arm, Scene scene, MeshModels models,
+void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models,
                    std::unique_ptr<Device> device, bool saved) {
-  desk_.open(std::move(arm), std::move(scene), models, settings_.parameters, settings_.plot_length,
-             std::move(device));
+  desk_.open(std::move(arm), std::move(document), models, settings_.parameters,
+             settings_.plot_length, std::move(device));
   take_stage(std::move(models), saved);
 }
 
@@ -63,7 +64,7 @@ void Desktop::take_stage(MeshModels models, bool saved) {
   camera_.reset(stage.picture.bounds());
   camera_.finish();
   analysis_ = analyze(stage.arm(), rest_pose(stage.arm()), settings_.parameters, std::nullopt);
-  document_.open(stage.arm(), stage.scene(), std::move(models), saved);
+  document_.open(stage.arm(), stage.document(), std::move(models), saved);
   shown_ = document_.editor().version();
   touched_ = shown_.world;
 }
@@ -155,8 +156,8 @@ void Desktop::start_recording() {
   playback_.close();
   RunPlan plan;
   plan.arm = desk_.stage().arm();
-  plan.scene = document_.scene();
-  plan.scene.toml = document_.toml();
+  plan.document = document_.editor().document();
+  plan.document.toml = document_.toml();
   plan.hand.source = desk_.loop().device_in_place() ? "device" : "mouse";
   plan.parameters = settings_.parameters;
   hand_scene_over(true);

@@ -75,7 +75,7 @@ class Desktop {
 
  private:
   // A world, and its loop.
-  void open(ArmDescription arm, Scene scene, MeshModels models,
+  void open(ArmDescription arm, SceneDocument document, MeshModels models,
             std::unique_ptr<Device> device = nullptr, bool saved = true);
   void take_stage(MeshModels models, bool saved);
   void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);

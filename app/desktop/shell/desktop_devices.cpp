@@ -24,7 +24,7 @@ void Desktop::open_device(std::unique_ptr<Device> device) {
   if (Plug::guides(traits)) {
     const SceneEditor& editor = document_.editor();
     if (desk_.loop().device_in_place()) {
-      open(present, editor.scene(), editor.models(), nullptr, !editor.dirty());
+      open(present, editor.document(), editor.models(), nullptr, !editor.dirty());
     }
     return desk_.loop().plug(std::move(device));
   }
@@ -51,7 +51,7 @@ void Desktop::change_arm(const ArmDescription& arm, std::unique_ptr<Device> devi
     return document_.leave([this, arm] { take_up_set_aside(arm); });
   }
   if (auto scene = document_.scene_for(arm)) {
-    return open(arm, std::move(scene->scene), std::move(scene->models), std::move(device),
+    return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
                 !document_.editor().dirty());
   }
   document_.put_aside();
@@ -64,7 +64,7 @@ void Desktop::change_arm(const ArmDescription& arm, std::unique_ptr<Device> devi
 void Desktop::take_up_set_aside(const ArmDescription& arm) {
   const SetAside before = document_.take_set_aside();
   document_.set_file(before.file);
-  open(arm, before.world->scene, before.world->models, nullptr, !before.unsaved);
+  open(arm, before.world->document, before.world->models, nullptr, !before.unsaved);
 }
 
 }  // namespace limpid

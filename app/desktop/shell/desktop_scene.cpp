@@ -80,17 +80,17 @@ void Desktop::take_loaded() {
 void Desktop::accept(LoadedScene& loaded) {
   if (desk_.loop().device_in_place()) {
     cut_force();
-    desk_.open_beside(std::move(loaded.scene), loaded.models, settings_.parameters,
+    desk_.open_beside(std::move(loaded.document), loaded.models, settings_.parameters,
                       settings_.plot_length);
     take_stage(std::move(loaded.models), true);
   } else {
-    open(desk_.stage().arm(), std::move(loaded.scene), std::move(loaded.models));
+    open(desk_.stage().arm(), std::move(loaded.document), std::move(loaded.models));
   }
   // At the start it is the one that was named already.
   if (const std::string file = loaded.file.string(); file != document_.file()) {
     document_.remember_file(file);
   }
-  const std::string& title = desk_.stage().scene().title;
+  const std::string& title = desk_.stage().document().title;
   notices_.say(fmt::format("Scene: {}", title.empty() ? loaded.file.filename().string() : title));
   for (const std::string& warning : loaded.warnings) notices_.say(warning);
 }
@@ -154,7 +154,7 @@ void Desktop::show_scene() {
   std::optional<std::size_t> highlighted;
   if (now.selected && now.selected->kind == ObjectKind::mesh) highlighted = now.selected->index;
   try {
-    desk_.stage().show(now.world->scene, now.world->models, highlighted);
+    desk_.stage().show(now.world->document, now.world->models, highlighted);
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
   }

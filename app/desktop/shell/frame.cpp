@@ -101,8 +101,10 @@ void Frame::draw_view(ScreenRect rect) {
 
 void Frame::draw_coupling(ScreenRect rect) {
   const RowLayout& layout = desktop_.shown().channels().layout();
-  draw_coupling_panel(desktop_.settings().parameters, desktop_.analysis(),
-                      layout.in(desktop_.row(), Column::energy_total)[0], rect);
+  const auto at = [&](Column c) { return layout.in(desktop_.row(), c)[0]; };
+  const CouplingReading now{at(Column::energy_total), at(Column::energy_ledger),
+                            at(Column::governor), at(Column::damping_governor)};
+  draw_coupling_panel(desktop_.settings().parameters, desktop_.analysis(), now, rect);
 }
 
 // Scene, hand, device, analysis and timing.
@@ -114,7 +116,7 @@ void Frame::draw_side(ScreenRect rect) {
   begin_panel("side", rect);
   if (section("Scene", true)) {
     if (const PlayedSession* session = desktop_.playback().shown()) {
-      ScenePanel::draw_recorded(session->scene());
+      ScenePanel::draw_recorded(session->document());
     } else {
       scene_.draw(desktop_.document(), desk.stage().arm(), desk.recording(), act_,
                   [this](SceneObject object) { desktop_.add_object(std::move(object)); });

@@ -15,7 +15,7 @@ constexpr std::array kShortcuts{
     Shortcut{"middle drag, Shift+right drag", "move the camera"},
     Shortcut{"wheel", "zoom to the cursor"},
     Shortcut{"1, 2, 3, 0", "front, side, top view; reset the camera"},
-    Shortcut{"C", "standard or proposed coupling (A/B)"},
+    Shortcut{"C", "the next coupling law"},
     Shortcut{"[, ]", "smaller or larger eta"},
     Shortcut{"Esc, Space", "force off at once; Esc closes what is open, too"},
     Shortcut{"F", "force on or off"},

@@ -15,12 +15,13 @@ namespace limpid {
 namespace {
 
 // Changes that the user could not be asked about are kept for the next start.
-void keep_changes(const Scene& scene, const ArmDescription& arm, const std::string& scene_file) {
+void keep_changes(const SceneDocument& document, const ArmDescription& arm,
+                  const std::string& scene_file) {
   const std::string name = std::filesystem::path(scene_file).stem().string();
   for (const std::filesystem::path& folder :
        {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
     try {
-      const auto file = keep_unsaved(scene, arm, name, folder);
+      const auto file = keep_unsaved(document, arm, name, folder);
       fmt::print(stderr, "limpid: unsaved changes are in {}\n", file.string());
       return;
     } catch (const std::exception& e) {
@@ -107,7 +108,7 @@ bool Application::asked_to_close() {
   Document& document = desktop_.document();
   if (interrupted) {
     if (document.editor().dirty()) {
-      keep_changes(document.scene(), desktop_.desk().stage().arm(), document.file());
+      keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
     }
     return true;
   }
@@ -149,7 +150,7 @@ void Application::say_what_was_saved() {
 
 void Application::keep() {
   if (const SetAside* waiting = desktop_.document().unsaved_set_aside()) {
-    keep_changes(waiting->world->scene, waiting->arm, waiting->file);
+    keep_changes(waiting->world->document, waiting->arm, waiting->file);
   }
   Settings& settings = desktop_.settings();
   if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);

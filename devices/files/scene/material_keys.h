@@ -13,10 +13,30 @@ struct MaterialKey {
   const char* key;
   double Material::*field;
   Range range;
+  bool required;      // in files; else it is as a Material has it
+  const char* label;  // of its slider
+  double slider_minimum, slider_maximum;
+  bool logarithmic;
+  const char* meaning;  // one or two sentences for people
 };
 
 inline constexpr std::array kMaterialKeys{
-    MaterialKey{"stiffness", &Material::stiffness, scene_limits::kStiffness},
+    MaterialKey{"stiffness", &Material::stiffness, scene_limits::kStiffness, true, "Stiffness", 1,
+                1e4, true,
+                "How hard it pushes back. Double click to type, right click for the usual value. A "
+                "hard surface is felt as hard as the coupling lets through."},
+    MaterialKey{"damping", &Material::damping, scene_limits::kDamping, false, "Damping", 0, 20,
+                false,
+                "What it takes up while it is pressed in or let out; 0 gives all back. Rendered by "
+                "the predictive coupling, as far as the tick allows."},
+    MaterialKey{"friction_static", &Material::friction_static, scene_limits::kFriction, false,
+                "Friction, sticking", 0, 1, false,
+                "Up to this part of the pressing force the tip sticks. Rendered by the predictive "
+                "coupling."},
+    MaterialKey{"friction_kinetic", &Material::friction_kinetic, scene_limits::kFriction, false,
+                "Friction, slipping", 0, 1, false,
+                "The part of the pressing force that holds the tip back while it slips. Rendered "
+                "by the predictive coupling."},
 };
 
 // Within what a file may say.

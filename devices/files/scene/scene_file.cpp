@@ -37,7 +37,8 @@ void allow_with_material(const TomlTable& t, std::vector<const char*> keys) {
 Material material(const TomlTable& t) {
   Material out;
   for (const MaterialKey& each : kMaterialKeys) {
-    out.*each.field = t.need(t.number(each.key, each.range), each.key);
+    const auto value = t.number(each.key, each.range);
+    out.*each.field = each.required ? t.need(value, each.key) : value.value_or(out.*each.field);
   }
   return out;
 }
@@ -134,22 +135,21 @@ Pose optional_pose(const TomlTable& t) {
   return pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
 }
 
-MeshObstacle mesh(const TomlTable& t, const fs::path& base_dir, const SceneFiles& files) {
+ModelFile read_model(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
+  const fs::path path = model_path(t, file, base_dir);
+  const std::string bytes = read_text(path, kLargestModel);
+  return {path.string(),
+          std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
+}
+
+MeshObstacle mesh(const TomlTable& t) {
   allow_with_material(t, {"name", "file", "position", "rpy", "scale"});
   MeshObstacle out;
   out.name = name(t);
-  out.file = model_file(t);
+  out.model = model_file(t);
   out.pose = optional_pose(t);
   out.scale = t.number("scale", kScale).value_or(1);
   out.material = material(t);
-  if (const auto known = files.find(out.file); known != files.end()) {
-    out.source = known->second;
-    return out;
-  }
-  const fs::path path = model_path(t, out.file, base_dir);
-  const std::string bytes = read_text(path, kLargestModel);
-  out.path = path.string();
-  out.source = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
   return out;
 }
 
@@ -181,26 +181,32 @@ void check_counts(const Scene& scene, const std::string& where) {
 
 }  // namespace
 
-Scene read_scene(const fs::path& file, const ArmDescription& arm) {
+SceneDocument read_scene(const fs::path& file, const ArmDescription& arm) {
   return parse_scene(read_text(file, kLongestScene), file.string(),
                      fs::absolute(file).parent_path(), arm);
 }
 
-Scene parse_scene(const std::string& text, const std::string& where, const fs::path& base_dir,
-                  const ArmDescription& arm, const SceneFiles& files) {
+SceneDocument parse_scene(const std::string& text, const std::string& where,
+                          const fs::path& base_dir, const ArmDescription& arm,
+                          const SceneFiles& files) {
   const toml::table table = parse_toml(text, where);
   const TomlTable t(table, where, "");
   t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "mesh", "joint_contact",
                 "probe", "visual"});
-  Scene scene;
-  scene.title = t.text("title").value_or("");
-  scene.about = t.text("about").value_or("");
+  SceneDocument out;
+  out.title = t.text("title").value_or("");
+  out.about = t.text("about").value_or("");
+  Scene& scene = out.scene;
   scene.tip_radius = t.number("tip_radius", kRadius).value_or(0);
   for (const TomlTable& each : t.tables("plane")) scene.planes.push_back(plane(each));
   for (const TomlTable& each : t.tables("sphere")) scene.spheres.push_back(sphere(each));
   for (const TomlTable& each : t.tables("box")) scene.boxes.push_back(box(each));
   for (const TomlTable& each : t.tables("mesh")) {
-    scene.meshes.push_back(mesh(each, base_dir, files));
+    const std::string& model = scene.meshes.emplace_back(mesh(each)).model;
+    if (out.models.contains(model)) continue;
+    const auto known = files.find(model);
+    out.models[model] =
+        known != files.end() ? ModelFile{"", known->second} : read_model(each, model, base_dir);
   }
   for (const TomlTable& each : t.tables("joint_contact")) {
     scene.joint_contacts.push_back(joint_contact(each, arm));
@@ -208,11 +214,11 @@ Scene parse_scene(const std::string& text, const std::string& where, const fs::p
   for (const TomlTable& each : t.tables("probe")) scene.probes.push_back(probe(each, arm));
   for (const TomlTable& each : t.tables("visual")) {
     SceneVisual seen;
-    if (visual(each, base_dir, seen)) scene.visuals.push_back(std::move(seen));
+    if (visual(each, base_dir, seen)) out.visuals.push_back(std::move(seen));
   }
   check_counts(scene, where);
-  scene.toml = text;
-  return scene;
+  out.toml = text;
+  return out;
 }
 
 }  // namespace limpid

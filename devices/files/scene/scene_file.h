@@ -9,6 +9,9 @@
 //     point = [0.2, 0.0, -0.04]    # on the surface
 //     normal = [0.0, 0.0, 1.0]     # out of the material, any length
 //     stiffness = 600.0            # N/m
+//     damping = 0.0                # N s/m, optional; as the next two, in all but joint contacts
+//     friction_static = 0.0        # tangential by normal force up to which it sticks
+//     friction_kinetic = 0.0       # the same while it slips
 //
 //     [[sphere]]
 //     name = "ball"
@@ -56,19 +59,19 @@
 #include <string>
 
 #include "core/dynamics/arm_description.h"
-#include "core/touch/scene.h"
+#include "devices/files/scene/scene_document.h"
 
 namespace limpid {
 
 // Errors: FileError "FILE:LINE: KEY: found; allowed". Unknown keys are errors, a file without any
 // contact is not (free space). Pairs of a contact and a probe, tip included, are at most 64 x 64.
-Scene read_scene(const std::filesystem::path& file, const ArmDescription& arm);
+SceneDocument read_scene(const std::filesystem::path& file, const ArmDescription& arm);
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
 // one inside a session) visuals that are not there are left out. Meshes come from `files` if they
 // are there, else from the folder; their shapes are still to be built.
-Scene parse_scene(const std::string& text, const std::string& where,
-                  const std::filesystem::path& base_dir, const ArmDescription& arm,
-                  const SceneFiles& files = {});
+SceneDocument parse_scene(const std::string& text, const std::string& where,
+                          const std::filesystem::path& base_dir, const ArmDescription& arm,
+                          const SceneFiles& files = {});
 
 }  // namespace limpid

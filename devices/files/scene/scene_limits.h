@@ -16,6 +16,8 @@ inline constexpr Range kAngle{-100, 100, false, "rad"};
 inline constexpr Range kLength{0, 10, true, "m"};
 inline constexpr Range kRadius{0, 1, false, "m"};
 inline constexpr Range kStiffness{0, 1e6, true, "N/m"};
+inline constexpr Range kDamping{0, 1000, false, "N s/m"};
+inline constexpr Range kFriction{0, 1, false, ""};
 inline constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
 inline constexpr Range kScale{0, 1e4, true, ""};
 inline constexpr Range kDirection{-1e6, 1e6, false, ""};

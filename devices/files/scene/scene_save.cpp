@@ -77,7 +77,8 @@ class Models {
 
 }  // namespace
 
-Scene save_scene(const Scene& scene, const ArmDescription& arm, const fs::path& file) {
+SceneDocument save_scene(const SceneDocument& document, const ArmDescription& arm,
+                         const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   std::error_code none;
   if (!fs::is_directory(folder, none)) {
@@ -86,13 +87,13 @@ Scene save_scene(const Scene& scene, const ArmDescription& arm, const fs::path& 
                                 folder.string()));
   }
   if (fs::is_directory(file, none)) throw FileError(file.string() + ": is a folder");
-  Scene out = scene;
+  SceneDocument out = document;
+  out.models.clear();
   Models models(folder);
-  SceneFiles files;
-  for (MeshObstacle& mesh : out.meshes) {
-    mesh.file = models.place(mesh.path, mesh.file, mesh.source.get());
-    mesh.path = (folder / mesh.file).lexically_normal().string();
-    files[mesh.file] = mesh.source;
+  for (MeshObstacle& mesh : out.scene.meshes) {
+    const ModelFile& model = document.models.at(mesh.model);
+    mesh.model = models.place(model.path, mesh.model, model.bytes.get());
+    out.models[mesh.model] = {(folder / mesh.model).lexically_normal().string(), model.bytes};
   }
   for (SceneVisual& visual : out.visuals) {
     const std::string name = models.place(visual.file, visual.file, nullptr);
@@ -100,7 +101,7 @@ Scene save_scene(const Scene& scene, const ArmDescription& arm, const fs::path& 
   }
   out.toml = scene_text(out, arm, folder);
   // What could not be read again never takes the place of what can.
-  parse_scene(out.toml, file.string(), folder, arm, files);
+  parse_scene(out.toml, file.string(), folder, arm, files_of(out));
   write_atomically(
       file, std::span(reinterpret_cast<const unsigned char*>(out.toml.data()), out.toml.size()));
   models.keep();

@@ -68,7 +68,10 @@ class Text {
 };
 
 void put_material(Text& text, const Material& material) {
-  for (const MaterialKey& each : kMaterialKeys) text.put(each.key, material.*each.field);
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double value = material.*each.field;
+    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
+  }
 }
 
 void put_joint(Text& text, const JointContact& contact, const ArmDescription& arm) {
@@ -115,10 +118,12 @@ std::string relative(const std::string& file, const fs::path& folder) {
 
 }  // namespace
 
-std::string scene_text(const Scene& scene, const ArmDescription& arm, const fs::path& folder) {
+std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
+                       const fs::path& folder) {
+  const Scene& scene = document.scene;
   Text text;
-  if (!scene.title.empty()) text.put("title", scene.title);
-  if (!scene.about.empty()) text.put("about", scene.about);
+  if (!document.title.empty()) text.put("title", document.title);
+  if (!document.about.empty()) text.put("about", document.about);
   if (scene.tip_radius != 0) text.put("tip_radius", scene.tip_radius);
   for (const Plane& plane : scene.planes) {
     text.table("plane");
@@ -145,7 +150,7 @@ std::string scene_text(const Scene& scene, const ArmDescription& arm, const fs::
   for (const MeshObstacle& mesh : scene.meshes) {
     text.table("mesh");
     text.put("name", mesh.name);
-    text.put("file", mesh.file);
+    text.put("file", mesh.model);
     text.put_place(mesh.pose, mesh.scale);
     put_material(text, mesh.material);
   }
@@ -158,7 +163,7 @@ std::string scene_text(const Scene& scene, const ArmDescription& arm, const fs::
     text.put("stiffness", contact.stiffness);
   }
   for (const Probe& probe : scene.probes) put_probe(text, probe, arm);
-  for (const SceneVisual& visual : scene.visuals) {
+  for (const SceneVisual& visual : document.visuals) {
     text.table("visual");
     text.put("file", relative(visual.file, folder));
     text.put_place(visual.pose, visual.scale);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/tick/row.h"
-#include "core/touch/scene.h"
 #include "devices/files/file_error.h"
+#include "devices/files/scene_files.h"
 
 namespace limpid {
 

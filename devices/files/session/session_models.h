@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "core/touch/scene.h"
+#include "devices/files/scene_files.h"
 #include "devices/files/session/hdf5_handles.h"
 
 namespace limpid {

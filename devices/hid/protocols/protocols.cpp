@@ -50,10 +50,12 @@ constexpr std::array<HidProtocolEntry, 3> kProtocols{{
 
 std::span<const HidProtocolEntry> hid_protocols() { return kProtocols; }
 
-const HidProtocolEntry* find_protocol(const ReportDescriptor& descriptor) {
-  const auto found = std::ranges::find_if(
-      kProtocols, [&](const HidProtocolEntry& entry) { return entry.describes(descriptor); });
-  return found == kProtocols.end() ? nullptr : &*found;
+const HidProtocolEntry* find_protocol(const ReportDescriptor& descriptor, std::uint16_t vendor,
+                                      std::span<const HidProtocolEntry> among) {
+  const auto found = std::ranges::find_if(among, [&](const HidProtocolEntry& entry) {
+    return (entry.vendor == 0 || entry.vendor == vendor) && entry.describes(descriptor);
+  });
+  return found == among.end() ? nullptr : &*found;
 }
 
 }  // namespace limpid

@@ -29,10 +29,12 @@ struct HidProtocolEntry {
   // Throws HidError, as the protocols do. `settings` matter to uncalibrated devices only.
   std::unique_ptr<HidProtocol> (*make)(const ReportDescriptor& descriptor,
                                        const PidSettings& settings);
+  std::uint16_t vendor = 0;  // USB's number for the maker, where only that tells; 0: anybody
 };
 
 std::span<const HidProtocolEntry> hid_protocols();
-// The first that describes it; null if none does.
-const HidProtocolEntry* find_protocol(const ReportDescriptor& descriptor);
+// The first that describes a device of this maker; null if none does.
+const HidProtocolEntry* find_protocol(const ReportDescriptor& descriptor, std::uint16_t vendor,
+                                      std::span<const HidProtocolEntry> among = hid_protocols());
 
 }  // namespace limpid

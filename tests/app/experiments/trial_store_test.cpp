@@ -33,7 +33,7 @@ RunPlan rich_plan() {
 
 const std::vector<std::pair<const char*, Change>> kChanges{
     {"a byte of the arm", [](RunPlan& p) { p.arm.urdf[p.arm.urdf.size() / 2] ^= 1; }},
-    {"a byte of the scene", [](RunPlan& p) { p.scene.toml.back() ^= 1; }},
+    {"a byte of the scene", [](RunPlan& p) { p.document.toml.back() ^= 1; }},
     {"a parameter", [](RunPlan& p) { p.parameters.b_vc *= 1 + 1e-15; }},
     {"the coupling", [](RunPlan& p) { p.parameters.kind = CouplingKind::standard; }},
     {"the tick", [](RunPlan& p) { p.parameters.tick = 0.0011; }},
@@ -71,14 +71,15 @@ TEST(TrialKey, IsAnotherOneForWhateverIsOtherwise) {
 TEST(TrialKey, KnowsTheModelsOfTheScene) {
   RunPlan plan = rich_plan();
   MeshObstacle mesh = test::obstacle(test::sheet(1, 1));
-  mesh.file = "a.glb";
+  mesh.model = "a.glb";
   using Bytes = std::vector<unsigned char>;
-  mesh.source = std::make_shared<const Bytes>(Bytes{1, 2, 3});
-  plan.scene.meshes.push_back(mesh);
+  plan.document.models["a.glb"].bytes = std::make_shared<const Bytes>(Bytes{1, 2, 3});
+  plan.document.scene.meshes.push_back(mesh);
   std::set<std::uint64_t> keys{trial_key(rich_plan(), 1), trial_key(plan, 1)};
-  plan.scene.meshes[0].source = std::make_shared<const Bytes>(Bytes{1, 2, 4});
+  plan.document.models["a.glb"].bytes = std::make_shared<const Bytes>(Bytes{1, 2, 4});
   keys.insert(trial_key(plan, 1));
-  plan.scene.meshes[0].file = "b.glb";
+  plan.document.models["b.glb"] = plan.document.models["a.glb"];
+  plan.document.scene.meshes[0].model = "b.glb";
   keys.insert(trial_key(plan, 1));
   EXPECT_EQ(keys.size(), 4u);
 }

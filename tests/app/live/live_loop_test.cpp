@@ -19,18 +19,18 @@ namespace {
 using namespace std::chrono_literals;
 const Vec3 kHome(0.19, 0, 0);
 
-SessionInfo info_of(const ArmDescription& arm, const Scene& scene, const Parameters& p) {
+SessionInfo info_of(const ArmDescription& arm, const SceneDocument& document, const Parameters& p) {
   RunPlan plan;
   plan.arm = arm;
-  plan.scene = scene;
+  plan.document = document;
   plan.hand.source = "mouse";
   plan.parameters = p;
   return session_info(plan);
 }
 
 std::unique_ptr<Recorder> recorder(const std::filesystem::path& out, const ArmDescription& arm,
-                                   const Scene& scene, const Parameters& p) {
-  return std::make_unique<Recorder>(out, info_of(arm, scene, p), p, false);
+                                   const SceneDocument& document, const Parameters& p) {
+  return std::make_unique<Recorder>(out, info_of(arm, document, p), p, false);
 }
 
 // Waits until the loop has lived through some more ticks.
@@ -43,16 +43,16 @@ void let_live(LiveLoop& loop, std::int64_t ticks) {
 TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   const test::TempDir dir;
   const ArmDescription arm = test::omni();
-  const Scene scene = test::omni_scene("table.toml");
+  const SceneDocument table = test::omni_document("table.toml");
   LiveLoop loop({});
   Controls controls;
-  loop.open(arm, scene, controls.parameters, kHome);
+  loop.open(arm, table.scene, controls.parameters, kHome);
   // It is in motion when the recording begins.
   controls.grab = true;
   controls.goal = kHome + Vec3(0.02, 0.03, 0.01);
   loop.set(controls);
   let_live(loop, 100);
-  loop.record(recorder(dir / "a.h5", arm, scene, controls.parameters));
+  loop.record(recorder(dir / "a.h5", arm, table, controls.parameters));
   bool armed = true;
   for (int i = 0; i < 25; ++i) {
     controls.goal = kHome + Vec3(0.001 * i, -0.002 * i, -0.0025 * i);
@@ -347,7 +347,7 @@ TEST(LiveLoop, LosesNoRecorderHoweverSoonItIsStopped) {
   loop.open(arm, Scene{}, Parameters{}, kHome);
   for (int i = 0; i < 40; ++i) {
     const auto file = dir / ("a" + std::to_string(i) + ".h5").c_str();
-    loop.record(recorder(file, arm, Scene{}, Parameters{}));
+    loop.record(recorder(file, arm, {}, Parameters{}));
     if (i % 4 != 0) std::this_thread::sleep_for(std::chrono::microseconds(300 * (i % 7)));
     if (i % 5 == 4) {
       loop.open(arm, Scene{}, Parameters{}, kHome);  // in the middle of it
@@ -362,7 +362,7 @@ TEST(LiveLoop, TakesNoRecorderOfAnotherWidth) {
   const test::TempDir dir;
   LiveLoop loop({});
   loop.open(test::omni(), Scene{}, Parameters{}, kHome);
-  EXPECT_THROW(loop.record(recorder(dir / "a.h5", test::random_arm(2, 3), Scene{}, Parameters{})),
+  EXPECT_THROW(loop.record(recorder(dir / "a.h5", test::random_arm(2, 3), {}, Parameters{})),
                std::invalid_argument);
   EXPECT_FALSE(loop.recording());
   let_live(loop, 20);

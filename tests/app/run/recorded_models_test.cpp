@@ -69,8 +69,9 @@ std::vector<unsigned char> picture_of(const RunPlan& plan) {
   constexpr int kWidth = 160, kHeight = 100;
   try {
     const OffscreenContext context(kWidth, kHeight);
-    SceneView view(test::assets_dir() / "../shaders", plan.arm, plan.scene);
-    view.set_meshes(mesh_pictures(plan.scene, plan.models));
+    SceneView view(test::assets_dir() / "../shaders", plan.arm, plan.document.scene,
+                   visual_pictures(plan.document));
+    view.set_meshes(mesh_pictures(plan.document.scene, plan.models));
     ViewState state;
     const RowLayout layout(plan.arm.dof());
     const std::vector<double> row(static_cast<std::size_t>(layout.stride()));
@@ -89,7 +90,7 @@ std::vector<unsigned char> picture_of(const RunPlan& plan) {
 // Records the plan, takes its models away and runs the recording again; and the recording of that.
 void expect_to_stand_alone(RunPlan plan, const fs::path& folder,
                            const std::function<void()>& take_away) {
-  plan.models = build_meshes(plan.scene);
+  plan.models = build_meshes(plan.document);
   const Session session = recorded(plan, folder / "first.h5");
   ASSERT_EQ(session.size(), plan.rows);
   const auto picture = picture_of(plan);
@@ -100,7 +101,8 @@ void expect_to_stand_alone(RunPlan plan, const fs::path& folder,
     EXPECT_EQ(first_difference(rows_of(session), rows_of(rerun)), -1);
     ASSERT_EQ(rerun.models.size(), plan.models.size());
     for (std::size_t i = 0; i < plan.models.size(); ++i) {
-      EXPECT_EQ(rerun.scene.meshes[i].path, "") << "read from the session";
+      const std::string& model = rerun.document.scene.meshes[i].model;
+      EXPECT_EQ(rerun.document.models.at(model).path, "") << "read from the session";
       expect_same(*plan.models[i], *rerun.models[i]);
     }
     EXPECT_EQ(picture_of(rerun), picture);
@@ -110,7 +112,7 @@ void expect_to_stand_alone(RunPlan plan, const fs::path& folder,
 
 RunPlan plan_in(const fs::path& scene) {
   RunPlan plan = test::plan("free.toml", "touch.csv", 1.5);
-  plan.scene = read_scene(scene, plan.arm);
+  plan.document = read_scene(scene, plan.arm);
   return plan;
 }
 
@@ -276,7 +278,7 @@ TEST_F(OddModels, OfDecorationThatIsGoneDoNotKeepARecordingFromBeingOpened) {
   const std::string table = (folder_ / "table.glb").string();
   write_text("scene.toml", "[[visual]]\nfile = \"" + table + "\"\n");
   RunPlan plan = plan_in(folder_ / "scene.toml");
-  ASSERT_EQ(plan.scene.visuals.size(), 1u);
+  ASSERT_EQ(plan.document.visuals.size(), 1u);
   std::string urdf = plan.arm.urdf;
   const std::size_t mesh = urdf.find("filename=\"");
   ASSERT_NE(mesh, std::string::npos);
@@ -286,7 +288,7 @@ TEST_F(OddModels, OfDecorationThatIsGoneDoNotKeepARecordingFromBeingOpened) {
   const Session session = recorded(plan, dir_ / "a.h5");
   fs::remove_all(folder_);
   const RunPlan again = rerun_of(dir_ / "a.h5");
-  EXPECT_TRUE(again.scene.visuals.empty());
+  EXPECT_TRUE(again.document.visuals.empty());
   EXPECT_EQ(first_difference(rows_of(session), rows_of(again)), -1);
 }
 
@@ -296,7 +298,7 @@ TEST_F(OddModels, WithoutABufferAreRefused) {
   write("others.bin", sheet_.others);
   write_text("scene.toml", "[[mesh]]\nname = \"m\"\nfile = \"part.gltf\"\nstiffness = 600.0\n");
   RunPlan plan = plan_in(folder_ / "scene.toml");
-  EXPECT_THAT(test::refusal([&] { build_meshes(plan.scene); }),
+  EXPECT_THAT(test::refusal([&] { build_meshes(plan.document); }),
               testing::AllOf(testing::HasSubstr("part.gltf"), testing::HasSubstr("none.bin")));
 }
 

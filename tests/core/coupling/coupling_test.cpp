@@ -77,7 +77,9 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
     p.eta = 0.3;
     Coupling<kAnyDof> coupling;
     const Vec<kAnyDof> x = x1, v = v1, f1 = r.f1, vbar = vbar2;
-    const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001};
+    const Vec<kAnyDof> b = Vector::Zero(n), limit = Vector::Constant(n, 1);
+    const Arm<kAnyDof>::Frames frames{};
+    const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001, frames, b, b, limit, 1, 0.001, 0};
     const Vector tau = coupling.step(CouplingKind::standard, p, in, proxy);
     const Vector on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
     EXPECT_LT((tau - on_device).norm(), 1e-13);
@@ -88,7 +90,7 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
 }
 
 TEST(Laws, AreKnownByTheirKeysAndTakenByTurns) {
-  EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed"));
+  EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed", "predictive"));
   CouplingKind kind = CouplingKind::standard;
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     EXPECT_STREQ(info(kind).key, kLawKeys[i]);

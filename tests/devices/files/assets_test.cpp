@@ -132,7 +132,7 @@ int times_entered(const HandPath& path, const std::function<bool(const Vec3&)>& 
 }
 
 TEST(Hands, PushTheUpperArmThreeTimesThenTheTableThreeTimes) {
-  const Scene scene = read_scene(test::assets() / "scenes/proximal.toml", omni());
+  const Scene scene = read_scene(test::assets() / "scenes/proximal.toml", omni()).scene;
   const HandPath path = read_hand(test::assets() / "hands/proximal.csv");
   const JointContact& stop = scene.joint_contacts.at(0);
   const Plane& table = scene.planes.at(0);
@@ -147,7 +147,7 @@ TEST(Hands, PushTheUpperArmThreeTimesThenTheTableThreeTimes) {
 }
 
 TEST(Hands, PressTheTableFiveMillimetresDeepAndLeaveItAgain) {
-  const Scene scene = read_scene(test::assets() / "scenes/table.toml", omni());
+  const Scene scene = read_scene(test::assets() / "scenes/table.toml", omni()).scene;
   const HandPath path = read_hand(test::assets() / "hands/touch.csv");
   const auto touches = [&](const Vec3& p) { return p.z() < scene.planes.at(0).point.z(); };
   EXPECT_EQ(times_entered(path, touches), 2);

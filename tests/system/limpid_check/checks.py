@@ -8,6 +8,7 @@ import numpy as np
 
 from .energy import check_controller_energy, check_proxy_balance
 from .observer import check_observer
+from .predictive import check_predictive
 from .report import Check
 from .session import Session
 from .slopes import check_slopes
@@ -46,6 +47,7 @@ CHECKS: Mapping[str, Callable[[Session], list[Check]]] = {
     "motors": check_motors,
     "observer": check_observer,
     "slopes": check_slopes,
+    "predictive": check_predictive,
 }
 
 

@@ -42,12 +42,23 @@ DATASETS: Mapping[str, int] = {
     "/timing/compute": 1,
 }
 
+# What sessions older than these columns lack; the predictive coupling writes them.
+_LATER = (
+    "/device/force_wanted",
+    "/coupling/governor",
+    "/coupling/damping_governor",
+    "/energy/port",
+    "/energy/ledger",
+    "/energy/contact_potential",
+)
+
 ATTRIBUTES = (
     "format", "version", "tick", "dof", "created", "app_version",
     "seed", "source", "config", "device_urdf", "scene",
 )  # fmt: skip
 
-# The contract's keys that the recomputations need, with its defaults. None: as the URDF says.
+# The contract's keys that the recomputations need, with its defaults. None: as the URDF, the preset
+# or eta says.
 _DEFAULTS: Mapping[str, Any] = {
     "coupling.k_vc": 10.0,
     "coupling.b_vc": 0.001,
@@ -56,6 +67,14 @@ _DEFAULTS: Mapping[str, Any] = {
     "observer.velocity": "raw",
     "proxy.inertia_ratio": 1e-4,
     "model.inertia_error": 1.0,
+    "model.delay": 0,
+    "coupling.damping": None,
+    "coupling.band": 5.3,
+    "predictor.preset": "auto",
+    "predictor.p": None,
+    "predictor.mu": None,
+    "predictor.hand_mass": 0.2,
+    "ledger.energy": 0.005,
     "device.encoder_step": 0.0,
     "device.friction": None,
     "device.damping": None,
@@ -81,6 +100,12 @@ class Session:
 
     def __len__(self) -> int:
         return len(self.data["/time"])
+
+    def rows(self, part: slice) -> Session:
+        """A session of these rows alone."""
+        data = {path: values[part] for path, values in self.data.items()}
+        settings = {key: values[part] for key, values in self.settings.items()}
+        return Session(data, settings, self.attributes, self.chain)
 
     @property
     def tick(self) -> float:
@@ -147,8 +172,14 @@ def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
         if values.dtype != kind:
             raise SessionError(f"{path} is {values.dtype}, expected {np.dtype(kind)}")
         data[path] = values
-    if "/device/force_wanted" in file:
-        data["/device/force_wanted"] = file["/device/force_wanted"][()]
+    predictive = np.any(data["/coupling/kind"] == 2)
+    for path in _LATER:
+        if path in file:
+            data[path] = file[path][()]
+            if len(data[path]) != rows:
+                raise SessionError(f"{path} has {len(data[path])} rows, expected {rows}")
+        elif predictive:
+            raise SessionError(f"{path} is missing")
     return data
 
 

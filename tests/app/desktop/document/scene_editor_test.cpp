@@ -15,13 +15,17 @@ namespace {
 MeshObstacle mesh(const std::string& name) {
   MeshObstacle out;
   out.name = name;
-  out.file = "/models/" + name + ".glb";
-  const std::string bytes = "bytes of " + name;
-  out.source = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
+  out.model = "/models/" + name + ".glb";
   const std::vector<Eigen::Vector3f> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<std::uint32_t> faces{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
   out.shape = std::make_shared<const TriangleMesh>(corners, faces);
   return out;
+}
+
+ModelFile file(const std::string& name) {
+  const std::string bytes = "bytes of " + name;
+  return {"/models/" + name + ".glb",
+          std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
 }
 
 std::shared_ptr<const Model> model() {
@@ -34,13 +38,13 @@ std::shared_ptr<const Model> model() {
 
 SceneEditor full() {
   SceneEditor editor;
-  Scene scene;
-  scene.toml = "title = \"by hand\"  # a comment";
-  editor.open(scene, {});
+  SceneDocument document;
+  document.toml = "title = \"by hand\"  # a comment";
+  editor.open(document, {});
   editor.add(Plane{.name = "top"});
   editor.add(Sphere{.name = "ball"});
   editor.add(Box{.name = "block"});
-  editor.add(mesh("gear"), model());
+  editor.add(mesh("gear"), file("gear"), model());
   editor.add(JointContact{.name = "stop"});
   return editor;
 }
@@ -82,13 +86,43 @@ TEST(SceneEditor, KeepsModelsWithTheirMeshes) {
   SceneEditor editor;
   editor.open({}, {});
   const auto first = model(), second = model(), third = model();
-  editor.add(mesh("a"), first);
-  editor.add(mesh("b"), second);
-  editor.add(mesh("c"), third);
+  editor.add(mesh("a"), file("a"), first);
+  editor.add(mesh("b"), file("b"), second);
+  editor.add(mesh("c"), file("c"), third);
   editor.remove({ObjectKind::mesh, 1});
   EXPECT_THAT(names(editor), ElementsAre("a", "c"));
   EXPECT_THAT(editor.models(), ElementsAre(first, third));
   EXPECT_FALSE(editor.selected());
+}
+
+TEST(SceneEditor, KeepsFilesOfModelsAsLongAsAMeshHasThem) {
+  SceneEditor editor = full();
+  editor.duplicate({ObjectKind::mesh, 0});
+  const SceneEditor::Version both = editor.version();
+  const auto models = [&] { return editor.document().models; };
+  const std::string name = "/models/gear.glb";
+  editor.remove({ObjectKind::mesh, 0});
+  ASSERT_TRUE(models().contains(name)) << "the copy has it";
+  EXPECT_EQ(*models().at(name).bytes, *file("gear").bytes);
+  editor.remove({ObjectKind::mesh, 0});
+  EXPECT_TRUE(models().empty());
+  editor.restore(both);
+  EXPECT_TRUE(models().contains(name)) << "undone";
+}
+
+// A recording of both has to hold both.
+TEST(SceneEditor, TellsApartWhatOneFileHeldAtTwoTimes) {
+  SceneEditor editor = full();
+  const ModelFile later{file("gear").path, file("changed gear").bytes};
+  for (int i = 0; i < 2; ++i) editor.add(mesh("gear"), later, model());
+  const auto bytes_of = [&](std::size_t i) {
+    return *files_of(editor.document()).at(editor.scene().meshes.at(i).model);
+  };
+  EXPECT_EQ(bytes_of(0), *file("gear").bytes);
+  EXPECT_EQ(bytes_of(1), *later.bytes);
+  EXPECT_EQ(bytes_of(2), *later.bytes);
+  EXPECT_EQ(editor.scene().meshes[1].model, "/models/gear-2.glb");
+  EXPECT_EQ(files_of(editor.document()).size(), 2u) << "what is the same is there once";
 }
 
 TEST(SceneEditor, NeverHasTwoObjectsOfOneName) {
@@ -114,7 +148,7 @@ TEST(SceneEditor, KnowsWhetherThereIsAnythingToSave) {
   editor.restore(before);
   EXPECT_FALSE(editor.dirty()) << "undone";
   editor.restore(after);
-  editor.saved(editor.scene());
+  editor.saved(editor.document());
   EXPECT_FALSE(editor.dirty());
   editor.select(std::nullopt);
   EXPECT_FALSE(editor.dirty()) << "selecting changes nothing";
@@ -129,7 +163,7 @@ TEST(SceneEditor, LeavesEarlierVersionsAsTheyWere) {
   ball.radius = 0.5;
   editor.set({ObjectKind::sphere, 0}, ball, "radius");
   EXPECT_EQ(editor.scene().spheres[0].radius, 0.5);
-  EXPECT_EQ(before.world->scene.spheres[0].radius, Sphere{}.radius);
+  EXPECT_EQ(before.world->document.scene.spheres[0].radius, Sphere{}.radius);
   editor.restore(before);
   EXPECT_EQ(editor.scene().spheres[0].radius, Sphere{}.radius);
   EXPECT_EQ(editor.selected(), before.selected);
@@ -206,8 +240,8 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
     editor.set_tip_radius(number(0.01));
 
     const Scene& scene = editor.scene();
-    const SceneFiles files{{gear.file, gear.source}};
-    const Scene again = parse_scene(scene_text(scene, arm), "edited", "", arm, files);
+    const std::string text = scene_text(editor.document(), arm);
+    const Scene again = parse_scene(text, "edited", "", arm, files_of(editor.document())).scene;
     EXPECT_EQ(again.tip_radius, scene.tip_radius);
     EXPECT_EQ(again.planes[0].point, scene.planes[0].point);
     EXPECT_EQ(again.planes[0].normal, scene.planes[0].normal);

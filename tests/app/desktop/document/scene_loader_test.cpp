@@ -25,8 +25,8 @@ std::optional<Loaded> wait_for(SceneLoader& loader) {
 TEST(LoadModel, GivesItsPictureAndItsShape) {
   const LoadedModel loaded = load_model(table());
   EXPECT_EQ(loaded.mesh.name, "table");
-  EXPECT_EQ(loaded.mesh.path, fs::absolute(table()).lexically_normal().string());
-  EXPECT_EQ(loaded.mesh.file, loaded.mesh.path);
+  EXPECT_EQ(loaded.file.path, fs::absolute(table()).lexically_normal().string());
+  EXPECT_EQ(loaded.mesh.model, loaded.file.path);
   EXPECT_EQ(loaded.mesh.material.stiffness, 600);
   EXPECT_GT(loaded.mesh.shape->triangles(), 0u);
   EXPECT_LE(loaded.mesh.shape->triangles(), loaded.model->indices.size() / 3);
@@ -71,7 +71,7 @@ TEST(SceneLoader, OpensScenes) {
   EXPECT_TRUE(loader.opening_scene());
   const auto loaded = wait_for(loader);
   ASSERT_TRUE(loaded);
-  EXPECT_EQ(std::get<LoadedScene>(*loaded).scene.title, "Obstacles");
+  EXPECT_EQ(std::get<LoadedScene>(*loaded).document.title, "Obstacles");
 }
 
 TEST(SceneLoader, GivesNothingOnceItWasCancelled) {

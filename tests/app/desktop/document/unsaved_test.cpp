@@ -17,32 +17,33 @@ class Unsaved : public testing::Test {
  protected:
   void SetUp() override {
     fs::remove_all(folder);
-    scene.spheres.push_back(Sphere{.name = "ball", .center = {0.1, 0, 0.05}, .radius = 0.02});
+    document.scene.spheres.push_back(
+        Sphere{.name = "ball", .center = {0.1, 0, 0.05}, .radius = 0.02});
   }
   void TearDown() override { fs::remove_all(folder); }
 
   fs::path folder = fs::path(testing::TempDir()) / "limpid_unsaved";
   ArmDescription arm = read_urdf(default_device().string());
-  Scene scene;
+  SceneDocument document;
 };
 
 TEST_F(Unsaved, ChangesAreThereAtTheNextStartAndToldOfOnce) {
-  const fs::path kept = keep_unsaved(scene, arm, "table", folder);
+  const fs::path kept = keep_unsaved(document, arm, "table", folder);
   EXPECT_EQ(kept, folder / "table-unsaved.toml");
   const auto found = take_unsaved(folder);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found.front(), folder / "table-recovered.toml");
-  const Scene again = read_scene(found.front().string(), arm);
+  const Scene again = read_scene(found.front().string(), arm).scene;
   ASSERT_EQ(again.spheres.size(), 1u);
   EXPECT_EQ(again.spheres.front().name, "ball");
   EXPECT_TRUE(take_unsaved(folder).empty());
 }
 
 TEST_F(Unsaved, EarlierOnesAreNeverReplaced) {
-  keep_unsaved(scene, arm, "table", folder);
-  keep_unsaved(scene, arm, "table", folder);
+  keep_unsaved(document, arm, "table", folder);
+  keep_unsaved(document, arm, "table", folder);
   EXPECT_EQ(take_unsaved(folder).size(), 2u);
-  keep_unsaved(scene, arm, "table", folder);
+  keep_unsaved(document, arm, "table", folder);
   EXPECT_EQ(take_unsaved(folder).size(), 1u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
 }

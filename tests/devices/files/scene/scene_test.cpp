@@ -18,16 +18,16 @@ ArmDescription arm() {
   return a;
 }
 
-Scene parse(const std::string& text) { return parse_scene(text, "x.toml", "/tmp", arm()); }
+SceneDocument parse(const std::string& text) { return parse_scene(text, "x.toml", "/tmp", arm()); }
 
 TEST(Scene, MayBeEmpty) {
-  const Scene scene = parse("");
+  const Scene scene = parse("").scene;
   EXPECT_TRUE(scene.planes.empty());
   EXPECT_EQ(scene.tip_radius, 0);
 }
 
 TEST(Scene, ReadsEveryKindOfThing) {
-  const Scene s = parse(R"(
+  const SceneDocument document = parse(R"(
 title = "T"
 about = "A."
 tip_radius = 0.003
@@ -65,7 +65,9 @@ link = "tool"
 from = [0.1, 0, 0]
 radius = 0.01
 )");
-  EXPECT_EQ(s.title, "T");
+  const Scene& s = document.scene;
+  EXPECT_EQ(document.title, "T");
+  EXPECT_EQ(document.about, "A.");
   EXPECT_EQ(s.tip_radius, 0.003);
   EXPECT_LT((s.planes.at(0).normal - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
   EXPECT_EQ(s.spheres.at(0).center, Vec3(1, 2, 3));
@@ -132,7 +134,7 @@ TEST(Scene, GivesAllThatHasASurfaceAMaterialOfTheSameKeys) {
                                  "[[sphere]]\nname = \"a\"\ncenter = [0, 0, 0]\nradius = 1\n",
                                  "[[box]]\nname = \"a\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\n"};
   for (const std::string& object : objects) {
-    const Scene scene = parse(object + "stiffness = 1e6\n");
+    const Scene scene = parse(object + "stiffness = 1e6\n").scene;
     for (const auto& plane : scene.planes) EXPECT_EQ(plane.material.stiffness, 1e6);
     for (const auto& sphere : scene.spheres) EXPECT_EQ(sphere.material.stiffness, 1e6);
     for (const auto& box : scene.boxes) EXPECT_EQ(box.material.stiffness, 1e6);
@@ -163,13 +165,37 @@ TEST(Scene, HoldsAtMost64ContactsAnd63ProbesBesidesTheTip) {
     }
     return text;
   };
-  EXPECT_EQ(parse(spheres(64) + probes(63)).spheres.size(), 64u);
+  EXPECT_EQ(parse(spheres(64) + probes(63)).scene.spheres.size(), 64u);
   EXPECT_THAT(refusal([&] { parse(spheres(65)); }), HasSubstr("65"));
   EXPECT_THAT(refusal([&] { parse(probes(64)); }), HasSubstr("64"));
 }
 
 TEST(Scene, LeavesOutRelativeFilesOfATextWithoutAFolder) {
   EXPECT_TRUE(parse_scene("[[visual]]\nfile = \"a.glb\"\n", "session", "", arm()).visuals.empty());
+}
+
+std::string mesh(const std::string& file) {
+  return "[[mesh]]\nname = \"m\"\nfile = \"" + file + "\"\nstiffness = 1\n";
+}
+
+TEST(Scene, HasTheModelsOfItsMeshesEachOnce) {
+  const test::TempDir dir;
+  test::write_file(dir / "a.glb", "bytes of a");
+  test::write_file(dir / "b.glb", "bytes of b");
+  const SceneDocument read =
+      parse_scene(mesh("a.glb") + mesh("b.glb") + mesh("a.glb"), "x.toml", dir / "", arm());
+  ASSERT_EQ(read.scene.meshes.size(), 3u);
+  EXPECT_EQ(read.scene.meshes[2].model, "a.glb");
+  ASSERT_EQ(read.models.size(), 2u);
+  EXPECT_EQ(read.models.at("b.glb").path, (dir / "b.glb").string());
+  const SceneFiles files = files_of(read);
+  EXPECT_EQ(files.at("b.glb"), read.models.at("b.glb").bytes);
+
+  // What is handed in comes before what lies there, and only what the text names.
+  const SceneDocument again = parse_scene(mesh("b.glb"), "x.toml", dir / "", arm(), files);
+  ASSERT_EQ(again.models.size(), 1u);
+  EXPECT_EQ(again.models.at("b.glb").path, "");
+  EXPECT_EQ(again.models.at("b.glb").bytes, files.at("b.glb"));
 }
 
 }  // namespace

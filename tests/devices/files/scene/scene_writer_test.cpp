@@ -19,9 +19,10 @@ using testing::HasSubstr;
 void expect_same(const Pose& a, const Pose& b) { EXPECT_EQ(a.matrix(), b.matrix()); }
 
 // Bit for bit, except where `files` moved.
-void expect_same(const Scene& a, const Scene& b) {
-  EXPECT_EQ(a.title, b.title);
-  EXPECT_EQ(a.about, b.about);
+void expect_same(const SceneDocument& first, const SceneDocument& second) {
+  EXPECT_EQ(first.title, second.title);
+  EXPECT_EQ(first.about, second.about);
+  const Scene &a = first.scene, &b = second.scene;
   EXPECT_EQ(a.tip_radius, b.tip_radius);
   ASSERT_EQ(a.planes.size(), b.planes.size());
   for (std::size_t i = 0; i < a.planes.size(); ++i) {
@@ -50,7 +51,8 @@ void expect_same(const Scene& a, const Scene& b) {
     expect_same(a.meshes[i].pose, b.meshes[i].pose);
     EXPECT_EQ(a.meshes[i].scale, b.meshes[i].scale);
     EXPECT_EQ(a.meshes[i].material.stiffness, b.meshes[i].material.stiffness);
-    EXPECT_EQ(*a.meshes[i].source, *b.meshes[i].source);
+    EXPECT_EQ(*first.models.at(a.meshes[i].model).bytes,
+              *second.models.at(b.meshes[i].model).bytes);
   }
   ASSERT_EQ(a.joint_contacts.size(), b.joint_contacts.size());
   for (std::size_t i = 0; i < a.joint_contacts.size(); ++i) {
@@ -68,14 +70,14 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.probes[i].to, b.probes[i].to);
     EXPECT_EQ(a.probes[i].radius, b.probes[i].radius);
   }
-  ASSERT_EQ(a.visuals.size(), b.visuals.size());
-  for (std::size_t i = 0; i < a.visuals.size(); ++i) {
-    expect_same(a.visuals[i].pose, b.visuals[i].pose);
-    EXPECT_EQ(a.visuals[i].scale, b.visuals[i].scale);
+  ASSERT_EQ(first.visuals.size(), second.visuals.size());
+  for (std::size_t i = 0; i < first.visuals.size(); ++i) {
+    expect_same(first.visuals[i].pose, second.visuals[i].pose);
+    EXPECT_EQ(first.visuals[i].scale, second.visuals[i].scale);
   }
 }
 
-std::shared_ptr<const std::vector<unsigned char>> bytes(const std::string& text) {
+ModelBytes bytes(const std::string& text) {
   return std::make_shared<const std::vector<unsigned char>>(text.begin(), text.end());
 }
 
@@ -97,13 +99,14 @@ Pose random_pose(test::Random& random) {
 }
 
 // As read from a file: normals are what normalizing leaves, rotations come from written angles.
-Scene random_scene(const ArmDescription& arm, unsigned seed, SceneFiles& files) {
+SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
   test::Random random(seed);
   const auto count = [&] { return static_cast<int>(random.between(0, 4)); };
   const auto stiffness = [&] { return std::exp(random.between(-3, 9)); };
-  Scene scene;
-  scene.title = odd_name(random);
-  scene.about = odd_name(random);
+  SceneDocument out;
+  out.title = odd_name(random);
+  out.about = odd_name(random);
+  Scene& scene = out.scene;
   scene.tip_radius = random.between(0, 0.01);
   for (int i = count(); i > 0; --i) {
     scene.planes.push_back(
@@ -120,11 +123,11 @@ Scene random_scene(const ArmDescription& arm, unsigned seed, SceneFiles& files) 
   for (int i = count(); i > 0; --i) {
     MeshObstacle mesh;
     mesh.name = odd_name(random);
-    mesh.file = "models/" + std::to_string(i) + " \"of\" \xCE\xB7.glb";
+    mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7.glb";
     mesh.pose = random_pose(random);
     mesh.scale = random.between(1e-3, 5);
     mesh.material.stiffness = stiffness();
-    mesh.source = files[mesh.file] = bytes("model " + std::to_string(i));
+    out.models[mesh.model].bytes = bytes("model " + std::to_string(i));
     scene.meshes.push_back(mesh);
   }
   for (int i = count(); i > 0; --i) {
@@ -138,7 +141,7 @@ Scene random_scene(const ArmDescription& arm, unsigned seed, SceneFiles& files) 
                             static_cast<int>(random.between(0, arm.dof() - 0.001)), from,
                             i % 2 == 0 ? from : random.point(0.2), random.between(0, 0.02)});
   }
-  return scene;
+  return out;
 }
 
 TEST(SceneText, GivesEveryShippedSceneBack) {
@@ -147,10 +150,10 @@ TEST(SceneText, GivesEveryShippedSceneBack) {
   for (const auto& entry : fs::directory_iterator(test::assets() / "scenes")) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path());
-    const Scene scene = read_scene(entry.path(), arm);
+    const SceneDocument scene = read_scene(entry.path(), arm);
     const fs::path folder = entry.path().parent_path();
     const std::string text = scene_text(scene, arm, folder);
-    const Scene again = parse_scene(text, "again", folder, arm);
+    const SceneDocument again = parse_scene(text, "again", folder, arm);
     expect_same(scene, again);
     for (std::size_t i = 0; i < scene.visuals.size(); ++i) {
       EXPECT_EQ(scene.visuals[i].file, again.visuals[i].file);
@@ -165,9 +168,8 @@ TEST(SceneText, GivesAnySceneBackToTheLastBit) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const ArmDescription arm = test::random_arm(1 + static_cast<int>(seed) % 5, seed);
-    SceneFiles files;
-    const Scene scene = random_scene(arm, seed, files);
-    expect_same(scene, parse_scene(scene_text(scene, arm), "again", "", arm, files));
+    const SceneDocument scene = random_scene(arm, seed);
+    expect_same(scene, parse_scene(scene_text(scene, arm), "again", "", arm, files_of(scene)));
     if (HasFailure()) return;
   }
 }
@@ -194,9 +196,10 @@ TEST(SceneText, SettlesAnyRotationOnOneThatAnglesGiveBack) {
 TEST(SceneText, NamesTheSecondOfTwoJointsOfOneNameByItsNumber) {
   ArmDescription arm = test::random_arm(2, 1);
   arm.joints[1].name = arm.joints[0].name = "turn";
-  Scene scene;
-  scene.joint_contacts.push_back({"stop", 1, 0.5, 1, 20});
-  EXPECT_EQ(parse_scene(scene_text(scene, arm), "again", "", arm).joint_contacts.at(0).joint, 1);
+  SceneDocument document;
+  document.scene.joint_contacts.push_back({"stop", 1, 0.5, 1, 20});
+  const Scene again = parse_scene(scene_text(document, arm), "again", "", arm).scene;
+  EXPECT_EQ(again.joint_contacts.at(0).joint, 1);
 }
 
 class SavedScene : public testing::Test {
@@ -207,15 +210,19 @@ class SavedScene : public testing::Test {
   }
 
   // A scene with one mesh of a file that lies there.
-  Scene with_mesh(const fs::path& model, const std::string& content) {
+  SceneDocument with_mesh(const fs::path& model, const std::string& content) {
     test::write_file(model, content);
-    Scene scene;
-    MeshObstacle mesh;
+    SceneDocument document;
+    MeshObstacle& mesh = document.scene.meshes.emplace_back();
     mesh.name = "gear";
-    mesh.file = mesh.path = model.string();
-    mesh.source = bytes(content);
-    scene.meshes.push_back(mesh);
-    return scene;
+    mesh.model = model.string();
+    document.models[mesh.model] = {model.string(), bytes(content)};
+    return document;
+  }
+  // Where the first mesh's model is found when the scene is read again.
+  std::string path_read_again() {
+    const SceneDocument again = read_scene(file_, arm_);
+    return again.models.at(again.scene.meshes.at(0).model).path;
   }
 
   test::TempDir dir_;
@@ -226,9 +233,8 @@ class SavedScene : public testing::Test {
 
 TEST_F(SavedScene, IsReadBackAsItWas) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    SceneFiles files;
-    const Scene scene = random_scene(arm_, seed, files);
-    const Scene saved = save_scene(scene, arm_, file_);
+    const SceneDocument scene = random_scene(arm_, seed);
+    const SceneDocument saved = save_scene(scene, arm_, file_);
     expect_same(scene, read_scene(file_, arm_));
     expect_same(scene, saved);
     EXPECT_EQ(saved.toml, test::file_bytes(file_));
@@ -237,22 +243,22 @@ TEST_F(SavedScene, IsReadBackAsItWas) {
 
 TEST_F(SavedScene, NamesModelsOfItsFolderRelativeToIt) {
   const fs::path model = folder_ / "parts/gear.glb";
-  const Scene saved = save_scene(with_mesh(model, "gear"), arm_, file_);
-  EXPECT_EQ(saved.meshes[0].file, "parts/gear.glb");
-  EXPECT_EQ(read_scene(file_, arm_).meshes.at(0).path, model.string());
+  const SceneDocument saved = save_scene(with_mesh(model, "gear"), arm_, file_);
+  EXPECT_EQ(saved.scene.meshes[0].model, "parts/gear.glb");
+  EXPECT_EQ(path_read_again(), model.string());
 }
 
 TEST_F(SavedScene, TakesModelsFromElsewhereAlong) {
-  const Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  const SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
   save_scene(scene, arm_, file_);
   fs::remove(elsewhere_ / "gear.glb");
-  EXPECT_EQ(read_scene(file_, arm_).meshes.at(0).path, (folder_ / "gear.glb").string());
+  EXPECT_EQ(path_read_again(), (folder_ / "gear.glb").string());
   EXPECT_EQ(test::file_bytes(folder_ / "gear.glb"), "gear");
 }
 
 TEST_F(SavedScene, CopiesAModelOnceHoweverOftenItIsThere) {
-  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
-  scene.meshes.push_back(scene.meshes[0]);
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  scene.scene.meshes.push_back(scene.scene.meshes[0]);
   save_scene(scene, arm_, file_);
   save_scene(scene, arm_, folder_ / "again.toml");
   const auto models = std::count_if(
@@ -264,46 +270,62 @@ TEST_F(SavedScene, CopiesAModelOnceHoweverOftenItIsThere) {
 TEST_F(SavedScene, NeverOverwritesAnotherModel) {
   test::write_file(folder_ / "gear.glb", "somebody else's");
   test::write_file(folder_ / "gear-2.glb", "and this, too");
-  const Scene saved = save_scene(with_mesh(elsewhere_ / "gear.glb", "gear"), arm_, file_);
-  EXPECT_EQ(saved.meshes[0].file, "gear-3.glb");
+  const SceneDocument saved = save_scene(with_mesh(elsewhere_ / "gear.glb", "gear"), arm_, file_);
+  EXPECT_EQ(saved.scene.meshes[0].model, "gear-3.glb");
   EXPECT_EQ(test::file_bytes(folder_ / "gear.glb"), "somebody else's");
   EXPECT_EQ(test::file_bytes(folder_ / "gear-2.glb"), "and this, too");
   EXPECT_EQ(test::file_bytes(folder_ / "gear-3.glb"), "gear");
 }
 
 TEST_F(SavedScene, TellsModelsOfOneNameApart) {
-  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
-  scene.meshes.push_back(with_mesh(elsewhere_ / "deep/gear.glb", "another").meshes[0]);
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  const SceneDocument other = with_mesh(elsewhere_ / "deep/gear.glb", "another");
+  scene.scene.meshes.push_back(other.scene.meshes[0]);
+  scene.models.insert(other.models.begin(), other.models.end());
   save_scene(scene, arm_, file_);
-  const Scene again = read_scene(file_, arm_);
-  EXPECT_EQ(*again.meshes.at(0).source, *bytes("gear"));
-  EXPECT_EQ(*again.meshes.at(1).source, *bytes("another"));
+  const SceneDocument again = read_scene(file_, arm_);
+  const auto bytes_of = [&](std::size_t i) {
+    return *again.models.at(again.scene.meshes.at(i).model).bytes;
+  };
+  EXPECT_EQ(bytes_of(0), *bytes("gear"));
+  EXPECT_EQ(bytes_of(1), *bytes("another"));
+}
+
+TEST_F(SavedScene, LeavesOutModelsThatNoMeshHas) {
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  const SceneDocument other = with_mesh(elsewhere_ / "wheel.glb", "wheel");
+  scene.models.insert(other.models.begin(), other.models.end());
+  EXPECT_EQ(files_of(scene).size(), 1u);
+  const SceneDocument saved = save_scene(scene, arm_, file_);
+  ASSERT_EQ(saved.models.size(), 1u);
+  EXPECT_EQ(saved.models.at("gear.glb").path, (folder_ / "gear.glb").string());
+  EXPECT_FALSE(fs::exists(folder_ / "wheel.glb"));
 }
 
 TEST_F(SavedScene, LeavesModelsOfSeveralFilesWhereTheyAre) {
   const fs::path model = elsewhere_ / "gear.gltf";
-  const Scene saved = save_scene(with_mesh(model, "{}"), arm_, file_);
-  EXPECT_EQ(saved.meshes[0].file, model.string());
+  const SceneDocument saved = save_scene(with_mesh(model, "{}"), arm_, file_);
+  EXPECT_EQ(saved.scene.meshes[0].model, model.string());
   EXPECT_FALSE(fs::exists(folder_ / "gear.gltf"));
 }
 
 TEST_F(SavedScene, WritesModelsOutOfASessionBesideIt) {
-  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
-  scene.meshes[0].path.clear();
-  scene.meshes[0].file = "parts/wheel.glb";
-  EXPECT_EQ(save_scene(scene, arm_, file_).meshes[0].file, "wheel.glb");
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  scene.scene.meshes[0].model = "parts/wheel.glb";
+  scene.models = {{"parts/wheel.glb", {"", bytes("gear")}}};
+  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "wheel.glb");
   EXPECT_EQ(test::file_bytes(folder_ / "wheel.glb"), "gear");
 }
 
 TEST_F(SavedScene, LeavesEverythingAsItWasWhereItCannotBeWritten) {
-  Scene scene = with_mesh(elsewhere_ / "gear.glb", "gear");
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, dir_ / "nowhere/scene.toml"); }),
               HasSubstr("there is no folder"));
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, folder_ / "parts"); }),
               HasSubstr("is a folder"));
 
   test::write_file(file_, "title = \"before\"\n");
-  scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
+  scene.scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
   EXPECT_EQ(test::file_bytes(file_), "title = \"before\"\n");
   EXPECT_FALSE(fs::exists(folder_ / "gear.glb"));

@@ -1,0 +1,68 @@
+// Factors and coupled systems against Eigen's dense solver.
+#include "core/math/coupled_system.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+
+template <int N>
+void expect_the_dense_solution(int n, unsigned seed) {
+  Random random(seed);
+  for (int round = 0; round < 100; ++round) {
+    // A stiff coupling between a heavy and a light side, and what a proxy's speed turns.
+    const Mat<N> ww = random.positive_definite(n, 0.1, 2) + random.matrix(n, 0.01);
+    const Mat<N> wu = random.matrix(n, 0.05), uw = random.matrix(n, 0.05);
+    const Mat<N> uu = random.positive_definite(n, 0.05, 1) + random.matrix(n, 0.005);
+    Eigen::MatrixXd A(2 * n, 2 * n);
+    A << ww, wu, uw, uu;
+    Eigen::VectorXd b = random.vector(2 * n, 3);
+    const Eigen::VectorXd wanted = A.fullPivLu().solve(b);
+    const Motion<N> got = CoupledSystem<N>(ww, wu, uw, uu).solve({b.head(n), b.tail(n)});
+    const double scale = 1e-12 * wanted.norm();
+    ASSERT_LT((got.w - wanted.head(n)).norm(), scale);
+    ASSERT_LT((got.u - wanted.tail(n)).norm(), scale);
+  }
+}
+
+TEST(CoupledSystem, HasTheSolutionOfTheWhole) {
+  expect_the_dense_solution<3>(3, 51);
+  for (const int n : {1, 2, 3, 7, 32}) expect_the_dense_solution<kAnyDof>(n, 52);
+}
+
+TEST(CoupledSystem, MotionsAddUp) {
+  Random random(53);
+  Motion<3> m{random.point(1), random.point(1)};
+  const Motion<3> before = m, response{random.point(1), random.point(1)};
+  m.add(2.5, response);
+  EXPECT_LT((m.w - (before.w + 2.5 * response.w)).norm(), 1e-15);
+  EXPECT_LT((m.u - (before.u + 2.5 * response.u)).norm(), 1e-15);
+}
+
+template <int N>
+void expect_eigens_solution(int n) {
+  Random random(54);
+  for (int round = 0; round < 100; ++round) {
+    const Mat<N> A = random.positive_definite(n, 0.01, 1) + random.matrix(n, 0.005);
+    const Vec<N> b = random.vector(n, 1);
+    const Mat<N> B = random.matrix(n, 1);
+    const Factor<N> factor(A);
+    ASSERT_LT((factor.solve(b) - A.fullPivLu().solve(b)).norm(), 1e-11 * b.norm());
+    ASSERT_LT((factor.solve(B) - A.fullPivLu().solve(B)).norm(), 1e-11 * B.norm());
+    ASSERT_LT((A * factor.solve(b) - b).norm(), 1e-13 * b.norm());
+  }
+}
+
+TEST(Factor, SolvesAsEigenDoes) {
+  expect_eigens_solution<3>(3);
+  for (const int n : {1, 2, 3, 7, 32}) expect_eigens_solution<kAnyDof>(n);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,227 @@
+// The networks' passivity for whatever motion, and the inertia that they stand for.
+#include "core/coupling/inertia_network.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <complex>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Matrix = Mat<kAnyDof>;
+using Vector = Vec<kAnyDof>;
+using Complex = std::complex<double>;
+
+constexpr double kBand = 5.3;  // [Hz]
+constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
+
+// The damping that pays for the ladder, by its proof [N m s/rad].
+double price(double eta, const Matrix& M_L, double T, double band) {
+  const double w2 = 2 * std::numbers::pi * band, k = w2 * w2 / kA1;
+  const Matrix N = (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) * M_L;
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(N, Eigen::EigenvaluesOnly)
+                             .eigenvalues()
+                             .maxCoeff();
+  return largest * (k * T / 2 + k * k * T * T / (16 * w2 * kR1));
+}
+
+// A device of a few joints on the network, moved at will.
+class Moved {
+ public:
+  Moved(int n, unsigned seed) : random(seed) { network.start(n); }
+
+  struct Tick {
+    double given;  // work and change of storage [J]
+    double paid;   // what the device's damping has to pay for it [J]
+    double size;   // [J]
+  };
+  Tick tick(double eta, const Matrix& M_L, double gain, const Vector& dx, double T, double band) {
+    const double before_set = network.storage();
+    network.set(eta, M_L, gain, T, band);
+    const double before = network.storage();
+    EXPECT_LE(before, before_set);  // crossing 1 loses it
+    const Vector torque = network.force() - network.damping() * (dx / T);
+    const double cost = eta < 1 ? price(eta, M_L, T, band) : 0;
+    network.advance(dx, T);
+    const double after = network.storage(), work = torque.dot(dx);
+    EXPECT_GE(after, 0);
+    return {work + after - before, cost * dx.squaredNorm() / T,
+            std::abs(work) + after + before + torque.norm() * dx.norm()};
+  }
+
+  Random random;
+  InertiaNetwork<kAnyDof> network;
+};
+
+// Motions of all kinds: noise, oscillation, and long stretches of the same.
+class Motions {
+ public:
+  Motions(Random& random, int n) : random_(random), n_(n), dx_(Vector::Zero(n)) {}
+  const Vector& next(double T) {
+    const double kind = random_.between(0, 1);
+    if (left_-- <= 0) {
+      left_ = static_cast<int>(random_.between(1, 100));
+      mode_ = random_.between(0, 4);
+      speed_ = std::pow(10, random_.between(-3, 1));
+      rate_ = 2 * std::numbers::pi * std::pow(10, random_.between(-1, 2.6));
+      direction_ = random_.vector(n_, 1);
+    }
+    time_ += T;
+    if (mode_ < 1) {
+      dx_ = T * speed_ * random_.vector(n_, 1);
+    } else if (mode_ < 2) {
+      dx_ = T * speed_ * std::sin(rate_ * time_) * direction_;
+    } else if (mode_ < 3) {
+      dx_ = T * speed_ * direction_;
+    } else {
+      dx_ = (kind < 0.1 ? T * speed_ : 0) * direction_;
+    }
+    return dx_;
+  }
+
+ private:
+  Random& random_;
+  int n_;
+  int left_ = 0;
+  double mode_ = 0, speed_ = 0, rate_ = 1, time_ = 0;
+  Vector dx_, direction_;
+};
+
+class InertiaNetworkOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Joints, InertiaNetworkOfJoints, testing::Values(1, 3, 7));
+
+TEST_P(InertiaNetworkOfJoints, GivesNoMoreThanItStoredAndItsPriceHowever) {
+  const int n = GetParam();
+  Moved moved(n, 61);
+  Random& random = moved.random;
+  Motions motions(random, n);
+  double eta = 0.3, T = 0.001;
+  Matrix M = random.positive_definite(n, 1e-4, 1e-3);
+  int ladder = 0, ghost = 0;
+  for (int k = 0; k < 40000; ++k) {
+    if (random.between(0, 1) < 0.02) eta = random.between(0, 1) < 0.6 ? 0.05 : random.between(0, 5);
+    eta = std::clamp(eta + random.between(-0.02, 0.02), 0.0, 5.0);
+    if (random.between(0, 1) < 0.01) eta = 1;
+    if (random.between(0, 1) < 0.001) T = random.between(2e-4, 2e-3);
+    // Whatever the model says of the inertia, jumps as well.
+    if (random.between(0, 1) < 0.1) M = random.positive_definite(n, 1e-5, 1e-2);
+    const double gain = random.between(0, 1);
+    const auto tick = moved.tick(eta, M, gain, motions.next(T), T, kBand);
+    ASSERT_LE(tick.given, tick.paid + 1e-13 * tick.size) << k << " eta " << eta;
+    ladder += eta < 1 ? 1 : 0;
+    ghost += eta > 1 ? 1 : 0;
+  }
+  EXPECT_GT(ladder, 5000);
+  EXPECT_GT(ghost, 5000);
+}
+
+TEST_P(InertiaNetworkOfJoints, GivesNothingWhenItsBandChanges) {
+  const int n = GetParam();
+  Moved moved(n, 62);
+  Motions motions(moved.random, n);
+  const Matrix M = moved.random.positive_definite(n, 1e-4, 1e-3);
+  double band = kBand;
+  for (int k = 0; k < 10000; ++k) {
+    if (moved.random.between(0, 1) < 0.05) band = moved.random.between(0.5, 20);
+    const auto tick = moved.tick(0.3, M, 1, motions.next(0.001), 0.001, band);
+    ASSERT_LE(tick.given, tick.paid + 1e-13 * tick.size) << k;
+  }
+}
+
+TEST_P(InertiaNetworkOfJoints, AtNaturalInertiaIsNotThere) {
+  const int n = GetParam();
+  Moved moved(n, 63);
+  const Matrix M = moved.random.positive_definite(n, 1e-4, 1e-3);
+  for (const double eta : {0.3, 1.0, 2.0, 1.0}) {
+    for (int k = 0; k < 20; ++k) moved.tick(eta, M, 1, moved.random.vector(n, 1e-3), 0.001, kBand);
+    if (eta != 1) {
+      EXPECT_GT(moved.network.storage(), 0);
+      EXPECT_EQ(moved.network.damps(), eta > 1);
+      continue;
+    }
+    EXPECT_EQ(moved.network.storage(), 0);
+    EXPECT_EQ(moved.network.force(), Vector::Zero(n));
+    EXPECT_EQ(moved.network.damping(), Matrix::Zero(n, n));
+  }
+}
+
+// The torque's answer to a device that swings, by the mean velocity over each tick: force over
+// acceleration at the frequency [kg m^2], its real part a mass that pushes along with it.
+Complex mass_added(double eta, double M, double hertz, double T) {
+  InertiaNetwork<1> network;
+  network.start(1);
+  const double w = 2 * std::numbers::pi * hertz;
+  const int period = static_cast<int>(std::lround(1 / (hertz * T)));
+  const int settle = static_cast<int>(2 / T) / period * period + 2 * period;
+  Complex torque = 0, acceleration = 0;
+  const auto x = [&](double t) { return std::sin(w * t); };
+  for (int k = 0; k < settle + 4 * period; ++k) {
+    const double t = k * T, dx = x(t + T) - x(t), middle = t + T / 2;
+    network.set(eta, Mat<1>::Constant(M), 1, T, kBand);
+    const double f = network.force()[0] - network.damping()(0, 0) * dx / T;
+    network.advance(Vec<1>::Constant(dx), T);
+    if (k < settle) continue;
+    const Complex turn = std::exp(Complex(0, -w * middle));
+    torque += f * turn;
+    acceleration += -w * w * std::sin(w * middle) * turn;
+  }
+  return torque / acceleration;
+}
+
+TEST(InertiaNetwork, TakesAwayItsShareOfTheInertiaInTheBand) {
+  for (const double eta : {0.1, 0.3, 0.6, 0.9}) {
+    for (const double hertz : {0.5, 1.0, 2.0, 4.0, 5.0}) {
+      const double share = mass_added(eta, 7e-4, hertz, 0.001).real() / 7e-4;
+      EXPECT_NEAR(share, 1 - eta, 0.03 * (1 - eta)) << eta << " at " << hertz << " Hz";
+    }
+    for (const double hertz : {1.0, 2.0, 4.0, 5.0}) {
+      const double share = mass_added(eta, 7e-4, hertz, 0.001).real() / 7e-4;
+      EXPECT_NEAR(share, 1 - eta, 0.015 * (1 - eta)) << eta << " at " << hertz << " Hz";
+    }
+  }
+}
+
+// What the ladder is as a circuit in continuous time: a spring, then a mass with a damper, then a
+// spring with a damper behind it, in velocities (nu), in units of its band.
+Complex ladder_impedance(double w) {
+  const Complex p(0, w);
+  const Complex last = 1.0 / (p * kA3 + 1 / kR);
+  const Complex middle = 1.0 / (p * kA2 + kR1 + last);
+  return 1.0 / (p * kA1 + middle);
+}
+
+TEST(InertiaNetwork, BelowOneIsTheCircuitOfItsLadder) {
+  // Sampled ten times as often, the network is the circuit: torque over velocity of M = 1 is
+  // -w2 Z(j w/w2), felt as an inertia w2 Z/(j w).
+  for (const double hertz : {0.5, 2.0, 5.0, 10.0, 40.0}) {
+    const double eta = 0.4, w2 = 2 * std::numbers::pi * kBand, w = 2 * std::numbers::pi * hertz;
+    const Complex felt = -w2 * ladder_impedance(w / w2) / Complex(0, w);
+    const Complex got = mass_added(eta, 1, hertz, 1e-5) / (1 - eta);
+    EXPECT_LT(std::abs(got - felt), 2e-3 * std::abs(felt)) << hertz << ' ' << got << felt;
+  }
+}
+
+TEST(InertiaNetwork, AboveOneIsAMassOnASpringAndDamper) {
+  for (const double eta : {1.5, 2.0, 5.0}) {
+    for (const double hertz : {0.5, 2.0, 5.0, 10.0, 25.0}) {
+      const double x = hertz / 25;
+      const Complex s(0, x);
+      const Complex wanted = -(1.0 + 1.4 * s) / (1.0 + 1.4 * s + s * s);
+      // The torque of a tick is felt at its middle: so far no delay.
+      const Complex got = mass_added(eta, 7e-4, hertz, 0.001) / (7e-4 * (eta - 1));
+      EXPECT_LT(std::abs(got - wanted), 0.01 + 0.1 * x * x)
+          << eta << " at " << hertz << ' ' << got << wanted;
+    }
+    for (const double hertz : {0.5, 1.0, 2.0, 4.0}) {
+      const double share = -mass_added(eta, 7e-4, hertz, 0.001).real() / 7e-4;
+      EXPECT_NEAR(share, eta - 1, 0.03 * (eta - 1)) << eta << " at " << hertz << " Hz";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limpid

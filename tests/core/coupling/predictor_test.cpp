@@ -1,0 +1,191 @@
+// The predictor on devices that it knows exactly, and on those that it does not.
+#include "core/coupling/predictor.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <numbers>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Matrix = Mat<kAnyDof>;
+using Vector = Vec<kAnyDof>;
+
+constexpr double T = 0.001;
+
+// Of constant M, C and damping, moved by the midpoint rule.
+struct Device {
+  Matrix M, C;
+  Vector b, x, v;
+  Vector w{};  // mean velocity of the last tick
+
+  Device(int n, Random& random)
+      : M(random.positive_definite(n, 2e-4, 1e-3)),
+        C(random.matrix(n, 2e-4)),
+        b(random.vector(n, 0.02).cwiseAbs()),
+        x(random.vector(n, 1)),
+        v(random.vector(n, 1)) {}
+  void step(const Vector& torque) {
+    Matrix D = 2 / T * M + C;
+    D.diagonal() += b;
+    w = D.partialPivLu().solve(2 / T * (M * v) + torque);
+    x += T * w;
+    v = 2 * w - v;
+  }
+};
+
+class PredictorOfJoints : public testing::TestWithParam<int> {
+ protected:
+  int n() const { return GetParam(); }
+  Vector none() const { return Vector::Zero(n()); }
+  Random random_{31};
+  Device device_{n(), random_};
+  Jacobian<kAnyDof> J_ = 0.1 * random_.matrix(std::max(n(), 3), 1).topLeftCorner(3, n());
+  Predictor<kAnyDof> predictor_;
+
+  // Device and predictor over a tick with a known torque and a hand's unknown one.
+  void tick(const Vector& tau, const Vector& hand, const PredictorGains& g) {
+    predictor_.correct(device_.x, T, 0, g.p, false);
+    predictor_.model(device_.M, device_.C, device_.b, J_, T, g, 0, 0);
+    predictor_.applied(tau, false);
+    device_.step(tau + hand);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Joints, PredictorOfJoints, testing::Values(1, 3, 7));
+
+TEST_P(PredictorOfJoints, FindsAnUnknownConstantTorqueAndIsExactThen) {
+  const Vector hand = random_.vector(n(), 0.3);
+  predictor_.start(device_.x, none(), none());
+  for (int k = 0; k < 200; ++k) {
+    tick(random_.vector(n(), 0.2), hand, {0, 1, 0.2});
+    if (k < 30) continue;
+    ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9) << k;
+    // The drive is that of the device, but for the torque that is known.
+    const Vector rest = predictor_.D0() * predictor_.w() - predictor_.drive();
+    ASSERT_LT((predictor_.D0() * device_.w - predictor_.drive() - rest).norm(), 1e-9);
+  }
+}
+
+TEST_P(PredictorOfJoints, IsExactWithMemoryAsWellALittleLater) {
+  const Vector hand = random_.vector(n(), 0.3);
+  predictor_.start(device_.x, none(), none());
+  for (int k = 0; k < 200; ++k) {
+    tick(random_.vector(n(), 0.2), hand, {0.45, 1, 0.2});
+    if (k < 100) continue;
+    ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9) << k;
+  }
+}
+
+TEST_P(PredictorOfJoints, CorrectsNothingInsideOfAnEncodersCell) {
+  constexpr double q = 1e-3, p = 0.3;
+  const Vector x = device_.x, v = device_.v, f = random_.vector(n(), 0.1);
+  for (int round = 0; round < 100; ++round) {
+    predictor_.start(x, v, f);  // foretold for the first reading: x, with v
+    Vector beyond = none();
+    for (double& e : beyond) {
+      if (random_.between(0, 1) < 0.5) e = random_.between(-1, 1) * 1e-3;
+    }
+    Vector y = x + beyond;
+    for (int i = 0; i < n(); ++i) {
+      y[i] += beyond[i] == 0 ? q / 2 * random_.between(-1, 1) : std::copysign(q / 2, beyond[i]);
+    }
+    predictor_.correct(y, T, q, p, false);
+    predictor_.model(device_.M, device_.C, device_.b, J_, T, {p, 1, 0.2}, 0, 0);
+    const Vector w0 = none();  // nothing was foretold of the first tick
+    const Vector x_ahead = x + T * w0, v_ahead = 2 * w0 - v;
+    const Vector error = y - x_ahead;
+    for (int i = 0; i < n(); ++i) {
+      const double e = beyond[i];
+      ASSERT_NEAR(error[i] - std::clamp(error[i], -q / 2, q / 2), e, 1e-15);
+      ASSERT_NEAR(predictor_.x_now()[i], x_ahead[i] + (1 - p * p * p) * e, 1e-14);
+      ASSERT_NEAR(predictor_.v_now()[i], v_ahead[i] + 1.5 * (1 - p) * (1 - p) * (1 + p) * e / T,
+                  1e-11);
+    }
+    const Vector found = predictor_.drive() - 2 / T * (device_.M * predictor_.v_now());
+    const Vector wanted = f + std::pow((1 - p) / T, 2) * (1 - p) * (device_.M * beyond);
+    ASSERT_LT((found - wanted).norm(), 1e-10);
+  }
+}
+
+TEST_P(PredictorOfJoints, MeetsTheDeviceWhereItWillBeAfterAKnownDelay) {
+  for (const int delay : {1, 2, 5, 20}) {
+    const Vector hand = random_.vector(n(), 0.3);
+    predictor_.start(device_.x, none(), none());
+    std::deque<Vector> under_way(static_cast<std::size_t>(delay), none());
+    std::deque<Vector> foretold;
+    for (int k = 0; k < 150; ++k) {
+      if (k >= 60) {
+        ASSERT_LT((foretold.front() - device_.x).norm(), 1e-9) << delay << ' ' << k;
+      }
+      if (static_cast<int>(foretold.size()) == delay) foretold.pop_front();
+      predictor_.correct(device_.x, T, 0, 0, false);
+      predictor_.model(device_.M, device_.C, device_.b, J_, T, {0, 1, 0.2}, 0, delay);
+      foretold.push_back(predictor_.x());
+      const Vector tau = random_.vector(n(), 0.2);
+      const Vector acts = under_way.front();
+      under_way.pop_front();
+      under_way.push_back(tau);
+      ASSERT_EQ(predictor_.acting(tau), acts);
+      predictor_.applied(tau, false);
+      device_.step(acts + hand);
+      if (k >= 60) {
+        ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9);
+      }
+    }
+  }
+}
+
+TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
+  constexpr double kMass = 0.2;
+  const Matrix light = device_.M, heavy = light + kMass * (J_.transpose() * J_);
+  const PredictorGains g{0.2, 1, 0.2};
+  predictor_.start(device_.x, device_.v, none());
+  int wrong = 0;
+  const auto shake = [&](const Matrix& M, bool both) {
+    device_.M = M;
+    wrong = 0;
+    for (int k = 0; k < 400; ++k) {
+      const Vector tau = random_.vector(n(), 0.2);
+      predictor_.correct(device_.x, T, 0, g.p, both);
+      predictor_.model(light, device_.C, device_.b, J_, T, g, both ? kMass : 0, 0);
+      predictor_.applied(tau, both);
+      device_.step(tau);
+      if (k >= 250 && predictor_.heavy_hand() != (both && M(0, 0) == heavy(0, 0))) ++wrong;
+    }
+  };
+  for (int round = 0; round < 3; ++round) {
+    shake(heavy, true);
+    EXPECT_EQ(wrong, 0) << "with a mass";
+    // Foretold by the one that is active, with the hand's mass.
+    EXPECT_LT((predictor_.w() - device_.w).norm(), 1e-9);
+    shake(light, true);
+    EXPECT_EQ(wrong, 0) << "without";
+    EXPECT_LT((predictor_.w() - device_.w).norm(), 1e-9);
+  }
+  shake(heavy, false);
+  EXPECT_EQ(wrong, 0) << "without a second predictor";
+}
+
+TEST(PredictorSettings, GoByTheEncoderUnlessTold) {
+  PredictorSettings s;
+  EXPECT_EQ(s.gains(0).p, 0.2);
+  EXPECT_EQ(s.gains(1.5e-4).mu, 1);
+  EXPECT_EQ(s.gains(1.6e-4).p, 0.45);
+  EXPECT_EQ(s.gains(1.6e-4).mu, 0.5);
+  EXPECT_EQ(s.gains(1.6e-4).damping, 0.1);
+  s.preset = PredictorPreset::fine;
+  EXPECT_EQ(s.gains(5e-4).p, 0.2);
+  s.preset = PredictorPreset::coarse;
+  EXPECT_EQ(s.gains(0).damping, 0.1);
+  s.memory = 0;
+  s.inertia = 2;
+  EXPECT_EQ(s.gains(0).p, 0);
+  EXPECT_EQ(s.gains(0).mu, 2);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,165 @@
+"""Device and proxy of the predictive coupling, solved together for a tick: step (6) of the design
+sheet, with the motors' limits.
+
+Stacks over rows. The unknown is (w, u), the mean velocities of device and proxy over the tick; all
+of it is linear in them and in the contact torque f2. SI and radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .decomposition import apply, transposed
+from .dynamics import coriolis, inertia
+from .predictor import Prediction
+from .reserve import Reserve
+from .session import Session
+from .urdf import Array
+
+_PASSES = 5  # solves, as long as other motors are at their limit than was thought
+
+
+@dataclass(frozen=True)
+class Proxy:
+    """Of every row: M2 at x2, C2 and S2 at (x2, v2)."""
+
+    m: Array
+    c: Array
+    skew: Array
+
+
+def proxy_dynamics(s: Session) -> Proxy:
+    """With M2 = R R^T, nu = R^T v and nu' = W nu + R^-1 tau, the midpoint rule reads
+    (2/T M2 + S2) u = 2/T M2 v2 + tau, S2 = -R W R^T."""
+    ratio = s.number("proxy.inertia_ratio")[:, :, None]
+    x, v = s["/proxy/position"], s["/proxy/velocity"]
+    m, c = ratio * inertia(s.chain, x), ratio * coriolis(s.chain, x, v)
+    r = np.linalg.cholesky(m)
+    inverse = np.linalg.inv(r)
+    turned = inverse @ (c + transposed(c)) @ transposed(inverse)
+    rate = np.tril(turned, -1) + np.eye(s.dof) * turned / 2
+    w = transposed(r @ rate) @ transposed(inverse) - inverse @ c @ transposed(inverse)
+    return Proxy(m, c, -r @ ((w - transposed(w)) / 2) @ transposed(r))
+
+
+@dataclass(frozen=True)
+class Affine:
+    """A torque as a function of w, u and f2."""
+
+    w: Array
+    u: Array
+    f2: Array
+    rest: Array
+
+    def at(self, w: Array, u: Array, f2: Array) -> Array:
+        return apply(self.w, w) + apply(self.u, u) + apply(self.f2, f2) + self.rest
+
+
+@dataclass(frozen=True)
+class Law:
+    """tau1 = tE + tL and tau2 of the sheet."""
+
+    shared: Affine  # C_LE v_E + u_N - K_N w, of which each side gets a part
+    spring: Affine  # tE
+    locked: Affine  # tL
+    proxy: Affine  # tau2
+
+
+def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
+    one = np.broadcast_to(np.eye(s.dof), p.m1.shape)
+    k_vc, b_vc = (s.number(f"coupling.{name}") for name in ("k_vc", "b_vc"))
+    phi = np.linalg.solve(p.m1 + proxy.m, proxy.m)
+    phi_t = transposed(phi)
+    c_le = transposed(proxy.c) - transposed(p.c1 + proxy.c) @ phi
+    c_el = -transposed(c_le)
+    c = (b_vc + k_vc * s.tick / 2)[:, :, None] * one
+    s0 = k_vc * (p.x - s["/proxy/position"])
+    gf = r.governor[:, None, None] * one
+    f1 = apply(phi_t, s["/hand/torque_estimate"])
+    # v_E = w - u, v_L = (1 - phi) w + phi u
+    spring = Affine(c_el @ (one - phi) - c, c + c_el @ phi, gf - phi_t, -s0 - f1)
+    shared = Affine(c_le - r.k_n, -c_le, 0 * one, r.u_n)
+    locked = Affine(
+        (one - phi_t) @ shared.w - r.b_w[:, :, None] * one,
+        (one - phi_t) @ shared.u,
+        0 * one,
+        apply(one - phi_t, shared.rest),
+    )
+    tau2 = Affine(
+        c - c_el @ (one - phi) + phi_t @ shared.w,
+        phi_t @ shared.u - c - c_el @ phi,
+        phi_t - gf,
+        s0 + apply(phi_t, shared.rest) + f1,
+    )
+    return Law(shared, spring, locked, tau2)
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Of every row."""
+
+    w: Array
+    u: Array
+    f2: Array
+    tau1: Array
+    tau2: Array
+    marks: Array  # (N, n): -1, 0, 1, which motors hold at their limit
+
+
+# of z0's u (N, n) and Z's u (N, n, n), what a unit of each torque makes of it: f2 (N, n)
+ContactSolve = Callable[[Array, Array], Array]
+
+
+def _system(p: Prediction, proxy: Proxy, the: Law, drive: Array, momentum: Array, tick: float) -> (
+    tuple[Array, Array, Array]
+):
+    """A (N, 2n, 2n), b (N, 2n) and the columns of f2 (N, 2n, n), no motor at its limit."""
+    tau1_w, tau1_u = the.spring.w + the.locked.w, the.spring.u + the.locked.u
+    a = np.block(
+        [[p.d0 - tau1_w, -tau1_u],
+         [-the.proxy.w, 2 / tick * proxy.m + proxy.skew - the.proxy.u]]
+    )  # fmt: skip
+    b = np.concatenate(
+        [drive + the.spring.rest + the.locked.rest, momentum + the.proxy.rest], axis=1
+    )
+    h = np.concatenate([the.spring.f2, the.proxy.f2 + np.eye(drive.shape[1])], axis=1)
+    return a, b, h
+
+
+def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSolve) -> Solved:
+    """(6) to (8): everything a tick does, from what was before it."""
+    n, t, limit = s.dof, s.tick, s.torque_limit
+    b_v = s.number("coupling.b_v")
+    drive = p.drive(t)
+    momentum = 2 / t * apply(proxy.m, s["/proxy/velocity"])
+    free = _system(p, proxy, the, drive, momentum, t)
+    d0 = np.concatenate([p.d0, 0 * p.d0], axis=2)
+    alone = np.concatenate([0 * proxy.m, 2 / t * proxy.m + proxy.skew + b_v[:, :, None] * np.eye(n)],
+                           axis=2)  # fmt: skip
+    marks, held = np.zeros((len(s), n)), np.zeros((len(s), n))
+    for round_ in range(_PASSES):
+        at_limit = np.tile(marks != 0, (1, 2))
+        push = np.clip(marks * limit + held, -limit, limit)
+        a = np.where(at_limit[:, :, None], np.concatenate([d0, alone], axis=1), free[0])
+        b = np.where(
+            at_limit, np.concatenate([drive + push, momentum - marks * limit], axis=1), free[1]
+        )
+        unit = np.broadcast_to(np.eye(n), proxy.m.shape)
+        h = np.where(at_limit[:, :, None], np.concatenate([0 * unit, unit], axis=1), free[2])
+        z = np.linalg.solve(a, np.concatenate([b[:, :, None], h], axis=2))
+        f2 = contact(z[:, n:, 0], z[:, n:, 1:])
+        both = z[:, :, 0] + apply(z[:, :, 1:], f2)
+        w, u = both[:, :n], both[:, n:]
+        spring, locked = the.spring.at(w, u, f2), the.locked.at(w, u, f2)
+        wanted = np.where(np.abs(spring) > limit, np.sign(spring), 0)
+        changed = np.any(wanted != marks, axis=1, keepdims=True)
+        if round_ == _PASSES - 1 or not np.any(changed):
+            break
+        marks, held = np.where(changed, wanted, marks), np.where(changed, locked, held)
+    shape = np.where(marks != 0, marks * limit, np.clip(spring, -limit, limit))
+    tau1 = np.clip(shape + locked, -limit, limit)
+    tau2 = np.where(marks != 0, -marks * limit - b_v * u, the.proxy.at(w, u, f2))
+    return Solved(w, u, f2, tau1, tau2, marks)

@@ -1,0 +1,167 @@
+"""A session of the predictive coupling, recomputed: predictors, network, ledger, governors, torques
+and, where a single plane is all there is, its force as well.
+
+Nothing inside a law is recorded, so it runs again here: on readings, torques as applied and the
+proxy's recorded states. What comes out of a tick is then compared with what the row says.
+
+With encoder steps the predictors are now and then left alone between two steps and then corrected
+hard; what they are off by may grow from tick to tick until round-off decides what they do. So there
+each tick is recomputed from what the torques of the row before say of the active predictor. Where
+they say nothing, at the motors' limits, and where the other one takes over, rows go unchecked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .decomposition import apply
+from .joint_solve import Law, Proxy, Solved, law, proxy_dynamics, solve
+from .predictor import Prediction, Seen, predict, predict_seen, unseen
+from .report import Check, not_applicable
+from .reserve import Reserve, balance
+from .session import Session
+from .torques import mean_proxy_velocity
+from .urdf import Array
+from .wall import Wall, contact_solve, only_wall
+
+KIND = 2
+_TOLERANCE = 1e-9  # of the largest of its kind: round-off, fed on through the recursion
+_HARDLY = 1e4  # by how much the tolerance of what it hardly touches grows with an unknown predictor
+_ROUNDS = 12
+_LEAST_DAMPING = 1e-4  # of the coupling, that the motion can be told by [N m s/rad]
+
+
+@dataclass(frozen=True)
+class Replayed:
+    prediction: Prediction
+    reserve: Reserve
+    given: Solved  # with the recorded contact torque
+    wall: Wall | None
+    forces: Solved | None  # with the wall's force as the law has it
+    sure: Array  # bool (N,): rows that a predictor has just taken over are not
+
+
+def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen:
+    """tau1 + tau2 = -b_w w + C_LE (w - u) + u_N - K_N w tells w, tau2 then x."""
+    tau1, tau2 = s["/device/commanded_torque"], s["/proxy/torque"]
+    u = np.concatenate([mean_proxy_velocity(s), np.zeros((1, s.dof))])
+    c_le = -the.shared.u
+    left = r.b_w[:, :, None] * np.eye(s.dof) - the.shared.w
+    tells = np.min(np.abs(np.linalg.eigvals(left)), axis=1) > _LEAST_DAMPING
+    left[~tells] = np.eye(s.dof)
+    w = np.linalg.solve(left, (r.u_n - apply(c_le, u) - tau1 - tau2)[:, :, None])[:, :, 0]
+    off = tau2 - the.proxy.at(w, u, s["/proxy/contact_torque"])
+    x = p.x + off / s.number("coupling.k_vc")
+    limit = s.torque_limit
+    held = np.abs(np.abs(tau2 + s.number("coupling.b_v") * u) - limit) < 1e-9 * limit
+    known = tells & ~np.any(held | (np.abs(tau1) >= limit), axis=1)
+    known[-1] = False
+    return Seen(x, w, known)
+
+
+def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array]:
+    """And which rows they are sure of."""
+    if not np.any(s.number("device.encoder_step") > 0):
+        return predict(s), np.ones(len(s), dtype=bool)
+    p = unseen(s)
+    for _ in range(_ROUNDS):
+        r = balance(s, p, p.m1 + proxy.m)
+        seen = _seen(s, p, proxy, r, law(s, p, proxy, r))
+        p, moved = predict_seen(s, p, seen)
+        if moved < 1e-14:
+            break
+    changed = np.diff(p.heavy.astype(int), prepend=0) != 0
+    unknown = np.concatenate([[False, False], ~seen.known])[: len(s) + 1]
+    return p, ~(changed | np.roll(changed, 1) | unknown[:-1] | unknown[1:])
+
+
+def replay(s: Session) -> Replayed:
+    proxy = proxy_dynamics(s)
+    p, sure = _predictions(s, proxy)
+    r = balance(s, p, p.m1 + proxy.m)
+    the = law(s, p, proxy, r)
+    f2 = s["/proxy/contact_torque"]
+    given = solve(s, p, proxy, the, lambda u0, per_torque: f2)
+    wall = only_wall(s, p)
+    forces = wall and solve(s, p, proxy, the, contact_solve(wall, s.tick))
+    return Replayed(p, r, given, wall, forces, sure)
+
+
+def _largest(*fields: Array) -> float:
+    return max(1e-12, *(float(np.max(np.abs(field), initial=0)) for field in fields))
+
+
+def _compare(name: str, mine: Array, theirs: Array, scale: float, what: str) -> Check:
+    error = float(np.max(np.abs(mine - theirs), initial=0)) / scale
+    return Check(name, error, _TOLERANCE, f"worst row, of {what} {scale:.3g}")
+
+
+def _reserve_checks(s: Session, r: Reserve, sure: Array) -> list[Check]:
+    """The ledger's network sees the predictor by the inertia where that is: hardly."""
+    reserve, gf, gb = (s[path] for path in ("/energy/ledger", "/coupling/governor",
+                                            "/coupling/damping_governor"))  # fmt: skip
+    energy, one = _largest(r.reserve, r.stored), "1, not governed"
+    rough = 1 if np.all(sure) else _HARDLY
+    return [
+        _compare("ledger", r.reserve, reserve, rough * energy, f"{rough:g} largest energy [J]"),
+        _compare("governor", r.governor[sure], gf[sure], 1, one),
+        _compare("damping governor", r.damping_governor, gb, rough, one),
+    ]
+
+
+def _torque_checks(s: Session, solved: Solved, sure: Array, name: str) -> list[Check]:
+    tau1, tau2 = s["/device/commanded_torque"], s["/proxy/torque"]
+    u, moves = mean_proxy_velocity(s), sure[:-1]
+    torque = _largest(tau1, tau2, s["/proxy/contact_torque"])
+    unit = "largest torque [N m]"
+    return [
+        _compare(f"tau1 {name}", solved.tau1[sure], tau1[sure], torque, unit),
+        _compare(f"tau2 {name}", solved.tau2[sure], tau2[sure], torque, unit),
+        _compare(f"motion {name}", solved.u[:-1][moves], u[moves], _largest(u),
+                 "largest speed [rad/s]"),
+    ]  # fmt: skip
+
+
+def _wall_checks(s: Session, done: Replayed) -> list[Check]:
+    if done.wall is None or done.forces is None:
+        return [not_applicable("wall force", "more than one smooth plane may be touched")]
+    f2, stored, sure = s["/proxy/contact_torque"], done.wall.potential(), done.sure
+    return [
+        _compare("wall potential", stored, s["/energy/contact_potential"], _largest(stored),
+                 "its largest [J]"),
+        _compare("wall force", done.forces.f2[sure], f2[sure], _largest(f2),
+                 "largest contact torque [N m]"),
+        *_torque_checks(s, done.forces, sure, "with the wall"),
+    ]  # fmt: skip
+
+
+def _port_check(s: Session) -> Check:
+    dx1 = np.diff(s["/device/position"], axis=0)
+    work = np.sum(s["/device/motor_torque"][:-1] * dx1, axis=1)
+    own = np.sum(s.damping[:-1] * dx1 * dx1, axis=1) / s.tick
+    mine = np.concatenate([[0.0], np.cumsum(work - own)])
+    return _compare("energy port", mine, s["/energy/port"], _largest(mine), "its largest [J]")
+
+
+def check_predictive(s: Session) -> list[Check]:
+    """Every part of the law, to 1e-9 of the largest of its kind."""
+    kinds = set(s["/coupling/kind"].tolist())
+    if KIND not in kinds:
+        return [not_applicable("predictive", "another law")]
+    if kinds != {KIND}:
+        return [not_applicable("predictive", "the law is changed on the way")]
+    if np.any(s.number("model.delay") > 0):
+        return [not_applicable("predictive", "a delay is reckoned with")]
+    done = replay(s)
+    unsure = 1 - float(np.mean(done.sure))
+    checks = [
+        _port_check(s),
+        *_reserve_checks(s, done.reserve, done.sure),
+        Check("unchecked rows", unsure, 1, "of all: what the predictor was is not known"),
+    ]
+    # Which motors are at their limit comes of the forces meanwhile, which are not recorded.
+    if not np.any(done.given.marks):
+        checks += _torque_checks(s, done.given, done.sure, "predictive")
+    return checks + _wall_checks(s, done)

@@ -1,0 +1,172 @@
+"""What the predictive coupling has stored and may still give: inertia network, ledger, governors.
+
+Steps (3) to (5) of the design sheet. The network runs on the readings alone, the ledger on the
+readings, the torques as applied and the proxy's recorded state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .predictor import Prediction
+from .session import Session
+from .urdf import Array
+
+# the ladder: inertances and resistances that make an inertia up to the band's edge
+_A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
+_GHOST_EDGE, _GHOST_DAMPING = 2 * np.pi * 25, 0.7  # w_g [rad/s], zeta
+_CAP = 0.02  # largest reserve [J]
+_FULL, _EMPTY = 4e-3, 1e-3  # reserve above and below which the damping is whole and gone [J]
+_CONTACT_RECOVERY, _DAMPING_RECOVERY = 0.05, 0.2  # [s]
+
+
+@dataclass(frozen=True)
+class Reserve:
+    """Of every row (N, ...)."""
+
+    reserve: Array  # H [J]
+    stored: Array  # V + S + W2 [J], what H is small beside
+    governor: Array  # gf
+    damping_governor: Array  # gb
+    b_w: Array  # [N m s/rad]
+    u_n: Array  # inertia torque without what damps the coming tick [N m]
+    k_n: Array  # K_N (N, n, n)
+
+
+class _Network:
+    """Of all joints, in the coordinates that R_N turns a velocity into."""
+
+    def __init__(self, tick: float, joints: int) -> None:
+        self.tick = tick
+        self.side = 0.0  # -1 below eta 1, 1 above
+        self.q = np.zeros((3, joints))  # (s, w', s2) or (s, g, -)
+        self.r = np.zeros((joints, joints))  # R_N of the tick just ended
+
+    def advance(self, moved: Array, edge: float) -> None:
+        """Over the tick just ended, in which the reading changed by `moved`."""
+        t, nu = self.tick, self.r.T @ moved / self.tick
+        if self.side < 0:
+            a = np.array([[0, -1 / _A1, 0], [1 / _A2, -_R1 / _A2, -1 / _A2],
+                          [0, 1 / _A3, -1 / (_A3 * _R)]])  # fmt: skip
+            driven = self.q + np.outer([t * edge / (2 * _A1), 0, 0], nu)
+            middle = np.linalg.solve(np.eye(3) - t * edge / 2 * a, driven)
+            self.q = 2 * middle - self.q
+        elif self.side > 0:
+            h, (s, g, _) = t * _GHOST_EDGE, self.q
+            d = (nu - g - h * s / 2) / (1 + _GHOST_DAMPING * h + h * h / 4)
+            self.q = np.stack([s + h * d, 2 * (nu - d) - g, 0 * s])
+
+    def turn(self, eta: float) -> None:
+        """To the side of 1 that eta is on now."""
+        if np.sign(eta - 1) != self.side:
+            self.q[:] = 0
+            self.side = float(np.sign(eta - 1))
+
+    @property
+    def stored(self) -> float:
+        weights = np.array([_A1, _A2, _A3]) if self.side < 0 else np.array([1.0, 1.0, 0.0])
+        return float(weights @ np.sum(self.q**2, axis=1) / 2)
+
+    def torque(self, eta: float, gb: float, locked: Array, edge: float) -> tuple[Array, Array]:
+        """u_N and K_N over the coming tick."""
+        s, g, _ = self.q
+        if self.side == 0:
+            self.r = 0 * locked
+            return 0 * s, 0 * locked
+        if self.side < 0:
+            share = 1 + (_R + _R1) * edge * self.tick / 2
+            self.r = np.linalg.cholesky((1 - eta) * locked / share)
+            return -edge * self.r @ s, 0 * locked
+        self.r = np.sqrt(gb * (eta - 1)) * np.linalg.cholesky(locked)
+        h = self.tick * _GHOST_EDGE
+        gain = _GHOST_EDGE * (h / 2 + 2 * _GHOST_DAMPING)
+        gain /= 1 + _GHOST_DAMPING * h + h * h / 4
+        u_n = -self.r @ (_GHOST_EDGE * s - gain * (g + h * s / 2))
+        return u_n, gain * self.r @ self.r.T
+
+
+class _Clock:
+    """Ticks since each reading changed last."""
+
+    def __init__(self, joints: int) -> None:
+        self.still = np.zeros(joints)
+
+    def changed(self, moved: Array, step: float) -> Array:
+        """n_i of the tick just ended."""
+        self.still += 1
+        counted = np.where(step > 0, self.still, 1.0)
+        self.still[moved != 0] = 0
+        return counted
+
+
+def spring_energy(x_e: Array, k_vc: Array, limit: Array) -> Array:
+    """V of every row (N,) [J]: a spring that pulls no harder than the motors can."""
+    x, limit = np.abs(x_e), np.broadcast_to(limit, x_e.shape)
+    with np.errstate(invalid="ignore"):
+        beyond = limit * x - limit**2 / (2 * k_vc)
+    return np.sum(np.where(k_vc * x > limit, beyond, k_vc * x**2 / 2), axis=1)
+
+
+def _leaks(s: Session, p: Prediction) -> Array:
+    """The most that the contact force may give away in the tick, as assumed (N,) [J]."""
+    y, f2 = s["/device/measured_position"], s["/proxy/contact_torque"]
+    moved = np.linalg.norm(np.diff(y, axis=0), axis=1)
+    off = 2 * np.linalg.norm(p.surprise[1:], axis=1) + 0.1 * moved + 0.5 * s.tick
+    return np.concatenate([[0.0], np.linalg.norm(f2[:-1], axis=1) * off])
+
+
+def _follow(value: float, target: float, share: float) -> float:
+    return target if target < value else value + share * (target - value)
+
+
+def _share_cancelled(s: Session) -> Array:
+    """c_eta times 2/3: the part of b_d + b_v that is taken away in free motion (N,)."""
+    as_eta = 2 / 3 * np.clip(2 * (1 - s["/coupling/eta"]), 0, 1)
+    felt = s.number("coupling.damping")[:, 0]
+    return np.where(np.isnan(felt), as_eta, 1 - felt)
+
+
+def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
+    """`locked`: M1 + M2 (N, n, n)."""
+    rows, n, t = len(s), s.dof, s.tick
+    y, eta = s["/device/measured_position"], s["/coupling/eta"]
+    moved = np.diff(y, axis=0, prepend=y[:1])
+    if rows > 1:  # a simulated device starts where it is, not where its encoders say
+        moved[1] = y[1] - s["/device/position"][0]
+    edge = 2 * np.pi * s.number("coupling.band")[:, 0]
+    step = s.number("device.encoder_step")[:, 0]
+    held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.torque_limit)
+    held = held + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
+    given = np.sum(s["/device/motor_torque"][:-1] * moved[1:], axis=1)
+    leak, cancelled = _leaks(s, p), _share_cancelled(s)
+    pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
+    touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed])
+    b_v, energy0 = s.number("coupling.b_v")[:, 0], float(s.number("ledger.energy")[0, 0])
+
+    network, clock = _Network(t, n), _Clock(n)
+    out = np.zeros((4, rows))
+    b_w, u_n, k_n = np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n, n))
+    gf, gb, account = 1.0, 1.0, 0.0
+    for k in range(rows):
+        if k > 0:
+            network.advance(moved[k], edge[k])
+            ticks = clock.changed(moved[k], step[k])
+            account += np.sum(s.damping[k] * moved[k] ** 2 / ticks) / t - given[k - 1]
+        network.turn(eta[k])
+        stored = held[k] + network.stored
+        if k == 0:
+            account = energy0 + stored
+        account = min(account, stored + _CAP)
+        h = account - stored
+        if k > 0:
+            held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
+            gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
+            wanted = float(np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1))
+            gb = _follow(gb, wanted, t / _DAMPING_RECOVERY)
+        out[:, k] = h, stored, gf, gb
+        less = 0.0 if touching[k] else gb * cancelled[k]
+        b_w[k] = b_v[k] - less * (s.damping[k] + b_v[k])
+        u_n[k], k_n[k] = network.torque(eta[k], gb, locked[k], edge[k])
+    return Reserve(*out, b_w, u_n, k_n)
