@@ -48,7 +48,8 @@ Trial drag(const RoughWalls& walls) {
     return Vec3(kMeet + Vec3(0, aside(t), 0.005 - (0.005 + deep) * minimum_jerk(t / kDown)));
   };
   const std::string source = fmt::format("pressing {} N, {} m aside and back", kPress, kDrag);
-  return rubbing(walls, hand_path(source, p.tick, kEnd, at), p);
+  return rubbing(fmt::format("drag-{}-{}", walls.friction_static, walls.friction_kinetic), walls,
+                 hand_path(source, p.tick, kEnd, at), p);
 }
 
 // Pressed into an edge or a corner, wandering about in it.
@@ -69,7 +70,9 @@ Trial wander(const RoughWalls& walls, double eta, double grip) {
                 0.5 * press * minimum_jerk((t - 0.3) / 0.3) * about);
   };
   const std::string source = fmt::format("wandering in {} walls, {:.6g} m", walls.walls, press);
-  return rubbing(walls, hand_path(source, p.tick, kEdgeEnd, at), p);
+  const std::string name =
+      fmt::format("{}-{}-eta-{}", walls.walls == 2 ? "edge" : "corner", walls.friction_static, eta);
+  return rubbing(name, walls, hand_path(source, p.tick, kEdgeEnd, at), p);
 }
 
 double ratio(const Rub& rub) { return rub.normal > 0 ? rub.friction.norm() / rub.normal : 0; }

@@ -45,7 +45,8 @@ std::vector<std::pair<int, Vec3>> pushes(const std::vector<double>& depths,
 
 }  // namespace
 
-Trial rubbing(const RoughWalls& walls, HandPath hand, const Parameters& p) {
+Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand,
+              const Parameters& p) {
   std::string text = "title = \"Rough walls\"\nabout = \"Planes that rub.\"\n";
   for (int i = 0; i < walls.walls; ++i) {
     const Vec3& n = kOutward[i];
@@ -56,7 +57,7 @@ Trial rubbing(const RoughWalls& walls, HandPath hand, const Parameters& p) {
         i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness,
         walls.friction_static, walls.friction_kinetic);
   }
-  return {"", plan_in(text, std::move(hand), p)};
+  return {name, plan_in(text, std::move(hand), p)};
 }
 
 std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& walls,

@@ -121,7 +121,7 @@ PROMISES = {
                               ("encoders of 1e-4 rad: chatter [m/s]", 0.02))),
     ],
     "switching": [
-        ("contacts made with the stop, predictive", AT_LEAST, 7),
+        ("contacts made with each stop, predictive", AT_LEAST, 7),
         ("predictive: largest energy from nowhere in making and breaking contact [J]",
          AT_MOST, 1e-9),
         ("proposed: the same, at least [J]", AT_LEAST, 1e-6),

@@ -29,6 +29,13 @@ TEST(Friction, ThatPushesAlongTheMotionWouldBeSeenToGive) {
   EXPECT_GT(given_by_friction(kFlat, wrong, wrong), 7e-4);
 }
 
+TrialResult run(const Trial& trial) {
+  const test::TempDir temp;
+  Laboratory::Options options;
+  options.dir = temp / ".";
+  return Laboratory("walls", options).run({trial}).front();
+}
+
 // Pressed into a corner, each wall is found to push with its own force.
 TEST(RoughWalls, AreToldApartByTheirForces) {
   RoughWalls corner{.walls = 3, .stiffness = 2000, .friction_static = 0.5, .friction_kinetic = 0.5};
@@ -38,10 +45,8 @@ TEST(RoughWalls, AreToldApartByTheirForces) {
   const auto at = [&](double t) {
     return Vec3(kMeet + (0.015 * minimum_jerk(t / 0.2) - 0.002) * in);
   };
-  const Trial trial = rubbing(corner, hand_path("into the corner", p.tick, 0.5, at), p);
-  const test::TempDir temp;
-  Laboratory lab("corner", {.dir = temp / "."});
-  const TrialResult result = lab.run({trial}).front();
+  const Trial trial = rubbing("corner", corner, hand_path("into the corner", p.tick, 0.5, at), p);
+  const TrialResult result = run(trial);
   const std::vector<Rub> rubs = rubs_of(trial, corner, result.session).back();
   ASSERT_EQ(rubs.size(), 3u);
   const Vec3 tip =
@@ -65,11 +70,10 @@ TEST(RoughWalls, ThatAreNotTouchedDoNotPush) {
   const auto at = [](double t) {
     return Vec3(kMeet + Vec3(0, 0.02 * minimum_jerk(t / 0.2) - 0.008, 0.004));
   };
-  const Trial trial = rubbing(edge, hand_path("beside the edge", p.tick, 0.5, at), p);
-  const test::TempDir temp;
-  Laboratory lab("edge", {.dir = temp / "."});
+  const Trial trial = rubbing("edge", edge, hand_path("beside the edge", p.tick, 0.5, at), p);
   int touched = 0;
-  for (const std::vector<Rub>& rubs : rubs_of(trial, edge, lab.run({trial}).front().session)) {
+  const TrialResult result = run(trial);
+  for (const std::vector<Rub>& rubs : rubs_of(trial, edge, result.session)) {
     EXPECT_EQ(rubs[0].normal, 0);
     if (rubs[1].normal == 0) continue;
     ++touched;

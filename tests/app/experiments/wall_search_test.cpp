@@ -32,6 +32,12 @@ TEST(WellRendered, AsksForEachOfItsPromises) {
   EXPECT_FALSE(well_rendered(t, false));
 }
 
+Laboratory::Options in(const std::filesystem::path& dir) {
+  Laboratory::Options options;
+  options.dir = dir;
+  return options;
+}
+
 class Walls : public testing::Test {
  protected:
   bool renders(const TapSetting& setting, double wall) {
@@ -44,7 +50,7 @@ class Walls : public testing::Test {
   }
 
   test::TempDir temp_;
-  Laboratory lab_{"walls", {.dir = temp_ / "."}};
+  Laboratory lab_{"walls", in(temp_ / ".")};
 };
 
 TEST_F(Walls, OfThePapersLawEndWhereTheLagTakesMoreThanAllDampingGives) {
