@@ -15,10 +15,10 @@ struct LedgerSettings {
 
   template <class P>
   static constexpr std::array<Setting<P>, 1> settings() {
-    return {
-        {{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 1, 1e-3, 0.1, true, true,
-          "Predictive coupling: energy that the human may ever be given beyond what came in. "
-          "When the reserve runs low the contact force and the cancelled damping are cut."}}};
+    return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
+              true, true,
+              "Predictive coupling: energy that the human may ever be given beyond what came in. "
+              "When the reserve runs low the contact force and the cancelled damping are cut."}}};
   }
 };
 

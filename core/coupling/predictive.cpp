@@ -153,7 +153,7 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   const Vec<N> apart = y_ - proxy.x();
   ledger_.settle(p.energy, spring_energy<N>(c.k_vc, apart, in.limit) + network_.storage() +
                                proxy.kinetic_energy() + proxy.contact_potential());
-  if (elapsed_ > 0) ledger_.govern(proxy.f(), slip_, elapsed_);
+  ledger_.govern(proxy.f(), slip_, elapsed_ > 0 ? elapsed_ : in.tick);
 }
 
 template <int N>

@@ -134,6 +134,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     contact.touch.follow(contact.center + 0.5 * (contact.center - before), T);
     look(contact, arm, f);
   }
+  potential_ = stored();
 }
 
 // Who pushes on the centre where it now is.
@@ -262,7 +263,7 @@ bool Contacts<N>::engaged() const {
 }
 
 template <int N>
-double Contacts<N>::potential() const {
+double Contacts<N>::stored() const {
   double U = 0;
   const auto friction = [&](const auto& c) {
     const Vec3& anchor = memories_[c.id].anchor;

@@ -108,9 +108,11 @@ class Contacts {
   // Copies what pushed over the last tick, the hardest if not all fit; returns how many. Contacts
   // in joint space are nowhere and not among them.
   std::size_t forces(std::span<ContactForce> into) const;
-  double potential() const;  // of all springs, those of friction too [J]
+  // Of all springs as they were found, those of friction too [J].
+  double potential() const { return potential_; }
 
  private:
+  double stored() const;
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
@@ -122,6 +124,7 @@ class Contacts {
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
   std::vector<ContactMemory> memories_;  // by id
+  double potential_ = 0;
 };
 
 extern template class Contacts<3>;

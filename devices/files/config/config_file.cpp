@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "devices/files/file_error.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
@@ -96,18 +98,21 @@ void apply_setting(Parameters& p, std::string_view setting) {
 }
 
 std::string config_text(const Parameters& p) {
-  std::string text;
-  std::string_view table;
+  // Whoever owns a key, a table stands once.
+  std::vector<std::pair<std::string_view, std::string>> tables;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(p, info);
     if (value.empty()) continue;
     const std::string_view key = info.key;
     const auto dot = key.find('.');
-    if (key.substr(0, dot) != table) {
-      table = key.substr(0, dot);
-      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", table);
-    }
-    text += fmt::format("{} = {}\n", key.substr(dot + 1), value);
+    const std::string_view name = key.substr(0, dot);
+    auto table = std::ranges::find(tables, name, [](const auto& t) { return t.first; });
+    if (table == tables.end()) table = tables.insert(tables.end(), {name, {}});
+    table->second += fmt::format("{} = {}\n", key.substr(dot + 1), value);
+  }
+  std::string text;
+  for (const auto& [name, lines] : tables) {
+    text += fmt::format("{}[{}]\n{}", text.empty() ? "" : "\n", name, lines);
   }
   return text;
 }

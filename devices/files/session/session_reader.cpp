@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/tick/parameters.h"
 #include "devices/files/session/hdf5_heaps.h"
 #include "devices/files/session/session_check.h"
 #include "devices/files/session/session_file.h"
@@ -180,11 +181,12 @@ void check_rows(const Session& session, const fs::path& file) {
     if (!std::isfinite(time) || time <= before) {
       refuse(file, fmt::format("/time: row {}: {}; needed: finite and increasing", k, time));
     }
-    if (kind > 1 || wanted > 1) {
-      refuse(file, fmt::format("{}: row {}: {}; allowed: 0, 1",
-                               kind > 1 ? "/coupling/kind" : "/device/force_wanted", k,
-                               kind > 1 ? kind : wanted));
-    }
+    const auto at_most = [&](double value, double most, const char* path) {
+      if (value <= most) return;
+      refuse(file, fmt::format("{}: row {}: {}; allowed: 0 to {}", path, k, value, most));
+    };
+    at_most(kind, kLaws - 1, "/coupling/kind");
+    at_most(wanted, 1, "/device/force_wanted");
     before = time;
   }
 }
