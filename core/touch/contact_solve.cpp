@@ -33,7 +33,7 @@ typename ContactSolve<N>::Row& ContactSolve<N>::next_row(double depth) {
     at = static_cast<std::size_t>(std::ranges::min_element(depths_) - depths_.begin());
   }
   depths_[at] = depth;
-  rows_[at] = Row{};
+  rows_[at].clear();
   return rows_[at];
 }
 

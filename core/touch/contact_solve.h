@@ -63,6 +63,18 @@ class ContactSolve {
     bool known = false;            // Z and W are
     Vec3 push = Vec3::Zero();      // along the axes, without friction [N]
     Vec3 friction = Vec3::Zero();  // [N]
+
+    void clear() {
+      wall = nullptr;
+      mesh = nullptr;
+      axes = 1;
+      radius = B = 0;
+      frame.setIdentity();
+      W.setZero();
+      known = false;
+      push.setZero();
+      friction.setZero();
+    }
   };
   Row& next_row(double depth);
   void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,

@@ -61,7 +61,7 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
       armed = now;
       armed ? loop.arm() : loop.cut();
     }
-    controls.parameters.kind = i % 5 == 4 ? CouplingKind::standard : CouplingKind::proposed;
+    controls.parameters.kind = static_cast<CouplingKind>(i % 5 == 4 ? 0 : 1 + i / 5 % 2);
     controls.parameters.eta = 0.7 + 0.1 * i;
     if (i == 10) controls.parameters.velocity = VelocitySource::lowpass;
     if (i == 12) controls.parameters.damping = 0.02;

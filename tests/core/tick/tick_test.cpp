@@ -163,7 +163,7 @@ TEST(Tick, SwitchesTheCouplingWithoutAJumpOfTheMotors) {
   Rows rows(tick.layout());
   bool slewed = false;
   for (std::size_t k = 0; k < 1500; ++k) {
-    p.kind = k / 300 % 2 ? CouplingKind::standard : CouplingKind::proposed;
+    p.kind = static_cast<CouplingKind>(k / 300 % kLaws);
     const Vec<3> x = led(3, k, p.tick);
     tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
     if (k == 0 || tick.steady()) continue;

@@ -38,7 +38,8 @@ class MeshInBothCouplings : public testing::TestWithParam<CouplingKind> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Couplings, MeshInBothCouplings,
-                         testing::Values(CouplingKind::standard, CouplingKind::proposed));
+                         testing::Values(CouplingKind::standard, CouplingKind::proposed,
+                                         CouplingKind::predictive));
 
 TEST_P(MeshInBothCouplings, ThatIsFlatIsFeltAsAPlane) {
   Scene plane;

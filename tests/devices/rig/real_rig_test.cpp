@@ -449,7 +449,7 @@ TEST_F(RealRig, NeverPushesUnarmedNorJumpsInAMillionTicks) {
     input.hand = {rig.tip(), 1};
     if (chance(2e-5)) rig.plug(chance(0.5) ? nullptr : &device);
     if (chance(1e-4)) rig.plug(&device);
-    if (chance(1e-4)) p.kind = chance(0.5) ? CouplingKind::standard : CouplingKind::proposed;
+    if (chance(1e-4)) p.kind = static_cast<CouplingKind>(random.between(0, kLaws - 1e-9));
     if (chance(2e-5)) {
       scratch.x1 = scratch.x2 = x0;
       scratch.armed = chance(0.5);

@@ -52,7 +52,9 @@ class Script {
   }
   static Parameters parameters(std::size_t k) {
     Parameters p;
-    p.kind = k / 500 % 2 ? CouplingKind::standard : CouplingKind::proposed;
+    p.kind = static_cast<CouplingKind>(k / 500 % kLaws);
+    p.hand_mass_at_tip = k / 550 % 2 ? 0.1 : 0;
+    p.device_delay = k / 650 % 2 ? 1 : 0;
     p.eta = k / 300 % 2 ? 0.8 : 2;
     p.velocity = static_cast<VelocitySource>(k / 400 % 3);
     p.encoder_step = k / 350 % 2 ? 4e-4 : 0;

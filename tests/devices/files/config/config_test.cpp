@@ -83,7 +83,7 @@ TEST(Config, GivesEveryValueBackToTheLastBit) {
         p.*(*yes) = in_range(random) > 0.5;
       }
     }
-    p.kind = round % 2 ? CouplingKind::standard : CouplingKind::proposed;
+    p.kind = static_cast<CouplingKind>(round % kLaws);
     p.velocity = static_cast<VelocitySource>(round % 3);
     if (round % 5 == 0) p.friction = kFromArm;
     Parameters again;
