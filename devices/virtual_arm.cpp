@@ -95,8 +95,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
       tip_model = arm_.tip(frames_);
       arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);
       if (mass > 0) {
-        const Vec<N> v_mid = v_ + 0.5 * ahead * dv;
-        drift = arm_.point_drift(frames_, arm_.dof() - 1, tip_model, v_mid);
+        drift = arm_.point_drift(frames_, arm_.dof() - 1, tip_model, v_ + 0.5 * ahead * dv);
       }
     }
     // Everything at the middle of the substep as v would have it; dv then corrects:

@@ -269,27 +269,19 @@ void Arm<N>::point_jacobian(const Frames& f, int link, const Vec3& world, Jacobi
   }
 }
 
+// An axis is carried along by the links before it, S_j' = V x S_j.
 template <int N>
 Vec3 Arm<N>::point_drift(const Frames& f, int link, const Vec3& world, const Vec<N>& v) const {
-  Vec3 turning = Vec3::Zero();  // angular velocity of the link before
-  Vec3 moving = Vec3::Zero();   // velocity of the point of it that is at O
-  for (int j = 0; j <= link; ++j) {
-    moving += v[j] * f.o[static_cast<std::size_t>(j)];
-    turning += v[j] * f.a[static_cast<std::size_t>(j)];
-  }
-  const Vec3 speed = moving + turning.cross(world);
+  Vec3 turning = Vec3::Zero(), moving = Vec3::Zero();  // V of the links before
   Vec3 drift = Vec3::Zero();
-  turning.setZero();
-  moving.setZero();
   for (int j = 0; j <= link; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const Vec3 origin = moving + turning.cross(f.p[i]);  // of the joint
-    drift +=
-        v[j] * turning.cross(f.a[i]).cross(world - f.p[i]) + v[j] * f.a[i].cross(speed - origin);
-    moving += v[j] * f.o[i];
-    turning += v[j] * f.a[i];
+    const Vec3& a = f.a[static_cast<std::size_t>(j)];
+    const Vec3& o = f.o[static_cast<std::size_t>(j)];
+    drift += v[j] * (turning.cross(o) + moving.cross(a) + turning.cross(a).cross(world));
+    moving += v[j] * o;
+    turning += v[j] * a;
   }
-  return drift;
+  return drift + turning.cross(moving + turning.cross(world));
 }
 
 template class Arm<3>;
