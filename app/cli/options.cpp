@@ -207,8 +207,10 @@ std::string parameter_help() {
   std::string text = "Keys for --set and --config:\n";
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(Parameters{}, info);
-    text += fmt::format("  {:<22} default {:<11} {}\n", info.key,
-                        value.empty() ? "the arm's" : value, allowed_values(info));
+    const char* open =
+        std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
+    text += fmt::format("  {:<22} default {:<11} {}\n", info.key, value.empty() ? open : value,
+                        allowed_values(info));
   }
   return text;
 }

@@ -37,8 +37,12 @@ std::string proxy_broken(const Analysis& a) {
 
 void slider(Parameters& p, const char* key, const std::string& broken = {}) {
   const ParameterInfo& info = *find_parameter(key);
-  parameter_slider(info, p, parameter_number(Parameters{}, info),
-                   broken.empty() ? nullptr : broken.c_str());
+  Parameters shown = p;
+  if (std::isnan(shown.felt_damping)) shown.felt_damping = p.damping_share(p.eta);
+  if (parameter_slider(info, shown, parameter_number(Parameters{}, info),
+                       broken.empty() ? nullptr : broken.c_str())) {
+    set_parameter_number(p, info, parameter_number(shown, info));
+  }
 }
 
 void kind_buttons(Parameters& p) {

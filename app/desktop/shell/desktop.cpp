@@ -106,7 +106,9 @@ void Desktop::follow_parameters() {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string text = parameter_text(parameters, info);
     if (playback_.on() || text == parameter_text(analysed_, info)) continue;
-    std::string value = text.empty() ? "the arm's" : text;
+    const char* open =
+        std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
+    std::string value = text.empty() ? open : text;
     std::erase(value, '"');
     desk_.mark(fmt::format("{} {}", info.label, value), info.key);
   }
