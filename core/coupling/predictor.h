@@ -72,7 +72,7 @@ class Predictor {
   // Velocity and torque of the hand as they are [rad, rad/s, N m].
   void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
-    tracks_.fill({x, v, zero, f, x, v, 0});
+    tracks_.fill({x, v, zero, f, x, v, 0, zero, x, v});
     pending_.fill(zero);
     active_ = 0;
   }

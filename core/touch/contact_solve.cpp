@@ -103,7 +103,11 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
   }
   Vec<N> direction = row.g[0];
   if (row.mesh != nullptr) {
-    const Vec3 along = row.push.isZero(0) ? row.mesh->direction.col(0) : row.push.normalized();
+    const FreeSpace& space = row.mesh->touch.space();
+    const Vec3 along = !row.push.isZero(0) ? Vec3(row.push.normalized())
+                       : row.mesh->rank == 0 && space.count() > 0
+                           ? space.normal(0)
+                           : Vec3(row.mesh->direction.col(0));
     direction = row.mesh->J.transpose() * along;
   }
   const double mass = 1 / direction.dot(answer.inertia.solve(direction));

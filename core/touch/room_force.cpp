@@ -6,7 +6,7 @@ namespace limpid {
 namespace {
 
 constexpr int kMostSteps = 10;   // of Newton's method; two or three are usual
-constexpr int kFinest = 1 << 5;  // parts of a segment on which planes come or go
+constexpr int kFinest = 1 << 10;  // parts of a segment on which planes come or go
 
 // Where the room holds a point of the segment.
 struct Held {

@@ -47,7 +47,9 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
       "coupling.eta",        "observer.alpha",      "observer.anti_windup", "observer.velocity",
       "proxy.inertia_ratio", "model.inertia_error", "hand.stiffness",       "hand.damping",
       "loop.tick",           "device.substeps",     "device.encoder_step",  "device.friction",
-      "device.damping",      "device.torque_limit"};
+      "device.damping",      "device.torque_limit", "coupling.damping",     "coupling.band",
+      "predictor.preset",    "predictor.p",         "predictor.mu",         "predictor.hand_mass",
+      "ledger.energy",       "hand.mass",           "device.delay",         "model.delay"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;
@@ -169,7 +171,7 @@ TEST(Parameters, AreEqualIfEveryOneOfThemIs) {
     } else if (info.key == std::string("coupling.kind")) {
       set_parameter(p, info.key, std::string("standard"));
     } else {
-      set_parameter(p, info.key, std::string("lowpass"));
+      set_parameter_number(p, info, 1);
     }
     EXPECT_FALSE(p == Parameters{}) << info.key;
     EXPECT_EQ(p, p) << info.key;

@@ -38,8 +38,7 @@ class MeshInBothCouplings : public testing::TestWithParam<CouplingKind> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Couplings, MeshInBothCouplings,
-                         testing::Values(CouplingKind::standard, CouplingKind::proposed,
-                                         CouplingKind::predictive));
+                         testing::Values(CouplingKind::standard, CouplingKind::proposed));
 
 TEST_P(MeshInBothCouplings, ThatIsFlatIsFeltAsAPlane) {
   Scene plane;

@@ -32,8 +32,7 @@ class MeshEnergy : public testing::TestWithParam<CouplingKind> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Couplings, MeshEnergy,
-                         testing::Values(CouplingKind::standard, CouplingKind::proposed,
-                                         CouplingKind::predictive));
+                         testing::Values(CouplingKind::standard, CouplingKind::proposed));
 
 // What the contacts' work in a tick may miss while the same planes push: they push along straight
 // lines, while joints turn the proxy by arcs.
