@@ -5,7 +5,7 @@
 namespace limpid {
 namespace {
 
-constexpr int kMostSteps = 10;   // of Newton's method; two or three are usual
+constexpr int kMostSteps = 10;    // of Newton's method; two or three are usual
 constexpr int kFinest = 1 << 10;  // parts of a segment on which planes come or go
 
 // Where the room holds a point of the segment.

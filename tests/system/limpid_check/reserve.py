@@ -160,11 +160,10 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
             account = energy0 + stored
         account = min(account, stored + _CAP)
         h = account - stored
-        if k > 0:
-            held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
-            gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
-            wanted = float(np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1))
-            gb = _follow(gb, wanted, t / _DAMPING_RECOVERY)
+        held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
+        gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
+        wanted = float(np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1))
+        gb = _follow(gb, wanted, t / _DAMPING_RECOVERY)
         out[:, k] = h, stored, gf, gb
         less = 0.0 if touching[k] else gb * cancelled[k]
         b_w[k] = b_v[k] - less * (s.damping[k] + b_v[k])
