@@ -176,7 +176,7 @@ template <int N>
 void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
   Vec<N> tau = Vec<N>::Zero(traits_.dof);
   if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
-  std::ranges::rotate(sent_, sent_.end() - 1);
+  std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
   sent_.front() = tau;
   acted_ = sent_[static_cast<std::size_t>(p_.device_delay)];
   arm.live(p_, acted_, hand_);

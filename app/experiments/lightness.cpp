@@ -70,6 +70,7 @@ Trial shaken(const Law& law) {
 std::vector<Law> shake(Laboratory& lab) {
   std::vector<Law> laws = all_laws();
   std::vector<Trial> trials;
+  trials.reserve(laws.size());
   for (const Law& law : laws) trials.push_back(shaken(law));
   const RunPlan& plan = trials.front().plan;
   const Eigen::MatrixXd M =

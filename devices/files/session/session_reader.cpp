@@ -28,17 +28,17 @@ constexpr double kMostBytesPerByte = 2000;
 // What foreign programs need not write, and what it then is.
 std::optional<double> default_of(Column column) {
   switch (column) {
-    case Column::hand_grip: return 1.0;
-    case Column::force_wanted: return 1.0;
-    case Column::force_state: return 0.0;
-    case Column::contact_potential: return 0.0;
-    case Column::contact_gain: return 0.0;
-    case Column::governor: return 1.0;
+    case Column::hand_grip:
+    case Column::force_wanted:
+    case Column::governor:
     case Column::damping_governor: return 1.0;
+    case Column::force_state:
+    case Column::contact_potential:
+    case Column::contact_gain:
     case Column::energy_ledger: return 0.0;
-    case Column::energy_port: return std::numeric_limits<double>::quiet_NaN();
-    // That nothing touched is not known.
-    case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
+    // What the human was given, and that nothing touched, is not known.
+    case Column::energy_port:
+    case Column::contact_point:
     case Column::contact_force: return std::numeric_limits<double>::quiet_NaN();
     default: return std::nullopt;
   }
