@@ -16,6 +16,7 @@
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/virtual_arm.h"
 #include "tests/bench/bench_arm.h"
 #include "tests/bench/mujoco_step.h"
 #include "tests/bench/sample_times.h"
