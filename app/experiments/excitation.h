@@ -38,6 +38,16 @@ double minimum_jerk(double t);
 HandPath hand_path(const std::string& source, double tick, double seconds,
                    const std::function<Vec3(double t)>& at);
 
+inline constexpr const char* kTableScene = R"(title = "Table"
+about = "A table top four centimetres below the middle of the workspace."
+
+[[plane]]
+name = "table top"
+point = [0.2, 0.0, -0.04]
+normal = [0.0, 0.0, 1.0]
+stiffness = 600.0
+)";
+
 // The built-in arm in a world given as scene text, for as long as the hand lasts.
 RunPlan plan_in(const std::string& scene_toml, HandPath hand, const Parameters& parameters);
 

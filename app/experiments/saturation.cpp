@@ -20,16 +20,6 @@ constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kEnd = 1.7;  // [s
 constexpr double kHeldFrom = 0.8;                                          // everything at rest [s]
 constexpr int kShoulder = 1;  // the joint that bears most of it
 
-constexpr const char* kScene = R"(title = "Table"
-about = "A table top four centimetres below the middle of the workspace."
-
-[[plane]]
-name = "table top"
-point = [0.2, 0.0, -0.04]
-normal = [0.0, 0.0, 1.0]
-stiffness = 600.0
-)";
-
 Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
   Parameters p;
   p.kind = kind;
@@ -43,7 +33,7 @@ Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
   };
   const std::string source = fmt::format("down to {} m in {} s, from {} s back within {} s",
                                          kDeepest, kReached, kPullOut, kOut - kPullOut);
-  return {name, plan_in(kScene, hand_path(source, p.tick, kEnd, at), p)};
+  return {name, plan_in(kTableScene, hand_path(source, p.tick, kEnd, at), p)};
 }
 
 // One run and what is asked of it.

@@ -40,16 +40,6 @@ stiffness = {:.1f}
                      stiffness);
 }
 
-constexpr const char* kTableScene = R"(title = "Table"
-about = "A table top four centimetres below the middle of the workspace."
-
-[[plane]]
-name = "table top"
-point = [0.2, 0.0, -0.04]
-normal = [0.0, 0.0, 1.0]
-stiffness = 600.0
-)";
-
 // Sideways into the stop and out of it, with ticks at ever other depths.
 Trial swinging(CouplingKind kind, double stop) {
   Parameters p;
