@@ -8,6 +8,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/run/analysis.h"
+#include "app/run/tip_limits.h"
 
 namespace limpid {
 namespace {
@@ -35,6 +36,50 @@ void print(const Analysis& a, const Parameters& p) {
              a.condition3.proxy_margin);
 }
 
+constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
+
+void print(const TipLimits& tip, const Parameters& p) {
+  fmt::print("\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping\n", 1e3 * tip.tip.mass,
+             tip.tip.damping);
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", kLawKeys[i], tip.walls[i].stiffness,
+               tip.walls[i].bound);
+  }
+  fmt::print("stiffest wall, in any hand {:>6.0f} N/m  no linear law is passive beyond 2 b_d/T\n",
+             tip.every_hand);
+  if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
+  fmt::print("\nfelt in free motion     ");
+  for (const char* key : kLawKeys) fmt::print(" {:>20}", key);
+  fmt::print("\n");
+  for (const double f : kFelt) {
+    fmt::print("{:>10} Hz              ", f);
+    for (std::uint8_t i = 0; i < kLaws; ++i) {
+      const FeltAtTip felt = felt_at_tip(tip, p, static_cast<CouplingKind>(i), f);
+      fmt::print(" {:>8.2f} g {:>5.2f} N s/m", 1e3 * felt.mass, felt.damping);
+    }
+    fmt::print("\n");
+  }
+}
+
+nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
+  nlohmann::ordered_json json{{"mass", tip.tip.mass},
+                              {"damping", tip.tip.damping},
+                              {"every_hand", tip.every_hand},
+                              {"scene", tip.scene},
+                              {"least_damping", tip.felt.least_damping(p.eta, p.band)},
+                              {"frequency", kFelt}};
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    nlohmann::ordered_json law{{"wall", tip.walls[i].stiffness}, {"bound", tip.walls[i].bound}};
+    for (const double f : kFelt) {
+      const FeltAtTip felt = felt_at_tip(tip, p, static_cast<CouplingKind>(i), f);
+      law["felt_mass"].push_back(felt.mass);
+      law["felt_damping"].push_back(felt.damping);
+    }
+    json[kLawKeys[i]] = law;
+  }
+  return json;
+}
+
 int analyze_command(const AnalyzeOptions& options) {
   const Parameters p = make_parameters(options.input);
   ArmDescription arm;
@@ -44,8 +89,10 @@ int analyze_command(const AnalyzeOptions& options) {
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =
       options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, rest_pose(arm), p, w_b);
+  const TipLimits tip = tip_limits(arm, rest_pose(arm), p, document.scene);
   if (!options.json) {
     print(a, p);
+    if (!options.mass) print(tip, p);
     return 0;
   }
   nlohmann::ordered_json json{{"w_f", a.w_f}, {"w_c", a.w_c}, {"b", a.b}, {"eta_min", a.eta_min}};
@@ -55,6 +102,7 @@ int analyze_command(const AnalyzeOptions& options) {
                         {"proxy_margin", a.condition3.proxy_margin},
                         {"holds", a.condition3.holds}};
   json["passive"] = a.passive;
+  if (!options.mass) json["tip"] = as_json(tip, p);
   fmt::print("{}\n", json.dump(2));
   return 0;
 }
@@ -62,8 +110,8 @@ int analyze_command(const AnalyzeOptions& options) {
 }  // namespace
 
 Command declare_analyze(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("analyze", "eta_min and stability of a setting, without simulating");
+  auto* command = app.add_subcommand(
+      "analyze", "eta_min, walls and what is felt under each law, without simulating");
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
   options->input.add_parameters(*command);

@@ -62,26 +62,6 @@ std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from
   return felt;
 }
 
-std::complex<double> FeltJoint::proposed(double f, double eta, double w_f) const {
-  const std::complex<double> s(0, omega(f));
-  const std::complex<double> coupling = k_vc / s + b_vc, damper = b_v + k_vc * T / 2;
-  const std::complex<double> contact = K / s * std::exp(-s * (b_v / k_vc + T / 2));
-  const std::complex<double> observer = w_f / (s + w_f) * std::exp(-s * (1.5 * T));
-  return (m * s + b_d + coupling * damper / (coupling + damper) + contact / eta) /
-         (1.0 + (1 - eta) / eta * observer);
-}
-
-std::complex<double> FeltJoint::standard(double f) const {
-  const std::complex<double> s(0, omega(f));
-  const std::complex<double> coupling = k_vc / s + b_vc, proxy = b_v + k_vc * T / 2 + K / s;
-  return m * s + b_d + coupling * proxy / (coupling + proxy);
-}
-
-std::complex<double> FeltJoint::ideal(double f, double eta) const {
-  const std::complex<double> s(0, omega(f));
-  return eta * (m * s + b()) + K / s;
-}
-
 double apparent_inertia(const Impedance& felt, double highest) {
   double ww = 0, wz = 0;
   for (std::size_t i = 0; i < felt.f.size(); ++i) {

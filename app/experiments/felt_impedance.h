@@ -1,4 +1,4 @@
-// What a hand feels of one joint: impedance, measured and in theory.
+// What a hand feels of one joint, or of the whole arm: impedance, measured.
 #pragma once
 
 #include <complex>
@@ -32,29 +32,6 @@ struct FeltMotion {
 // motion. M is the inertia matrix where the arm is shaken [kg m^2].
 std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from,
                                         const Eigen::MatrixXd& M, const Multisine& shaking);
-
-// A joint of the locked system (23) as the loop in ticks of T makes it.
-//
-// Three things come on top of (23). The spring of (1) takes the proxy where it was half a tick
-// before the middle that (2) puts in place: a damper k_vc T / 2 beside b_v. The proxy trails the
-// device by b_v / k_vc, so that the contact is felt late. And the estimate looks back a tick, and
-// every torque is held for one: half a tick on average.
-struct FeltJoint {
-  double m = 0;               // M1 + M2 [kg m^2]
-  double b_d = 0, b_v = 0;    // [N m s/rad]
-  double k_vc = 0, b_vc = 0;  // [N m/rad, N m s/rad]
-  double T = 0;               // [s]
-  double K = 0;               // of the contact, 0 in free space [N m/rad]
-
-  // Proposed coupling, (24) with f2 = -K x: the human torque observed with bandwidth w_f, the
-  // contact torque known.
-  std::complex<double> proposed(double f, double eta, double w_f) const;
-  // Standard coupling, (1)-(2): the contact behind spring and damper; the proxy weighs nothing.
-  std::complex<double> standard(double f) const;
-  // Without any lag: eta (m s + b) + K/s.
-  std::complex<double> ideal(double f, double eta) const;
-  double b() const { return b_d + b_v + k_vc * T / 2; }
-};
 
 // Least-squares slope of Im Z on w through the origin over frequencies up to `highest` [Hz]: the
 // apparent inertia of a free joint [kg m^2].

@@ -9,6 +9,7 @@
 #include "app/base/assets.h"
 #include "app/experiments/high_pass.h"
 #include "app/experiments/series.h"
+#include "app/run/analysis.h"
 #include "core/dynamics/arm.h"
 #include "devices/files/arm/urdf_file.h"
 
@@ -97,7 +98,7 @@ Touch TapBench::touch(const TrialResult& result) const {
   return touch;
 }
 
-TipAtTable tip_at_table() {
+TipAlong tip_at_table() {
   const ArmDescription description = read_urdf(default_device());
   const Arm<kAnyDof> arm(description);
   const Eigen::VectorXd x = rest_at(description, Vec3(kAhead, 0, TapBench::kSurface)).x1;
@@ -105,9 +106,7 @@ TipAtTable tip_at_table() {
   arm.frames(x, frames);
   Jacobian<kAnyDof> J;
   arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
-  const Eigen::VectorXd normal = J.row(2).transpose();
-  return {1 / normal.dot(inertia_at(description, x).inverse() * normal), normal.squaredNorm(),
-          description.joints.front().damping};
+  return tip_along(J, inertia_at(description, x), device_damping(description, {}), Vec3::UnitZ());
 }
 
 }  // namespace limpid

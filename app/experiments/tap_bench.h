@@ -5,6 +5,7 @@
 
 #include "app/experiments/excitation.h"
 #include "app/experiments/experiment.h"
+#include "core/passivity/walls.h"
 
 namespace limpid {
 
@@ -56,12 +57,7 @@ class TapBench {
   int taps_;
 };
 
-// How the tip meets the table there.
-struct TipAtTable {
-  double mass = 0;     // along the normal [kg]
-  double lever2 = 0;   // a joint's stiffness or damping over that at the tip [m^2]
-  double damping = 0;  // b_d, every joint's own [N m s/rad]
-};
-TipAtTable tip_at_table();
+// The tip where it meets the table, along the table's normal.
+TipAlong tip_at_table();
 
 }  // namespace limpid

@@ -8,6 +8,7 @@
 #include "app/experiments/felt_impedance.h"
 #include "app/experiments/series.h"
 #include "app/experiments/sideways_bench.h"
+#include "core/passivity/felt.h"
 
 namespace limpid {
 namespace {

@@ -54,24 +54,24 @@ std::vector<Curve> all_curves() {
           curve(3, "proposed", kContactInk, paper, &TapSetting::hand_mass, kMasses)};
 }
 
-// What theory says, as stiffness at the tip. `hand` is the damping of the hand there [N s/m].
+// What theory says, in the hand of the benches.
 struct Theory {
-  Parameters p;
-  TipAtTable tip = tip_at_table();
+  TipAlong tip = tip_at_table();
 
-  // The damping there is against the lag of the paper's contact, half a tick and b_v/k_vc.
-  double proposed(double eta, double T, double hand) const {
-    const double b = (tip.damping + p.b_v + p.k_vc * T / 2) / tip.lever2 + hand;
-    return eta * b / (T / 2 + p.b_v / p.k_vc);
+  static WallSetting setting(double T) {
+    const Parameters p;
+    return {.T = T, .k_vc = p.k_vc, .b_v = p.b_v, .hand_damping = TapBench::kGripDamping};
   }
-  // No linear law is passive in every hand beyond it (Colgate).
-  double any_linear(double T) const { return 2 * tip.damping / tip.lever2 / T; }
-  // Where a hand is heavier than the predictor takes it for, by what its error gives away.
-  double mistaken(double mass, double T, double hand) const {
-    const double walls = 0.2 * tip.mass / T;
-    const double b = (tip.damping + p.b_v) / tip.lever2 + hand + walls;
-    const double share = tip.mass / (tip.mass + mass);
-    return std::sqrt(2 * b * tip.mass / (T * T * T * (1 - share)));
+  double proposed(double eta, double T) const {
+    WallSetting s = setting(T);
+    s.eta = eta;
+    return proposed_wall(tip, s);
+  }
+  double any_linear(double T) const { return every_hands_wall(tip, T); }
+  double mistaken(double mass, double T) const {
+    WallSetting s = setting(T);
+    s.hand_mass = mass;
+    return mistaken_wall(tip, s);
   }
 };
 
@@ -89,7 +89,7 @@ Series theory(const std::string& label, const char* ink, double from, double to,
 
 std::vector<FigurePanel> empty_panels() {
   const Theory law;
-  const double hand = TapBench::kGripDamping, T = TapSetting{}.tick;
+  const double T = TapSetting{}.tick;
   const auto panel = [](const std::string& title, const std::string& x, double from, double to) {
     return FigurePanel{.title = title,
                        .x_label = x,
@@ -106,15 +106,15 @@ std::vector<FigurePanel> empty_panels() {
       panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
             1.1)};
   panels[0].series = {theory("proposed: damping over lag", kContactInk, 0.2, 4,
-                             [&](double eta) { return law.proposed(eta, T, hand); }),
+                             [&](double eta) { return law.proposed(eta, T); }),
                       theory("passive in every hand, any linear law", kNeutralInk, 0.2, 4,
                              [&](double) { return law.any_linear(T); })};
   panels[1].series = {theory("proposed: damping over lag", kContactInk, 0.25, 2,
-                             [&](double ms) { return law.proposed(1, 1e-3 * ms, hand); }),
+                             [&](double ms) { return law.proposed(1, 1e-3 * ms); }),
                       theory("passive in every hand, any linear law", kNeutralInk, 0.25, 2,
                              [&](double ms) { return law.any_linear(1e-3 * ms); })};
   panels[3].series = {theory("one predictor: what its error gives away", kEnergyInk, 0.02, 1,
-                             [&](double m) { return law.mistaken(m, T, hand); })};
+                             [&](double m) { return law.mistaken(m, T); })};
   return panels;
 }
 

@@ -6,21 +6,23 @@
 #include "core/dynamics/arm.h"
 
 namespace limpid {
-namespace {
 
-std::vector<double> device_damping(const ArmDescription& arm, const Parameters& p) {
-  std::vector<double> b_d;
-  for (const Joint& joint : arm.joints) {
-    b_d.push_back(std::isnan(p.damping) ? joint.damping : p.damping);
+Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
+  Eigen::VectorXd b_d(static_cast<Eigen::Index>(arm.joints.size()));
+  for (Eigen::Index i = 0; i < b_d.size(); ++i) {
+    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    b_d[i] = std::isnan(p.damping) ? joint.damping : p.damping;
   }
   return b_d;
 }
 
+namespace {
+
 // All but the grip.
-Analysis of_modes(std::vector<LockedMode> modes, const std::vector<double>& b_d,
-                  const Parameters& p, std::optional<double> w_b) {
+Analysis of_modes(std::vector<LockedMode> modes, const Eigen::VectorXd& b_d, const Parameters& p,
+                  std::optional<double> w_b) {
   Analysis a;
-  a.b = *std::ranges::min_element(b_d) + p.b_v;
+  a.b = b_d.minCoeff() + p.b_v;
   for (const LockedMode& mode : modes) {
     a.w_f.push_back(mode.w_f());
     a.w_c.push_back(mode.w_c());
@@ -28,7 +30,7 @@ Analysis of_modes(std::vector<LockedMode> modes, const std::vector<double>& b_d,
     if (w_b) a.eta_min_band = std::max(a.eta_min_band.value_or(0), eta_min_band(mode, *w_b));
   }
   a.modes = std::move(modes);
-  a.condition3 = condition3(p, p.tick, b_d);
+  a.condition3 = condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())));
   a.passive = p.eta >= a.eta_min;
   return a;
 }
@@ -49,9 +51,7 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
   Jacobian<kAnyDof> J;
   arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
   const Eigen::MatrixXd JJ = J.transpose() * J;
-  const std::vector<double> b_d = device_damping(description, p);
-  const Eigen::VectorXd b =
-      Eigen::Map<const Eigen::VectorXd>(b_d.data(), arm.dof()).array() + p.b_v;
+  const Eigen::VectorXd b = device_damping(description, p).array() + p.b_v;
   return {(1 + p.inertia_ratio) * M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
 }
 
@@ -74,8 +74,8 @@ std::vector<std::complex<double>> handle_poles(const ArmDescription& arm, const 
 
 Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
                  std::optional<double> w_b) {
-  const std::vector<double> b_d = device_damping(arm, p);
-  const LockedMode mode{mass, *std::ranges::min_element(b_d) + p.b_v, p.alpha};
+  const Eigen::VectorXd b_d = device_damping(arm, p);
+  const LockedMode mode{mass, b_d.minCoeff() + p.b_v, p.alpha};
   Analysis a = of_modes({mode}, b_d, p, w_b);
   a.eta_min_grip = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
   return a;

@@ -23,6 +23,9 @@ struct Analysis {
   bool passive = false;  // eta >= eta_min
 };
 
+// b_d of every joint: the setting, or what the arm's file says [N m s/rad].
+Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
+
 // At configuration x, the hand's spring and damper at the tip. w_b [rad/s].
 Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  std::optional<double> w_b);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes ball_1.glb to ball_5.glb, from foam to steel: the number of rings carved into a ball says
+"""Writes ball_1.glb to ball_5.glb, from felt to brass: the number of rings carved into a ball says
 how hard it is. Each stands on z = 0 over the origin. Run: python3 assets/scenes/make_balls.py"""
 
 import sys
@@ -19,11 +19,11 @@ APART = np.radians(15)    # between rings, seen from the centre
 HIGHEST = np.radians(52)  # of the uppermost ring
 
 BALLS = {  # linear red, green, blue, metallic, roughness; and the rings' colour
-    "foam": ((0.62, 0.44, 0.13, 0.0, 0.95), (0.22, 0.12, 0.02)),
-    "soft rubber": ((0.36, 0.075, 0.065, 0.0, 0.70), (0.09, 0.015, 0.014)),
-    "hard rubber": ((0.045, 0.065, 0.080, 0.0, 0.45), (0.50, 0.53, 0.54)),
+    "felt": ((0.055, 0.20, 0.075, 0.0, 1.0), (0.015, 0.06, 0.02)),
+    "rubber": ((0.36, 0.075, 0.065, 0.0, 0.62), (0.09, 0.015, 0.014)),
     "wood": ((0.30, 0.135, 0.045, 0.0, 0.42), (0.09, 0.035, 0.012)),
-    "steel": ((0.62, 0.63, 0.65, 1.0, 0.20), (0.10, 0.10, 0.11)),
+    "glass": ((0.36, 0.58, 0.60, 0.0, 0.04), (0.75, 0.88, 0.88)),
+    "brass": ((0.70, 0.46, 0.15, 1.0, 0.22), (0.16, 0.09, 0.02)),
 }
 
 
@@ -48,7 +48,7 @@ def ball(material, rings, color, ring_color):
         to_pith = np.hypot(points[..., 0] + 0.011, points[..., 1] - 0.004)
         to_pith += 0.0006 * np.sin(140 * points[..., 2])
         paint *= (0.86 + 0.20 * np.abs(np.sin(np.pi * to_pith / 0.0035)))[..., None]
-    if material == "foam":  # pores
+    if material == "felt":  # fibres
         paint *= 1 - 0.45 * np.random.default_rng(1).random(points.shape[:2])[..., None] ** 3
 
     # One point at each pole instead of a whole row.

@@ -2,17 +2,30 @@
 // ladder of two springs, a mass and dampers (eta < 1), or a mass on a spring and damper (eta > 1).
 #pragma once
 
+#include <complex>
 #include <numbers>
 
 #include "core/math/solve.h"
 
 namespace limpid {
 
+// The ladder of order 3 whose mass-like share is 1 - eta to 1.5 % up to the band's edge, found by
+// optimisation; r1 is what the proof needs. And the added mass on its spring and damper.
+struct InertiaShape {
+  static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
+  static constexpr double kGhost = 2 * std::numbers::pi * 25;  // of the added mass [rad/s]
+  static constexpr double kZeta = 0.7;
+};
+
+// What a network adds to what is felt of an inertia of 1 kg m^2, without ticks: torque over
+// velocity at w [rad/s]. `band`: its edge [Hz].
+std::complex<double> network_impedance(double eta, double band, double w);
+
 // Driven by the device's motion through R_N, M-like: N = R_N R_N^T. All time dependence of eta and
 // of the inertia sits in R_N, so that for every eta(t) the work given over a tick is at most the
 // storage lost and b_e |dx1|^2/T, b_e a few percent of the device's damping.
 template <int N>
-class InertiaNetwork {
+class InertiaNetwork : InertiaShape {
  public:
   void start(Eigen::Index n) {
     s_ = v_ = g_ = Vec<N>::Zero(n);
@@ -71,12 +84,6 @@ class InertiaNetwork {
   }
 
  private:
-  // The ladder of order 3 whose mass-like share is 1 - eta to 1.5 % up to the band's edge, found by
-  // optimisation; r1 is what the proof needs.
-  static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
-  static constexpr double kGhost = 2 * std::numbers::pi * 25;  // of the added mass [rad/s]
-  static constexpr double kZeta = 0.7;
-
   // Midpoint rule of q' = w2 (A q + (nu / a1, 0, 0)), q = (s, v, g) of each joint; step = T w2.
   void climb(const Vec<N>& nu, double step) {
     if (step != step_) {

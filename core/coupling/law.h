@@ -17,6 +17,7 @@ struct LawInfo {
   const char* key;      // in files and on the command line
   const char* label;    // on a button
   const char* meaning;  // in help and tooltips, a sentence after "KEY: "
+  const char* verdict;  // in a few words: how it feels, when it is safe
   // The inertia felt is scaled by eta, (12).
   bool scales_inertia;
   // By feeding the observed human force forward: then the conditions of (25) are its own.

@@ -23,6 +23,7 @@ struct PredictiveLaw {
       .meaning =
           "device and proxy solved together for the coming tick, inertia shaped by passive "
           "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
+      .verdict = "Recommended: no drift, stiff walls, light, passive.",
       .scales_inertia = true,
       .observes = false,
       .keeps_ledger = true,

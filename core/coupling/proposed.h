@@ -29,6 +29,7 @@ struct ProposedLaw {
       .key = "proposed",
       .label = "Proposed",
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
+      .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
       .scales_inertia = true,
       .observes = true,
       .keeps_ledger = false,

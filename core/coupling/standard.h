@@ -10,6 +10,7 @@ struct StandardLaw {
       .key = "standard",
       .label = "Standard",
       .meaning = "spring and damper alone, (1)-(2).",
+      .verdict = "The usual one: hand and world drift apart.",
       .scales_inertia = false,
       .observes = false,
       .keeps_ledger = false,

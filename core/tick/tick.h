@@ -65,7 +65,7 @@ class Tick {
 
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
-  Vec3 tip() const { return arm_.tip(frames_); }      // of the device as measured [m]
+  Vec3 tip() const { return arm_.tip(frames_); }      // where the law takes the device to be [m]
   Vec3 tip_at(const Vec<N>& x) const { return arm_.tip_at(x); }
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.

@@ -22,10 +22,10 @@ struct Settings {
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
-  // A first start shows the standard coupling: its flaw is what C then mends.
+  // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {
     Parameters p;
-    p.kind = CouplingKind::standard;
+    p.kind = CouplingKind::predictive;
     return p;
   }();
 };

@@ -7,15 +7,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/desktop/widgets/chart.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "app/style/ticks.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kLookAgain = 0.25;  // [s]
-constexpr int kPoints = 160;         // of one Nyquist curve
+constexpr double kLookAgain = 0.25;                  // [s]
+constexpr int kPoints = 120;                         // of a curve
+constexpr double kSoftest = 100, kStiffest = 30000;  // of walls that are drawn [N/m]
+constexpr double kSlowest = 0.3, kFastest = 30;      // of free motion [Hz]
+constexpr double kGram = 1000;                       // [g/kg]
 
 // H_L(jw) times b: 1/eta at standstill, whatever the mode.
 std::vector<std::complex<double>> nyquist(const LockedMode& mode, double eta) {
@@ -28,21 +33,148 @@ std::vector<std::complex<double>> nyquist(const LockedMode& mode, double eta) {
   return curve;
 }
 
+template <class Value>
+std::vector<ChartPoint> over_frequency(const Value& value) {
+  std::vector<ChartPoint> curve;
+  for (int i = 0; i < kPoints; ++i) {
+    const double f = kSlowest * std::pow(kFastest / kSlowest, i / (kPoints - 1.0));
+    curve.push_back({f, value(f)});
+  }
+  return curve;
+}
+
+CouplingKind law(std::size_t i) { return static_cast<CouplingKind>(i); }
+
+Rgb law_colour(const Palette& colours, std::size_t i, const Parameters& p) {
+  return law(i) == p.kind ? colours.text : mix(colours.muted, colours.panel, 0.35f);
+}
+
+std::string newtons_per_metre(double stiffness) {
+  return stiffness >= 1e4 ? fmt::format("{:.0f}k", stiffness / 1000)
+                          : fmt::format("{:.0f}", stiffness);
+}
+
+// "-11.9 rad/s", or "-11.9 ± 40i rad/s" for a pair.
+std::string pole_text(std::complex<double> pole) {
+  const std::string real = fixed_text(pole.real(), 1);
+  if (std::abs(pole.imag()) < 0.5) return real + " rad/s";
+  return fmt::format("{} \xC2\xB1 {:.0f}i rad/s", real, std::abs(pole.imag()));
+}
+
 }  // namespace
 
-void AnalysisPanel::update(const Parameters& p, const ArmDescription& arm,
+void AnalysisPanel::update(const Parameters& p, const ArmDescription& arm, const Scene& scene,
                            std::span<const double> x, double band) {
   if (ImGui::GetTime() < due_) return;
   due_ = ImGui::GetTime() + kLookAgain;
   const Eigen::VectorXd pose =
       Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   analysis_ = analyze(arm, pose, p, 2 * std::numbers::pi * band);
+  tip_ = tip_limits(arm, pose, p, scene);
   poles_ = handle_poles(arm, pose, p);
 }
 
-void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, std::span<const double> x,
-                         double& band) {
-  update(p, arm, x, band);
+void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const Scene& scene,
+                         std::span<const double> x, double& band) {
+  update(p, arm, scene, x, band);
+  draw_walls(p);
+  draw_felt(p, band);
+  if (info(p.kind).observes) draw_observed(p, band);
+}
+
+// One bar a law on a logarithmic axis, the scene's stiffest wall across them.
+void AnalysisPanel::draw_walls(const Parameters& p) const {
+  const Palette& colours = current_palette();
+  const double rows = kLaws;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  {
+    const Chart chart("stiffest wall [N/m]", {kSoftest, kStiffest, true}, {0, rows, false, false},
+                      104);
+    const float thick = 0.55f * chart.inside().height() / static_cast<float>(rows);
+    const auto across = [&](double stiffness, Rgb rgb) {
+      const float at = chart.place({stiffness, 0}).x;
+      draw.AddLine({at, chart.inside().min.y}, {at, chart.inside().max.y}, colour(rgb),
+                   1.4f * current_scale());
+    };
+    across(tip_.every_hand, colours.axis);
+    if (tip_.scene > 0) across(tip_.scene, ink(colours, Ink::contact));
+    for (std::size_t i = 0; i < tip_.walls.size(); ++i) {
+      const double y = rows - 0.5 - static_cast<double>(i);
+      const ImVec2 end = chart.place({std::min(tip_.walls[i].stiffness, kStiffest), y});
+      const Rgb ink = law_colour(colours, i, p);
+      draw.AddRectFilled({chart.inside().min.x, end.y - thick / 2}, {end.x, end.y + thick / 2},
+                         colour(ink, 0.3f), 2);
+      const std::string label =
+          fmt::format("{} {}", info(law(i)).key, newtons_per_metre(tip_.walls[i].stiffness));
+      chart.text({chart.inside().min.x, end.y - 0.6f * font(Face::small)->FontSize}, label,
+                 colour(law(i) == p.kind ? colours.text : colours.muted));
+    }
+  }
+  const TipLimits::Wall& mine = tip_.walls[static_cast<std::size_t>(p.kind)];
+  tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
+                      "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
+                      "most that any linear law can show and be passive in every hand (2 b_d/T). "
+                      "Coloured line: the stiffest thing in this scene.",
+                      info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
+              .c_str());
+  if (tip_.scene <= 0) return;
+  const bool soft = p.kind == CouplingKind::standard;
+  const bool over = !soft && tip_.scene > mine.stiffness;
+  read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
+           over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
+                              info(p.kind).key, mine.stiffness, mine.bound)
+                : "",
+           soft ? "Felt softer than that: the standard coupling's spring is in between."
+                : "Within what this coupling renders well");
+}
+
+void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
+  const Palette& colours = current_palette();
+  const auto curve = [&](CouplingKind kind, auto part) {
+    return over_frequency([&](double f) { return part(felt_at_tip(tip_, p, kind, f)); });
+  };
+  const auto mass = [](const FeltAtTip& felt) { return kGram * felt.mass; };
+  const auto damping = [](const FeltAtTip& felt) { return felt.damping; };
+  const double natural = kGram * tip_.felt.m, wanted = p.eta * natural;
+  const double least = tip_.felt.least_damping(p.eta, p.band);
+  const auto draw_all = [&](const Chart& chart, auto part) {
+    for (std::size_t i = 0; i < kLaws; ++i) {
+      if (law(i) != p.kind) chart.line(curve(law(i), part), colour(law_colour(colours, i, p)));
+    }
+    chart.line(curve(p.kind, part), colour(colours.text), 2.4f);
+  };
+  const ChartAxis frequency{kSlowest, kFastest, true};
+  {
+    const Chart chart("inertia felt [g at the tip] over frequency [Hz]", frequency,
+                      {0, 1.25 * std::max(natural, wanted)}, 120);
+    chart.dashes(over_frequency([&](double) { return wanted; }), colour(colours.muted));
+    draw_all(chart, mass);
+  }
+  tooltip(
+      fmt::format("Each coupling at eta {:.3g} in free motion; thick: {}. Dashed: eta times the "
+                  "natural {:.3g} g. From theory, without the encoder's steps.",
+                  p.eta, info(p.kind).key, natural)
+          .c_str());
+  {
+    const double own = tip_.felt.b_d + tip_.felt.b_v;
+    const Chart chart("damping felt [N s/m] over frequency [Hz]", frequency,
+                      {0, 1.6 * std::max(own, least)}, 100);
+    if (least > 0) {
+      chart.dashes(over_frequency([&](double) { return least; }), colour(colours.muted));
+    }
+    draw_all(chart, damping);
+  }
+  tooltip(fmt::format("Dashed: {:.2g} N s/m, the least at low frequency that every passive law "
+                      "has to make felt for this inertia up to {:.3g} Hz.",
+                      least, p.band)
+              .c_str());
+  const FeltAtTip now = felt_at_tip(tip_, p, p.kind, band);
+  read_out(fmt::format("felt at {:.3g} Hz", band).c_str(),
+           fmt::format("{:.3g} g, {:.2g} N s/m", kGram * now.mass, now.damping), {},
+           "Inertia and damping at the tip at the human's bandwidth");
+}
+
+void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
   draw_nyquist(p);
   auto hertz = static_cast<float>(band);
   ImGui::SetNextItemWidth(-1);
@@ -63,26 +195,24 @@ void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, std::sp
   for (const LockedMode& mode : analysis_.modes) {
     modes += fmt::format("{}{:.2f}", modes.empty() ? "" : ", ", 1e4 * mode.m);
   }
-  read_out("modes of M_L", modes + "e-4 kg m\xC2\xB2", {}, "Eigenvalues of M1 + M2 at this pose");
+  read_out("modes of M_L",
+           "(" + modes +
+               ")\xC2\xB7"
+               "10\xE2\x81\xBB\xE2\x81\xB4 kg m\xC2\xB2",
+           {}, "Eigenvalues of M1 + M2 at this pose");
   std::complex<double> worst(-1e300, 0);
   for (const auto& pole : poles_) worst = pole.real() > worst.real() ? pole : worst;
-  read_out("slowest pole in the hand",
-           fmt::format("{:.1f} \xC2\xB1 {:.0f}i rad/s", worst.real(), std::abs(worst.imag())),
+  read_out("slowest pole in the hand", pole_text(worst),
            worst.real() > 0 ? "A pole in the right half plane: unstable while the hand holds." : "",
            "Of the locked system held by the grip, in continuous time");
 }
 
 void AnalysisPanel::draw_nyquist(const Parameters& p) const {
-  const Palette& colours = palette(current_theme());
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 size(ImGui::GetContentRegionAvail().x, 150 * current_scale());
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  draw->AddRectFilled(at, {at.x + size.x, at.y + size.y}, colour(colours.frame, 0.5f), 3);
-  const double eta = info(p.kind).scales_inertia ? p.eta : 1;
+  const Palette& colours = current_palette();
   double left = -0.1, right = 0.1, low = -0.1;
   std::vector<std::vector<std::complex<double>>> curves;
   for (const LockedMode& mode : analysis_.modes) {
-    curves.push_back(nyquist(mode, eta));
+    curves.push_back(nyquist(mode, p.eta));
     for (const auto& h : curves.back()) {
       left = std::min(left, h.real());
       right = std::max(right, h.real());
@@ -90,39 +220,26 @@ void AnalysisPanel::draw_nyquist(const Parameters& p) const {
     }
   }
   const double margin = 0.08 * (right - left);
-  left -= margin;
-  right += margin;
-  low *= 1.1;
-  const double high = -0.12 * low;
-  const auto place = [&](double re, double im) {
-    return ImVec2(at.x + size.x * static_cast<float>((re - left) / (right - left)),
-                  at.y + size.y * static_cast<float>((high - im) / (high - low)));
-  };
-  draw->PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
-  const ImVec2 origin = place(0, 0);
-  const bool passive = eta >= analysis_.eta_min;
-  draw->AddRectFilled(at, {origin.x, at.y + size.y},
-                      colour(passive ? colours.muted : colours.broken, 0.14f));
-  draw->AddLine({origin.x, at.y}, {origin.x, at.y + size.y}, colour(colours.axis));
-  draw->AddLine({at.x, origin.y}, {at.x + size.x, origin.y}, colour(colours.axis));
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    std::vector<ImVec2> points;
-    for (const auto& h : curves[i]) points.push_back(place(h.real(), h.imag()));
-    draw->AddPolyline(points.data(), static_cast<int>(points.size()),
-                      colour(ink(colours, Ink::proxy, 0.4f - 0.4f * static_cast<float>(i))), 0,
-                      1.6f * current_scale());
+  const bool passive = p.eta >= analysis_.eta_min;
+  {
+    const Chart chart(fmt::format("b H_L(j\xCF\x89) at \xCE\xB7 {:.3f}: {}", p.eta,
+                                  passive ? "passive" : "not passive"),
+                      {left - margin, right + margin}, {1.1 * low, -0.15 * low}, 150);
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        chart.inside().min, {chart.place({0, 0}).x, chart.inside().max.y},
+        colour(passive ? colours.muted : colours.broken, 0.14f));
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::vector<ChartPoint> points;
+      for (const auto& h : curves[i]) points.push_back({h.real(), h.imag()});
+      chart.line(points, colour(ink(colours, Ink::proxy, 0.4f - 0.4f * static_cast<float>(i))));
+    }
+    const ImVec2 corner = chart.inside().max;
+    chart.text({corner.x, corner.y}, "Re", colour(colours.muted), true);
+    chart.text(chart.inside().min, "Im", colour(colours.muted));
   }
-  ImFont* small = font(Face::small);
-  draw->AddText(small, small->FontSize, {at.x + 6, at.y + size.y - 1.4f * small->FontSize},
-                colour(colours.muted),
-                fmt::format("b H_L(j\xCF\x89) at \xCE\xB7 {:.2f}: {}", eta,
-                            passive ? "passive" : "not passive")
-                    .c_str());
-  draw->PopClipRect();
-  ImGui::Dummy(size);
   tooltip(
       "H_L(jw) of (24), one curve a mode of the inertia at the present pose. Positive real, and "
-      "so passive, while it stays right of the vertical line.");
+      "so passive, while it stays right of the shaded half.");
 }
 
 }  // namespace limpid

@@ -1,4 +1,5 @@
-// Passivity at the arm's present pose: Nyquist plot, limits of eta, poles in the hand.
+// What the couplings can do at the arm's present pose: walls, what is felt in free motion, limits
+// of eta, poles in the hand.
 #pragma once
 
 #include <complex>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "app/run/analysis.h"
+#include "app/run/tip_limits.h"
 #include "core/dynamics/arm_description.h"
 
 namespace limpid {
@@ -14,15 +16,19 @@ class AnalysisPanel {
  public:
   // Draws into the ImGui window that is open. `x`: the arm's pose [rad]; `band`: the human's
   // bandwidth [Hz], which can be changed here.
-  void draw(const Parameters& p, const ArmDescription& arm, std::span<const double> x,
-            double& band);
+  void draw(const Parameters& p, const ArmDescription& arm, const Scene& scene,
+            std::span<const double> x, double& band);
 
  private:
-  void update(const Parameters& p, const ArmDescription& arm, std::span<const double> x,
-              double band);
+  void update(const Parameters& p, const ArmDescription& arm, const Scene& scene,
+              std::span<const double> x, double band);
+  void draw_walls(const Parameters& p) const;
+  void draw_felt(const Parameters& p, double band) const;
   void draw_nyquist(const Parameters& p) const;
+  void draw_observed(const Parameters& p, double& band);
 
   Analysis analysis_;
+  TipLimits tip_;
   std::vector<std::complex<double>> poles_;
   double due_ = 0;  // when to look at the pose again [s of ImGui's time]
 };

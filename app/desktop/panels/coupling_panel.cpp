@@ -63,6 +63,9 @@ void kind_buttons(Parameters& p) {
     if (chosen) ImGui::PopStyleColor(3);
     tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+  ImGui::TextWrapped("%s", info(p.kind).verdict);
+  ImGui::PopStyleColor();
 }
 
 void draw_sliders(Parameters& p, const Analysis& a) {

@@ -123,7 +123,7 @@ void Frame::draw_side(ScreenRect rect) {
     }
   }
   if (section("Hand", true)) {
-    draw_parameters(parameters, shown.arm(), {"hand.stiffness", "hand.damping"});
+    draw_parameters(parameters, shown.arm(), {"hand.stiffness", "hand.damping", "hand.mass"});
     ImGui::Checkbox("hold where released", &settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
@@ -132,11 +132,14 @@ void Frame::draw_side(ScreenRect rect) {
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
-         "device.encoder_step", "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
+         "device.encoder_step", "device.delay", "model.delay", "predictor.preset",
+         "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
   }
   if (section("Analysis", false)) {
     const auto pose = shown.channels().layout().in(desktop_.row(), Column::device_position);
-    analysis_.draw(parameters, shown.arm(), pose, settings.band);
+    const PlayedSession* session = desktop_.playback().shown();
+    const Scene& scene = session ? session->document().scene : desktop_.document().scene();
+    analysis_.draw(parameters, shown.arm(), scene, pose, settings.band);
   }
   if (section("Timing", true)) draw_timing(desk.loop(), quality_text(), window_.frame_time());
   ImGui::End();

@@ -68,50 +68,6 @@ TEST(FeltImpedance, OfTheWholeMotionIsByTheInertiaThatIsGiven) {
   }
 }
 
-TEST(FeltJoint, IsTheInverseOf24WithoutTicksOrContact) {
-  // A stiff coupling and no ticks: (24) itself.
-  const FeltJoint joint{2e-4, 0.012, 0.012, 1e9, 0, 0, 0};
-  for (const double eta : {0.5, 1.0, 4.0}) {
-    for (const double f : {0.5, 7.0, 90.0}) {
-      const LockedMode mode{joint.m, 0.024, 0.035};
-      const auto Z = 1.0 / locked_response(mode, eta, 2 * kPi * f);
-      EXPECT_LT(std::abs(joint.proposed(f, eta, mode.w_f()) - Z) / std::abs(Z), 1e-6);
-    }
-  }
-}
-
-TEST(FeltJoint, IsLateByATickAndAHalfOfTheEstimateAndByHalfOneOfTheContact) {
-  // Next to no coupling and no proxy's damper: what stays is (m s + b_d) over the observer's share.
-  constexpr double T = 0.003, eta = 0.6, w_f = 150;
-  const FeltJoint free{2e-4, 0.012, 0, 1e-14, 0, T, 0};
-  const FeltJoint wall{2e-4, 0.012, 0, 1e-14, 0, T, 40};
-  for (const double f : {2.0, 15.0, 60.0}) {
-    const double w = 2 * kPi * f;
-    const std::complex<double> s(0, w);
-    const std::complex<double> share =
-        1.0 + (1 - eta) / eta * w_f / (s + w_f) * std::polar(1.0, -1.5 * T * w);
-    const std::complex<double> alone = 2e-4 * s + 0.012;
-    const std::complex<double> contact = 40.0 / s / eta * std::polar(1.0, -0.5 * T * w);
-    EXPECT_LT(std::abs(free.proposed(f, eta, w_f) - alone / share), 1e-9);
-    EXPECT_LT(std::abs(wall.proposed(f, eta, w_f) - (alone + contact) / share), 1e-9);
-  }
-}
-
-TEST(FeltJoint, AtLowFrequencyFeelsTheWallThroughTheProposedAndASeriesSpringThroughTheStandard) {
-  const FeltJoint joint{2e-4, 0.012, 0.012, 10, 0.001, 0.001, 20};
-  const double f = 1e-4, w = 2 * kPi * f;
-  EXPECT_NEAR(std::abs(joint.proposed(f, 0.6, 175)) * w, 20, 1e-3);
-  EXPECT_NEAR(std::abs(joint.standard(f)) * w, 1 / (1 / 20.0 + 1 / 10.0), 1e-3);
-}
-
-TEST(FeltJoint, WithAFastObserverIsTheIdealOne) {
-  const FeltJoint joint{2e-4, 0.012, 0.012, 1e9, 0, 0, 0};
-  for (const double eta : {0.3, 3.0}) {
-    const auto ideal = joint.ideal(20, eta);
-    EXPECT_LT(std::abs(joint.proposed(20, eta, 1e9) - ideal) / std::abs(ideal), 1e-6);
-  }
-}
-
 TEST(ObserverResponse, InFineTicksIsAFirstOrderLag) {
   std::vector<double> f;
   for (double hertz = 1; hertz < 100; hertz *= 1.02) f.push_back(hertz);

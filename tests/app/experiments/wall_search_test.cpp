@@ -55,7 +55,7 @@ class Walls : public testing::Test {
 
 TEST_F(Walls, OfThePapersLawEndWhereTheLagTakesMoreThanAllDampingGives) {
   // (b_d + b_v + k_vc T/2 + b_h r^2) over (T/2 + b_v/k_vc), r the lever of the tip.
-  const TipAtTable tip = tip_at_table();
+  const TipAlong tip = tip_at_table();
   const double b = (0.012 + 0.012 + 10 * 0.001 / 2) / tip.lever2 + TapBench::kGripDamping;
   const double theory = b / (0.001 / 2 + 0.012 / 10);
   const TapSetting paper{.kind = CouplingKind::proposed};

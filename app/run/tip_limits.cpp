@@ -1,0 +1,106 @@
+#include "app/run/tip_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/run/analysis.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+// Where the predictive coupling was found to end, with the built-in arm: walls up to 20,000 N/m
+// were tried at 1 ms; a step of the encoder may change the wall's force by so much; a tick of delay
+// that it does not know of.
+constexpr double kTried = 20000, kTriedTick = 0.001;        // [N/m], [s]
+constexpr double kFineStep = 0.11, kCoarseStep = 0.22;      // [N]
+constexpr double kCoarseWall = 2000, kUnknownDelay = 2000;  // [N/m]
+
+TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const Parameters& p) {
+  TipLimits::Wall wall{kTried * std::min(1.0, std::pow(kTriedTick / p.tick, 1.5)),
+                       "the stiffest wall that was tried"};
+  const auto bound = [&](double stiffness, std::string by) {
+    if (stiffness < wall.stiffness) wall = {stiffness, std::move(by)};
+  };
+  const double q = p.encoder_step;
+  if (q > 0) {
+    const bool coarse = q > PredictorSettings::kCoarse;
+    const double at_tip = q * std::sqrt(l.tip.lever2);
+    bound(coarse ? std::min(kCoarseWall, kCoarseStep / at_tip) : kFineStep / at_tip,
+          fmt::format("the encoder's step of {:.2g} rad, as measured with the built-in arm", q));
+  }
+  if (p.hand_mass_at_tip > p.hand_mass) {
+    bound(mistaken_wall(l.tip, s), "a hand that is heavier than the predictor takes it for");
+  }
+  if (p.device_delay != p.delay) {
+    bound(kUnknownDelay, "a delay that is not known, as measured: see model.delay");
+  }
+  return wall;
+}
+
+double stiffest(const Scene& scene) {
+  double most = 0;
+  const auto look = [&most](const auto& things) {
+    for (const auto& thing : things) most = std::max(most, thing.material.stiffness);
+  };
+  look(scene.planes);
+  look(scene.spheres);
+  look(scene.boxes);
+  look(scene.meshes);
+  return most;
+}
+
+}  // namespace
+
+TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x,
+                     const Parameters& p, const Scene& scene) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames frames;
+  arm.frames(x, frames);
+  Mat<kAnyDof> M;
+  arm.inertia(frames, M);
+  Jacobian<kAnyDof> J;
+  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
+  const Eigen::VectorXd b_d = device_damping(description, p);
+  const Vec3 n = least_damped(J, b_d);
+
+  TipLimits l;
+  l.tip = tip_along(J, M, b_d, n);
+  const double lever2 = l.tip.lever2;
+  const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip};
+  const auto at = [&l](CouplingKind kind) -> TipLimits::Wall& {
+    return l.walls[static_cast<std::size_t>(kind)];
+  };
+  at(CouplingKind::standard) = {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};
+  at(CouplingKind::proposed) = {proposed_wall(l.tip, s),
+                                "the damping there is against the lag of the contact"};
+  at(CouplingKind::predictive) = predictive_wall(l, s, p);
+  l.every_hand = every_hands_wall(l.tip, p.tick);
+  l.scene = stiffest(scene);
+  l.felt = {(1 + p.inertia_ratio) * l.tip.mass,
+            l.tip.damping,
+            p.b_v / lever2,
+            p.k_vc / lever2,
+            p.b_vc / lever2,
+            p.tick,
+            0};
+  l.w_f = p.alpha / lever2 / l.felt.m;
+  return l;
+}
+
+FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind, double f) {
+  std::complex<double> Z;
+  switch (kind) {
+    case CouplingKind::standard: Z = l.felt.standard(f); break;
+    case CouplingKind::proposed: Z = l.felt.proposed(f, p.eta, l.w_f); break;
+    case CouplingKind::predictive:
+      Z = l.felt.predictive(f, p.eta, p.damping_share(p.eta), p.band);
+      break;
+  }
+  return {Z.imag() / (2 * std::numbers::pi * f), Z.real()};
+}
+
+}  // namespace limpid

@@ -1,0 +1,43 @@
+// What each coupling can show at the tip of an arm, without simulating: walls, and what is felt in
+// free motion.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/dynamics/arm_description.h"
+#include "core/passivity/felt.h"
+#include "core/passivity/walls.h"
+#include "core/tick/parameters.h"
+#include "core/touch/scene.h"
+
+namespace limpid {
+
+// Along the direction in which the arm's own dampers hold the tip least.
+struct TipLimits {
+  TipAlong tip;
+  // Of each coupling, in the order of the laws: the stiffest wall that it renders well, or that can
+  // be felt through it [N/m], and what bounds it.
+  struct Wall {
+    double stiffness;
+    std::string bound;
+  };
+  std::array<Wall, kLaws> walls;
+  double every_hand;  // stiffest wall that a linear law can render passively in every hand [N/m]
+  double scene;       // stiffest thing in the scene, 0 without any [N/m]
+  FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
+  double w_f;         // of the observer there [rad/s]
+};
+
+// At configuration x [rad].
+TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                     const Scene& scene);
+
+// What is felt in free motion at f [Hz].
+struct FeltAtTip {
+  double mass;     // [kg]
+  double damping;  // [N s/m]
+};
+FeltAtTip felt_at_tip(const TipLimits& limits, const Parameters& p, CouplingKind kind, double f);
+
+}  // namespace limpid

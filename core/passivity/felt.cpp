@@ -1,0 +1,45 @@
+#include "core/passivity/felt.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/coupling/inertia_network.h"
+
+namespace limpid {
+namespace {
+
+double omega(double f) { return 2 * std::numbers::pi * f; }
+
+}  // namespace
+
+std::complex<double> FeltJoint::proposed(double f, double eta, double w_f) const {
+  const std::complex<double> s(0, omega(f));
+  const std::complex<double> coupling = k_vc / s + b_vc, damper = b_v + k_vc * T / 2;
+  const std::complex<double> contact = K / s * std::exp(-s * (b_v / k_vc + T / 2));
+  const std::complex<double> observer = w_f / (s + w_f) * std::exp(-s * (1.5 * T));
+  return (m * s + b_d + coupling * damper / (coupling + damper) + contact / eta) /
+         (1.0 + (1 - eta) / eta * observer);
+}
+
+std::complex<double> FeltJoint::standard(double f) const {
+  const std::complex<double> s(0, omega(f));
+  const std::complex<double> coupling = k_vc / s + b_vc, proxy = b_v + k_vc * T / 2 + K / s;
+  return m * s + b_d + coupling * proxy / (coupling + proxy);
+}
+
+std::complex<double> FeltJoint::predictive(double f, double eta, double damping,
+                                           double band) const {
+  const std::complex<double> s(0, omega(f));
+  return m * (s + network_impedance(eta, band, omega(f))) + damping * (b_d + b_v) + K / s;
+}
+
+std::complex<double> FeltJoint::ideal(double f, double eta) const {
+  const std::complex<double> s(0, omega(f));
+  return eta * (m * s + b()) + K / s;
+}
+
+double FeltJoint::least_damping(double eta, double band) const {
+  return std::max(0.0, 1 - eta) * m * omega(band);
+}
+
+}  // namespace limpid

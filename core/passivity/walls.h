@@ -1,0 +1,43 @@
+// How stiff walls may be that the tip of an arm touches, in closed form.
+#pragma once
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+// An arm at its tip, along one direction.
+struct TipAlong {
+  double mass = 0;     // 1 / (n' J M^-1 J' n) [kg]
+  double damping = 0;  // of all joints' own dampers [N s/m]
+  double lever2 = 0;   // |J' n|^2: a joint's stiffness or damping over that at the tip [m^2]
+};
+
+// J: of the tip (3 x n) [m]; M: of the device (n x n) [kg m^2]; b_d: n, above 0 [N m s/rad]; n:
+// unit.
+TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
+                   const Vec3& n);
+// Unit, the direction in which the joints' own dampers hold the tip least: where walls are hardest
+// to render.
+Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d);
+
+// Settings and surroundings of a wall: those of a joint, all alike, and of the hand at the tip.
+struct WallSetting {
+  double T = 0.001;          // [s]
+  double k_vc = 0, b_v = 0;  // [N m/rad, N m s/rad]
+  double eta = 1;
+  double hand_damping = 0;  // [N s/m]
+  double hand_mass = 0;     // [kg]
+};
+
+// Stiffest wall [N/m] of the proposed coupling: the damping there is against the lag of its
+// contact, half a tick and b_v/k_vc.
+double proposed_wall(const TipAlong& tip, const WallSetting& s);
+// Stiffest wall that any linear law can render and be passive in every hand (Colgate): 2 b_d / T.
+double every_hands_wall(const TipAlong& tip, double T);
+// Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand, by
+// the energy that its error gives away. Infinite without a mass.
+double mistaken_wall(const TipAlong& tip, const WallSetting& s);
+// What is felt of a wall through a spring k_vc at every joint is softer than it [N/m].
+double spring_at_tip(const TipAlong& tip, double k_vc);
+
+}  // namespace limpid

@@ -1,0 +1,69 @@
+#include "app/run/tip_limits.h"
+
+#include <gtest/gtest.h>
+
+#include "core/dynamics/arm.h"
+#include "tests/support/built_in.h"
+
+namespace limpid {
+namespace {
+
+TipLimits limits(const Parameters& p, const Scene& scene = {}) {
+  const ArmDescription arm = test::omni();
+  return tip_limits(arm, rest_pose(arm), p, scene);
+}
+
+double wall(const TipLimits& l, CouplingKind kind) {
+  return l.walls[static_cast<std::size_t>(kind)].stiffness;
+}
+
+TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
+  using enum CouplingKind;
+  const Parameters exact;
+  EXPECT_GE(wall(limits(exact), predictive), 10000);
+  Parameters fine, coarse, heavy, late;
+  fine.encoder_step = 1e-4;
+  EXPECT_NEAR(wall(limits(fine), predictive), 5000, 100);
+  coarse.encoder_step = 5e-4;
+  EXPECT_NEAR(wall(limits(coarse), predictive), 2000, 100);
+  heavy.hand_mass_at_tip = 0.5;
+  heavy.hand_mass = 0.05;
+  EXPECT_LT(wall(limits(heavy), predictive), wall(limits(exact), predictive));
+  heavy.hand_mass = 0.5;  // it knows of it
+  EXPECT_EQ(wall(limits(heavy), predictive), wall(limits(exact), predictive));
+  late.device_delay = 1;
+  EXPECT_LT(wall(limits(late), predictive), 5000);
+  late.delay = 1;
+  EXPECT_EQ(wall(limits(late), predictive), wall(limits(exact), predictive));
+}
+
+TEST(TipLimits, OfThePapersLawsAreItsSpringAndItsLag) {
+  Parameters p;
+  const TipLimits l = limits(p);
+  EXPECT_NEAR(wall(l, CouplingKind::standard), p.k_vc / l.tip.lever2, 1e-9);
+  p.eta = 0.5;
+  EXPECT_NEAR(wall(limits(p), CouplingKind::proposed), 0.5 * wall(l, CouplingKind::proposed), 1e-9);
+  EXPECT_NEAR(l.every_hand, 2 * 0.012 / l.tip.lever2 / p.tick, 1e-9);
+}
+
+TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
+  Scene scene;
+  EXPECT_EQ(limits({}, scene).scene, 0);
+  scene.planes.push_back({.material = {.stiffness = 600}});
+  scene.spheres.push_back({.material = {.stiffness = 5000}});
+  EXPECT_EQ(limits({}, scene).scene, 5000);
+}
+
+TEST(TipLimits, FeelInertiaAsEachLawMakesIt) {
+  Parameters p;
+  p.eta = 0.4;
+  const TipLimits l = limits(p);
+  const double m = l.felt.m;
+  EXPECT_NEAR(felt_at_tip(l, p, CouplingKind::predictive, 2).mass, 0.4 * m, 0.03 * m);
+  EXPECT_GT(felt_at_tip(l, p, CouplingKind::standard, 2).mass, 0.9 * m);
+  EXPECT_GT(felt_at_tip(l, p, CouplingKind::predictive, 0.5).damping,
+            l.felt.least_damping(p.eta, p.band));
+}
+
+}  // namespace
+}  // namespace limpid
