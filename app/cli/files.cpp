@@ -41,7 +41,13 @@ int info(const InfoOptions& options) {
   }
   fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
-  fmt::print("{}", summary.text());
+  if (session.twin) {
+    Summary twin(session.layout);
+    for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
+    fmt::print("two runs on one hand\n{}", Summary::beside(summary, "first", twin, "twin"));
+  } else {
+    fmt::print("{}", summary.text());
+  }
   fmt::print("contacts                 {}\n", contacts(session));
   for (const SettingChange& change : session.changes) {
     fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,

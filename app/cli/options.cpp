@@ -90,10 +90,14 @@ RunPlan plan_from_session(const InputOptions& options) {
   RunPlan plan = replay(session, options.hand, chosen);
   if (chosen.tick != session.info.tick) {
     const double ratio = session.info.tick / chosen.tick;
-    for (SettingChange& change : plan.changes) {
-      const double row = static_cast<double>(change.row) * ratio;
-      change.row = static_cast<std::uint64_t>(std::llround(row));
-    }
+    const auto move = [ratio](std::vector<SettingChange>& changes) {
+      for (SettingChange& change : changes) {
+        const double row = static_cast<double>(change.row) * ratio;
+        change.row = static_cast<std::uint64_t>(std::llround(row));
+      }
+    };
+    move(plan.changes);
+    if (plan.twin) move(plan.twin->changes);
     plan.force.clear();
     plan.parameters.tick = chosen.tick;
   }
@@ -103,7 +107,10 @@ RunPlan plan_from_session(const InputOptions& options) {
       plan.document = parse_scene(session.info.scene, options.hand + " (scene)",
                                   data_dir() / "assets/scenes", plan.arm, session.info.models);
     }
-    if (plan.arm.urdf != session.info.device_urdf) plan.start.reset();
+    if (plan.arm.urdf != session.info.device_urdf) {
+      plan.start.reset();
+      if (plan.twin) plan.twin->start.reset();
+    }
     if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
       throw UsageError(
           fmt::format("--device: {} has {} joints; {} holds the hand's torque on {} joints",

@@ -9,7 +9,7 @@
 namespace limpid {
 
 void save_picture(const std::filesystem::path& png, const RunPlan& plan,
-                  std::span<const double> row) {
+                  std::span<const double> row, std::span<const double> twin) {
   constexpr int kWidth = 1280, kHeight = 800;
   const OffscreenContext context(kWidth, kHeight);
   SceneView picture(data_dir() / "shaders", plan.arm, plan.document.scene,
@@ -19,6 +19,7 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
   const RowLayout layout(plan.arm.dof());
   const RowView rows(plan.arm);
   ViewState view = rows.view(layout, row);
+  if (!twin.empty()) view.rerun = rows.pose(layout.in(twin, Column::proxy_position));
   ViewMemory().update(view, rows.contacts(layout, row), 0);
   Camera camera;
   camera.resize(kWidth, kHeight);

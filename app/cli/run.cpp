@@ -28,6 +28,7 @@ struct RunOptions {
   std::string picture;
   bool force = false;
   bool realtime = false;
+  std::optional<std::vector<std::string>> twin;  // key=value
 };
 
 // What goes wrong from here on is a failed run, no bad input.
@@ -51,45 +52,84 @@ void check_picture(const std::filesystem::path& png) {
   if (access((folder / ".").c_str(), W_OK | X_OK) != 0) refuse(errno);
 }
 
-int run(const RunOptions& options) {
-  const RunPlan plan = make_plan(options.input);
-  if (!options.picture.empty()) check_picture(options.picture);
-  catch_interrupts();
-  std::optional<Recorder> recorder;
-  if (!options.record.empty()) {
-    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
-                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
+// What tells two runs on one hand apart, in a word or two.
+std::string short_name(const Parameters& p) {
+  return fmt::format("{} {:.3g}", name(p.kind), p.eta);
+}
+
+// Another pair than the one that the options ask for: standard beside the chosen law, or settings
+// that are given.
+TwinPlan make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
+  TwinPlan twin{chosen, {}, {}};
+  for (const std::string& setting : settings) apply_setting(twin.parameters, setting);
+  if (!settings.empty()) {
+    if (twin.parameters.tick == chosen.tick) return twin;
+    throw UsageError("--twin loop.tick: both runs go in the same ticks");
+  }
+  using enum CouplingKind;
+  twin.parameters.kind = chosen.kind == standard ? predictive : standard;
+  return twin;
+}
+
+// Takes the ticks in while they come.
+class Witness {
+ public:
+  Witness(const RunPlan& plan, Recorder* recorder, bool waits)
+      : stride_(static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride())),
+        runs_(plan.twin ? 2 : 1, Summary(RowLayout(plan.arm.dof()))),
+        recorder_(recorder),
+        waits_(waits) {}
+
+  // False to end the run.
+  bool take(std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
+    const bool memorable = runs_[0].add(rows.first(stride_));
+    if (runs_.size() > 1) {
+      const auto twin = rows.subspan(stride_);
+      runs_[1].add(twin);
+      if (memorable) twin_.assign(twin.begin(), twin.end());
+    }
+    if (recorder_ == nullptr) return true;
+    for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
+      if (changed[lane] != nullptr) recorder_->changed(*changed[lane], lane);
+    }
+    if (waits_) return recorder_->push_waiting(rows);
+    recorder_->push(rows);
+    return !recorder_->failed();
   }
 
-  Summary summary(RowLayout(plan.arm.dof()));
-  const auto began = std::chrono::steady_clock::now();
-  RunEnd end;
-  {
-    Progress progress({.title = "run",
-                       .whole = static_cast<double>(plan.rows) * plan.parameters.tick,
-                       .unit = "s",
-                       .rate = "times real time"});
-    end = simulate(plan, {options.realtime, &interrupted},
-                   [&](std::span<const double> row, const Parameters* changed) {
-                     summary.add(row);
-                     progress.at(summary.time());
-                     if (!recorder) return true;
-                     if (changed != nullptr) recorder->changed(*changed);
-                     if (!options.realtime) return recorder->push_waiting(row);
-                     recorder->push(row);
-                     return !recorder->failed();
-                   });
-  }
-  const double took = Seconds(std::chrono::steady_clock::now() - began).count();
-  if (recorder) finish(*recorder);
-  if (!options.picture.empty()) {
-    save_picture(options.picture, plan, summary.memorable());
+  double time() const { return runs_[0].time(); }
+  std::span<const double> memorable() const { return runs_[0].memorable(); }
+  std::span<const double> twin() const { return twin_; }  // at that time
+  std::string text(const RunPlan& plan) const {
+    if (!plan.twin) return runs_[0].text();
+    return Summary::beside(runs_[0], short_name(plan.parameters), runs_[1],
+                           short_name(plan.twin->parameters));
   }
 
-  fmt::print("{}", summary.text());
-  const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
-  fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
-  if (recorder) {
+ private:
+  std::size_t stride_;
+  std::vector<Summary> runs_;
+  std::vector<double> twin_;
+  Recorder* recorder_;
+  bool waits_;
+};
+
+RunEnd carry_out(const RunOptions& options, const RunPlan& plan, Witness& witness) {
+  Progress progress({.title = "run",
+                     .whole = static_cast<double>(plan.rows) * plan.parameters.tick,
+                     .unit = "s",
+                     .rate = "times real time"});
+  return simulate_twin(
+      plan, {options.realtime, &interrupted},
+      [&](std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
+        const bool goes_on = witness.take(rows, changed);
+        progress.at(witness.time());
+        return goes_on;
+      });
+}
+
+int report(const RunOptions& options, const RunEnd& end, const Recorder* recorder, double time) {
+  if (recorder != nullptr) {
     fmt::print("recorded {} ticks in {}\n", recorder->rows(), options.record);
     if (recorder->dropped() > 0) {
       fmt::print(stderr, "limpid: {} ticks found no room and are missing from {}\n",
@@ -105,8 +145,33 @@ int run(const RunOptions& options) {
         end.diverged_at, end.why);
     return 1;
   }
-  if (end.stopped) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());
+  if (end.stopped) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", time);
   return 0;
+}
+
+int run(const RunOptions& options) {
+  RunPlan plan = make_plan(options.input);
+  if (options.twin) plan.twin = make_twin(plan.parameters, *options.twin);
+  if (!options.picture.empty()) check_picture(options.picture);
+  catch_interrupts();
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) {
+    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
+                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom,
+                     plan.twin ? &plan.twin->parameters : nullptr);
+  }
+  Witness witness(plan, recorder ? &*recorder : nullptr, !options.realtime);
+  const auto began = std::chrono::steady_clock::now();
+  const RunEnd end = carry_out(options, plan, witness);
+  const double took = Seconds(std::chrono::steady_clock::now() - began).count();
+  if (recorder) finish(*recorder);
+  if (!options.picture.empty()) {
+    save_picture(options.picture, plan, witness.memorable(), witness.twin());
+  }
+  fmt::print("{}", witness.text(plan));
+  const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
+  fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
+  return report(options, end, recorder ? &*recorder : nullptr, witness.time());
 }
 
 }  // namespace
@@ -122,6 +187,15 @@ Command declare_run(CLI::App& app) {
       ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--twin", [options](const auto& settings) { options->twin = settings; },
+          "a second run on the same hand beside this one: with the standard coupling, or with "
+          "these "
+          "settings changed")
+      ->type_name("[KEY=VALUE ...]")
+      ->expected(0, -1)
+      ->trigger_on_parse(false);
   options->input.add_world(*command);
   options->input.add_hand(*command);
   options->input.add_parameters(*command);

@@ -24,6 +24,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   RigStart start = rest_at(arm, home);
   close();
   rig_ = std::make_unique<Rig>(arm, scene);
+  twin_.open(arm, scene, start);
   start.armed = virtual_armed_;
   begin(std::move(start), p);
 }
@@ -44,8 +45,10 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
 
 void LiveLoop::begin(RigStart start, const Parameters& p) {
   const auto stride = static_cast<std::size_t>(rig_->layout().stride());
-  trace_ = std::make_unique<TraceRing>(kTraceRows, stride);
-  row_.assign(stride, 0.0);
+  trace_ = std::make_unique<TraceRing>(kTraceRows, 2 * stride);
+  rows_.assign(2 * stride, 0.0);
+  row_ = std::span(rows_).first(stride);
+  of_twin_ = std::span(rows_).subspan(stride);
   home_ = rebase_ = std::move(start);
   parameters_ = p;
   limits_ = {};  // as a new rig has them; the first tick lowers them again
@@ -73,6 +76,7 @@ void LiveLoop::close() {
   delete std::exchange(plug_, nullptr);
   plugged_ = false;
   rig_.reset();
+  twin_.close();
   in_place_ = false;
 }
 
@@ -85,9 +89,10 @@ void LiveLoop::plug(std::unique_ptr<Device> device) {
 
 // What the window has offered.
 void LiveLoop::take_in() {
-  if (TouchWorld* world = worlds_.take()) {
-    rig_->exchange(*world);
-    worlds_.give_back(world);
+  if (TouchWorlds* worlds = worlds_.take()) {
+    rig_->exchange(worlds->first);
+    if (!in_place_) twin_.exchange(worlds->twin);
+    worlds_.give_back(worlds);
   }
   if (Plug* plug = plugs_.take()) {
     if (plug_ != nullptr && plug_->device) plug_->device->stop();
@@ -147,6 +152,7 @@ void LiveLoop::start_over(const Parameters& p) {
   }
   home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
   rig_->start(p, home_);
+  twin_.begin_anew();
   hand_.reset(home_.target);
   led_ = false;  // else the guide would pull it back
 }
@@ -170,7 +176,12 @@ void LiveLoop::tick(const TickTiming& timing) {
   }
   const HandInput hand = hand_input(controls);
   follow_recorder(hand.target);
-  rig_->step(parameters_, rig_input(timing, hand), row_);
+  const RigInput input = rig_input(timing, hand);
+  twin_.step(controls.twin && !in_place_, controls.twin_parameters, *rig_, input, of_twin_);
+  if (twin_.changed() && recording_to_ != nullptr && recording_to_->of_twin()) {
+    recording_to_->changed(twin_.parameters(), kTwinLane);
+  }
+  rig_->step(parameters_, input, row_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   compute_ = took.count();
   publish(timing);
@@ -189,17 +200,19 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   if (offered == nullptr) return;
   recording_to_ = offered;
   rig_->rebase(parameters_, rebase_, target);
+  twin_.rebase(target);
   offered->changed(parameters_);
 }
 
 void LiveLoop::publish(const TickTiming& timing) {
   const RowLayout& layout = rig_->layout();
-  layout.in(std::span(row_), Column::wake_latency)[0] = timing.wake_latency;
-  layout.in(std::span(row_), Column::compute)[0] = compute_;
-  trace_->push(row_);
-  if (recording_to_ != nullptr) recording_to_->push(row_);
+  layout.in(row_, Column::wake_latency)[0] = timing.wake_latency;
+  layout.in(row_, Column::compute)[0] = compute_;
+  trace_->push(rows_);
+  if (recording_to_ != nullptr) recording_to_->push(recording_to_->of_twin() ? rows_ : row_);
   Snapshot& snapshot = snapshots_.back();
   std::ranges::copy(row_, snapshot.row.begin());
+  std::ranges::copy(of_twin_, snapshot.twin.begin());
   snapshot.diverged = rig_->diverged();
   snapshot.recording = recording_to_ != nullptr;
   snapshot.arming = rig_->force().state();
@@ -210,7 +223,7 @@ void LiveLoop::publish(const TickTiming& timing) {
 }
 
 void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
-  if (recorder->stride() != trace_->stride()) {
+  if ((recorder->of_twin() ? 1 : 2) * recorder->stride() != trace_->stride()) {
     throw std::invalid_argument("the recording was begun for an arm of other joints");
   }
   recorder_ = std::move(recorder);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/live/twin.h"
 #include "app/run/recorder.h"
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
@@ -24,11 +25,21 @@ struct Controls {
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   std::uint32_t resets = 0;  // start over whenever this counts on
+  bool twin = false;         // a second run beside it; not beside a device in the arm's place
+  Parameters twin_parameters;
+};
+
+// What can be touched from now on, for both runs.
+struct TouchWorlds {
+  TouchWorlds(const ArmDescription& arm, const Scene& scene)
+      : first(arm, scene), twin(arm, scene) {}
+
+  TouchWorld first, twin;
 };
 
 // From the loop to the window; the newest wins.
 struct Snapshot {
-  std::array<double, kMaxStride> row{};
+  std::array<double, kMaxStride> row{}, twin{};  // not numbers without a twin
   bool diverged = false;
   bool recording = false;
   Arming arming = Arming::off;
@@ -74,7 +85,7 @@ class LiveLoop {
   void close();
   // Both are taken in by the running loop at its next tick. Another scene for the same arm, built
   // beside the loop:
-  void exchange(std::unique_ptr<TouchWorld> world) { worlds_.offer(std::move(world)); }
+  void exchange(std::unique_ptr<TouchWorlds> worlds) { worlds_.offer(std::move(worlds)); }
   // Another device, or none: a hand's guide, or, of a loop with a device in the arm's place, that
   // one back again.
   void plug(std::unique_ptr<Device> device);
@@ -100,13 +111,15 @@ class LiveLoop {
     return snapshots_.update();
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
-  // Every tick since the last call, as far as `into` holds; returns the rows.
+  // Every tick since the last call, as far as `into` holds; returns how many. Each is its row, and
+  // the twin's behind it, of no numbers without one.
   std::size_t drain(std::span<double> into) { return trace_ ? trace_->pop(into) : 0; }
   std::uint64_t trace_dropped() const { return trace_ ? trace_->dropped() : 0; }
   const RowLayout& layout() const { return rig_->layout(); }
 
   // Recording begins at the next tick at which nothing fades; its first row is time zero of the
-  // loop. Precondition: the loop runs, as wide as the recorder's rows; none is recording.
+  // loop. Precondition: the loop runs, as wide as the recorder's rows; none is recording; a twin
+  // runs if the recorder is of one, and goes on running.
   void record(std::unique_ptr<Recorder> recorder);
   bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
@@ -136,7 +149,7 @@ class LiveLoop {
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
-  HandOver<TouchWorld> worlds_;
+  HandOver<TouchWorlds> worlds_;
   HandOver<Plug> plugs_;
   bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
   bool plugged_ = false;   // the window's
@@ -156,6 +169,7 @@ class LiveLoop {
   // The loop's own.
   Recorder* recording_to_ = nullptr;
   std::unique_ptr<Rig> rig_;
+  Twin twin_;
   Plug* plug_ = nullptr;
   DeviceReading guide_;
   bool connected_ = false;
@@ -167,7 +181,8 @@ class LiveLoop {
   RigStart home_;
   RigStart rebase_;
   std::uint32_t resets_ = 0, known_arms_ = 0, known_cuts_ = 0;
-  std::vector<double> row_;
+  std::vector<double> rows_;         // the newest row and the twin's
+  std::span<double> row_, of_twin_;  // in them
   double compute_ = 0;
 
   HapticThread thread_;  // last: it goes first

@@ -19,12 +19,13 @@ std::size_t ring_rows(std::size_t room, int stride) {
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
-                   const Parameters& initial, bool force, std::size_t room)
+                   const Parameters& initial, bool force, std::size_t room, const Parameters* twin)
     : out_(out),
       writer_(out, info, force),
-      ring_(ring_rows(room, RowLayout(info.dof).stride()),
-            static_cast<std::size_t>(RowLayout(info.dof).stride())),
-      known_(initial),
+      ring_(ring_rows(room, (twin ? 2 : 1) * RowLayout(info.dof).stride()),
+            static_cast<std::size_t>((twin ? 2 : 1) * RowLayout(info.dof).stride())),
+      lanes_(twin ? 2 : 1),
+      known_{initial, twin ? *twin : initial},
       block_(kBlockRows * ring_.stride()),
       thread_([this] { live(); }) {}
 
@@ -46,8 +47,8 @@ bool Recorder::push_waiting(std::span<const double> row) {
   return !failed() && push(row);
 }
 
-bool Recorder::changed(const Parameters& now) noexcept {
-  const bool kept = changes_.push({pushed_.load(std::memory_order_relaxed), now});
+bool Recorder::changed(const Parameters& now, std::size_t lane) noexcept {
+  const bool kept = changes_.push({pushed_.load(std::memory_order_relaxed), now, lane});
   if (!kept) lost_changes_.fetch_add(1);
   return kept;
 }
@@ -82,19 +83,34 @@ void Recorder::live() {
 
 void Recorder::write_rows() {
   while (const std::size_t rows = ring_.pop(block_)) {
-    writer_.append(std::span<const double>(block_).first(rows * ring_.stride()));
+    const auto both = std::span<const double>(block_).first(rows * ring_.stride());
+    if (lanes_ == 1) {
+      writer_.append(both);
+      continue;
+    }
+    const std::size_t stride = ring_.stride() / lanes_;
+    for (std::size_t lane = 0; lane < lanes_; ++lane) {
+      of_lane_.clear();
+      for (std::size_t at = lane * stride; at < both.size(); at += ring_.stride()) {
+        const auto row = both.subspan(at, stride);
+        of_lane_.insert(of_lane_.end(), row.begin(), row.end());
+      }
+      writer_.append(of_lane_, lane);
+    }
   }
 }
 
 void Recorder::write_changes() {
   while (const auto change = changes_.pop()) {
+    Parameters& known = known_[change->lane];
     for (const ParameterInfo& info : parameter_table()) {
       const std::string text = parameter_text(change->parameters, info);
-      if (text == parameter_text(known_, info)) continue;
+      if (text == parameter_text(known, info)) continue;
       // An empty text gives a value back to the arm.
-      writer_.append(SettingChange{change->row, std::string(info.key) + " = " + text});
+      writer_.append(SettingChange{change->row, std::string(info.key) + " = " + text},
+                     change->lane);
     }
-    known_ = change->parameters;
+    known = change->parameters;
   }
 }
 

@@ -1,6 +1,7 @@
 // Writes every tick to a session file, from a thread of its own.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <string>
@@ -23,19 +24,23 @@ class Recorder {
 
   // Opens the file at once, so that what cannot be written is known before the first tick.
   // Errors: FileError.
+  // `twin`: of a second run on the same hand, whose rows then come with every push.
   Recorder(const std::filesystem::path& out, const SessionInfo& info, const Parameters& initial,
-           bool force, std::size_t room = kLiveRoom);
+           bool force, std::size_t room = kLiveRoom, const Parameters* twin = nullptr);
   ~Recorder();  // without finish(): leaves what was written as OUT.h5.part
 
-  // The loop's side: allocates and waits for nothing. False if there was no room.
+  // The loop's side: allocates and waits for nothing. False if there was no room. A twin's two rows
+  // stand one behind the other.
   bool push(std::span<const double> row) noexcept;
   // For loops without a clock to obey: waits for room instead of losing the row. False once the
   // recording has failed.
   bool push_waiting(std::span<const double> row);
-  bool changed(const Parameters& now) noexcept;  // holds from the next row pushed on
+  bool changed(const Parameters& now,
+               std::size_t lane = kMainLane) noexcept;  // from the next row on
 
   // The owner's side.
-  std::size_t stride() const noexcept { return ring_.stride(); }  // doubles a row
+  std::size_t stride() const noexcept { return ring_.stride(); }  // doubles a push
+  bool of_twin() const noexcept { return lanes_ > 1; }
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
@@ -48,6 +53,7 @@ class Recorder {
   struct Change {
     std::uint64_t row = 0;
     Parameters parameters;
+    std::size_t lane = kMainLane;
   };
 
   void live();
@@ -58,8 +64,9 @@ class Recorder {
   SessionWriter writer_;
   TraceRing ring_;
   SpscQueue<Change> changes_{256};
-  Parameters known_;  // the writing thread's
-  std::vector<double> block_;
+  std::size_t lanes_;                    // runs
+  std::array<Parameters, 2> known_;      // the writing thread's, of each run
+  std::vector<double> block_, of_lane_;  // the writing thread's
   std::atomic<std::uint64_t> pushed_{0};
   std::atomic<std::uint64_t> lost_changes_{0};
   std::atomic<bool> stop_{false};

@@ -23,6 +23,7 @@ SessionInfo session_info(const RunPlan& plan) {
   info.device_urdf = plan.arm.urdf;
   info.scene = plan.document.toml;
   info.models = files_of(plan.document);
+  if (plan.twin) info.twin = config_text(plan.twin->parameters);
   return info;
 }
 
@@ -43,6 +44,36 @@ auto with_pictures(const std::filesystem::path& folder, const Parse& parse) {
   } catch (const FileError&) {
     return parse(std::filesystem::path());
   }
+}
+
+// The changes made while recording, but for keys that are set otherwise now than at its beginning.
+std::vector<SettingChange> changes_again(const Session& run, const std::string& where,
+                                         const Parameters& own, const Parameters& chosen) {
+  std::vector<SettingChange> changes;
+  Parameters tried = own;
+  for (const SettingChange& change : run.changes) {
+    try {
+      apply_change(tried, change);
+    } catch (const ParameterError& e) {
+      throw FileError(fmt::format("{}: /events/setting: {}", where, e.what()));
+    }
+    const ParameterInfo* info = find_parameter(change.key());
+    if (info != nullptr && parameter_text(own, *info) == parameter_text(chosen, *info)) {
+      changes.push_back(change);
+    }
+  }
+  return changes;
+}
+
+// What was chosen otherwise than the first run began holds for the twin as well, but for what the
+// two differed in: that is what they are compared for.
+Parameters with_changed(Parameters twin, const Parameters& began, const Parameters& chosen) {
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string was = parameter_text(began, info);
+    if (parameter_text(chosen, info) == was || parameter_text(twin, info) != was) continue;
+    set_parameter_number(twin, info, parameter_number(chosen, info));
+  }
+  return twin;
 }
 
 }  // namespace
@@ -73,18 +104,15 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
   }
 
-  const Parameters own = session_parameters(session, where);
-  Parameters tried = own;
-  for (const SettingChange& change : session.changes) {
-    try {
-      apply_change(tried, change);
-    } catch (const ParameterError& e) {
-      throw FileError(fmt::format("{}: /events/setting: {}", where, e.what()));
-    }
-    const ParameterInfo* info = find_parameter(change.key());
-    if (info != nullptr && parameter_text(own, *info) == parameter_text(chosen, *info)) {
-      plan.changes.push_back(change);
-    }
+  plan.changes = changes_again(session, where, session_parameters(session, where), chosen);
+  if (session.twin) {
+    const Session& twin = *session.twin;
+    const Parameters own = session_parameters(twin, where + " (twin)");
+    TwinPlan& again = plan.twin.emplace();
+    again.parameters = with_changed(own, session_parameters(session, where), chosen);
+    again.parameters.tick = session.info.tick;
+    again.changes = changes_again(twin, where + " (twin)", own, again.parameters);
+    again.start = start_of(twin.layout, twin.row(0));
   }
   return plan;
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 
@@ -21,19 +22,52 @@ void note(RunEnd& end, const DivergenceWatch& watch) {
   end.why = watch.why();
 }
 
-// The run as a sequence of ticks, whoever paces them.
+// One of the runs: a rig and what changes in its settings.
+class Lane {
+ public:
+  Lane(const RunPlan& plan, const Parameters& p, const std::vector<SettingChange>& changes)
+      : rig(plan.arm, plan.document.scene), watch(rig.layout()), parameters(p), changes_(changes) {
+    parameters.tick = plan.parameters.tick;
+  }
+
+  // Whether something has changed at row k.
+  bool apply_changes(std::uint64_t k) {
+    bool changed = false;
+    for (; next_ < changes_.size() && changes_[next_].row <= k; ++next_) {
+      apply_change(parameters, changes_[next_]);
+      changed = true;
+    }
+    return changed;
+  }
+  void step(const RigInput& input, double wake_latency, std::span<double> row) {
+    const auto began = std::chrono::steady_clock::now();
+    rig.step(parameters, input, row);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    rig.layout().in(row, Column::wake_latency)[0] = wake_latency;
+    rig.layout().in(row, Column::compute)[0] = took.count();
+    watch.add(row);
+  }
+
+  Rig rig;
+  DivergenceWatch watch;
+  Parameters parameters;
+
+ private:
+  const std::vector<SettingChange>& changes_;
+  std::size_t next_ = 0;
+};
+
+// The run as a sequence of ticks, whoever paces them; of a twin both of its runs.
 class Run {
  public:
-  Run(const RunPlan& plan, const RunPace& pace, const RowSink& sink)
-      : plan_(plan),
-        pace_(pace),
-        sink_(sink),
-        rig_(plan.arm, plan.document.scene),
-        watch_(rig_.layout()),
-        parameters_(plan.parameters),
-        row_(static_cast<std::size_t>(rig_.layout().stride())) {
+  Run(const RunPlan& plan, const RunPace& pace, const TwinSink& sink)
+      : plan_(plan), pace_(pace), sink_(sink) {
+    lanes_.emplace_back(plan, plan.parameters, plan.changes);
+    if (plan.twin) lanes_.emplace_back(plan, plan.twin->parameters, plan.twin->changes);
+    rows_.resize(lanes_.size() * stride());
     const RigStart start = plan.start ? *plan.start : rest_at(plan.arm, plan.hand.sample(0, T()));
-    rig_.start(parameters_, start);
+    lanes_[0].rig.start(lanes_[0].parameters, start);
+    if (plan.twin) lanes_[1].rig.start(lanes_[1].parameters, plan.twin->start.value_or(start));
     armed_ = start.armed;
   }
 
@@ -45,28 +79,30 @@ class Run {
       return false;
     }
     const auto k = static_cast<std::size_t>(end_.rows);
-    const bool changed = apply_changes();
-    const auto began = std::chrono::steady_clock::now();
-    rig_.step(parameters_, {hand(k), wish(k)}, row_);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-    rig_.layout().in(std::span(row_), Column::wake_latency)[0] = wake_latency;
-    rig_.layout().in(std::span(row_), Column::compute)[0] = took.count();
+    const RigInput input{hand(k), wish(k)};
+    std::array<const Parameters*, 2> changed{};
+    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+      if (lanes_[i].apply_changes(end_.rows)) changed[i] = &lanes_[i].parameters;
+      lanes_[i].step(input, wake_latency, std::span(rows_).subspan(i * stride(), stride()));
+    }
     ++end_.rows;
-    end_.stopped = !sink_(row_, changed ? &parameters_ : nullptr);
-    watch_.add(row_);
-    note(end_, watch_);
+    end_.stopped = !sink_(rows_, changed);
+    for (const Lane& lane : lanes_) {
+      if (!end_.diverged) note(end_, lane.watch);
+    }
     return !end_.stopped && !end_.diverged;
   }
 
   const RunEnd& end() const { return end_; }
 
  private:
-  double T() const { return parameters_.tick; }
+  double T() const { return plan_.parameters.tick; }
+  std::size_t stride() const { return static_cast<std::size_t>(lanes_[0].rig.layout().stride()); }
 
   HandInput hand(std::size_t k) const {
     const Vec3 target = plan_.hand.sample(k, T());
     if (plan_.hand_torque.empty()) return {target, plan_.hand.grip_sample(k, T())};
-    const auto n = static_cast<std::size_t>(rig_.dof());
+    const auto n = static_cast<std::size_t>(lanes_[0].rig.dof());
     const std::size_t last = plan_.hand_torque.size() / n - 1;
     const double recorded = static_cast<double>(k) * T() / plan_.hand.tick;
     const auto row = std::min(static_cast<std::size_t>(std::llround(recorded)), last);
@@ -80,23 +116,11 @@ class Run {
     return armed ? ForceWish::arm : ForceWish::cut;
   }
 
-  bool apply_changes() {
-    bool changed = false;
-    for (; next_ < plan_.changes.size() && plan_.changes[next_].row <= end_.rows; ++next_) {
-      apply_change(parameters_, plan_.changes[next_]);
-      changed = true;
-    }
-    return changed;
-  }
-
   const RunPlan& plan_;
   const RunPace& pace_;
-  const RowSink& sink_;
-  Rig rig_;
-  DivergenceWatch watch_;
-  Parameters parameters_;
-  std::vector<double> row_;
-  std::size_t next_ = 0;
+  const TwinSink& sink_;
+  std::deque<Lane> lanes_;
+  std::vector<double> rows_;
   bool armed_ = true;
   RunEnd end_;
 };
@@ -142,7 +166,7 @@ RunEnd end_of(const Session& session) {
   return end;
 }
 
-RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
+RunEnd simulate_twin(const RunPlan& plan, const RunPace& pace, const TwinSink& sink) {
   Run run(plan, pace, sink);
   if (pace.realtime) {
     run_paced(run, plan.parameters.tick);
@@ -151,6 +175,16 @@ RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
     }
   }
   return run.end();
+}
+
+RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
+  const RowLayout layout(plan.arm.dof());
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  return simulate_twin(
+      plan, pace,
+      [&](std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
+        return sink(rows.first(stride), changed[0]);
+      });
 }
 
 }  // namespace limpid

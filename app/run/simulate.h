@@ -1,6 +1,7 @@
 // A run without a window: a hand's path through the rig, as fast as it goes or paced.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -16,6 +17,13 @@
 
 namespace limpid {
 
+// A second run on the same hand, in the same world, under settings of its own.
+struct TwinPlan {
+  Parameters parameters;               // at the first row; the tick is the other's
+  std::vector<SettingChange> changes;  // later ones
+  std::optional<RigStart> start;       // default: where the other run starts
+};
+
 // All that decides a run: the same plan gives the same rows, bit for bit.
 struct RunPlan {
   ArmDescription arm;
@@ -29,11 +37,17 @@ struct RunPlan {
   std::optional<RigStart> start;    // default: at rest, the tip on the hand's first point
   std::uint64_t rows = 0;           // how many ticks
   std::uint64_t seed = 0;           // for whatever is random
+  std::optional<TwinPlan> twin;
 };
 
 // Called with each row in turn, and with the parameters if they have just changed. False ends the
 // run.
 using RowSink = std::function<bool(std::span<const double> row, const Parameters* changed)>;
+
+// The same of a twin: its two rows, one behind the other, and each run's parameters if they have
+// just changed.
+using TwinSink =
+    std::function<bool(std::span<const double> rows, std::array<const Parameters*, 2> changed)>;
 
 struct RunEnd {
   std::uint64_t rows = 0;  // that were run
@@ -57,5 +71,7 @@ void apply_change(Parameters& p, const SettingChange& change);
 // Ends early where the loop diverges (DivergenceWatch). Errors: std::invalid_argument if the hand's
 // first point cannot be reached; ParameterError in a recorded change.
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink);
+// Both runs of a plan with a twin, in lockstep; ends where either diverges.
+RunEnd simulate_twin(const RunPlan& plan, const RunPace& pace, const TwinSink& sink);
 
 }  // namespace limpid

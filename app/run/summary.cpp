@@ -14,7 +14,7 @@ auto vector(std::span<const double> values) {
 
 }  // namespace
 
-void Summary::add(std::span<const double> row) {
+bool Summary::add(std::span<const double> row) {
   const auto at = [&](Column c) { return layout_.in(row, c); };
   time_ = at(Column::time)[0];
   const bool was_wild = watch_.wild();
@@ -26,13 +26,15 @@ void Summary::add(std::span<const double> row) {
       (vector(at(Column::device_position)) - vector(at(Column::proxy_position))).norm();
   const double contact = vector(at(Column::contact_torque)).norm();
   t.largest_error = std::max(t.largest_error, error);
-  if (contact >= t.largest_contact) t.memorable.assign(row.begin(), row.end());
+  const bool memorable = contact >= t.largest_contact;
+  if (memorable) t.memorable.assign(row.begin(), row.end());
   t.largest_contact = std::max(t.largest_contact, contact);
   t.in_contact += contact > 0 ? 1 : 0;
   t.human_square_sum += vector(layout_.human_torque(row)).squaredNorm();
   t.energy_total = at(Column::energy_total)[0];
   t.energy_commanded = at(Column::energy_commanded)[0];
   t.highest_total = std::max(t.highest_total, t.energy_total);
+  return memorable;
 }
 
 std::string Summary::text() const {
@@ -55,6 +57,35 @@ std::string Summary::text() const {
                     100 * static_cast<double>(t.in_contact) / rows, 1e3 * t.largest_error,
                     t.largest_contact, std::sqrt(t.human_square_sum / rows), 1e3 * t.energy_total,
                     1e3 * t.highest_total, 1e3 * t.energy_commanded);
+}
+
+std::vector<Summary::Number> Summary::numbers() const {
+  const Totals& t = totals();
+  const auto rows = static_cast<double>(std::max<std::uint64_t>(t.rows, 1));
+  return {{"in contact", "%", 100 * static_cast<double>(t.in_contact) / rows},
+          {"largest |x_E|", "mrad", 1e3 * t.largest_error},
+          {"largest |f2|", "N m", t.largest_contact},
+          {"rms human torque", "N m", std::sqrt(t.human_square_sum / rows)},
+          {"E_c total", "mJ", 1e3 * t.energy_total},
+          {"E_c total, highest", "mJ", 1e3 * t.highest_total}};
+}
+
+std::string Summary::beside(const Summary& first, const std::string& name, const Summary& second,
+                            const std::string& other) {
+  std::string text = fmt::format("{:<24} {:>16} {:>16} {:>10}\n", "", name, other, "ratio");
+  const std::vector<Number> a = first.numbers(), b = second.numbers();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool comparable = std::abs(a[i].value) > 1e-9;
+    text +=
+        fmt::format("{:<24} {:>16.4f} {:>16.4f} {:>10} {}\n", a[i].what, a[i].value, b[i].value,
+                    comparable ? fmt::format("{:.3g}", b[i].value / a[i].value) : "-", a[i].unit);
+  }
+  for (const auto* run : {&first, &second}) {
+    if (!run->watch_.lost()) continue;
+    text += fmt::format("{} is unstable from t = {:.3f} s on: {}\n", run == &first ? name : other,
+                        run->watch_.since(), run->watch_.why());
+  }
+  return text;
 }
 
 }  // namespace limpid

@@ -15,11 +15,15 @@ class Summary {
  public:
   explicit Summary(const RowLayout& layout) : layout_(layout), watch_(layout) {}
 
-  void add(std::span<const double> row);
+  // Whether it is the memorable one, for now.
+  bool add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
   // The row of the strongest contact; the last one of a run without any.
   std::span<const double> memorable() const { return totals().memorable; }
   std::string text() const;
+  // Of a twin: the numbers of both runs side by side, and the second's over the first's.
+  static std::string beside(const Summary& first, const std::string& name, const Summary& second,
+                            const std::string& other);
 
  private:
   struct Totals {
@@ -31,6 +35,12 @@ class Summary {
     std::uint64_t in_contact = 0;
     std::vector<double> memorable;
   };
+  struct Number {
+    const char* what;
+    const char* unit;
+    double value;
+  };
+  std::vector<Number> numbers() const;
   const Totals& totals() const { return watch_.lost() ? stable_ : all_; }
 
   RowLayout layout_;

@@ -35,8 +35,10 @@ class Stage {
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
-  // Adds a row to the plots.
-  void append(std::span<const double> row) { channels_.append(history, row); }
+  // Adds a row to the plots, and a second run's beside it.
+  void append(std::span<const double> row, std::span<const double> beside) {
+    channels_.append(history, row, beside);
+  }
 
   SceneView picture;
   ViewMemory memory;

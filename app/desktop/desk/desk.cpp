@@ -65,7 +65,7 @@ void Desk::open_beside(SceneDocument document, const MeshModels& models, const P
 }
 
 void Desk::touch(const Scene& scene) {
-  loop_.exchange(std::make_unique<TouchWorld>(stage_->arm(), scene));
+  loop_.exchange(std::make_unique<TouchWorlds>(stage_->arm(), scene));
 }
 
 std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, SceneDocument document,
@@ -73,12 +73,12 @@ std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, SceneDocument docume
                                         double shown) const {
   const int channels = TraceChannels(RowLayout(arm.dof())).count();
   return std::make_unique<Stage>(std::move(arm), std::move(document), models,
-                                 History({.channels = channels, .tick = p.tick}), shown);
+                                 History({.channels = 2 * channels, .tick = p.tick}), shown);
 }
 
 void Desk::take_stage(std::unique_ptr<Stage> fresh) {
   stage_ = std::move(fresh);
-  rows_.assign(kDrainRows * static_cast<std::size_t>(loop_.layout().stride()), 0.0);
+  rows_.assign(2 * kDrainRows * static_cast<std::size_t>(loop_.layout().stride()), 0.0);
 }
 
 void Desk::drop_pictures() {
@@ -130,7 +130,8 @@ void Desk::take_rows() {
   const auto stride = static_cast<std::size_t>(loop_.layout().stride());
   while (const std::size_t count = loop_.drain(rows_)) {
     for (std::size_t i = 0; i < count; ++i) {
-      stage_->append(std::span<const double>(rows_).subspan(i * stride, stride));
+      const auto both = std::span<const double>(rows_).subspan(2 * i * stride, 2 * stride);
+      stage_->append(both.first(stride), both.subspan(stride));
     }
   }
 }

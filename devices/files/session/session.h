@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct SessionInfo {
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
   SceneFiles models;        // that the scene's text names
+  // All parameters at row 0 of a second run on the same hand (TOML); none: there is one run.
+  std::optional<std::string> twin;
 };
 
 // A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.
@@ -41,6 +44,9 @@ struct Session {
   RowLayout layout{3};
   std::vector<double> rows;  // N x layout.stride(), row-major
   std::vector<SettingChange> changes;
+  // The second run on the same hand, as a session of its own: as many rows, its own parameters and
+  // changes, the same world. Null: there is one run.
+  std::shared_ptr<const Session> twin;
 
   std::size_t size() const { return rows.size() / static_cast<std::size_t>(layout.stride()); }
   std::span<const double> row(std::size_t k) const {
@@ -49,6 +55,9 @@ struct Session {
   }
   std::span<const double> at(std::size_t k, Column c) const { return layout.in(row(k), c); }
 };
+
+// Which of a twin's runs.
+inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
 // Writes OUT.h5.part while running (SWMR: readable live) and renames it to OUT.h5 when closed.
 // Rows reach the disk at least every half second of ticks. Not for the haptic thread.
@@ -61,8 +70,9 @@ class SessionWriter {
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;
 
-  void append(std::span<const double> rows);  // any whole number of rows
-  void append(const SettingChange& change);
+  // Any whole number of rows. Of a twin both runs get as many.
+  void append(std::span<const double> rows, std::size_t lane = kMainLane);
+  void append(const SettingChange& change, std::size_t lane = kMainLane);
   void close();                        // flush, close, rename
   std::uint64_t rows_written() const;  // handed over so far
   const std::filesystem::path& part() const;

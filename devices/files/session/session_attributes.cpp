@@ -4,7 +4,7 @@
 #include <ctime>
 
 #include "devices/files/session/hdf5_handles.h"
-#include "devices/files/session/session_file.h"
+#include "devices/files/session/session_names.h"
 
 namespace limpid {
 namespace {

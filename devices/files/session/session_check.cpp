@@ -6,6 +6,7 @@
 #include <bit>
 #include <optional>
 
+#include "devices/files/session/session_names.h"
 #include "devices/files/session/session_source.h"
 
 namespace limpid {
@@ -52,7 +53,7 @@ std::string check_columns() {
 
 CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file) {
   if (!exists(root, kCheckPath)) return {session.size(), ""};
-  const hdf5::Dataset sums(H5Dopen2(root, kCheckPath, H5P_DEFAULT));
+  const hdf5::Dataset sums(H5Dopen2(root, within_group(kCheckPath), H5P_DEFAULT));
   if (!sums) refuse(file, fmt::format("{}: not a dataset that can be read", kCheckPath));
   const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
   const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));

@@ -35,16 +35,22 @@ void write_csv(const Session& session, const std::filesystem::path& out, bool fo
   try {
     auto file = fmt::output_file(out.string());
     std::string line;
-    for (const ColumnInfo& info : kColumnInfo) {
-      const int width = session.layout.width(info.column);
-      for (int i = 0; i < width; ++i) {
-        line += (line.empty() ? "" : ",") + column_name(info, width, i);
+    for (const char* run : {"", "twin_"}) {
+      if (*run != '\0' && !session.twin) continue;
+      for (const ColumnInfo& info : kColumnInfo) {
+        const int width = session.layout.width(info.column);
+        for (int i = 0; i < width; ++i) {
+          line += (line.empty() ? "" : ",") + (run + column_name(info, width, i));
+        }
       }
     }
     file.print("{}\n", line);
     for (std::size_t k = 0; k < session.size(); ++k) {
       line.clear();
       fmt::format_to(std::back_inserter(line), "{}", fmt::join(session.row(k), ","));
+      if (session.twin) {
+        fmt::format_to(std::back_inserter(line), ",{}", fmt::join(session.twin->row(k), ","));
+      }
       file.print("{}\n", line);
     }
     file.close();

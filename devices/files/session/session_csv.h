@@ -8,8 +8,9 @@
 namespace limpid {
 
 // One row a tick, one column a number; names as the datasets, joints counted from 1:
-// time_s, device_position_1_rad, ... Every value reads back to the same bits.
-// Errors: FileError if OUT exists and not `force`, or cannot be written.
+// time_s, device_position_1_rad, ...; of a twin its second run behind, twin_time_s, ... Every value
+// reads back to the same bits. Errors: FileError if OUT exists and not `force`, or cannot be
+// written.
 void write_csv(const Session& session, const std::filesystem::path& out, bool force);
 
 }  // namespace limpid

@@ -11,8 +11,9 @@
 #include "core/tick/parameters.h"
 #include "devices/files/session/hdf5_heaps.h"
 #include "devices/files/session/session_check.h"
-#include "devices/files/session/session_file.h"
+#include "devices/files/session/session_events.h"
 #include "devices/files/session/session_models.h"
+#include "devices/files/session/session_names.h"
 #include "devices/files/session/session_place.h"
 #include "devices/files/session/session_source.h"
 
@@ -22,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBlockRows = 4096;  // rows of a column read at once
-// No compression HDF5 has packs zeros tighter; what claims more rows than this is broken.
-constexpr double kMostBytesPerByte = 2000;
 
 // What foreign programs need not write, and what it then is.
 std::optional<double> default_of(Column column) {
@@ -43,8 +42,6 @@ std::optional<double> default_of(Column column) {
     default: return std::nullopt;
   }
 }
-
-bool is_leftover(const fs::path& file) { return file.extension() == ".part"; }
 
 hdf5::File open_as(const fs::path& file, unsigned flags) {
   const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
@@ -101,6 +98,13 @@ SessionInfo read_info(hid_t root, const fs::path& file) {
   return info;
 }
 
+hdf5::Group twin_group(hid_t root, const fs::path& file) {
+  if (!exists(root, std::string("/") + kTwinGroup)) return {};
+  hdf5::Group group(H5Gopen2(root, kTwinGroup, H5P_DEFAULT));
+  if (!group) refuse(file, "/twin: not a group that can be read");
+  return group;
+}
+
 // Copies a column into the rows. Returns how many rows were there and whole; fewer than asked for
 // only of a leftover.
 std::size_t read_column(const Source& source, Session& session, Column column,
@@ -138,7 +142,7 @@ std::size_t agreed_rows(const std::vector<Source>& sources, const RowLayout& lay
     rows = std::min(rows, source.rows);
   }
   const double claimed = static_cast<double>(rows) * layout.stride() * sizeof(double);
-  if (claimed > kMostBytesPerByte * static_cast<double>(fs::file_size(file))) {
+  if (claimed > kMostZerosPerByte * static_cast<double>(fs::file_size(file))) {
     refuse(file, fmt::format("claims {} rows, more than a file of its size can hold", rows));
   }
   return static_cast<std::size_t>(rows);
@@ -191,58 +195,40 @@ void check_rows(const Session& session, const fs::path& file) {
   }
 }
 
-std::vector<std::uint64_t> read_event_rows(const Source& source, const fs::path& file) {
-  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
-  std::vector<std::uint64_t> rows(source.rows);
-  if (H5Tget_class(type.get()) != H5T_INTEGER ||
-      (!rows.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL,
-                                H5P_DEFAULT, rows.data()) < 0)) {
-    refuse(file, fmt::format("{}: cannot be read as row numbers", source.path));
+// One run: at the file's root, or in the twin's group. A leftover's rows that are not whole stay
+// away.
+void read_run(hid_t group, Session& session, const fs::path& file) {
+  read_rows(group, session, file);
+  const CheckedRows checked = checked_rows(group, session, file);
+  if (is_leftover(file)) {
+    session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
   }
-  return rows;
+  read_changes(group, session, file);
+  check_rows(session, file);
+  if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
 }
 
-std::vector<std::string> read_event_settings(const Source& source, const fs::path& file) {
-  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
-  const std::size_t length = H5Tget_size(type.get());
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 ||
-      length > kSettingLength) {
-    refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, kSettingLength));
-  }
-  std::string all(source.rows * length, '\0');
-  if (!all.empty() &&
-      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
-    refuse(file, fmt::format("{}: cannot be read", source.path));
-  }
-  std::vector<std::string> settings;
-  for (std::size_t at = 0; at < all.size(); at += length) {
-    const std::string setting = all.substr(at, length);
-    settings.emplace_back(setting.c_str(), std::min(setting.find('\0'), length));
-  }
-  return settings;
+void shorten(Session& session, std::size_t rows) {
+  session.rows.resize(rows * static_cast<std::size_t>(session.layout.stride()));
+  std::erase_if(session.changes, [rows](const SettingChange& c) { return c.row > rows; });
 }
 
-void read_changes(hid_t root, Session& session, const fs::path& file) {
-  if (!exists(root, kEventRowPath) || !exists(root, kEventSettingPath)) return;
-  const Source row_source = open_source(root, kEventRowPath, 1, file);
-  const Source setting_source = open_source(root, kEventSettingPath, 1, file);
-  if (static_cast<double>(std::max(row_source.rows, setting_source.rows)) >
-      kMostBytesPerByte * static_cast<double>(fs::file_size(file))) {
-    refuse(file, "/events: more than a file of its size can hold");
+void read_twin(hid_t group, Session& session, const fs::path& file) {
+  session.info.twin = hdf5::read_text(group, "config", file);
+  Session twin;
+  twin.info = session.info;
+  twin.info.config = *session.info.twin;
+  twin.info.twin.reset();
+  twin.layout = session.layout;
+  read_run(group, twin, file);
+  if (twin.size() != session.size() && !is_leftover(file)) {
+    refuse(file, fmt::format("/twin has {} rows, the other run {}; needed: the same", twin.size(),
+                             session.size()));
   }
-  const auto rows = read_event_rows(row_source, file);
-  const auto settings = read_event_settings(setting_source, file);
-  if (rows.size() != settings.size() && !is_leftover(file)) {
-    refuse(file, "/events/row and /events/setting differ in length; needed: the same");
-  }
-  for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
-    if (is_leftover(file) && rows[i] >= session.size()) break;
-    if (rows[i] > session.size() || (i > 0 && rows[i] < rows[i - 1])) {
-      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
-                               rows[i], session.size()));
-    }
-    session.changes.push_back({rows[i], settings[i]});
-  }
+  const std::size_t rows = std::min(twin.size(), session.size());
+  shorten(session, rows);
+  shorten(twin, rows);
+  session.twin = std::make_shared<const Session>(std::move(twin));
 }
 
 }  // namespace
@@ -254,14 +240,10 @@ Session read_session(const fs::path& file) {
   session.info = read_info(opened.get(), file);
   session.layout = RowLayout(session.info.dof);
   try {
-    read_rows(opened.get(), session, file);
-    const CheckedRows checked = checked_rows(opened.get(), session, file);
-    if (is_leftover(file)) {
-      session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
+    read_run(opened.get(), session, file);
+    if (const hdf5::Group twin = twin_group(opened.get(), file)) {
+      read_twin(twin.get(), session, file);
     }
-    read_changes(opened.get(), session, file);
-    check_rows(session, file);
-    if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
   } catch (const std::bad_alloc&) {
     refuse(file, "larger than this computer's memory");
   }

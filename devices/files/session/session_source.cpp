@@ -5,6 +5,7 @@
 #include <array>
 
 #include "devices/files/file_error.h"
+#include "devices/files/session/session_names.h"
 
 namespace limpid {
 
@@ -13,13 +14,14 @@ void refuse(const std::filesystem::path& file, const std::string& why) {
 }
 
 bool exists(hid_t root, const std::string& path) {
-  const std::string group = path.substr(0, path.find('/', 1));
+  const std::string inside = within_group(path.c_str());
+  const std::string group = inside.substr(0, inside.find('/'));
   return H5Lexists(root, group.c_str(), H5P_DEFAULT) > 0 &&
-         (group == path || H5Lexists(root, path.c_str(), H5P_DEFAULT) > 0);
+         (group == inside || H5Lexists(root, inside.c_str(), H5P_DEFAULT) > 0);
 }
 
 Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file) {
-  Source source{hdf5::Dataset(H5Dopen2(root, path, H5P_DEFAULT)), path, 0, width};
+  Source source{hdf5::Dataset(H5Dopen2(root, within_group(path), H5P_DEFAULT)), path, 0, width};
   if (!source.dataset) refuse(file, fmt::format("{}: not a dataset that can be read", path));
   const hdf5::Dataspace space(H5Dget_space(source.dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(space.get());

@@ -18,9 +18,16 @@ struct Source {
   hsize_t width = 1;
 };
 
+// No compression HDF5 has packs zeros tighter; what claims more rows than this is broken.
+inline constexpr double kMostZerosPerByte = 2000;
+
+// A recording that is running or was killed.
+inline bool is_leftover(const std::filesystem::path& file) { return file.extension() == ".part"; }
+
 // Throws FileError "FILE: WHY".
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
 
+// `root`: the file's, or a twin's group. Paths begin with "/" either way.
 bool exists(hid_t root, const std::string& path);
 
 // Errors: FileError for what is no dataset or of another shape (or, for a column, type).

@@ -43,8 +43,12 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
 
 SessionWriter::~SessionWriter() = default;
 
-void SessionWriter::append(std::span<const double> rows) { file_->session->append(rows); }
-void SessionWriter::append(const SettingChange& change) { file_->session->append(change); }
+void SessionWriter::append(std::span<const double> rows, std::size_t lane) {
+  file_->session->append(rows, lane);
+}
+void SessionWriter::append(const SettingChange& change, std::size_t lane) {
+  file_->session->append(change, lane);
+}
 std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
 const fs::path& SessionWriter::part() const { return file_->part; }
 
@@ -68,8 +72,12 @@ Recovered recover_session(const fs::path& part, bool force) {
   copy += ".recovering";
   try {
     SessionFile file(copy, session.info);
-    for (const SettingChange& change : session.changes) file.append(change);
-    file.append(session.rows);
+    const auto copy_run = [&file](const Session& run, std::size_t lane) {
+      for (const SettingChange& change : run.changes) file.append(change, lane);
+      file.append(run.rows, lane);
+    };
+    copy_run(session, kMainLane);
+    if (session.twin) copy_run(*session.twin, kTwinLane);
     file.close();
     publish(copy, out, force);
   } catch (const FileError&) {

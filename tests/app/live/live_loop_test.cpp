@@ -81,6 +81,56 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(plan)), -1);
 }
 
+TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
+  const test::TempDir dir;
+  LiveLoop loop({});
+  Controls controls;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  controls.twin = true;
+  controls.twin_parameters.kind = CouplingKind::standard;
+  controls.grab = true;
+  controls.goal = kHome + Vec3(0, 0.02, -0.05);
+  loop.open(plan.arm, plan.document.scene, controls.parameters, kHome);
+  loop.set(controls);
+  let_live(loop, 50);
+  plan.parameters = controls.parameters;
+  plan.twin = TwinPlan{controls.twin_parameters, {}, {}};
+  loop.record(std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters, false,
+                                         Recorder::kLiveRoom, &plan.twin->parameters));
+  let_live(loop, 300);
+  controls.twin_parameters.k_vc = 7;
+  loop.set(controls);
+  let_live(loop, 200);
+  loop.finish_recording();
+  loop.close();
+
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_TRUE(session.twin);
+  ASSERT_GE(session.size(), 400u);
+  ASSERT_EQ(session.twin->size(), session.size());
+  const std::size_t last = session.size() - 1;
+  EXPECT_EQ(session.at(last, Column::kind)[0], 1);
+  EXPECT_EQ(session.twin->at(last, Column::kind)[0], 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(session.at(last, Column::hand_target)[axis],
+              session.twin->at(last, Column::hand_target)[axis]);
+  }
+  ASSERT_EQ(session.twin->changes.size(), 1u);
+  EXPECT_EQ(session.twin->changes[0].key(), "coupling.k_vc");
+  EXPECT_TRUE(session.changes.empty());
+  // And both come again.
+  const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  test::Rows first(session.layout), twin(session.layout);
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  simulate_twin(again, {}, [&](std::span<const double> rows, const auto&) {
+    first.add(rows.first(stride));
+    twin.add(rows.subspan(stride));
+    return true;
+  });
+  EXPECT_EQ(test::first_difference(test::rows_of(session), first), -1);
+  EXPECT_EQ(test::first_difference(test::rows_of(*session.twin), twin), -1);
+}
+
 TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
   LiveLoop loop({});
   Controls controls;
@@ -89,14 +139,16 @@ TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
   let_live(loop, 200);
   loop.close();
   const RowLayout layout(3);
-  std::vector<double> rows(10000 * static_cast<std::size_t>(layout.stride()));
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  std::vector<double> rows(10000 * 2 * stride);
   const std::size_t count = loop.drain(rows);
   ASSERT_GE(count, 200u);
   EXPECT_EQ(loop.trace_dropped(), 0u);
   for (std::size_t k = 0; k < count; ++k) {
-    const auto row = std::span<const double>(rows).subspan(
-        k * static_cast<std::size_t>(layout.stride()), static_cast<std::size_t>(layout.stride()));
-    ASSERT_NEAR(layout.in(row, Column::time)[0], static_cast<double>(k) * 1e-3, 1e-9);
+    const auto both = std::span<const double>(rows).subspan(2 * k * stride, 2 * stride);
+    ASSERT_NEAR(layout.in(both.first(stride), Column::time)[0], static_cast<double>(k) * 1e-3,
+                1e-9);
+    ASSERT_TRUE(std::isnan(both[stride]));  // there is no twin
   }
   EXPECT_TRUE(loop.update());
   EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().row), Column::time)[0],

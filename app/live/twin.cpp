@@ -1,0 +1,36 @@
+#include "app/live/twin.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace limpid {
+
+void Twin::open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes) {
+  rig_ = std::make_unique<Rig>(arm, scene);
+  start_ = sizes;
+  running_ = false;
+}
+
+void Twin::step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
+                std::span<double> row) noexcept {
+  changed_ = running_ && !(p == parameters_);
+  parameters_ = p;
+  if (!on || !rig_) {
+    running_ = false;
+    std::ranges::fill(row, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  if (!running_) {
+    first.present(start_);
+    start_.armed = first.force().armed();
+    rig_->start(parameters_, start_);
+    running_ = true;
+  }
+  rig_->step(parameters_, input, row);
+}
+
+void Twin::rebase(const Vec3& target) noexcept {
+  if (running_) rig_->rebase(parameters_, start_, target);
+}
+
+}  // namespace limpid

@@ -1,0 +1,39 @@
+// A second run beside the loop's: another simulated device in the same world, on the same hand,
+// under settings of its own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "devices/rig/rig.h"
+
+namespace limpid {
+
+class Twin {
+ public:
+  // Not the loop's: they allocate.
+  void open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes);
+  void close() { rig_.reset(); }
+
+  // The loop's. One tick, into `row`; begins where `first` stands when it is switched on, and is
+  // not a number while it is off.
+  void step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
+            std::span<double> row) noexcept;
+  void begin_anew() noexcept { running_ = false; }  // at the next step
+  // Between two ticks, as Rig::rebase().
+  void rebase(const Vec3& target) noexcept;
+  void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
+  const Parameters& parameters() const { return parameters_; }
+  // Whether they have changed at the last step.
+  bool changed() const { return changed_; }
+  bool running() const { return running_; }
+
+ private:
+  std::unique_ptr<Rig> rig_;
+  Parameters parameters_;
+  RigStart start_;
+  bool running_ = false, changed_ = false;
+};
+
+}  // namespace limpid

@@ -1,0 +1,133 @@
+// Two runs on one hand: each as if it ran alone, one file, and both again from it.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "devices/files/session/session_csv.h"
+#include "tests/devices/files/test_files.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+using test::first_difference;
+using test::Rows;
+using test::rows_of;
+
+struct Both {
+  Rows first, twin;
+};
+
+Both run_both(const RunPlan& plan) {
+  const RowLayout layout(plan.arm.dof());
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  Both both{Rows(layout), Rows(layout)};
+  simulate_twin(plan, {}, [&](std::span<const double> rows, const auto&) {
+    both.first.add(rows.first(stride));
+    both.twin.add(rows.subspan(stride));
+    return true;
+  });
+  return both;
+}
+
+// Proposed beside standard, both with a change on the way.
+RunPlan pair() {
+  RunPlan plan = test::plan("obstacles.toml", "touch.csv", 2);
+  plan.parameters.eta = 0.7;
+  plan.changes = {{600, "coupling.eta = 0.9"}};
+  TwinPlan& twin = plan.twin.emplace();
+  twin.parameters = plan.parameters;
+  twin.parameters.kind = CouplingKind::standard;
+  twin.changes = {{800, "coupling.k_vc = 8.0"}};
+  return plan;
+}
+
+RunPlan alone(const RunPlan& plan) {
+  RunPlan one = plan;
+  one.parameters = plan.twin->parameters;
+  one.changes = plan.twin->changes;
+  one.twin.reset();
+  return one;
+}
+
+Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
+  Recorder recorder(out, session_info(plan), plan.parameters, false, Recorder::kWaitingRoom,
+                    plan.twin ? &plan.twin->parameters : nullptr);
+  simulate_twin(plan, {}, [&](std::span<const double> rows, const auto& changed) {
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+      if (changed[lane] != nullptr) recorder.changed(*changed[lane], lane);
+    }
+    return recorder.push_waiting(rows);
+  });
+  recorder.finish();
+  return read_session(out);
+}
+
+TEST(Twin, GivesEachRunWhatItGivesAlone) {
+  const RunPlan plan = pair();
+  RunPlan first = plan;
+  first.twin.reset();
+  const Both both = run_both(plan);
+  EXPECT_EQ(first_difference(both.first, rows_of(first)), -1);
+  EXPECT_EQ(first_difference(both.twin, rows_of(alone(plan))), -1);
+}
+
+TEST(Twin, IsOneFileFromWhichBothComeAgain) {
+  const test::TempDir dir;
+  const RunPlan plan = pair();
+  const Session session = recorded(plan, dir / "a.h5");
+  ASSERT_TRUE(session.twin);
+  const Both both = run_both(plan);
+  EXPECT_EQ(first_difference(rows_of(session), both.first), -1);
+  EXPECT_EQ(first_difference(rows_of(*session.twin), both.twin), -1);
+  EXPECT_EQ(session.twin->changes.size(), 1u);
+  const Both again = run_both(replay(session, "a.h5", session_parameters(session, "a.h5")));
+  EXPECT_EQ(first_difference(again.first, both.first), -1);
+  EXPECT_EQ(first_difference(again.twin, both.twin), -1);
+}
+
+TEST(Twin, IsRunAgainWithWhatIsChosenOtherwiseButForWhatTheTwoDifferIn) {
+  const test::TempDir dir;
+  const Session session = recorded(pair(), dir / "a.h5");
+  Parameters chosen = session_parameters(session, "a.h5");
+  chosen.hand_stiffness = 500;
+  chosen.kind = CouplingKind::predictive;
+  const RunPlan again = replay(session, "a.h5", chosen);
+  ASSERT_TRUE(again.twin);
+  EXPECT_EQ(again.twin->parameters.hand_stiffness, 500);
+  EXPECT_EQ(again.twin->parameters.kind, CouplingKind::standard);
+}
+
+TEST(Twin, StandsBehindTheFirstRunInATable) {
+  const test::TempDir dir;
+  const Session session = recorded(pair(), dir / "a.h5");
+  write_csv(session, dir / "a.csv", false);
+  std::ifstream file(dir / "a.csv");
+  std::string header, row;
+  std::getline(file, header);
+  std::getline(file, row);
+  EXPECT_NE(header.find(",twin_time_s,"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(row, ','));
+  EXPECT_EQ(std::ranges::count(header, ',') + 1, 2 * session.layout.stride());
+}
+
+TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
+  const test::TempDir dir;
+  const RunPlan plan = pair();
+  {
+    SessionWriter writer(dir / "a.h5", session_info(plan), false);
+    const Both both = run_both(plan);
+    for (std::size_t k = 0; k < 1400; ++k) writer.append(both.first.row(k));
+    for (std::size_t k = 0; k < 900; ++k) writer.append(both.twin.row(k), kTwinLane);
+  }
+  const Recovered saved = recover_session(dir / "a.h5.part", false);
+  const Session session = read_session(saved.file);
+  ASSERT_TRUE(session.twin);
+  EXPECT_EQ(session.size(), 500u);  // of the half seconds that were whole, the fewer
+  EXPECT_EQ(session.twin->size(), 500u);
+}
+
+}  // namespace
+}  // namespace limpid
