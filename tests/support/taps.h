@@ -13,12 +13,12 @@
 namespace limpid::test {
 
 // Where the tip's centre meets it, which way is out of it there, and how deep a centre is in [m].
-struct Surface {
+struct Spot {
   Vec3 place, out;
   std::function<double(const Vec3&)> depth;
 };
 
-inline Surface flat_surface(const Vec3& place, const Vec3& out) {
+inline Spot flat_spot(const Vec3& place, const Vec3& out) {
   return {place, out, [=](const Vec3& tip) { return out.dot(place - tip); }};
 }
 
@@ -38,13 +38,13 @@ class Taps {
   int taps = 2;
 
   // p: grip, mass and law. Infinite, with no stiffness, if it diverged.
-  Felt felt(const ArmDescription& arm, const Scene& scene, const Surface& surface,
+  Felt felt(const ArmDescription& arm, const Scene& scene, const Spot& spot,
             const Parameters& p) const {
-    return felt(arm, scene, surface, p, rest_at(arm, surface.place + above * surface.out));
+    return felt(arm, scene, spot, p, rest_at(arm, spot.place + above * spot.out));
   }
   // The same from this start, with the tip above the surface.
-  Felt felt(const ArmDescription& arm, const Scene& scene, const Surface& surface,
-            const Parameters& p, const RigStart& start) const {
+  Felt felt(const ArmDescription& arm, const Scene& scene, const Spot& spot, const Parameters& p,
+            const RigStart& start) const {
     Rig rig(arm, scene);
     rig.start(p, start);
     Rows rows(rig.layout());
@@ -53,11 +53,11 @@ class Taps {
     for (int k = 0; k < taps * period / p.tick; ++k) {
       const double in = std::fmod(k * p.tick, period);
       const double way = std::min(in - kRest, period - kRest - in) * kSpeed;
-      rig.step(p, {{start.target - std::clamp(way, 0.0, down) * surface.out, 1}}, rows.add());
+      rig.step(p, {{start.target - std::clamp(way, 0.0, down) * spot.out, 1}}, rows.add());
       if (rig.diverged()) return lost();
     }
     const double held = kRest + down / kSpeed + kSettle;  // from here on it is judged
-    return judge(arm, rows, surface, p.tick, [&](std::size_t k) {
+    return judge(arm, rows, spot, p.tick, [&](std::size_t k) {
       const double in = std::fmod(static_cast<double>(k) * p.tick, period) - held;
       return in >= 0 && in < kHold - kSettle - 0.5 / kFast;  // a mean that sees no end
     });
@@ -74,7 +74,7 @@ class Taps {
   }
 
   template <class Held>
-  Felt judge(const ArmDescription& description, const Rows& rows, const Surface& surface, double T,
+  Felt judge(const ArmDescription& description, const Rows& rows, const Spot& spot, double T,
              Held&& held) const {
     const Arm<kAnyDof> arm(description);
     std::vector<Vec3> tips;
@@ -93,8 +93,8 @@ class Taps {
       if (!held(k)) continue;
       const Vec3 slow = (tips[k + half] - tips[k - half]) / (2 * static_cast<double>(half));
       fast2 += ((tips[k] - tips[k - 1] - slow) / T).squaredNorm();
-      for (const Rows::Touch& touch : rows.touches(k)) force += touch.force.dot(surface.out);
-      depth += surface.depth(tips[k]);
+      for (const Rows::Touch& touch : rows.touches(k)) force += touch.force.dot(spot.out);
+      depth += spot.depth(tips[k]);
       ++ticks;
     }
     felt.chatter = std::sqrt(fast2 / ticks);

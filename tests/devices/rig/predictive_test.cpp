@@ -33,7 +33,7 @@ Scene table(const Material& material) {
 }
 
 Felt tapped(const Taps& taps, const Parameters& p) {
-  return taps.felt(test::omni(), table({taps.wall}), test::flat_surface(kTable, Vec3::UnitZ()), p);
+  return taps.felt(test::omni(), table({taps.wall}), test::flat_spot(kTable, Vec3::UnitZ()), p);
 }
 
 TEST(PredictiveTaps, OfStiffWallsAreFeltAsTheyAreSetAndWithoutEnergy) {
