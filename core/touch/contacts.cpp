@@ -73,6 +73,7 @@ void Contacts<N>::take_over(const Contacts& other) {
       }
       mine.touch.take_over(theirs.touch);
       mine.center = theirs.center;
+      memories_[mine.id] = other.memories_[theirs.id];
     }
   }
 }

@@ -1,6 +1,8 @@
 #include "core/touch/room_force.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
 
 namespace limpid {
 namespace {
@@ -16,9 +18,9 @@ struct Held {
 
 // Means over the segment, s from 0 to 1 along it.
 struct Mean {
-  Vec3 pull = Vec3::Zero();   // [m]
-  Mat3 held = Mat3::Zero();   // projection on the directions held
-  Mat3 later = Mat3::Zero();  // the same times s: how the pull's mean answers the segment's end
+  Vec3 pull = Vec3::Zero();    // [m]
+  Mat3 damped = Mat3::Zero();  // what the damper makes of a velocity [-]
+  Mat3 later = Mat3::Zero();   // how the pull's mean answers the segment's end [-]
 };
 
 class Segment {
@@ -49,6 +51,29 @@ class Segment {
     return e.leftCols(rank) * e.leftCols(rank).transpose();
   }
 
+  // Every plane damps along its normal as a wall by itself does; those that face nearly the same
+  // way share that, by what each has of the depth beneath it. So the crease between two faces of a
+  // valley drags no more than the faces do.
+  Mat3 damper(const Held& h) const {
+    using Normals = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
+    Mat3 D = Mat3::Zero();
+    if (h.by.count == 0) return D;
+    Normals n(3, h.by.count);
+    for (int i = 0; i < h.by.count; ++i) {
+      n.col(i) = space_.normal(h.by.plane[static_cast<std::size_t>(i)]);
+    }
+    if (h.by.count == 1) return n * n.transpose();
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> weights =
+        n.colPivHouseholderQr().solve(h.pull);
+    for (int i = 0; i < h.by.count; ++i) {
+      const double depth = n.col(i).dot(h.pull);
+      if (depth > 0) {
+        D += std::clamp(weights[i] / depth, 0.0, 1.0) * n.col(i) * n.col(i).transpose();
+      }
+    }
+    return D;
+  }
+
   // The pull is linear between two places that the same planes hold.
   void add(int first, int last, const Held& a, const Held& b, Mean& m) const {
     const double s0 = static_cast<double>(first) / kFinest;
@@ -64,9 +89,8 @@ class Segment {
     }
     m.pull += 0.5 * (s1 - s0) * (a.pull + b.pull);
     for (const Held* h : {&a, &b}) {
-      const Mat3 P = projection(h->by);
-      m.held += 0.5 * (s1 - s0) * P;
-      m.later += 0.25 * (s1 * s1 - s0 * s0) * P;
+      m.damped += 0.5 * (s1 - s0) * damper(*h);
+      m.later += 0.25 * (s1 * s1 - s0 * s0) * projection(h->by);
     }
   }
 
@@ -87,8 +111,8 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
   for (int i = 0; i < kMostSteps; ++i) {
     const Vec3 D = tick.a + tick.W * F;
     const Mean m = mean_of(touch, tick.center, D);
-    const Vec3 wanted = tick.K * m.pull - b * (m.held * D);
-    const Mat3 slope = Mat3::Identity() + (tick.K * m.later + b * m.held) * tick.W;
+    const Vec3 wanted = tick.K * m.pull - b * (m.damped * D);
+    const Mat3 slope = Mat3::Identity() + (tick.K * m.later + b * m.damped) * tick.W;
     const Vec3 step = slope.inverse() * (wanted - F);
     F += step;
     pull = m.pull;

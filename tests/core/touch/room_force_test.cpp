@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/touch/wall_force.h"
 #include "tests/support/meshes.h"
@@ -207,6 +208,28 @@ TEST(RoomForce, OfOnePlaneIsAWalls) {
   }
   EXPECT_GT(kept, 2000);
   EXPECT_GT(changed, 500);
+}
+
+TEST(RoomForce, DampsAlongAGroovesFacesAndNotAcrossItsCrease) {
+  // Two faces that rise by an angle share the depth h beneath the crease: each has h cos(angle), of
+  // which 1/(2 cos^2(angle)) is its own, so that they damp up and down as one wall and sideways by
+  // tan^2(angle); at right angles they are two walls.
+  for (const double rise : {0.02, 0.3, 0.7, std::numbers::pi / 4}) {
+    const Vec3 c(0, 0, 0.3 * kRadius);
+    const MeshTouch touch = touch_at(groove(rise), c);
+    ASSERT_EQ(held(touch, c).by.count, 2);
+    const double way = 1e-6, B = 2;
+    for (const Vec3& along : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+      RoomTick t{600, 0, T, c, way * along, Mat3::Zero()};
+      Vec3 spring = Vec3::Zero(), both = Vec3::Zero();
+      room_force(touch, t, spring);
+      t.B = B;
+      room_force(touch, t, both);
+      const double slope = std::tan(rise);
+      const double share = along.x() > 0 ? 0 : along.y() > 0 ? slope * slope : 1;
+      ASSERT_LT((both - spring + B * way / T * share * along).norm(), 1e-3 * B * way / T) << rise;
+    }
+  }
 }
 
 TEST(RoomForce, OfAnAnchorIsALinearSpring) {

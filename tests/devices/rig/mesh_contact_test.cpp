@@ -29,21 +29,27 @@ double largest_difference(const Rows& a, const Rows& b, Column c) {
   return largest;
 }
 
-class MeshInBothCouplings : public testing::TestWithParam<CouplingKind> {
+class MeshInEveryCoupling : public testing::TestWithParam<CouplingKind> {
  protected:
   static Parameters parameters() {
     Parameters p;
     p.kind = GetParam();
+    // Of two predictors that are as good the smallest difference says which leads: here is one.
+    p.hand_mass = 0;
     return p;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Couplings, MeshInBothCouplings,
-                         testing::Values(CouplingKind::standard, CouplingKind::proposed));
+INSTANTIATE_TEST_SUITE_P(Couplings, MeshInEveryCoupling,
+                         testing::Values(CouplingKind::standard, CouplingKind::proposed,
+                                         CouplingKind::predictive));
 
-TEST_P(MeshInBothCouplings, ThatIsFlatIsFeltAsAPlane) {
+TEST_P(MeshInEveryCoupling, ThatIsFlatIsFeltAsAPlane) {
   Scene plane;
   plane.tip_radius = kTip;
   plane.planes.push_back({"", Vec3(0, 0, kTop), Vec3::UnitZ(), 600});
+  // A mesh finds to a thousandth of the tick when contact is made: so much of the damper's force,
+  // 2.5 N s/m at 0.1 m/s and 0.2 m from the joints.
+  const double bound = GetParam() == CouplingKind::predictive ? 5e-5 : 1e-10;
   for (const int cells : {1, 37}) {
     const Scene mesh = with_mesh(test::sheet(cells, 0.5), Vec3(0.2, 0.01, kTop));
     const Path path = stroke(kTop - 0.003, 0.02);
@@ -51,12 +57,12 @@ TEST_P(MeshInBothCouplings, ThatIsFlatIsFeltAsAPlane) {
     EXPECT_GT(largest(a, Column::contact_torque), 0.1);
     for (const Column c : {Column::contact_torque, Column::proxy_position, Column::motor_torque,
                            Column::contact_potential, Column::contact_gain}) {
-      EXPECT_LT(largest_difference(a, b, c), 1e-10) << static_cast<int>(c);
+      EXPECT_LT(largest_difference(a, b, c), bound) << static_cast<int>(c);
     }
   }
 }
 
-TEST_P(MeshInBothCouplings, OfABoxIsFeltAsThatBox) {
+TEST_P(MeshInEveryCoupling, OfABoxIsFeltAsThatBox) {
   Scene box;
   box.tip_radius = kTip;
   Box one;
@@ -72,7 +78,7 @@ TEST_P(MeshInBothCouplings, OfABoxIsFeltAsThatBox) {
   EXPECT_LT(largest_difference(a, b, Column::proxy_position), 1e-3);
 }
 
-TEST_P(MeshInBothCouplings, OfABallIsFeltAsThatBall) {
+TEST_P(MeshInEveryCoupling, OfABallIsFeltAsThatBall) {
   constexpr double kRadius = 0.03;
   Scene ball;
   ball.tip_radius = kTip;
@@ -138,7 +144,7 @@ TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
   EXPECT_FALSE(rig.diverged());
 }
 
-TEST_P(MeshInBothCouplings, IsRepeatedToTheLastBit) {
+TEST_P(MeshInEveryCoupling, IsRepeatedToTheLastBit) {
   const ArmDescription arm = test::omni();
   const Scene scene = link_over_a_body();
   const Path path = stroke(-0.06, 0.02);
@@ -167,7 +173,7 @@ TEST_P(MeshInBothCouplings, IsRepeatedToTheLastBit) {
   EXPECT_EQ(test::first_difference(recorded, again), -1);
 }
 
-TEST_P(MeshInBothCouplings, GoesOnWhenTheWorldIsExchangedForTheSame) {
+TEST_P(MeshInEveryCoupling, GoesOnWhenTheWorldIsExchangedForTheSame) {
   const ArmDescription arm = test::omni();
   const Scene scene = with_mesh(landscape(), Vec3(kHome.x(), 0, kTop));  // open: a side to forget
   const Path path = stroke(kTop - 0.01, 0.02);
@@ -187,7 +193,7 @@ TEST_P(MeshInBothCouplings, GoesOnWhenTheWorldIsExchangedForTheSame) {
   EXPECT_EQ(test::first_difference(a, b), -1);
 }
 
-TEST_P(MeshInBothCouplings, GetsToAnotherStiffnessWithoutAJump) {
+TEST_P(MeshInEveryCoupling, GetsToAnotherStiffnessWithoutAJump) {
   const ArmDescription arm = test::omni();
   const Path path = stroke(kTop - 0.004, 0);
   const Parameters p = parameters();

@@ -1,0 +1,246 @@
+// What the predictive coupling promises, in the full nonlinear loop.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/built_in.h"
+#include "tests/support/random_arm.h"
+#include "tests/support/taps.h"
+
+namespace limpid {
+namespace {
+
+using test::Felt;
+using test::Rows;
+using test::Taps;
+
+const Vec3 kTable(0.2, 0, -0.04);
+
+Parameters predictive(double eta) {
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  p.eta = eta;
+  p.torque_limit = 100;  // motors that bear it all
+  return p;
+}
+
+Scene table(const Material& material) {
+  Scene scene;
+  scene.planes.push_back({"", kTable, Vec3::UnitZ(), material});
+  return scene;
+}
+
+Felt tapped(const Taps& taps, const Parameters& p) {
+  return taps.felt(test::omni(), table({taps.wall}), test::flat_spot(kTable, Vec3::UnitZ()), p);
+}
+
+TEST(PredictiveTaps, OfStiffWallsAreFeltAsTheyAreSetAndWithoutEnergy) {
+  for (const double wall : {600.0, 2000.0, 5000.0, 10000.0}) {
+    for (const double eta : {1.0, 0.6, 0.3}) {
+      for (const double grip : {300.0, 3000.0}) {
+        for (const double mass : {0.0, 0.2}) {
+          Parameters p = predictive(eta);
+          p.hand_stiffness = grip;
+          p.hand_mass_at_tip = mass;
+          const Felt felt = tapped({.wall = wall}, p);
+          SCOPED_TRACE(testing::Message() << wall << " N/m, eta " << eta << ", grip " << grip
+                                          << " N/m, hand " << mass << " kg");
+          EXPECT_LE(felt.energy, 0.05e-3);
+          EXPECT_LE(felt.port, 0.05e-3);
+          EXPECT_NEAR(felt.stiffness, 1, 0.01);
+          EXPECT_LE(felt.chatter, mass > 0 ? 4e-3 : 0.1e-3);  // a heavy hand rings on the wall
+        }
+      }
+    }
+  }
+}
+
+TEST(PredictiveTaps, ThroughAnEncoderGiveTheHandNoEnergy) {
+  for (const double wall : {600.0, 2000.0, 5000.0}) {
+    for (const double eta : {1.0, 0.3}) {
+      for (const double grip : {300.0, 3000.0}) {
+        for (const double mass : {0.0, 0.2}) {
+          Parameters p = predictive(eta);
+          p.encoder_step = 1e-4;
+          p.hand_stiffness = grip;
+          p.hand_mass_at_tip = mass;
+          const Felt felt = tapped({.wall = wall}, p);
+          SCOPED_TRACE(testing::Message() << wall << " N/m, eta " << eta << ", grip " << grip
+                                          << " N/m, hand " << mass << " kg");
+          EXPECT_LE(felt.port, 0.05e-3);
+          EXPECT_LE(felt.energy, 4e-3);
+          EXPECT_NEAR(felt.stiffness, 1, 0.01);
+          EXPECT_LE(felt.chatter, 20e-3);
+        }
+      }
+    }
+  }
+}
+
+TEST(PredictiveTaps, BeyondTheMotorsLimitGiveNoEnergyAndDoNotBuzz) {
+  constexpr double kLimit = 0.4;  // [N m]
+  for (const double wall : {600.0, 5000.0}) {
+    for (const double eta : {1.0, 0.6, 0.3}) {
+      for (const double mass : {0.0, 0.2}) {
+        Parameters p = predictive(eta);
+        p.torque_limit = kLimit;
+        p.hand_mass_at_tip = mass;
+        const Felt felt = tapped({.wall = wall, .press = 8}, p);
+        SCOPED_TRACE(testing::Message() << wall << " N/m, eta " << eta << ", hand " << mass);
+        EXPECT_LE(felt.energy, 0.05e-3);
+        EXPECT_LE(felt.port, 0.05e-3);
+        EXPECT_GT(felt.torque, kLimit);  // it was pushed that far
+        // The proxy rests where the wall pushes as the motor does; a light hand barely overshoots.
+        if (mass == 0) {
+          EXPECT_LE(felt.torque, 1.3 * kLimit);
+          EXPECT_LE(felt.chatter, 0.1e-3);
+        }
+      }
+    }
+  }
+}
+
+// The first `planes` of a corner: a floor, a wall ahead, a wall to the left.
+Scene corner(int planes, const Material& material) {
+  Scene scene;
+  for (const Vec3& out : {Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitX()), Vec3(-Vec3::UnitY())}) {
+    if (planes-- > 0) scene.planes.push_back({"", kTable, out, material});
+  }
+  return scene;
+}
+
+struct Pressed {
+  double energy = 0, port = 0;  // highest [J]
+  double gain = -1;             // most that pressed contacts gave in a tick [J]
+  std::size_t touched = 0;      // most planes at a time
+};
+
+// The hand presses into the corner and goes round there.
+Pressed press_into(const Scene& scene, const Parameters& p) {
+  const ArmDescription arm = test::omni();
+  Rig rig(arm, scene);
+  const auto hand = [](double t) {
+    const double in = std::min(1.0, 2 * t), turn = 2 * std::numbers::pi * 1.5 * t;
+    return Vec3(kTable + Vec3(-0.02, -0.02, 0.02) + in * Vec3(0.033, 0.033, -0.033) +
+                0.008 * in * Vec3(std::sin(turn), std::cos(turn), std::sin(1.3 * turn)));
+  };
+  rig.start(p, rest_at(arm, hand(0)));
+  Rows rows(rig.layout());
+  Pressed pressed;
+  for (std::size_t k = 0; k < 4000; ++k) {
+    rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
+    pressed.energy = std::max(pressed.energy, rows.at(k, Column::energy_total));
+    pressed.port = std::max(pressed.port, rows.at(k, Column::energy_port));
+    pressed.touched = std::max(pressed.touched, rows.touches(k).size());
+    if (k == 0 || rows.touches(k - 1).empty()) continue;
+    pressed.gain = std::max(
+        pressed.gain, rows.at(k, Column::contact_gain) - rows.at(k - 1, Column::contact_gain));
+  }
+  return pressed;
+}
+
+TEST(PredictiveContacts, InAnEdgeAndACornerGiveNoEnergy) {
+  for (const std::size_t planes : {2u, 3u}) {
+    for (const double friction : {0.0, 0.5}) {
+      for (const double eta : {1.0, 0.3}) {
+        for (const double mass : {0.0, 0.2}) {
+          Parameters p = predictive(eta);
+          p.hand_mass_at_tip = mass;
+          const Scene scene = corner(static_cast<int>(planes), {3000, 0, friction, friction});
+          const Pressed pressed = press_into(scene, p);
+          SCOPED_TRACE(testing::Message() << planes << " planes, friction " << friction << ", eta "
+                                          << eta << ", hand " << mass << " kg");
+          EXPECT_EQ(pressed.touched, planes);
+          EXPECT_LE(pressed.energy, 0.05e-3);
+          EXPECT_LE(pressed.port, 0.05e-3);
+          EXPECT_LE(pressed.gain, 1e-7);
+        }
+      }
+    }
+  }
+}
+
+TEST(PredictiveFriction, NeverGivesEnergyInATick) {
+  constexpr double kFriction = 0.5, kWall = 3000;
+  const ArmDescription description = test::omni();
+  const Arm<3> arm(description);
+  const auto hand = [](double t) {  // pressed more and less, and led to and fro
+    return Vec3(kTable + Vec3(0.01 * std::sin(9 * t), 0.01 * std::sin(14 * t),
+                              0.005 - 0.02 * std::min(1.0, 4 * t) + 0.005 * std::sin(23 * t)));
+  };
+  for (const double mass : {0.0, 0.2}) {
+    Parameters p = predictive(0.5);
+    p.hand_mass_at_tip = mass;
+    Rig rig(description, table({kWall, 0, kFriction, kFriction}));
+    rig.start(p, rest_at(description, hand(0)));
+    Rows rows(rig.layout());
+    for (std::size_t k = 0; k < 5000; ++k) {
+      rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
+    }
+    const auto tip = [&](std::size_t k) { return arm.tip_at(rows.vec(k, Column::proxy_position)); };
+    // Across the table over the tick, and the limit that the push sets [N].
+    const auto across = [&](std::size_t k, double& limit) {
+      Vec3 force = Vec3::Zero();
+      for (const Rows::Touch& touch : rows.touches(k)) force += touch.force;
+      limit = kFriction * force.z();
+      return Vec3(force.x(), force.y(), 0);
+    };
+    // Of the spring that friction is [J].
+    const auto stretched = [](const Vec3& force) {
+      return force.squaredNorm() / (2 * friction_stiffness({kWall}));
+    };
+    int slips = 0, sticks = 0;
+    double limit = 0, work = 0;
+    Vec3 before = across(0, limit);
+    for (std::size_t k = 1; k + 1 < rows.size(); ++k) {
+      const Vec3 force = across(k, limit);
+      ASSERT_LE(force.norm(), limit + 1e-9) << k;
+      slips += limit > 0 && force.norm() > (1 - 1e-6) * limit;
+      sticks += force.norm() < 0.9 * limit;
+      const double gain = force.dot(tip(k + 1) - tip(k)) + stretched(force) - stretched(before);
+      ASSERT_LE(gain, 1e-7) << k;
+      work += force.dot(tip(k + 1) - tip(k));
+      before = force;
+    }
+    EXPECT_GT(slips, 100);
+    EXPECT_GT(sticks, 100);
+    EXPECT_LT(work, -1e-3);
+  }
+}
+
+TEST(PredictiveInertia, MayChangeAtAnyTimeInFreeMotion) {
+  const ArmDescription arm = test::omni();
+  test::Random random(7);
+  const auto hand = [](double t) {
+    return Vec3(Vec3(0.19, 0, 0) +
+                Vec3(0.02 * std::sin(9 * t), 0.03 * std::sin(6 * t), 0.02 * std::sin(14 * t)));
+  };
+  const std::function<double(double)> etas[] = {
+      [](double t) { return std::fmod(3 * t, 1) < 0.5 ? 0.1 : 1; },
+      [](double t) { return std::fmod(20 * t, 1) < 0.5 ? 0.3 : 1; },
+      [](double t) { return std::fmod(37 * t, 1) < 0.5 ? 0.1 : 0.9; },
+      [](double t) { return 0.55 + 0.45 * std::sin(5 * t); },
+      [&](double) { return random.between(0.1, 1); },
+  };
+  for (const auto& eta : etas) {
+    Parameters p = predictive(1);
+    p.hand_stiffness = 3000;
+    p.hand_damping = 0;
+    Rig rig(arm, Scene{});
+    rig.start(p, rest_at(arm, hand(0)));
+    Rows rows(rig.layout());
+    for (std::size_t k = 0; k < 5000; ++k) {
+      const double t = static_cast<double>(k) * p.tick;
+      p.eta = eta(t);
+      rig.step(p, {{hand(t), 1}}, rows.add());
+      ASSERT_LE(rows.at(k, Column::energy_total), 1e-6) << k;
+    }
+    EXPECT_LT(rows.at(rows.size() - 1, Column::energy_total), -1e-3);
+    EXPECT_FALSE(rig.diverged());
+  }
+}
+
+}  // namespace
+}  // namespace limpid
