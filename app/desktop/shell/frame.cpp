@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/desktop/panels/coupling_panel.h"
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/loading_bar.h"
 #include "app/desktop/panels/notice_list.h"
@@ -66,7 +65,7 @@ void Frame::draw() {
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
-  draw_notices(desktop_.notices(), at.view);
+  draw_notices(desktop_.notices(), at.view, legend_box(at.view));
 }
 
 Layout Frame::lay_out() {
@@ -96,15 +95,36 @@ void Frame::draw_view(ScreenRect rect) {
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
-  view_.draw(scene, desktop_.camera(), desktop_.desk().controls(), desktop_.settings(), rect);
+  Camera& camera = desktop_.camera();
+  const ImVec2 size = rect.size();
+  const bool resized = camera.width() != static_cast<double>(size.x) ||
+                       camera.height() != static_cast<double>(size.y);
+  if (resized && desktop_.automatic_view() && size.x >= 8 && size.y >= 8) {
+    camera.resize(size.x, size.y);
+    desktop_.reset_view();
+    camera.finish();
+  }
+  if (view_.draw(scene, camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
+    desktop_.keep_view();
+  }
 }
 
 void Frame::draw_coupling(ScreenRect rect) {
-  const RowLayout& layout = desktop_.shown().channels().layout();
+  const Stage& shown = desktop_.shown();
+  const TraceChannels& channels = shown.channels();
+  const RowLayout& layout = channels.layout();
   const auto at = [&](Column c) { return layout.in(desktop_.row(), c)[0]; };
-  const CouplingReading now{at(Column::energy_total), at(Column::energy_ledger),
-                            at(Column::governor), at(Column::damping_governor)};
-  draw_coupling_panel(desktop_.settings().parameters, desktop_.analysis(), now, rect);
+  CouplingReading now{shown.energy,
+                      {},
+                      at(Column::energy_ledger),
+                      at(Column::governor),
+                      at(Column::damping_governor)};
+  for (int j = 0; j < layout.dof(); ++j) {
+    if (channels.limited(desktop_.row(), j)) now.limited.push_back(j);
+  }
+  const bool real = desktop_.desk().loop().device_in_place();
+  coupling_.draw(desktop_.settings().parameters, desktop_.analysis(), now,
+                 real ? nullptr : &shown.arm(), rect);
 }
 
 // Scene, hand, device, analysis and timing.
@@ -145,8 +165,10 @@ void Frame::draw_side(ScreenRect rect) {
 std::string Frame::quality_text() const {
   const std::string& wanted = desktop_.settings().picture_quality;
   if (wanted != "automatic") return wanted;
-  constexpr int kLevels = 1 + Quality::kLowest;
-  return fmt::format("automatic, {} of {}", kLevels - desktop_.quality_level(), kLevels);
+  const int level = desktop_.quality_level();
+  if (level == 0) return "automatic: best";
+  if (level == Quality::kLowest) return "automatic: lowest";
+  return fmt::format("automatic: {} below best", level);
 }
 
 void Frame::draw_plot_row(ScreenRect rect) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/desktop/panels/analysis_panel.h"
+#include "app/desktop/panels/coupling_panel.h"
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/view_panel.h"
 #include "app/desktop/shell/dialogs.h"
@@ -44,6 +45,7 @@ class Frame {
   WindowLayout layout_;
   ViewPanel view_;
   ScenePanel scene_;
+  CouplingPanel coupling_;
   AnalysisPanel analysis_;
   Dialogs dialogs_;
 };
