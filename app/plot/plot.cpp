@@ -210,16 +210,16 @@ float Plot::draw_title(ImDrawList& list, const ScreenRect& outer, float scale) c
   const Palette& p = current_palette();
   const ImVec2 at{outer.min.x + 2 * scale, outer.min.y + 2 * scale};
   const float right = outer.max.x - 6 * scale;
-  float end = at.x + draw_clipped_text(list, Face::semibold, at, p.text, spec_.title, right - at.x);
   const std::string scaling =
       exponent_text(common_exponent(y_.low * spec_.factor, y_.high * spec_.factor));
   const std::string unit = scaling.empty() ? spec_.unit : scaling + " " + spec_.unit;
+  // The title is shortened before the unit is left out.
   const float gap = 7 * scale;
-  if (end + gap + text_size(Face::regular, unit).x < right) {
-    draw_text(list, Face::regular, {end + gap, at.y}, p.muted, unit);
-    end += gap + text_size(Face::regular, unit).x;
-  }
-  return end;
+  const float room = right - gap - text_size(Face::regular, unit).x;
+  const float end =
+      at.x + draw_clipped_text(list, Face::semibold, at, p.text, spec_.title, room - at.x);
+  draw_text(list, Face::regular, {end + gap, at.y}, p.muted, unit);
+  return end + gap + text_size(Face::regular, unit).x;
 }
 
 void Plot::handle_menu(const PlotFrame& frame, const History& history, PlotGroup& group,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
@@ -43,6 +45,32 @@ void splitter(const char* name, ScreenRect rect, bool vertical, double direction
   ImGui::PopStyleVar(2);
 }
 
+// A small tab at the view's edge that folds a panel away, or brings it back.
+void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted) {
+  ImGui::SetNextWindowPos(rect.min);
+  ImGui::SetNextWindowSize(rect.size());
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  if (ImGui::InvisibleButton("fold", rect.size())) wanted = !wanted;
+  const bool over = ImGui::IsItemHovered();
+  const Palette& colours = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
+                     3 * current_scale());
+  const float size = 0.6f * ImGui::GetFontSize();
+  ImGui::RenderArrow(
+      &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
+      colour(over ? colours.text : colours.muted), arrow, size / ImGui::GetFontSize());
+  tooltip(help);
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+}
+
 }  // namespace
 
 void Frame::draw() {
@@ -59,6 +87,7 @@ void Frame::draw() {
                    settings.plot_length, act_, at.transport);
   });
   draw_splitters(at);
+  draw_fold_tabs(at);
   part([&] { dialogs_.draw_reading(); });
   part([&] { dialogs_.draw_experiments(); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
@@ -184,6 +213,26 @@ void Frame::draw_plot_row(ScreenRect rect) {
                               }};
   PlayedSession* session = desktop_.playback().shown();
   draw_plots(desktop_.shown(), session != nullptr ? &session->player() : nullptr, saving, rect);
+}
+
+void Frame::draw_fold_tabs(const Layout& at) {
+  Settings& s = desktop_.settings();
+  const float wide = 12 * current_scale(), high = 44 * current_scale();
+  const auto [left, top] = at.view.min;
+  const auto [right, bottom] = at.view.max;
+  const float x = std::round((left + right - high) / 2), y = std::round((top + bottom - high) / 2);
+  const float grip = 3 * current_scale();
+  fold_tab("left tab", {{left + grip, y}, {left + grip + wide, y + high}},
+           at.show_left ? ImGuiDir_Left : ImGuiDir_Right,
+           at.show_left ? "Folds the coupling panel (F2)" : "The coupling panel (F2)", s.show_left);
+  fold_tab("right tab", {{right - grip - wide, y}, {right - grip, y + high}},
+           at.show_right ? ImGuiDir_Right : ImGuiDir_Left,
+           at.show_right ? "Folds the scene and device panel (F3)"
+                         : "Scene, hand, device and timing (F3)",
+           s.show_right);
+  fold_tab("plots tab", {{x, bottom - grip - wide}, {x + high, bottom - grip}},
+           at.show_plots ? ImGuiDir_Down : ImGuiDir_Up,
+           at.show_plots ? "Folds the plots (F4)" : "The plots (F4)", s.show_plots);
 }
 
 void Frame::draw_splitters(const Layout& at) {

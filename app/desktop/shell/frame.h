@@ -36,6 +36,7 @@ class Frame {
   void draw_side(ScreenRect rect);
   void draw_plot_row(ScreenRect rect);
   void draw_splitters(const Layout& at);
+  void draw_fold_tabs(const Layout& at);
   std::string quality_text() const;
 
   // The parts of the window that remember something themselves.
