@@ -8,7 +8,8 @@ namespace limpid {
 void EnergyAccount::follow(const History& history, SampleIndex end) {
   if (end < next_) start_over();
   next_ = std::max(next_, history.first());
-  auto mark = std::ranges::upper_bound(history.marks(), looked_until_, {}, &Mark::time);
+  // One that was placed at the last sample after it was looked at counts, too.
+  auto mark = std::ranges::lower_bound(history.marks(), looked_until_, {}, &Mark::time);
   for (; next_ < end; ++next_) {
     const double time = history.time(next_);
     for (; mark != history.marks().end() && mark->time <= time; ++mark) {
@@ -18,6 +19,7 @@ void EnergyAccount::follow(const History& history, SampleIndex end) {
         next_ = at;
       } else if (mark->key.find('.') != std::string::npos) {  // a parameter's
         settled_ = mark->time + kSettling;
+        forgiven_ += std::max(0.0, own());
       }
     }
     looked_until_ = time;

@@ -14,7 +14,8 @@ namespace limpid {
 // - A motor at its limit gives another torque than the coupling asks for. What E_c gains meanwhile
 //   is the limit's.
 //
-// What is left is the coupling's own: while it is passive it stays below zero.
+// What is left is the coupling's own: while it is passive it stays below zero. What it gave before
+// the last change is forgiven: the setting that gave it is gone.
 class EnergyAccount {
  public:
   static constexpr double kSettling = 0.3;  // [s]
@@ -23,10 +24,12 @@ class EnergyAccount {
   // `end` lies before them. The history has the channels of TraceChannels.
   void follow(const History& history, SampleIndex end);
 
-  double total() const { return total_; }                     // E_c [J]
-  double by_changes() const { return changes_; }              // [J]
-  double by_limits() const { return limits_; }                // [J]
-  double own() const { return total_ - changes_ - limits_; }  // [J]
+  double total() const { return total_; }                    // E_c [J]
+  double by_changes() const { return changes_; }             // [J]
+  double by_limits() const { return limits_; }               // [J]
+  double own() const { return without_limits() - limits_; }  // [J]
+  // Where the coupling is known not to be passive, its motors' limit is no excuse [J].
+  double without_limits() const { return total_ - changes_ - forgiven_; }
 
  private:
   void start_over() { *this = EnergyAccount(); }
@@ -34,7 +37,7 @@ class EnergyAccount {
 
   SampleIndex next_ = 0;
   double looked_until_ = -1;  // at the marks [s]
-  double total_ = 0, changes_ = 0, limits_ = 0;
+  double total_ = 0, changes_ = 0, limits_ = 0, forgiven_ = 0;
   double settled_ = -1;  // when the last change has settled [s]
   double peak_ = 0;      // of E_c since the excuse began [J]
   bool excused_ = false;

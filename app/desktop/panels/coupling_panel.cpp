@@ -151,8 +151,9 @@ void draw_ledger(const CouplingReading& now) {
 }
 
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.
-void draw_energy(const EnergyAccount& energy) {
-  const double own = energy.own();
+void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
+  const bool at_fault = info(p.kind).observes && (!a.passive || p.eta < a.eta_min_grip);
+  const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =
       own > kGiven
           ? fmt::format(
@@ -169,6 +170,7 @@ void draw_energy(const EnergyAccount& energy) {
   apart("Put in by switching", energy.by_changes(),
         "Changing a law or a setting while the coupling is stretched puts energy in, as bending a "
         "spring does. It is no fault of the coupling.");
+  if (at_fault) return;
   apart("Put in at the motors' limit", energy.by_limits(),
         "A motor at its limit gives another torque than the coupling asks for. It is no fault of "
         "the coupling.");
@@ -216,7 +218,7 @@ void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const Coupling
   } else {
     draw_passivity(p, analysis);
   }
-  draw_energy(now.energy);
+  draw_energy(now.energy, p, analysis);
   draw_limited(now.limited);
   ImGui::End();
 }

@@ -60,7 +60,7 @@ TEST(Autoscale, BeginsAMagnitudesAxisAtZero) {
   const Limits grown = autoscale.update({0, 0.4}, 0.02, kFrame);
   EXPECT_EQ(grown.low, 0);
   EXPECT_GE(grown.high, 0.4);
-  EXPECT_LT(autoscale.update({-0.1, 0.4}, 0.02, kFrame).low, -0.1) << "what is signed has both";
+  EXPECT_LE(autoscale.update({-0.1, 0.4}, 0.02, kFrame).low, -0.1) << "what is signed has both";
 }
 
 TEST(Autoscale, ShowsALittleAsALittle) {

@@ -59,6 +59,18 @@ TEST(EnergyAccount, JudgesTheCouplingAgainOnceASwitchHasSettled) {
   EXPECT_NEAR(books.account.own(), 0.05, kRound);
 }
 
+TEST(EnergyAccount, ForgivesWithAChangeWhatTheSettingBeforeItGave) {
+  Books books;
+  books.go_to(0.4, 500);
+  EXPECT_NEAR(books.account.own(), 0.4, kRound);
+  books.change("coupling.kind");
+  books.go_to(0.4, 1000);
+  EXPECT_NEAR(books.account.own(), 0, kRound);
+  EXPECT_NEAR(books.account.by_changes(), 0, kRound) << "but the switch did not put it in";
+  books.go_to(0.45, 100);
+  EXPECT_NEAR(books.account.own(), 0.05, kRound);
+}
+
 TEST(EnergyAccount, GivesNoCreditForWhatASwitchTookAway) {
   Books books;
   books.change("coupling.kind");

@@ -31,7 +31,7 @@ double given_while_held(const Parameters& p) {
   });
   EnergyAccount account;
   account.follow(history, history.end());
-  return account.own();
+  return account.without_limits();
 }
 
 TEST(PassivityBreak, MakesTheLoopGiveEnergyAndRepairEndsThat) {

