@@ -129,7 +129,7 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed)
   FigurePanel error{
       .title = "Coordination error |x1 - x2|", .x_label = "time [s]", .y_label = "error [mrad]"};
   for (const auto& [s, label, color] :
-       {std::tuple(&a, "standard", kContactInk), std::tuple(&b, "proposed", kHandInk)}) {
+       {std::tuple(&a, "standard", kStandardInk), std::tuple(&b, "proposed", kProposedInk)}) {
     force.series.push_back(over_time(*s, label, color, Series::Style::line,
                                      [&](auto k) { return contact_torque(*s, k); }));
     error.series.push_back(error_over_time(*s, label, color));
@@ -137,8 +137,8 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed)
   FigurePanel scatter{.title = "Coordination error against contact torque",
                       .x_label = "contact torque |f2| [N m]",
                       .y_label = "error |x1 - x2| [mrad]"};
-  add_scatter(scatter, a, "standard", kContactInk);
-  add_scatter(scatter, b, "proposed", kHandInk);
+  add_scatter(scatter, a, "standard", kStandardInk);
+  add_scatter(scatter, b, "proposed", kProposedInk);
   FigurePanel wrong{.title = "Proposed: what a wrong inertia in the model adds to the error",
                     .x_label = "time [s]",
                     .y_label = "change of the error [μrad]"};

@@ -103,7 +103,7 @@ FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& titl
   std::size_t ink = 0;
   for (const Law& law : laws) {
     const bool standard = law.kind == CouplingKind::standard;
-    const char* color = standard ? kNeutralInk : kFamilyInk[ink++];
+    const char* color = standard ? kStandardInk : kFamilyInk[ink++];
     Series line{law.label(), color, Series::Style::line, {}}, dots = line, wanted = line;
     for (const FeltMotion& m : law.felt) line.points.push_back({m.f, m.*value});
     dots = {"", color, Series::Style::points, line.points};
@@ -133,9 +133,9 @@ FigurePanel against_eta(const std::vector<Law>& laws, double f, const std::strin
     panel.series.push_back(line);
     panel.series.push_back({"", ink, Series::Style::points, line.points});
   };
-  add(CouplingKind::standard, kNeutralInk);
-  add(CouplingKind::proposed, kContactInk);
-  add(CouplingKind::predictive, kProxyInk);
+  add(CouplingKind::standard, kStandardInk);
+  add(CouplingKind::proposed, kProposedInk);
+  add(CouplingKind::predictive, kPredictiveInk);
   return panel;
 }
 
@@ -151,8 +151,8 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
                           kNeutralInk,
                           Series::Style::dashed,
                           {{0, least_damping(0, mass)}, {1, 0}}});
-  for (const auto& [kind, ink] :
-       {std::pair(CouplingKind::proposed, kContactInk), {CouplingKind::predictive, kProxyInk}}) {
+  for (const auto& [kind, ink] : {std::pair(CouplingKind::proposed, kProposedInk),
+                                  {CouplingKind::predictive, kPredictiveInk}}) {
     Series line{fmt::format("{}, eta {} to 1", name(kind), kEtas[0]), ink, Series::Style::line, {}};
     for (const Law& law : of(laws, kind)) {
       if (law.eta <= 1) line.points.push_back({law.at(2).inertia, law.at(kAt).damping});

@@ -123,30 +123,31 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
   FigurePanel human{
       .title = "Human torque at the shoulder", .x_label = "time [s]", .y_label = "f1 [N m]"};
   human.series = {
-      curve(without, "estimate, wound up", kContactInk, dashed, Column::hand_torque_estimate),
-      curve(without, "true, wound up", kContactInk, line, Column::hand_torque),
-      curve(with, "estimate, anti-windup", kProxyInk, dashed, Column::hand_torque_estimate),
-      curve(with, "true, anti-windup", kProxyInk, line, Column::hand_torque),
-      curve(predicted, "true, predictive", kHandInk, line, Column::hand_torque)};
+      curve(without, "estimate, wound up", kProposedTint, dashed, Column::hand_torque_estimate),
+      curve(without, "true, wound up", kProposedTint, line, Column::hand_torque),
+      curve(with, "estimate, anti-windup", kProposedInk, dashed, Column::hand_torque_estimate),
+      curve(with, "true, anti-windup", kProposedInk, line, Column::hand_torque),
+      curve(predicted, "true, predictive", kPredictiveInk, line, Column::hand_torque)};
   FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
                      .x_label = "time [s]",
                      .y_label = "tau1 [N m]"};
-  motors.series = {curve(without, "asked, wound up", kContactInk, dashed, Column::commanded_torque),
-                   curve(with, "asked, anti-windup", kProxyInk, dashed, Column::commanded_torque),
-                   curve(without, "given, wound up", kContactInk, line, Column::motor_torque),
-                   curve(with, "given, anti-windup", kProxyInk, line, Column::motor_torque),
-                   curve(predicted, "given, predictive", kHandInk, line, Column::motor_torque)};
+  motors.series = {
+      curve(without, "asked, wound up", kProposedTint, dashed, Column::commanded_torque),
+      curve(with, "asked, anti-windup", kProposedInk, dashed, Column::commanded_torque),
+      curve(without, "given, wound up", kProposedTint, line, Column::motor_torque),
+      curve(with, "given, anti-windup", kProposedInk, line, Column::motor_torque),
+      curve(predicted, "given, predictive", kPredictiveInk, line, Column::motor_torque)};
   FigurePanel lurking{
       .title = "The proxy goes into the table with the device; the predictive one not",
       .x_label = "time [s]",
       .y_label = "tip below the surface [mm]"};
   lurking.series = {
-      depth(with, "device, proposed", kDeviceInk, line, Column::device_position),
-      depth(with, "proxy, proposed", kProxyInk, dashed, Column::proxy_position),
-      depth(predicted, "device, predictive", kHandInk, line, Column::device_position),
-      depth(predicted, "proxy, predictive", kHandInk, dashed, Column::proxy_position),
-      depth(standard, "device, standard", kNeutralInk, line, Column::device_position),
-      depth(standard, "proxy, standard", kNeutralInk, dashed, Column::proxy_position)};
+      depth(with, "device, proposed", kProposedInk, line, Column::device_position),
+      depth(with, "proxy, proposed", kProposedInk, dashed, Column::proxy_position),
+      depth(predicted, "device, predictive", kPredictiveInk, line, Column::device_position),
+      depth(predicted, "proxy, predictive", kPredictiveInk, dashed, Column::proxy_position),
+      depth(standard, "device, standard", kStandardInk, line, Column::device_position),
+      depth(standard, "proxy, standard", kStandardInk, dashed, Column::proxy_position)};
   lurking.y_range = {-10, 15};
   FigurePanel out = human;
   out.title = "Human torque at the shoulder while pulling out";

@@ -170,12 +170,12 @@ FigurePanel gain_panel(const Session& paper, const Balance& papers, const Sessio
   const auto label = [](const char* law, double stop) {
     return fmt::format("{}, {} N m/rad", law, stop);
   };
-  panel.series = {over_time(paper, label("proposed", kStop), kContactInk, Series::Style::line,
+  panel.series = {over_time(paper, label("proposed", kStop), kProposedInk, Series::Style::line,
                             [&](auto k) { return 1e6 * papers.gain[k]; }),
-                  over_time(ours, label("predictive", kStop), kProxyInk, Series::Style::line,
+                  over_time(ours, label("predictive", kStop), kPredictiveInk, Series::Style::line,
                             [&](auto k) { return 1e6 * own.gain[k]; }),
-                  over_time(ours, label("predictive", kStiffStop), kHandInk, Series::Style::dashed,
-                            [&](auto k) { return 1e6 * stiff.gain[k]; })};
+                  over_time(ours, label("predictive", kStiffStop), kPredictiveTint,
+                            Series::Style::dashed, [&](auto k) { return 1e6 * stiff.gain[k]; })};
   panel.x_range = {0, kLasts};
   return panel;
 }
@@ -206,9 +206,9 @@ FigurePanel apart_panel(const Session& s) {
   for (const CouplingKind kind :
        {CouplingKind::standard, CouplingKind::proposed, CouplingKind::predictive}) {
     const auto number = static_cast<double>(kind);
-    const char* ink = kind == CouplingKind::standard   ? kNeutralInk
-                      : kind == CouplingKind::proposed ? kContactInk
-                                                       : kProxyInk;
+    const char* ink = kind == CouplingKind::standard   ? kStandardInk
+                      : kind == CouplingKind::proposed ? kProposedInk
+                                                       : kPredictiveInk;
     Series dots{name(kind), ink, Series::Style::points, {}};
     for (std::size_t k = 0; k < s.size(); k += 2) {
       if (s.at(k, Column::kind)[0] != number) continue;

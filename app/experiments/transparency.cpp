@@ -90,7 +90,7 @@ FigurePanel impedance_panel(const Felt& felt, const std::string& title) {
   panel.log_x = panel.log_y = true;
   for (std::size_t i = 0; i < felt.seen.size(); ++i) {
     const Setting& s = felt.settings[i];
-    const char* ink = s.kind == CouplingKind::standard ? kNeutralInk : kFamilyInk[i - 1];
+    const char* ink = s.kind == CouplingKind::standard ? kStandardInk : kFamilyInk[i - 1];
     Series points{label(s), ink, Series::Style::points, {}};
     Series line{"", ink, Series::Style::line, {}};
     for (std::size_t k = 0; k < felt.seen[i].f.size(); ++k) {
@@ -222,8 +222,8 @@ void stiffness(Laboratory& lab, const Bench& bench, Outcome& outcome) {
   panel.log_x = panel.log_y = true;
   Series same{"as set", kNeutralInk, Series::Style::dashed, {}};
   Series soft{"in series with k_vc", kContactInk, Series::Style::line, {}};
-  Series points[] = {{"standard", kContactInk, Series::Style::points, {}},
-                     {"proposed", kProxyInk, Series::Style::points, {}}};
+  Series points[] = {{"standard", kStandardInk, Series::Style::points, {}},
+                     {"proposed", kProposedInk, Series::Style::points, {}}};
   double off_series = 0, off_wall = 0;
   const std::size_t walls = std::size(kWalls);
   for (std::size_t i = 0; i < walls; ++i) {

@@ -40,18 +40,18 @@ std::vector<Curve> all_curves() {
   const TapSetting exact{}, fine{.encoder_step = kFine}, paper{.kind = proposed},
       unprepared{.expects_a_mass = false};
   const std::string quantised = fmt::format("predictive, encoder {} rad", kFine);
-  return {curve(0, "predictive", kProxyInk, exact, &TapSetting::eta, kEtas),
-          curve(0, quantised, kHandInk, fine, &TapSetting::eta, kEtas),
-          curve(0, "proposed", kContactInk, paper, &TapSetting::eta, kEtas),
-          curve(1, "predictive", kProxyInk, exact, &TapSetting::tick, kTicks),
-          curve(1, quantised, kHandInk, fine, &TapSetting::tick, kTicks),
-          curve(1, "proposed", kContactInk, paper, &TapSetting::tick, kTicks),
-          curve(2, "predictive", kHandInk, exact, &TapSetting::encoder_step, kSteps),
-          curve(2, "proposed", kContactInk, paper, &TapSetting::encoder_step, kSteps),
-          curve(3, "predictive", kProxyInk, exact, &TapSetting::hand_mass, kMasses),
+  return {curve(0, "predictive", kPredictiveInk, exact, &TapSetting::eta, kEtas),
+          curve(0, quantised, kPredictiveTint, fine, &TapSetting::eta, kEtas),
+          curve(0, "proposed", kProposedInk, paper, &TapSetting::eta, kEtas),
+          curve(1, "predictive", kPredictiveInk, exact, &TapSetting::tick, kTicks),
+          curve(1, quantised, kPredictiveTint, fine, &TapSetting::tick, kTicks),
+          curve(1, "proposed", kProposedInk, paper, &TapSetting::tick, kTicks),
+          curve(2, "predictive", kPredictiveInk, exact, &TapSetting::encoder_step, kSteps),
+          curve(2, "proposed", kProposedInk, paper, &TapSetting::encoder_step, kSteps),
+          curve(3, "predictive", kPredictiveInk, exact, &TapSetting::hand_mass, kMasses),
           curve(3, "predictive, one predictor", kEnergyInk, unprepared, &TapSetting::hand_mass,
                 kMasses),
-          curve(3, "proposed", kContactInk, paper, &TapSetting::hand_mass, kMasses)};
+          curve(3, "proposed", kProposedInk, paper, &TapSetting::hand_mass, kMasses)};
 }
 
 // What theory says, in the hand of the benches.
@@ -105,11 +105,11 @@ std::vector<FigurePanel> empty_panels() {
       panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
       panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
             1.1)};
-  panels[0].series = {theory("proposed: damping over lag", kContactInk, 0.2, 4,
+  panels[0].series = {theory("proposed: damping over lag", kProposedInk, 0.2, 4,
                              [&](double eta) { return law.proposed(eta, T); }),
                       theory("passive in every hand, any linear law", kNeutralInk, 0.2, 4,
                              [&](double) { return law.any_linear(T); })};
-  panels[1].series = {theory("proposed: damping over lag", kContactInk, 0.25, 2,
+  panels[1].series = {theory("proposed: damping over lag", kProposedInk, 0.25, 2,
                              [&](double ms) { return law.proposed(1, 1e-3 * ms); }),
                       theory("passive in every hand, any linear law", kNeutralInk, 0.25, 2,
                              [&](double ms) { return law.any_linear(1e-3 * ms); })};

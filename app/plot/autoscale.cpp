@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMargin = 0.08;    // of the data's span, on both sides
 constexpr double kWasteful = 0.62;  // shrink when the data needs less of the axis than this ...
-constexpr double kPatience = 1.0;   // ... for so long [s]
+constexpr double kPatience = 3.0;   // ... for so long [s]
 constexpr double kGlide = 0.09;     // time constant [s]
 
 Limits around(const Limits& data, double smallest_span) {
@@ -18,12 +18,13 @@ Limits around(const Limits& data, double smallest_span) {
   double high = data.high;
   if (high - low < smallest_span) {
     const double missing = smallest_span - (high - low);
-    low -= missing / 2;
-    high += missing / 2;
+    low -= low == 0 ? 0 : missing / 2;
+    high = low + smallest_span;
   }
   const double margin = kMargin * (high - low);
   const double round_to = nice_step(high - low, 10);
-  return {std::floor((low - margin) / round_to) * round_to,
+  // A magnitude's axis begins at zero: below there is nothing.
+  return {low == 0 ? 0 : std::floor((low - margin) / round_to) * round_to,
           std::ceil((high + margin) / round_to) * round_to};
 }
 

@@ -32,7 +32,8 @@ void History::append(double time, std::span<const double> values) {
   if (!std::isfinite(time)) throw std::invalid_argument("history: time is not finite");
   if (!empty() && time + offset_ <= end_time()) {
     offset_ = end_time() + kResetGap - time;
-    mark(time, "reset", "reset");
+    run_start_ = time + offset_;
+    mark(time, "start over", kResetMark);
   }
   times_[static_cast<std::size_t>(end() % times_.size())] = time + offset_;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -58,7 +59,7 @@ void History::forget_old_marks() {
 void History::clear() {
   for (MinMaxRing& each : rings_) each.clear();
   marks_.clear();
-  offset_ = 0;
+  offset_ = run_start_ = 0;
 }
 
 double History::time(SampleIndex index) const {

@@ -1,6 +1,7 @@
 // The past of every plotted quantity: the newest minute of a running loop or a whole recording.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <span>
 #include <string>
@@ -17,6 +18,8 @@ struct Mark {
   std::string key;
   std::string label;
 };
+
+inline constexpr const char* kResetMark = "reset";  // key of the mark where a new run begins
 
 // Rows of `channels` values in time order. The time axis only ever grows: where the time handed to
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the
@@ -55,6 +58,8 @@ class History {
   double start_time() const { return empty() ? 0 : time(first()); }
   double end_time() const { return empty() ? 0 : time(end() - 1); }
   double offset() const { return offset_; }
+  // Where the newest run begins.
+  double run_start() const { return std::max(run_start_, start_time()); }
   double time(SampleIndex index) const;
   float value(int channel, SampleIndex index) const { return ring(channel).at(index); }
 
@@ -83,6 +88,7 @@ class History {
 
   double tick_;
   double offset_ = 0;
+  double run_start_ = 0;
   std::vector<MinMaxRing> rings_;
   std::vector<double> times_;
   std::deque<Mark> marks_;

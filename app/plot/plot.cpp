@@ -3,6 +3,7 @@
 #include <imgui_internal.h>
 
 #include <cmath>
+#include <utility>
 
 #include "app/style/ticks.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kNoticeTime = 4;  // [s]
 constexpr double kWheelStep = 1.18;
-constexpr float kLeastHeight = 110;    // of curves and time axis under the legend [px]
+constexpr float kLeastHeight = 84;     // of curves and time axis under the legend [px]
 constexpr float kDash = 6;             // [px] at scale 1
 constexpr float kGrip = 5;             // how close to the playback line a drag takes it [px]
 constexpr int kFramesToCloseMenu = 2;  // so that the menu is not in the picture
@@ -28,6 +29,7 @@ PlotEvents Plot::draw(const History& history, PlotGroup& group, ImVec2 size,
   PlotEvents events;
   ImGui::PushID(this);
   follow_data(history, group);
+  choose_unit();
   const PlotFrame frame = lay_out(history, group, size);
   // Also keeps the wheel from scrolling the window around.
   ImGui::InvisibleButton("plot", size, ImGuiButtonFlags_MouseButtonLeft);
@@ -38,13 +40,15 @@ PlotEvents Plot::draw(const History& history, PlotGroup& group, ImVec2 size,
 
   const ImVec2 mouse = hovered_ ? ImGui::GetMousePos() : ImVec2{-1e6f, -1e6f};
   draw_axes(frame, spec_, history.offset());
-  frame.list.PushClipRect(frame.area.min, frame.area.max, true);
+  // A curve on the axis is seen whole.
+  const float rim = 2 * frame.scale;
+  frame.list.PushClipRect(frame.area.min, {frame.area.max.x, frame.area.max.y + rim}, true);
+  draw_bands(frame, spec_, history, rows_);
   draw_marks(frame, history, mouse);
   draw_curves(frame, history);
   draw_thresholds(frame, spec_);
   if (group.playback()) draw_playback(frame, *group.playback(), drag_ == Drag::playback);
   frame.list.PopClipRect();
-  legend_.place_inside(frame, spec_, traces_);
   legend_.draw(frame, spec_, hovered_curve_);
   const bool menu_or_png = frames_until_png_ > 0 || ImGui::IsPopupOpen("menu");
   if (group.hovered() && !menu_or_png) {
@@ -67,7 +71,7 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
   const float title_end = draw_title(list, outer, scale);
   const float title_bottom = min.y + text_size(Face::semibold, spec_.title).y + 4 * scale;
   const float legend =
-      legend_.place_outside(outer, title_end, title_bottom, kLeastHeight * scale, spec_, scale);
+      legend_.place(outer, title_end, title_bottom, kLeastHeight * scale, spec_, scale);
   const ImVec2 label = text_size(Face::small, "\u221200.00");
   ScreenRect area{
       {std::round(min.x + label.x + 8 * scale), std::round(title_bottom + legend + 5 * scale)},
@@ -81,11 +85,15 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
 }
 
 void Plot::follow_data(const History& history, const PlotGroup& group) {
+  if (std::exchange(run_start_, history.run_start()) != run_start_) fit_values();
   if (!values_follow_) return;
+  // What was before the newest run is left behind, unless it is looked at.
+  const double from =
+      group.following() ? std::max(group.start(), history.run_start()) : group.start();
   Extent data;
   for (const Curve& curve : spec_.curves) {
     if (!curve.visible) continue;
-    data.include(history.extent_between(curve.channel, group.start(), group.stop()));
+    data.include(history.extent_between(curve.channel, from, group.stop()));
   }
   if (data.empty() && history.empty()) autoscale_.reset();
   if (spec_.zero_line || data.empty()) data.include(0);
@@ -94,6 +102,15 @@ void Plot::follow_data(const History& history, const PlotGroup& group) {
   }
   y_ = autoscale_.update({data.low, data.high}, spec_.smallest_span,
                          static_cast<double>(ImGui::GetIO().DeltaTime));
+}
+
+void Plot::choose_unit() {
+  const double largest = std::max(std::abs(y_.low), std::abs(y_.high));
+  for (const PlotUnit& unit : spec_.units) {
+    spec_.unit = unit.name;
+    spec_.factor = unit.factor;
+    if (largest <= unit.most) return;
+  }
 }
 
 void Plot::handle_mouse(const PlotFrame& frame, PlotGroup& group, PlotEvents& events) {
@@ -193,16 +210,16 @@ float Plot::draw_title(ImDrawList& list, const ScreenRect& outer, float scale) c
   const Palette& p = current_palette();
   const ImVec2 at{outer.min.x + 2 * scale, outer.min.y + 2 * scale};
   const float right = outer.max.x - 6 * scale;
-  float end = at.x + draw_clipped_text(list, Face::semibold, at, p.text, spec_.title, right - at.x);
   const std::string scaling =
       exponent_text(common_exponent(y_.low * spec_.factor, y_.high * spec_.factor));
   const std::string unit = scaling.empty() ? spec_.unit : scaling + " " + spec_.unit;
+  // The title is shortened before the unit is left out.
   const float gap = 7 * scale;
-  if (end + gap + text_size(Face::regular, unit).x < right) {
-    draw_text(list, Face::regular, {end + gap, at.y}, p.muted, unit);
-    end += gap + text_size(Face::regular, unit).x;
-  }
-  return end;
+  const float room = right - gap - text_size(Face::regular, unit).x;
+  const float end =
+      at.x + draw_clipped_text(list, Face::semibold, at, p.text, spec_.title, room - at.x);
+  draw_text(list, Face::regular, {end + gap, at.y}, p.muted, unit);
+  return end + gap + text_size(Face::regular, unit).x;
 }
 
 void Plot::handle_menu(const PlotFrame& frame, const History& history, PlotGroup& group,

@@ -38,6 +38,7 @@ class Plot {
 
   PlotFrame lay_out(const History& history, const PlotGroup& group, ImVec2 size);
   void follow_data(const History& history, const PlotGroup& group);
+  void choose_unit();
   void handle_mouse(const PlotFrame& frame, PlotGroup& group, PlotEvents& events);
   void handle_wheel(const PlotFrame& frame, PlotGroup& group);
   void handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& events);
@@ -54,6 +55,7 @@ class Plot {
   Limits y_;
   Autoscale autoscale_;
   bool values_follow_ = true;
+  double run_start_ = 0;  // of the run that the limits follow [s]
   Drag drag_ = Drag::none;
   PlotLegend legend_;
   int hovered_curve_ = -1;

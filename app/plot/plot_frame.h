@@ -57,6 +57,9 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
 
 // Grid, labels and unit scaling of both axes; `time_offset` is subtracted from the labels [s].
 void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset);
+// Tints the spec's band: once `rows` are those of the frame's pixels.
+void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                const std::vector<SampleIndex>& rows);
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
 void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse);
 

@@ -38,7 +38,9 @@ PlotNotice copy_csv(const PlotSpec& spec, const History& history, const PlotPict
 PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
                    const char* extension, const std::function<std::string()>& text) {
   try {
-    return {"Saved " + save_text(free_file(folder, name, extension), text()).string()};
+    const auto file = save_text(free_file(folder, name, extension), text());
+    // The name first: what is too long for the plot is cut off at its end.
+    return {fmt::format("Saved {} in {}", file.filename().string(), folder.string())};
   } catch (const std::exception& e) {
     return {e.what(), true};
   }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/plot/plot_frame.h"
@@ -50,12 +52,12 @@ void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
     level_line(frame, y, colour(frame.palette.grid));
     const std::string label = tick_text(ticks.at(i), ticks.step, exponent);
     const ImVec2 size = text_size(Face::small, label);
-    if (y - 0.5f * size.y < frame.area.min.y - 3 || y + 0.5f * size.y > frame.area.max.y + 3) {
-      continue;
-    }
-    draw_text(frame.list, Face::small,
-              {frame.area.min.x - size.x - 6 * frame.scale, y - 0.5f * size.y}, frame.palette.muted,
-              label);
+    // Pushed inwards at the ends rather than cut off or left out.
+    const float middle = y - 0.5f * size.y;
+    const float top = std::clamp(middle, frame.area.min.y - 3, frame.area.max.y + 3 - size.y);
+    if (std::abs(top - middle) > 0.6f * size.y) continue;
+    draw_text(frame.list, Face::small, {frame.area.min.x - size.x - 6 * frame.scale, top},
+              frame.palette.muted, label);
   }
 }
 
@@ -132,25 +134,59 @@ void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
   }
 }
 
+// A label stands right of its line, at the end left of it, on the lowest line of text that is free.
 void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse) {
-  float free_from = frame.area.min.x;
+  constexpr std::size_t kRows = 4;
+  std::array<float, kRows> free_from{};
+  free_from.fill(frame.area.min.x);
   float last_line = -1e9f;
   for (const Mark& mark : history.marks()) {
     const float x = std::round(frame.x_of(mark.time));
     if (x < frame.area.min.x || x > frame.area.max.x) continue;
-    if (x - last_line < 3 * frame.scale) continue;
-    last_line = x;
-    dashed_line(frame, {x, frame.area.min.y}, {x, frame.area.max.y},
-                colour(frame.palette.muted, 0.45f), 2 * frame.scale);
+    if (x - last_line >= 3 * frame.scale) {
+      dashed_line(frame, {x, frame.area.min.y}, {x, frame.area.max.y},
+                  colour(frame.palette.muted, 0.45f), 2 * frame.scale);
+      last_line = x;
+    }
     const ImVec2 size = text_size(Face::small, mark.label);
-    const float left = x + 4 * frame.scale;
-    const float top = frame.area.max.y - size.y - 2 * frame.scale;
-    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < 4 * frame.scale;
-    const bool room = left >= free_from && left + size.x < frame.area.max.x;
+    const float gap = 4 * frame.scale;
+    const bool at_the_end = x + gap + size.x > frame.area.max.x;
+    const float left = at_the_end ? x - gap - size.x : x + gap;
+    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < gap;
+    const auto rows = std::clamp(static_cast<std::size_t>(frame.area.height() / (2 * size.y)),
+                                 std::size_t{1}, kRows);
+    const auto* free = std::find_if(free_from.begin(), free_from.begin() + rows,
+                                    [&](float from) { return left >= from; });
+    const bool room = free != free_from.begin() + rows;
     if (!room && !pointed_at) continue;
-    const float at = std::min(left, frame.area.max.x - size.x - 2 * frame.scale);
-    draw_backed_text(frame, {at, top}, frame.palette.muted, mark.label, pointed_at ? 1.0f : 0.75f);
-    free_from = at + size.x + 6 * frame.scale;
+    const auto row = room ? static_cast<std::size_t>(free - free_from.begin()) : 0;
+    const float top = frame.area.max.y - static_cast<float>(row + 1) * size.y - 2 * frame.scale;
+    draw_backed_text(frame, {left, top}, frame.palette.muted, mark.label,
+                     pointed_at ? 1.0f : 0.75f);
+    free_from[row] = std::max(free_from[row], left + size.x + 6 * frame.scale);
+  }
+}
+
+void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                const std::vector<SampleIndex>& rows) {
+  if (spec.band_channel < 0 || history.empty()) return;
+  const auto inside = [&](std::size_t pixel) {
+    return rows[pixel] < rows[pixel + 1] &&
+           history.extent(spec.band_channel, rows[pixel], rows[pixel + 1]).high > 0.5f;
+  };
+  const ImVec2 label = text_size(Face::small, spec.band_label);
+  float free_from = frame.area.min.x;
+  for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
+    if (!inside(pixel)) continue;
+    const float left = frame.area.min.x + static_cast<float>(pixel);
+    while (pixel + 2 < rows.size() && inside(pixel + 1)) ++pixel;
+    const float right = frame.area.min.x + static_cast<float>(pixel) + 1;
+    frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                             colour(frame.palette.accent, 0.13f));
+    const float at = std::min(left, frame.area.max.x - label.x) + 2 * frame.scale;
+    if (at < free_from) continue;
+    draw_backed_text(frame, {at, frame.area.min.y}, frame.palette.muted, spec.band_label, 0.75f);
+    free_from = at + label.x + 12 * frame.scale;
   }
 }
 

@@ -18,7 +18,23 @@ constexpr int kMostJointCurves = 7;
 
 }  // namespace
 
+std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p) {
+  std::vector<double> limits;
+  for (const Joint& joint : arm.joints) {
+    limits.push_back(std::isnan(p.torque_limit) ? joint.effort : p.torque_limit);
+  }
+  return limits;
+}
+
 TraceChannels::TraceChannels(const RowLayout& layout) : layout_(layout) {}
+
+bool TraceChannels::limited(std::span<const double> row, int joint) const {
+  const auto j = static_cast<std::size_t>(joint);
+  if (j >= limits_.size()) return false;
+  const double given = std::abs(layout_.in(row, Column::motor_torque)[j]);
+  const double asked = std::abs(layout_.in(row, Column::commanded_torque)[j]);
+  return given >= limits_[j] * (1 - 1e-9) && asked > given;
+}
 
 void TraceChannels::values(std::span<const double> row, std::span<double> into) const {
   const auto at = [&](Column c) { return layout_.in(row, c); };
@@ -34,6 +50,9 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human, norm(layout_.human_torque(row)));
   put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
   put(Channel::contact, norm(at(Column::contact_torque)));
+  bool any_limited = false;
+  for (int j = 0; j < layout_.dof(); ++j) any_limited = any_limited || limited(row, j);
+  put(Channel::limited, any_limited ? 1 : 0);
 }
 
 void TraceChannels::append(History& history, std::span<const double> row,
@@ -57,19 +76,21 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
     Curve result;
     result.channel = static_cast<int>(c) + (again ? count() : 0);
     result.label = again ? "re-run " + label : std::move(label);
-    result.ink = ink;
-    result.shade = again ? shade - 0.45f : shade;
+    result.ink = again ? Ink::rerun : ink;
+    result.shade = shade;
     result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
     return result;
   };
   PlotSpec error{.title = "coordination error |x_E|",
                  .unit = "mrad",
                  .factor = 1e3,
+                 .units = {{"mrad", 1e3, 1}, {"rad", 1, 1e9}},
                  .file_name = "coordination-error",
-                 .smallest_span = 2e-3};
+                 .smallest_span = 20e-3};
   PlotSpec energy{.title = "controller energy E_c",
                   .unit = "mJ",
                   .factor = 1e3,
+                  .units = {{"mJ", 1e3, 1}, {"J", 1, 1e9}},
                   .file_name = "controller-energy",
                   .smallest_span = 1e-3};
   PlotSpec torque{.title = "human and contact torque",
@@ -77,6 +98,10 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
                   .factor = 1,
                   .file_name = "torque",
                   .smallest_span = 0.05};
+  for (PlotSpec* plot : {&error, &energy, &torque}) {
+    plot->band_channel = static_cast<int>(Channel::limited);
+    plot->band_label = "motor at its limit";
+  }
   for (const bool again : {false, true}) {
     if (again && !rerun) break;
     error.curves.push_back(curve(Channel::error, "|x_E|", Ink::proxy, 0, again));
@@ -86,11 +111,12 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
     torque.curves.push_back(curve(Channel::human, "|f1|", Ink::hand, 0, again));
     torque.curves.push_back(
         curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
-    torque.curves.push_back(curve(Channel::contact, "|f2|", Ink::contact, 0, again));
+    torque.curves.push_back(
+        curve(Channel::contact, "|f2|", Ink::contact, again ? -0.5f : 0, again));
   }
   for (int j = 0; j < std::min(layout_.dof(), kMostJointCurves); ++j) {
-    Curve joint = curve(Channel::joints, "joint " + std::to_string(j + 1), Ink::neutral,
-                        0.3f - 0.25f * static_cast<float>(j), false);
+    const auto ink = static_cast<Ink>(static_cast<int>(Ink::joint_1) + j);
+    Curve joint = curve(Channel::joints, "joint " + std::to_string(j + 1), ink, 0, false);
     joint.channel += j;
     joint.visible = false;
     error.curves.push_back(joint);

@@ -6,6 +6,8 @@
 
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
+#include "core/dynamics/arm_description.h"
+#include "core/tick/parameters.h"
 #include "core/tick/row.h"
 
 namespace limpid {
@@ -19,12 +21,22 @@ enum class Channel : std::uint8_t {
   human,           // |f1| [N m]
   human_estimate,  // |f1_hat|
   contact,         // |f2|
+  limited,         // 1 while a motor gives all it can and is asked for more, else 0
   joints,          // x_E of each joint [rad]
 };
+
+// Largest torque of each motor: the parameters', or the arm's own where they leave it to the arm
+// [N m].
+std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
 
 class TraceChannels {
  public:
   explicit TraceChannels(const RowLayout& layout);
+
+  // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
+  void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
+  // Whether the motor of a joint gives all it can in this row, and is asked for more.
+  bool limited(std::span<const double> row, int joint) const;
 
   int count() const { return static_cast<int>(Channel::joints) + layout_.dof(); }
   // Fills count() values.
@@ -40,6 +52,7 @@ class TraceChannels {
 
  private:
   RowLayout layout_;
+  std::vector<double> limits_;
 };
 
 }  // namespace limpid

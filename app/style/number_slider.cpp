@@ -9,10 +9,12 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {
@@ -54,8 +56,9 @@ void draw_track(const ImRect& track, const ParameterInfo& info, double value, do
 void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bool broken) {
   const Palette& p = current_palette();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddText(box.Min, colour(p.text), info.label);
-  const float room = box.GetWidth() - ImGui::CalcTextSize(info.label).x - ImGui::GetFontSize();
+  const char* words = caption(info);
+  list.AddText(box.Min, colour(p.text), words);
+  const float room = box.GetWidth() - ImGui::CalcTextSize(words).x - ImGui::GetFontSize();
   std::string text = with_unit(info, value);
   if (ImGui::CalcTextSize(text.c_str()).x > room) text = text.substr(0, text.find(' '));
   const float width = ImGui::CalcTextSize(text.c_str()).x;
@@ -156,11 +159,20 @@ double slider_value(const ParameterInfo& info, double place) {
   return is_int(info) ? std::round(value) : value;
 }
 
-std::string with_unit(const ParameterInfo& info, double value) {
-  if (std::isnan(value)) return "arm's own";
-  std::string text = is_int(info) ? std::to_string(std::lround(value)) : three_digits(value);
-  if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;
-  return text;
+double slider_step(const ParameterInfo& info, double value, double usual, int direction) {
+  constexpr double kStep = 1.1;
+  value = std::clamp(value, slider_low(info), info.slider_maximum);
+  // What rounding left over must not count as a step.
+  const auto beyond = [&](double next) { return direction * (next / value - 1) > 1e-9; };
+  int place = static_cast<int>(std::lround(std::log(value / usual) / std::log(kStep))) - direction;
+  double next = value;
+  while (!beyond(next)) {
+    const double exact = usual * std::pow(kStep, place);
+    const double digit = std::pow(10.0, std::floor(std::log10(exact)) - 1);
+    next = place == 0 ? usual : std::stod(three_digits(std::round(exact / digit) * digit));
+    place += direction;
+  }
+  return std::clamp(next, info.slider_minimum, info.slider_maximum);
 }
 
 void draw_broken_frame(ImVec2 from, ImVec2 to) {

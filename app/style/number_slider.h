@@ -3,8 +3,6 @@
 
 #include <imgui.h>
 
-#include <string>
-
 #include "core/tick/parameters.h"
 
 namespace limpid {
@@ -16,8 +14,9 @@ bool is_int(const ParameterInfo& info);
 double slider_place(const ParameterInfo& info, double value);
 double slider_value(const ParameterInfo& info, double place);
 
-// The number for people; what is not a number is the arm's own.
-std::string with_unit(const ParameterInfo& info, double value);
+// The next value of a grid of steps of about a tenth, of two digits each, with `usual` on it;
+// `direction`: 1 up, -1 down. Held within the slider's range, as slider_value() is.
+double slider_step(const ParameterInfo& info, double value, double usual, int direction);
 
 // Draws it at ImGui's cursor over the width left, below an ID of its own; returns whether `value`
 // was changed. `usual` is marked and gone back to; `broken`: in red.

@@ -1,7 +1,7 @@
 // One colour per thing, the same in the 3D view, the plots and the panels.
 //
-// The inks are Okabe and Ito's palette, which colour-blind eyes tell apart too, each in a tint that
-// reads well on its background. Red is kept for broken promises.
+// The inks of things are Okabe and Ito's palette, which colour-blind eyes tell apart too, each in a
+// tint that reads well on its background. Red is kept for broken promises.
 #pragma once
 
 #include <array>
@@ -34,7 +34,18 @@ constexpr Rgb mix(Rgb a, Rgb b, float part) {
   return {blend(a.r, b.r), blend(a.g, b.g), blend(a.b, b.b)};
 }
 
-enum class Ink : std::uint8_t { device, proxy, hand, contact, energy, neutral, count_ };
+enum class Ink : std::uint8_t {
+  device,
+  proxy,
+  hand,
+  contact,
+  energy,
+  neutral,
+  rerun,    // all of a second run
+  joint_1,  // and so on, of one joint each
+  joint_7 = joint_1 + 6,
+  count_
+};
 
 struct Palette {
   Rgb backdrop;  // behind the panels
@@ -68,7 +79,8 @@ inline constexpr Palette kDarkPalette{
     .accent = rgb(0xc3ccd6),
     .broken = rgb(0xff5263),
     .inks = {rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
-             rgb(0xb4bcc6)},
+             rgb(0xb4bcc6), rgb(0xf0e442), rgb(0xb5d95b), rgb(0xc792ea), rgb(0xe8b27a),
+             rgb(0x5fd4c4), rgb(0x9fa8ff), rgb(0xff9aa2), rgb(0xa0aab4)},
 };
 
 inline constexpr Palette kLightPalette{
@@ -86,7 +98,8 @@ inline constexpr Palette kLightPalette{
     .accent = rgb(0x39424c),
     .broken = rgb(0xc8102e),
     .inks = {rgb(0xc98600), rgb(0x0072b2), rgb(0x00855f), rgb(0xd55e00), rgb(0xb8619a),
-             rgb(0x59636e)},
+             rgb(0x59636e), rgb(0x8a7d00), rgb(0x3f6b1f), rgb(0x7b3fb5), rgb(0x8f5a1c),
+             rgb(0x00796b), rgb(0x3949ab), rgb(0xa0527a), rgb(0x6b7580)},
 };
 
 constexpr const Palette& palette(Theme theme) {

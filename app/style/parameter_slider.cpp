@@ -10,13 +10,14 @@
 
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
+#include "app/style/tooltip.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {
 
 void show_tooltip(const ParameterInfo& info, double paper_value, const char* broken) {
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
+  begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (broken != nullptr) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
     ImGui::TextUnformatted(broken);
@@ -37,8 +38,7 @@ void show_tooltip(const ParameterInfo& info, double paper_value, const char* bro
   }
   if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
   ImGui::PopStyleColor();
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
+  end_tooltip();
 }
 
 void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered) {
@@ -59,7 +59,7 @@ void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered)
 
 // Radio buttons side by side, of which one is pressed in.
 bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parameters& p) {
-  ImGui::TextUnformatted(info.label);
+  ImGui::TextUnformatted(caption(info));
   const int count = static_cast<int>(choice.words.size());
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
@@ -100,7 +100,7 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
   bool changed = false;
   if (const auto* flag = std::get_if<bool Parameters::*>(&info.field)) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * current_scale(), 2 * current_scale()});
-    changed = ImGui::Checkbox(info.label, &(parameters.**flag));
+    changed = ImGui::Checkbox(caption(info), &(parameters.**flag));
     ImGui::PopStyleVar();
   } else if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
     changed = choices(info, *choice, parameters);

@@ -20,7 +20,7 @@ sys.path.insert(0, str(ASSETS))
 import png  # noqa: E402
 
 SCENES = {  # scene: hand, seconds recorded (0: a thumbnail only)
-    "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 0),
+    "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 4.6),
     "proximal": ("proximal", 4.4), "spheres": ("spheres", 4.2), "relief": ("relief", 4.6),
     "gears": ("gears", 4), "leaf": ("leaf", 5.2),
 }

@@ -6,7 +6,7 @@ import unittest
 from support import ASSETS, SystemTest, limpid
 from window import LIMPID, WindowTest
 
-SESSION = ASSETS / "sessions" / "touch.h5"
+SESSION = ASSETS / "sessions" / "table.h5"
 
 
 class BeforeTheCommand(WindowTest):

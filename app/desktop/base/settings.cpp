@@ -20,6 +20,8 @@ fs::path made(const fs::path& dir) {
   return dir;
 }
 
+constexpr std::size_t kMostRecent = 8;
+
 fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 
 // Every setting but the parameters, once, for reading and writing.
@@ -49,6 +51,12 @@ void each(S& s, Visit&& visit) {
 
 }  // namespace
 
+void remember_recent(Settings& settings, const std::string& file) {
+  std::erase(settings.recent, file);
+  settings.recent.insert(settings.recent.begin(), file);
+  if (settings.recent.size() > kMostRecent) settings.recent.resize(kMostRecent);
+}
+
 Settings load_settings(std::string& complaint) {
   Settings s;
   const fs::path file = settings_file();
@@ -60,6 +68,11 @@ Settings load_settings(std::string& complaint) {
       using T = std::remove_reference_t<decltype(value)>;
       if (const auto found = table["window"][key].value<T>()) value = *found;
     });
+    if (const toml::array* recent = table["window"]["recent"].as_array()) {
+      for (const toml::node& node : *recent) {
+        if (const auto name = node.value<std::string>()) s.recent.push_back(*name);
+      }
+    }
     if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
     if (const toml::table* parameters = table["parameters"].as_table()) {
       std::ostringstream text;
@@ -77,6 +90,9 @@ Settings load_settings(std::string& complaint) {
 std::string save_settings(const Settings& settings) {
   toml::table window;
   each(settings, [&](const char* key, const auto& value) { window.insert(key, value); });
+  toml::array recent;
+  for (const std::string& name : settings.recent) recent.push_back(name);
+  window.insert("recent", recent);
   window.insert("theme", settings.theme == Theme::light ? "light" : "dark");
   toml::table all;
   all.insert("window", window);

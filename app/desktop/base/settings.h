@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/tick/parameters.h"
 #include "render/theme.h"
@@ -22,6 +23,7 @@ struct Settings {
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
+  std::vector<std::string> recent;            // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {
     Parameters p;
@@ -29,6 +31,9 @@ struct Settings {
     return p;
   }();
 };
+
+// This file was opened last.
+void remember_recent(Settings& settings, const std::string& file);
 
 // $XDG_CONFIG_HOME/limpid/settings.toml. What cannot be read is left at its default; `complaint`
 // then says why.

@@ -8,6 +8,7 @@
 #include "app/plot/plot.h"
 #include "app/plot/plot_group.h"
 #include "app/run/scene_meshes.h"
+#include "app/session/energy_account.h"
 #include "app/session/trace_channels.h"
 #include "app/view/row_view.h"
 #include "render/camera.h"
@@ -35,6 +36,9 @@ class Stage {
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
+  // What the motors can give under these parameters, from the next row on.
+  void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
+
   // Adds a row to the plots, and a second run's beside it.
   void append(std::span<const double> row, std::span<const double> beside) {
     channels_.append(history, row, beside);
@@ -45,6 +49,7 @@ class Stage {
   History history;
   PlotGroup group;
   std::vector<Plot> plots;
+  EnergyAccount energy;
 
  private:
   void show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted);

@@ -118,12 +118,25 @@ void Desk::update(const Parameters& p) {
   loop_.update();
   follow_recording();
   follow_saving();
+  stage_->follow(p);
   take_rows();
+  set_marks();
+  stage_->energy.follow(stage_->history, stage_->history.end());
   watch_loop();
 }
 
 void Desk::mark(const std::string& label, const std::string& key) {
-  stage_->history.mark(stage_->channels().layout().in(row(), Column::time)[0], label, key);
+  changes_.push_back({0, key, label});
+}
+
+// The rows up to here are those of before: however long a frame takes, a mark stands at its change.
+void Desk::set_marks() {
+  History& history = stage_->history;
+  for (Mark& change : changes_) {
+    history.mark(history.end_time() - history.offset(), std::move(change.label),
+                 std::move(change.key));
+  }
+  changes_.clear();
 }
 
 void Desk::take_rows() {

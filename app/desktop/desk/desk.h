@@ -70,7 +70,7 @@ class Desk {
   void update(const Parameters& p);
   // True once the loop has become unstable, once.
   bool became_unstable();
-  // Marks in the plots that something has changed.
+  // Marks in the plots that something changes with the next update().
   void mark(const std::string& label, const std::string& key);
   // Before the OpenGL context goes.
   void drop_pictures();
@@ -83,6 +83,7 @@ class Desk {
   void follow_recording();
   void follow_saving();
   void take_rows();
+  void set_marks();
   void watch_loop();
 
   Notices& notices_;
@@ -91,6 +92,7 @@ class Desk {
   LiveLoop loop_;
   std::unique_ptr<Stage> stage_;
   std::vector<double> rows_;
+  std::vector<Mark> changes_;  // to be marked, at times not known yet
   bool was_diverged_ = false, was_running_ = false;
   std::future<std::unique_ptr<Recorder>> opening_;
   std::future<Notice> closing_;

@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/parameter_slider.h"
 #include "app/style/theme.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {
+
+constexpr double kGiven = 1e-3;  // energy that counts [J]
 
 // What is broken, by how much, and what would mend it; empty while the promise holds.
 std::string eta_broken(const Parameters& p, const Analysis& a) {
@@ -68,18 +72,32 @@ void kind_buttons(Parameters& p) {
   ImGui::PopStyleColor();
 }
 
+// What few people move: what ties device and proxy, and how well.
+bool advanced(std::string_view key) {
+  return key == "coupling.k_vc" || key == "coupling.b_vc" || key == "coupling.b_v" ||
+         key == "coupling.band" || key == "ledger.energy";
+}
+
 void draw_sliders(Parameters& p, const Analysis& a) {
   const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(a);
   const std::string proxy = proxy_broken(a);
-  for (const char* key : info(p.kind).sliders) {
-    const std::string_view name = key;
-    const bool of_device = name == "coupling.k_vc" || name == "coupling.b_vc";
-    slider(p, key,
-           name == "coupling.eta"   ? eta
-           : name == "coupling.b_v" ? proxy
-           : of_device              ? device
-                                    : std::string());
+  const auto draw = [&](bool which) {
+    for (const std::string_view key : info(p.kind).sliders) {
+      if (advanced(key) != which) continue;
+      const bool of_device = key == "coupling.k_vc" || key == "coupling.b_vc";
+      slider(p, key.data(),
+             key == "coupling.eta"   ? eta
+             : key == "coupling.b_v" ? proxy
+             : of_device             ? device
+                                     : std::string());
+    }
+  };
+  draw(false);
+  const bool broken = !device.empty() || !proxy.empty();
+  if (section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
+              false)) {
+    draw(true);
   }
 }
 
@@ -89,10 +107,10 @@ void draw_passivity(const Parameters& p, const Analysis& a) {
   const std::string proxy = proxy_broken(a);
   heading("Passivity");
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
-  read_out("observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
+  read_out("Observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "alpha / m over the modes of the inertia at the rest pose, (18)");
   const bool standard = !info(p.kind).observes;
-  read_out("\xCE\xB7_min, all frequencies",
+  read_out("Least passive inertia \xCE\xB7_min",
            fmt::format("{:.3f}{}", a.eta_min,
                        standard    ? ""
                        : a.passive ? "  ok"
@@ -105,57 +123,106 @@ void draw_passivity(const Parameters& p, const Analysis& a) {
                 "unstable while the hand holds. Raise eta or soften the grip.",
                 p.eta, a.eta_min_grip)
           : std::string();
-  read_out("\xCE\xB7_min in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
+  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
            "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
   const auto verdict = [](const std::string& broken, double margin) {
     return broken.empty() ? fmt::format("ok  {:+.1e}", std::abs(margin) < 1e-12 ? 0.0 : margin)
                           : fmt::format("broken  {:+.1e}", margin);
   };
-  read_out("(3) device b_d", verdict(device, a.condition3.device_margin), device,
+  read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
            "b_d - 2 b_vc - k_vc T [N m s/rad]: not negative");
-  read_out("(3) proxy b_v", verdict(proxy, a.condition3.proxy_margin), proxy,
+  read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
            "b_v - k_vc T / 2 [N m s/rad]: not negative");
 }
 
 // What bounds the energy that the human is given, for a law that keeps account of it.
 void draw_ledger(const CouplingReading& now) {
   heading("Energy ledger");
-  read_out("reserve", fmt::format("{:.2f} mJ", 1e3 * now.reserve), {},
+  read_out("Reserve", energy_text(now.reserve), {},
            "What the human may still be given; more after dissipating, 20 mJ at most");
   const auto share = [](const char* label, double part, const char* cut, const char* meaning) {
     read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
   };
-  share("wall force let through", now.contact_governor,
+  share("Wall force let through", now.contact_governor,
         "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
         "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
         "keep it from acting.",
         "100 % unless the reserve runs low; then the proxy leaves the device for a while");
-  share("damping cancelled", now.damping_governor,
+  share("Damping cancelled", now.damping_governor,
         "The reserve runs low: less of the device's damping is cancelled.",
         "Of what the damping slider asks for");
 }
 
+// Of E_c, what the coupling itself gave is judged; the rest is said apart.
+void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
+  const bool at_fault = info(p.kind).observes && (!a.passive || p.eta < a.eta_min_grip);
+  const double own = at_fault ? energy.without_limits() : energy.own();
+  const std::string broken =
+      own > kGiven
+          ? fmt::format(
+                "The coupling has given {} more than it took: it is not passive in this "
+                "grip.\nRaise \xCE\xB7, lower the observer's gain, or take the predictive law.",
+                energy_text(own))
+          : "";
+  read_out("Energy given E_c", energy_text(own), broken,
+           "What the coupling gave, with the device's own damping: stays below zero while it is "
+           "passive. What switching and motors at their limit put in is counted apart.");
+  const auto apart = [](const char* label, double joules, const char* help) {
+    if (joules > kGiven) read_out(label, energy_text(joules), {}, help);
+  };
+  apart("Put in by switching", energy.by_changes(),
+        "Changing a law or a setting while the coupling is stretched puts energy in, as bending a "
+        "spring does. It is no fault of the coupling.");
+  if (at_fault) return;
+  apart("Put in at the motors' limit", energy.by_limits(),
+        "A motor at its limit gives another torque than the coupling asks for. It is no fault of "
+        "the coupling.");
+}
+
+void draw_limited(const std::vector<int>& joints) {
+  if (joints.empty()) return;
+  std::string text;
+  for (const int joint : joints) {
+    text += fmt::format("{}joint {}", text.empty() ? "" : ", ", joint + 1);
+  }
+  read_out("Motor at its limit", text, {},
+           "The coupling asks for more torque than the motor can give, (section 3.1). Press less, "
+           "or raise Device > Motors' largest torque.");
+}
+
 }  // namespace
 
-void draw_coupling_panel(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-                         ScreenRect rect) {
+void CouplingPanel::draw_break(Parameters& p, const ArmDescription& arm) {
+  const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
+  if (break_.broken(p)) {
+    if (ImGui::Button("Repair", size)) break_.repair(p);
+    tooltip(
+        "Puts law, inertia and grip back to what they were. Or press C: the predictive law holds "
+        "in this grip, too.");
+    return;
+  }
+  if (ImGui::Button("Break passivity", size)) break_.break_it(p, arm);
+  tooltip(
+      "Takes the proposed law, a stiff grip without damping, and so small an inertia \xCE\xB7 that "
+      "the "
+      "loop gives energy without end. Then hold the arm: it begins to tremble, and E_c climbs. "
+      "Ctrl+Z or Repair undo it.");
+}
+
+void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
+                         const ArmDescription* arm, ScreenRect rect) {
   begin_panel("coupling", rect);
   kind_buttons(p);
   ImGui::Spacing();
   draw_sliders(p, analysis);
+  if (arm != nullptr) draw_break(p, *arm);
   if (info(p.kind).keeps_ledger) {
     draw_ledger(now);
   } else {
     draw_passivity(p, analysis);
   }
-  const double energy = now.energy;
-  const std::string active =
-      energy > 1e-4
-          ? "The coupling has given more energy than it took. Either it is not passive, or it was "
-            "switched in contact: that puts energy in, too."
-          : "";
-  read_out("E_c total", fmt::format("{:.2f} mJ", 1e3 * energy), active,
-           "Controller energy with the device's own damping: stays below zero while passive");
+  draw_energy(now.energy, p, analysis);
+  draw_limited(now.limited);
   ImGui::End();
 }
 

@@ -1,22 +1,35 @@
 // The coupling: its law, its parameters, and whether it is passive.
 #pragma once
 
+#include <vector>
+
+#include "app/desktop/panels/passivity_break.h"
 #include "app/plot/plot_frame.h"
 #include "app/run/analysis.h"
-#include "core/tick/parameters.h"
+#include "app/session/energy_account.h"
 
 namespace limpid {
 
 // What the present row says of it.
 struct CouplingReading {
-  double energy;            // given by the controller in all [J]
-  double reserve;           // of the ledger [J]
-  double contact_governor;  // shares let through, 0 to 1
+  EnergyAccount energy;
+  std::vector<int> limited;  // joints whose motors are at their limit
+  double reserve;            // of the ledger [J]
+  double contact_governor;   // shares let through, 0 to 1
   double damping_governor;
 };
 
-// `analysis` of these parameters.
-void draw_coupling_panel(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-                         ScreenRect rect);
+class CouplingPanel {
+ public:
+  // `analysis` of these parameters; `arm`: the virtual one; null: a device is in its place, whose
+  // grip is nobody's to choose.
+  void draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
+            const ArmDescription* arm, ScreenRect rect);
+
+ private:
+  void draw_break(Parameters& p, const ArmDescription& arm);
+
+  PassivityBreak break_;
+};
 
 }  // namespace limpid

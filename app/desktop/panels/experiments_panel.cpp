@@ -74,7 +74,7 @@ fs::path ExperimentsPanel::draw(bool& open) {
   ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
   if (ImGui::Begin("Experiments", &open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    ImGui::BeginChild("list", {17 * ImGui::GetFontSize(), 0});
+    ImGui::BeginChild("list", {19 * ImGui::GetFontSize(), 0});
     draw_list();
     ImGui::EndChild();
     ImGui::SameLine();
@@ -99,31 +99,49 @@ fs::path ExperimentsPanel::draw(bool& open) {
   return chosen;
 }
 
+// What a row says of its experiment at its end.
+void ExperimentsPanel::draw_state(const Experiment& experiment) {
+  const Palette& colours = current_palette();
+  if (running_.busy() && current_ == &experiment) {
+    const double elapsed = ImGui::GetTime() - began_;
+    const double part = running_.part();
+    progress_bar(part, 0,
+                 part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "");
+    return;
+  }
+  const auto found = verdicts_.find(experiment.name);
+  if (found == verdicts_.end()) return;
+  const bool passed = found->second.outcome.passed();
+  ImGui::TextColored(colour_vector(passed ? colours.muted : colours.broken), "%s",
+                     passed ? "passed" : "failed");
+}
+
+// Nothing moves when an experiment starts or ends: each column keeps its width.
 void ExperimentsPanel::draw_list() {
-  const Palette& colours = palette(current_theme());
-  for (const Experiment& experiment : experiments()) {
-    ImGui::PushID(experiment.name);
-    const bool runs = running_.busy() && current_ == &experiment;
-    const bool waits = std::ranges::find(queue_, &experiment) != queue_.end();
-    if (runs) {
-      const double elapsed = ImGui::GetTime() - began_;
-      const double part = running_.part();
-      const std::string left =
-          part > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1 - part) / part) : "";
-      progress_bar(part, 0, left);
-    } else if (ImGui::Button(waits ? "waits" : "Run")) {
-      queue_.push_back(&experiment);
+  const float em = ImGui::GetFontSize();
+  if (ImGui::BeginTable("experiments", 3)) {
+    ImGui::TableSetupColumn("run", ImGuiTableColumnFlags_WidthFixed, 4 * em);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("state", ImGuiTableColumnFlags_WidthFixed, 5.5f * em);
+    for (const Experiment& experiment : experiments()) {
+      ImGui::PushID(experiment.name);
+      ImGui::TableNextColumn();
+      const bool runs = running_.busy() && current_ == &experiment;
+      const bool waits = std::ranges::find(queue_, &experiment) != queue_.end();
+      ImGui::BeginDisabled(runs || waits);
+      if (ImGui::Button(runs ? "runs" : waits ? "waits" : "Run", {-1, 0})) {
+        queue_.push_back(&experiment);
+      }
+      ImGui::EndDisabled();
+      ImGui::TableNextColumn();
+      ImGui::AlignTextToFramePadding();
+      if (ImGui::Selectable(experiment.name, shown_ == &experiment)) shown_ = &experiment;
+      tooltip(experiment.about);
+      ImGui::TableNextColumn();
+      draw_state(experiment);
+      ImGui::PopID();
     }
-    if (!runs) ImGui::SameLine();
-    if (ImGui::Selectable(experiment.name, shown_ == &experiment)) shown_ = &experiment;
-    tooltip(experiment.about);
-    if (const auto found = verdicts_.find(experiment.name); found != verdicts_.end()) {
-      const bool passed = found->second.outcome.passed();
-      ImGui::SameLine(ImGui::GetContentRegionAvail().x - 3 * ImGui::GetFontSize());
-      ImGui::TextColored(colour_vector(passed ? colours.muted : colours.broken), "%s",
-                         passed ? "passed" : "failed");
-    }
-    ImGui::PopID();
+    ImGui::EndTable();
   }
   ImGui::Spacing();
   if (running_.busy()) {

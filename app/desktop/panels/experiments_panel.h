@@ -32,6 +32,7 @@ class ExperimentsPanel {
   void start(const Experiment& experiment);
   void take();
   void draw_list();
+  void draw_state(const Experiment& experiment);
   static std::filesystem::path draw_verdict(const Verdict& verdict);
 
   Notices& notices_;

@@ -6,6 +6,6 @@
 
 namespace limpid {
 
-void draw_notices(const Notices& notices, ScreenRect view);
+void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend);
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -47,8 +48,8 @@ void draw_why_fixed(const char* why) {
   ImGui::PopTextWrapPos();
 }
 
-// `editor`: where they can be chosen; null: they cannot.
-void draw_list(const Scene& scene, SceneEditor* editor, const Act& act) {
+// `editor`: where they can be chosen; null: they cannot. `fresh`: what is chosen was not before.
+void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& act) {
   const std::vector<ObjectRef> all = objects_of(scene);
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
@@ -60,6 +61,7 @@ void draw_list(const Scene& scene, SceneEditor* editor, const Act& act) {
     const bool chosen = editor != nullptr && editor->selected() == ref;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float em = ImGui::GetFontSize();
+    if (chosen && fresh) ImGui::SetScrollHereY();
     const bool clicked =
         ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
     if (clicked && editor != nullptr) {
@@ -115,7 +117,7 @@ void ScenePanel::draw_recorded(const SceneDocument& document) {
   draw_title(document);
   draw_why_fixed("The recording's scene; it stays as it was.");
   ImGui::BeginDisabled();
-  draw_list(document.scene, nullptr, {});
+  draw_list(document.scene, nullptr, false, {});
   ImGui::EndDisabled();
 }
 
@@ -130,7 +132,8 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
   }
   if (fixed) draw_why_fixed("Cannot be changed while recording.");
   ImGui::BeginDisabled(fixed);
-  draw_list(editor.scene(), &editor, act);
+  const bool fresh = std::exchange(selected_, editor.selected()) != selected_;
+  draw_list(editor.scene(), &editor, fresh, act);
   draw_buttons(editor.selected().has_value(), act, add);
   if (const auto ref = editor.selected()) {
     ImGui::Separator();

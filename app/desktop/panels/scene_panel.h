@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "app/desktop/base/action.h"
 #include "app/desktop/panels/object_editor.h"
@@ -20,6 +21,7 @@ class ScenePanel {
 
  private:
   ObjectEditor object_;
+  std::optional<ObjectRef> selected_;  // in the last frame
 };
 
 }  // namespace limpid

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/desktop/panels/selection_outline.h"
@@ -27,6 +28,15 @@ Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
   return out.norm() > limit ? Vec3(base + out.normalized() * limit) : point;
 }
 
+struct LegendEntry {
+  const char* text;
+  Ink ink;
+};
+constexpr std::array kLegend{LegendEntry{"device (ghost)", Ink::device},
+                             LegendEntry{"proxy", Ink::proxy}, LegendEntry{"hand", Ink::hand},
+                             LegendEntry{"contact force, 1 N = 2 cm", Ink::contact},
+                             LegendEntry{"proxy of the re-run (ghost)", Ink::rerun}};
+
 void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect, ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
@@ -41,18 +51,13 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
   }
 }
 
-void draw_legend(ScreenRect rect, ImDrawList& list) {
+void draw_legend(ScreenRect rect, bool rerun, ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
-  struct Entry {
-    const char* text;
-    Ink ink;
-  };
   float y = rect.min.y + 0.8f * em;
-  for (const Entry& entry :
-       {Entry{"device (ghost)", Ink::device}, Entry{"proxy", Ink::proxy}, Entry{"hand", Ink::hand},
-        Entry{"contact force, 1 N = 2 cm", Ink::contact}}) {
+  for (const LegendEntry& entry : kLegend) {
+    if (entry.ink == Ink::rerun && !rerun) continue;
     const float x = rect.min.x + 0.9f * em;
     list.AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f,
                          colour(ink(colours, entry.ink)));
@@ -82,6 +87,17 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
 
 }  // namespace
 
+ScreenRect legend_box(ScreenRect view) {
+  const ImFont* small = font(Face::small);
+  const float em = small->FontSize;
+  float widest = 0;
+  for (const LegendEntry& entry : kLegend) {
+    widest = std::max(widest, small->CalcTextSizeA(em, 1e9f, 0, entry.text).x);
+  }
+  const auto lines = static_cast<float>(kLegend.size());
+  return {view.min, {view.min.x + 1.9f * em + widest, view.min.y + (0.8f + 1.35f * lines) * em}};
+}
+
 ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
   Stage& stage = scene.stage;
   const RowLayout& layout = stage.channels().layout();
@@ -99,12 +115,12 @@ ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) 
   return view;
 }
 
-void ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+bool ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                      ScreenRect rect) {
   const ImVec2 size = rect.size();
-  if (size.x < 8 || size.y < 8) return;
+  if (size.x < 8 || size.y < 8) return false;
   camera.resize(size.x, size.y);
-  handle_mouse(scene, camera, controls, settings, rect);
+  const bool turned = handle_mouse(scene, camera, controls, settings, rect);
 
   const double scale = scene.pixel_scale;
   const auto pixels = [&](float points) { return static_cast<int>(std::lround(points * scale)); };
@@ -118,12 +134,13 @@ void ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(rect.min, rect.max);
   if (settings.show_grid) draw_grid_labels(picture.grid(), camera, rect, list);
-  draw_legend(rect, list);
+  draw_legend(rect, !scene.rerun.empty(), list);
   if (!settings.hint_seen && !scene.recorded) draw_hint(rect, list);
   list.PopClipRect();
+  return turned;
 }
 
-void ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
+bool ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
                              Settings& settings, ScreenRect rect) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool over = rect.contains(io.MousePos) && !io.WantCaptureMouse;
@@ -149,12 +166,15 @@ void ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& c
                    (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0) && io.KeyShift);
   const bool orbit = ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0) ||
                      (orbiting && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 0));
-  if (!io.WantCaptureMouse && pan) {
+  const bool moved = !io.WantCaptureMouse && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0);
+  if (moved && pan) {
     camera.pan(io.MouseDelta.x, io.MouseDelta.y);
-  } else if (!io.WantCaptureMouse && orbit) {
+  } else if (moved && orbit) {
     camera.orbit(io.MouseDelta.x, io.MouseDelta.y);
   }
-  if (over && !dragging_ && io.MouseWheel != 0) camera.zoom(io.MouseWheel, pixel);
+  const bool zoom = over && !dragging_ && io.MouseWheel != 0;
+  if (zoom) camera.zoom(io.MouseWheel, pixel);
+  return zoom || (moved && (pan || orbit));
 }
 
 // The target moves in the plane through it that is parallel to the picture; the wheel moves that

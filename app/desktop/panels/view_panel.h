@@ -27,15 +27,19 @@ struct ViewScene {
   int pixel_height = 0;    // of the window [px]
 };
 
+// What its legend takes of a view's upper left corner.
+ScreenRect legend_box(ScreenRect view);
+
 class ViewPanel {
  public:
-  // The mouse turns the camera and, in the controls, leads the hand.
-  void draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+  // The mouse turns the camera and, in the controls, leads the hand; true when it turned the
+  // camera.
+  bool draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
             ScreenRect rect);
 
  private:
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
-  void handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+  bool handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                     ScreenRect rect);
   void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
                  const Eigen::Vector2d& pixel);

@@ -65,7 +65,11 @@ bool Playback::update(double dt) {
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
   }
-  if (shown_) shown_->player().advance(dt);
+  if (shown_) {
+    shown_->player().advance(dt);
+    Stage& stage = shown_->stage();
+    stage.energy.follow(stage.history, shown_->player().index() + 1);
+  }
   return opened;
 }
 

@@ -1,6 +1,7 @@
 #include "app/desktop/playback/played_session.h"
 
 #include "app/run/replay.h"
+#include "app/style/words.h"
 #include "devices/files/file_error.h"
 
 namespace limpid {
@@ -9,21 +10,27 @@ namespace {
 namespace fs = std::filesystem;
 
 // The plots hold the whole recording, and the re-run if there is one.
-History history_of(const Session& session, std::span<const double> again) {
-  const TraceChannels channels(session.layout);
+History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
+                   std::span<const double> again) {
+  TraceChannels channels(session.layout);
+  Parameters p = session_parameters(session, where);
+  channels.set_limits(motor_limits(arm, p));
   const double length = static_cast<double>(session.size()) * session.info.tick;
   History history({.channels = channels.count() * (again.empty() ? 1 : 2),
                    .seconds = length + 1,
                    .tick = session.info.tick});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
+  auto change = session.changes.begin();
   for (std::size_t k = 0; k < session.size(); ++k) {
+    for (; change != session.changes.end() && change->row <= k; ++change) {
+      apply_change(p, *change);
+      channels.set_limits(motor_limits(arm, p));
+      const ParameterInfo* info = find_parameter(change->key());
+      if (info == nullptr) continue;
+      history.mark(static_cast<double>(k) * session.info.tick, mark_text(*info, p), info->key);
+    }
     const auto second = again.empty() ? again : again.subspan(k * stride, stride);
     channels.append(history, session.row(k), second);
-  }
-  for (const SettingChange& change : session.changes) {
-    std::string label = change.setting;
-    std::erase(label, '"');
-    history.mark(static_cast<double>(change.row) * session.info.tick, label);
   }
   return history;
 }
@@ -34,7 +41,7 @@ LoadedSession load_session(const fs::path& file) {
   auto session = std::make_shared<const Session>(read_session(file));
   if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
   RunPlan world = replay(*session, file.string(), {});
-  History history = history_of(*session, {});
+  History history = history_of(*session, file.string(), world.arm, {});
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
@@ -56,10 +63,10 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);
                                 return true;
                               });
-  if (end.stopped || rows.empty()) return {{}, end, history_of(session, {})};
+  if (end.stopped || rows.empty()) return {{}, end, history_of(session, where, plan.arm, {})};
   const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
   while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
-  History history = history_of(session, rows);
+  History history = history_of(session, where, plan.arm, rows);
   return {std::move(rows), end, std::move(history)};
 }
 
@@ -69,12 +76,17 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       arm_(std::move(loaded.arm)),
       document_(std::move(loaded.document)),
       models_(std::move(loaded.models)),
-      stage_(std::make_unique<Stage>(arm_, document_, models_, std::move(loaded.history),
-                                     player_.duration())) {}
+      stage_(make_stage(std::move(loaded.history))) {}
+
+std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
+  auto stage =
+      std::make_unique<Stage>(arm_, document_, models_, std::move(history), player_.duration());
+  stage->follow(session_parameters(player_.session(), file_.string()));
+  return stage;
+}
 
 void PlayedSession::show(Rerun again) {
-  stage_ = std::make_unique<Stage>(arm_, document_, models_, std::move(again.history),
-                                   player_.duration());
+  stage_ = make_stage(std::move(again.history));
   rerun_ = std::move(again.rows);
 }
 

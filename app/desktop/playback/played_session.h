@@ -55,6 +55,8 @@ class PlayedSession {
   std::span<const double> rerun_row() const;
 
  private:
+  std::unique_ptr<Stage> make_stage(History history) const;
+
   std::filesystem::path file_;
   Player player_;
   ArmDescription arm_;

@@ -9,13 +9,30 @@
 #include <ctime>
 
 #include "app/desktop/shell/keys.h"
+#include "app/style/number_slider.h"
 
 namespace limpid {
 namespace {
 
-void change_eta(Parameters& p, double factor) {
-  const ParameterInfo& info = *find_parameter("coupling.eta");
-  p.eta = std::clamp(p.eta * factor, info.slider_minimum, info.slider_maximum);
+// By a step of its slider.
+void step(Parameters& p, const char* key, int direction) {
+  const ParameterInfo& info = *find_parameter(key);
+  const double usual = parameter_number(Parameters{}, info);
+  set_parameter_number(p, info, slider_step(info, parameter_number(p, info), usual, direction));
+}
+
+bool act_on_parameters(Action action, Parameters& p) {
+  switch (action) {
+    case Action::smaller_eta: step(p, "coupling.eta", -1); return true;
+    case Action::larger_eta: step(p, "coupling.eta", 1); return true;
+    case Action::smaller_alpha: step(p, "observer.alpha", -1); return true;
+    case Action::larger_alpha: step(p, "observer.alpha", 1); return true;
+    case Action::softer_coupling: step(p, "coupling.k_vc", -1); return true;
+    case Action::stiffer_coupling: step(p, "coupling.k_vc", 1); return true;
+    case Action::softer_grip: step(p, "hand.stiffness", -1); return true;
+    case Action::stiffer_grip: step(p, "hand.stiffness", 1); return true;
+    default: return false;
+  }
 }
 
 void toggle(Desktop& desktop, Dialog dialog) {
@@ -84,13 +101,10 @@ bool act_on_document(Action action, Document& document) {
 
 bool act_on_view(Action action, Desktop& desktop) {
   Settings& s = desktop.settings();
-  Camera& camera = desktop.camera();
   switch (action) {
-    case Action::front_view: camera.look(Camera::View::front); return true;
-    case Action::side_view: camera.look(Camera::View::side); return true;
-    case Action::top_view: camera.look(Camera::View::top); return true;
-    case Action::smaller_eta: change_eta(s.parameters, 1 / 1.1); return true;
-    case Action::larger_eta: change_eta(s.parameters, 1.1); return true;
+    case Action::front_view: desktop.look(Camera::View::front); return true;
+    case Action::side_view: desktop.look(Camera::View::side); return true;
+    case Action::top_view: desktop.look(Camera::View::top); return true;
     case Action::toggle_ghost: s.show_ghost = !s.show_ghost; return true;
     case Action::toggle_left: s.show_left = !s.show_left; return true;
     case Action::toggle_right: s.show_right = !s.show_right; return true;
@@ -120,7 +134,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::toggle_coupling: d.toggle_coupling(); break;
     case Action::toggle_recording: d.toggle_recording(); break;
     case Action::toggle_playing: d.toggle_playing(); break;
-    case Action::reset_camera: d.camera().reset(d.shown().picture.bounds()); break;
+    case Action::reset_camera: d.reset_view(); break;
     case Action::frame_selected: d.frame_selected(); break;
     case Action::freeze_plots: freeze_plots(d.shown().group); break;
     case Action::save_scene: d.save_scene(); break;
@@ -138,9 +152,9 @@ void act_on_desktop(Action action, Desktop& d) {
 }  // namespace
 
 void carry_out(Action action, Desktop& desktop, Window& window) {
-  const Parameters& parameters = desktop.settings().parameters;
-  const bool done = act_on_view(action, desktop) || act_on_window(action, window) ||
-                    act_on_document(action, desktop.document()) ||
+  Parameters& parameters = desktop.settings().parameters;
+  const bool done = act_on_parameters(action, parameters) || act_on_view(action, desktop) ||
+                    act_on_window(action, window) || act_on_document(action, desktop.document()) ||
                     act_on_playback(action, desktop.playback(), parameters);
   if (!done) act_on_desktop(action, desktop);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/base/assets.h"
+#include "app/style/words.h"
 #include "core/dynamics/arm.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
@@ -61,12 +62,24 @@ void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models
 // The stage's scene is the one that is edited from now on.
 void Desktop::take_stage(MeshModels models, bool saved) {
   const Stage& stage = desk_.stage();
-  camera_.reset(stage.picture.bounds());
-  camera_.finish();
+  if (!playback_.on()) {
+    reset_view();
+    camera_.finish();
+  }
   analysis_ = analyze(stage.arm(), rest_pose(stage.arm()), settings_.parameters, std::nullopt);
   document_.open(stage.arm(), stage.document(), std::move(models), saved);
   shown_ = document_.editor().version();
   touched_ = shown_.world;
+}
+
+void Desktop::look(Camera::View view) {
+  automatic_view_ = false;
+  camera_.look(view);
+}
+
+void Desktop::reset_view() {
+  automatic_view_ = true;
+  camera_.reset(shown().picture.bounds());
 }
 
 void Desktop::drop_pictures() {
@@ -80,8 +93,14 @@ void Desktop::update(double dt) {
   show_scene();
   hand_scene_over(false);
   desk_.update(settings_.parameters);
-  if (const auto recorded = desk_.take_recorded()) playback_.set_last(*recorded);
-  if (playback_.update(dt)) camera_.frame(playback_.shown()->stage().picture.bounds());
+  if (const auto recorded = desk_.take_recorded()) {
+    playback_.set_last(*recorded);
+    remember_recent(settings_, recorded->string());
+  }
+  if (playback_.update(dt)) {
+    camera_.frame(shown().picture.bounds());
+    remember_recent(settings_, playback_.last().string());
+  }
   take_loaded();
   devices_.update();
   camera_.advance(dt);
@@ -106,11 +125,7 @@ void Desktop::follow_parameters() {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string text = parameter_text(parameters, info);
     if (playback_.on() || text == parameter_text(analysed_, info)) continue;
-    const char* open =
-        std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
-    std::string value = text.empty() ? open : text;
-    std::erase(value, '"');
-    desk_.mark(fmt::format("{} {}", info.label, value), info.key);
+    desk_.mark(mark_text(info, parameters), info.key);
   }
   analysed_ = parameters;
   const ArmDescription& arm = shown().arm();

@@ -27,6 +27,11 @@ class Desktop {
   DeviceDesk& devices() { return devices_; }
   Playback& playback() { return playback_; }
   Camera& camera() { return camera_; }
+  // The view is chosen for the window's size until somebody chooses one.
+  bool automatic_view() const { return automatic_view_; }
+  void keep_view() { automatic_view_ = false; }
+  void look(Camera::View view);
+  void reset_view();
   AutoQuality& automatic_quality() { return automatic_quality_; }
 
   // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
@@ -97,6 +102,7 @@ class Desktop {
   DeviceDesk devices_;
   Playback playback_;
   Camera camera_;
+  bool automatic_view_ = true;
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
   std::string device_file_;

@@ -67,7 +67,7 @@ void Desktop::open_files(const std::vector<fs::path>& files) {
 }
 
 void Desktop::take_loaded() {
-  if (desk_.recording() || playback_.on()) return;  // it waits
+  if (desk_.recording()) return;  // it waits
   try {
     if (auto loaded = document_.loader().take()) {
       std::visit([this](auto& what) { accept(what); }, *loaded);
@@ -89,6 +89,7 @@ void Desktop::accept(LoadedScene& loaded) {
   // At the start it is the one that was named already.
   if (const std::string file = loaded.file.string(); file != document_.file()) {
     document_.remember_file(file);
+    remember_recent(settings_, file);
   }
   const std::string& title = desk_.stage().document().title;
   notices_.say(fmt::format("Scene: {}", title.empty() ? loaded.file.filename().string() : title));
@@ -125,6 +126,7 @@ void Desktop::add_object(SceneObject object) {
 void Desktop::frame_selected() {
   if (!document_.editor().selected()) return;
   const Bounds box = document_.selected_bounds();
+  keep_view();
   camera_.frame(box.isEmpty() ? desk_.stage().picture.bounds() : box);
 }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/desktop/panels/coupling_panel.h"
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/loading_bar.h"
 #include "app/desktop/panels/notice_list.h"
@@ -16,6 +16,7 @@
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
@@ -44,6 +45,32 @@ void splitter(const char* name, ScreenRect rect, bool vertical, double direction
   ImGui::PopStyleVar(2);
 }
 
+// A small tab at the view's edge that folds a panel away, or brings it back.
+void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted) {
+  ImGui::SetNextWindowPos(rect.min);
+  ImGui::SetNextWindowSize(rect.size());
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  if (ImGui::InvisibleButton("fold", rect.size())) wanted = !wanted;
+  const bool over = ImGui::IsItemHovered();
+  const Palette& colours = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
+                     3 * current_scale());
+  const float size = 0.6f * ImGui::GetFontSize();
+  ImGui::RenderArrow(
+      &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
+      colour(over ? colours.text : colours.muted), arrow, size / ImGui::GetFontSize());
+  tooltip(help);
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+}
+
 }  // namespace
 
 void Frame::draw() {
@@ -60,13 +87,14 @@ void Frame::draw() {
                    settings.plot_length, act_, at.transport);
   });
   draw_splitters(at);
+  draw_fold_tabs(at);
   part([&] { dialogs_.draw_reading(); });
   part([&] { dialogs_.draw_experiments(); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
-  draw_notices(desktop_.notices(), at.view);
+  draw_notices(desktop_.notices(), at.view, legend_box(at.view));
 }
 
 Layout Frame::lay_out() {
@@ -96,15 +124,36 @@ void Frame::draw_view(ScreenRect rect) {
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
-  view_.draw(scene, desktop_.camera(), desktop_.desk().controls(), desktop_.settings(), rect);
+  Camera& camera = desktop_.camera();
+  const ImVec2 size = rect.size();
+  const bool resized = camera.width() != static_cast<double>(size.x) ||
+                       camera.height() != static_cast<double>(size.y);
+  if (resized && desktop_.automatic_view() && size.x >= 8 && size.y >= 8) {
+    camera.resize(size.x, size.y);
+    desktop_.reset_view();
+    camera.finish();
+  }
+  if (view_.draw(scene, camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
+    desktop_.keep_view();
+  }
 }
 
 void Frame::draw_coupling(ScreenRect rect) {
-  const RowLayout& layout = desktop_.shown().channels().layout();
+  const Stage& shown = desktop_.shown();
+  const TraceChannels& channels = shown.channels();
+  const RowLayout& layout = channels.layout();
   const auto at = [&](Column c) { return layout.in(desktop_.row(), c)[0]; };
-  const CouplingReading now{at(Column::energy_total), at(Column::energy_ledger),
-                            at(Column::governor), at(Column::damping_governor)};
-  draw_coupling_panel(desktop_.settings().parameters, desktop_.analysis(), now, rect);
+  CouplingReading now{shown.energy,
+                      {},
+                      at(Column::energy_ledger),
+                      at(Column::governor),
+                      at(Column::damping_governor)};
+  for (int j = 0; j < layout.dof(); ++j) {
+    if (channels.limited(desktop_.row(), j)) now.limited.push_back(j);
+  }
+  const bool real = desktop_.desk().loop().device_in_place();
+  coupling_.draw(desktop_.settings().parameters, desktop_.analysis(), now,
+                 real ? nullptr : &shown.arm(), rect);
 }
 
 // Scene, hand, device, analysis and timing.
@@ -148,8 +197,10 @@ void Frame::draw_side(ScreenRect rect) {
 std::string Frame::quality_text() const {
   const std::string& wanted = desktop_.settings().picture_quality;
   if (wanted != "automatic") return wanted;
-  constexpr int kLevels = 1 + Quality::kLowest;
-  return fmt::format("automatic, {} of {}", kLevels - desktop_.quality_level(), kLevels);
+  const int level = desktop_.quality_level();
+  if (level == 0) return "automatic: best";
+  if (level == Quality::kLowest) return "automatic: lowest";
+  return fmt::format("automatic: {} below best", level);
 }
 
 void Frame::draw_plot_row(ScreenRect rect) {
@@ -165,6 +216,26 @@ void Frame::draw_plot_row(ScreenRect rect) {
                               }};
   PlayedSession* session = desktop_.playback().shown();
   draw_plots(desktop_.shown(), session != nullptr ? &session->player() : nullptr, saving, rect);
+}
+
+void Frame::draw_fold_tabs(const Layout& at) {
+  Settings& s = desktop_.settings();
+  const float wide = 12 * current_scale(), high = 44 * current_scale();
+  const auto [left, top] = at.view.min;
+  const auto [right, bottom] = at.view.max;
+  const float x = std::round((left + right - high) / 2), y = std::round((top + bottom - high) / 2);
+  const float grip = 3 * current_scale();
+  fold_tab("left tab", {{left + grip, y}, {left + grip + wide, y + high}},
+           at.show_left ? ImGuiDir_Left : ImGuiDir_Right,
+           at.show_left ? "Folds the coupling panel (F2)" : "The coupling panel (F2)", s.show_left);
+  fold_tab("right tab", {{right - grip - wide, y}, {right - grip, y + high}},
+           at.show_right ? ImGuiDir_Right : ImGuiDir_Left,
+           at.show_right ? "Folds the scene and device panel (F3)"
+                         : "Scene, hand, device and timing (F3)",
+           s.show_right);
+  fold_tab("plots tab", {{x, bottom - grip - wide}, {x + high, bottom - grip}},
+           at.show_plots ? ImGuiDir_Down : ImGuiDir_Up,
+           at.show_plots ? "Folds the plots (F4)" : "The plots (F4)", s.show_plots);
 }
 
 void Frame::draw_splitters(const Layout& at) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/desktop/panels/analysis_panel.h"
+#include "app/desktop/panels/coupling_panel.h"
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/view_panel.h"
 #include "app/desktop/shell/dialogs.h"
@@ -35,6 +36,7 @@ class Frame {
   void draw_side(ScreenRect rect);
   void draw_plot_row(ScreenRect rect);
   void draw_splitters(const Layout& at);
+  void draw_fold_tabs(const Layout& at);
   std::string quality_text() const;
 
   // The parts of the window that remember something themselves.
@@ -44,6 +46,7 @@ class Frame {
   WindowLayout layout_;
   ViewPanel view_;
   ScenePanel scene_;
+  CouplingPanel coupling_;
   AnalysisPanel analysis_;
   Dialogs dialogs_;
 };

@@ -8,6 +8,7 @@ namespace {
 
 // At scale 1 [px]: what the view keeps between two panels, and plots that can still be read.
 constexpr float kLeastView = 300, kLeastPlots = 130;
+constexpr float kBothPanels = 1200;  // a window narrower than that shows one side panel
 // Of the window's height: what plots take unless they need more, and what the view keeps then.
 constexpr float kMostPlots = 0.27f, kLeastAbovePlots = 0.4f;
 
@@ -27,7 +28,8 @@ Layout WindowLayout::operator()(Settings& settings, const WindowSize& size) {
   const float most = std::round(size.width / 2);
   float left = settings.show_left ? std::min(scaled(settings.left), most) : 0;
   float right = settings.show_right ? std::min(scaled(settings.right), most) : 0;
-  const bool narrow = size.width - left - right < kLeastView * size.scale;
+  const bool narrow =
+      size.width < kBothPanels * size.scale || size.width - left - right < kLeastView * size.scale;
   left_folded_ = narrow && left > 0 && right > 0 && right_first_;
   right_folded_ = narrow && left > 0 && right > 0 && !right_first_;
   if (left_folded_) left = 0;

@@ -18,8 +18,9 @@ struct Layout {
   bool show_left = false, show_right = false, show_plots = false;
 };
 
-// Folds what there is no room for: the plots on a low window, one of the side panels on a narrow
-// one. That is the right one until the user asks for it; the left one then.
+// Folds what there is no room for: the plots on a low window, one of the side panels on one
+// narrower than 1200 px at scale 1. That is the right one until the user asks for it; the left one
+// then.
 class WindowLayout {
  public:
   // `settings` say what is wanted; a panel that is switched off while it is folded was asked for,

@@ -30,9 +30,22 @@ void item(const char* label, const char* keys, Action action, const Act& act, bo
   if (ImGui::MenuItem(label, keys, false, enabled)) act(action);
 }
 
+void recent_menu(Desktop& d) {
+  const std::vector<std::string>& recent = d.settings().recent;
+  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
+  fs::path chosen;
+  for (const std::string& file : recent) {
+    const fs::path path = file;
+    if (ImGui::MenuItem(path.filename().c_str(), path.parent_path().c_str())) chosen = path;
+  }
+  ImGui::EndMenu();
+  if (!chosen.empty()) d.open_files({chosen});
+}
+
 void file_menu(Desktop& d, const Act& act) {
   if (!ImGui::BeginMenu("File")) return;
   item("Open session...", "Ctrl+O", Action::open_session, act);
+  recent_menu(d);
   item("Add model...", "Ctrl+M", Action::add_model, act);
   item("Save scene", "Ctrl+S", Action::save_scene, act);
   item("Save scene as...", "Ctrl+Shift+S", Action::save_scene_as, act);

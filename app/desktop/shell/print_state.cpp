@@ -24,7 +24,8 @@ void print_state(Desktop& d, int width, int height) {
   const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
   fmt::print(
       "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
-      "\"energy_total\": {:.6g}, \"grip\": {:.2f}, \"force\": {}, \"recording\": {}, "
+      "\"energy_total\": {:.6g}, \"energy_own\": {:.6g}, \"limited\": {}, \"grip\": {:.2f}, "
+      "\"force\": {}, \"recording\": {}, "
       "\"playing\": {}, \"rerun\": {}, \"rate\": {:.2f}, \"ticks\": {}, \"late\": {}, \"missed\": "
       "{}, "
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
@@ -32,11 +33,11 @@ void print_state(Desktop& d, int width, int height) {
       "{}, "
       "\"typing\": {}, \"notices\": {}, \"size\": [{}, {}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
-      channel(Channel::contact), channel(Channel::energy_total),
-      layout.in(row, Column::hand_grip)[0], desk.force_armed(), desk.loop().recording(),
-      played != nullptr, played != nullptr && played->has_rerun(), status.rate, status.ticks,
-      status.late, status.missed, status.slipped, desk.loop().trace_dropped(),
-      objects_of(editor.scene()).size(),
+      channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
+      channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
+      desk.loop().recording(), played != nullptr, played != nullptr && played->has_rerun(),
+      status.rate, status.ticks, status.late, status.missed, status.slipped,
+      desk.loop().trace_dropped(), objects_of(editor.scene()).size(),
       selected ? nlohmann::json(name_of(editor.scene(), *selected)).dump() : "null",
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,

@@ -7,12 +7,14 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "app/desktop/shell/icon.h"
 #include "app/style/theme.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
@@ -104,6 +106,17 @@ struct Window::Impl {
 
 namespace {
 
+void set_icon(GLFWwindow* window) {
+  std::array<std::vector<std::uint8_t>, 3> pixels;
+  std::array<GLFWimage, 3> images{};
+  int size = 16;
+  for (std::size_t i = 0; i < pixels.size(); ++i, size *= 2) {
+    pixels[i] = icon(size);
+    images[i] = {size, size, pixels[i].data()};
+  }
+  glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
+}
+
 // Throws std::runtime_error where there is none to be had.
 GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -126,6 +139,7 @@ GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) 
                           std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
   move_into(area, window);
   glfwSwapInterval(0);
+  set_icon(window);
   return window;
 }
 

@@ -35,15 +35,6 @@ void heading(const char* text) {
   ImGui::Spacing();
 }
 
-void tooltip(const char* text) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-  ImGui::TextUnformatted(text);
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
 void read_out(const char* label, const std::string& value, const std::string& broken,
               const char* help) {
   const Palette& colours = palette(current_theme());
@@ -51,6 +42,7 @@ void read_out(const char* label, const std::string& value, const std::string& br
   ImGui::TextUnformatted(label);
   ImGui::PopStyleColor();
   const bool on_label = ImGui::IsItemHovered();
+  const ImVec2 label_from = ImGui::GetItemRectMin();
   const float width = ImGui::CalcTextSize(value.c_str()).x;
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
   ImGui::PushStyleColor(ImGuiCol_Text,
@@ -58,11 +50,11 @@ void read_out(const char* label, const std::string& value, const std::string& br
   ImGui::TextUnformatted(value.c_str());
   ImGui::PopStyleColor();
   if (!on_label && !ImGui::IsItemHovered()) return;
-  if (!broken.empty()) {
-    ImGui::SetTooltip("%s", broken.c_str());
-  } else if (help != nullptr) {
-    ImGui::SetTooltip("%s", help);
-  }
+  const char* text = broken.empty() ? help : broken.c_str();
+  if (text == nullptr) return;
+  begin_tooltip(label_from, ImGui::GetItemRectMax());
+  ImGui::TextUnformatted(text);
+  end_tooltip();
 }
 
 void progress_bar(double part, float width, std::string text) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/plot/plot_frame.h"
+#include "app/style/tooltip.h"
 
 namespace limpid {
 
@@ -18,7 +19,6 @@ void heading(const char* text);
 // A label in the muted colour and a value; red with a tooltip when `broken` is not empty.
 void read_out(const char* label, const std::string& value, const std::string& broken = {},
               const char* help = nullptr);
-void tooltip(const char* text);
 // A bar filled to `part`, 0 to 1, with a text on it; `width` [px], 0: all there is. Without a text
 // it says the part.
 void progress_bar(double part, float width, std::string text = {});

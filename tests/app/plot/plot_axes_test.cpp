@@ -54,6 +54,20 @@ TEST(Autoscale, ShowsAtLeastTheSmallestSpan) {
   EXPECT_GE(autoscale.update({0, 0}, 0.5, kFrame).span(), 0.5);
 }
 
+TEST(Autoscale, BeginsAMagnitudesAxisAtZero) {
+  Autoscale autoscale;
+  EXPECT_EQ(autoscale.update({0, 0.0015}, 0.02, kFrame).low, 0);
+  const Limits grown = autoscale.update({0, 0.4}, 0.02, kFrame);
+  EXPECT_EQ(grown.low, 0);
+  EXPECT_GE(grown.high, 0.4);
+  EXPECT_LE(autoscale.update({-0.1, 0.4}, 0.02, kFrame).low, -0.1) << "what is signed has both";
+}
+
+TEST(Autoscale, ShowsALittleAsALittle) {
+  Autoscale autoscale;
+  EXPECT_GE(autoscale.update({0, 0.0015}, 0.02, kFrame).high, 0.02);
+}
+
 History seconds_of_data(double seconds) {
   History history({.seconds = 120});
   for (int i = 0; i <= static_cast<int>(seconds * 1000); ++i) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/devices/files/session/sample_session.h"
+#include "tests/support/built_in.h"
 #include "tests/support/rows.h"
 
 namespace limpid {
@@ -17,7 +18,7 @@ TEST_P(TraceChannelsOfJoints, AreTheQuantitiesOfTheRow) {
   const int n = GetParam();
   const RowLayout layout(n);
   const TraceChannels channels(layout);
-  ASSERT_EQ(channels.count(), 7 + n);
+  ASSERT_EQ(channels.count(), 8 + n);
   test::Rows rows(layout);
   rows.add(test::sample_rows(layout, 5, 1));
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
@@ -39,6 +40,47 @@ TEST_P(TraceChannelsOfJoints, AreTheQuantitiesOfTheRow) {
   for (int j = 0; j < n; ++j) {
     EXPECT_EQ(values[static_cast<std::size_t>(Channel::joints) + static_cast<std::size_t>(j)],
               x_E[j]);
+  }
+}
+
+// Asked for more than it can give, by the limits of the arm or by the parameters' own.
+TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
+  const ArmDescription arm = test::omni();
+  Parameters p;
+  const double effort = arm.joints[1].effort;
+  EXPECT_EQ(motor_limits(arm, p)[1], effort);
+  p.torque_limit = 0.2;
+  TraceChannels channels{RowLayout(3)};
+  const RowLayout& layout = channels.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  layout.in(std::span(row), Column::commanded_torque)[1] = -0.5;
+  layout.in(std::span(row), Column::motor_torque)[1] = -0.2;
+  EXPECT_FALSE(channels.limited(row, 1)) << "no limit is known yet";
+  channels.set_limits(motor_limits(arm, p));
+  EXPECT_TRUE(channels.limited(row, 1));
+  EXPECT_FALSE(channels.limited(row, 0));
+  layout.in(std::span(row), Column::motor_torque)[1] = -0.1;  // on its way there, or fading
+  EXPECT_FALSE(channels.limited(row, 1));
+  layout.in(std::span(row), Column::motor_torque)[1] = 0;  // force off
+  EXPECT_FALSE(channels.limited(row, 1));
+}
+
+// Of two runs in one plot no two curves look alike.
+TEST(TraceChannels, AreToldApartByTheirColours) {
+  const TraceChannels channels{RowLayout(7)};
+  for (const Palette* palette : {&kDarkPalette, &kLightPalette}) {
+    for (const PlotSpec& plot : channels.plots(true)) {
+      std::vector<Rgb> seen;
+      for (const Curve& curve : plot.curves) {
+        const Rgb rgb = ink(*palette, curve.ink, curve.shade);
+        for (const Rgb other : seen) {
+          const int apart =
+              std::abs(rgb.r - other.r) + std::abs(rgb.g - other.g) + std::abs(rgb.b - other.b);
+          EXPECT_GT(apart, 40) << plot.title << ": " << curve.label;
+        }
+        seen.push_back(rgb);
+      }
+    }
   }
 }
 

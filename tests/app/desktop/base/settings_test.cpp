@@ -55,6 +55,18 @@ TEST_F(SettingsFile, ThatIsMissingMeansDefaults) {
   EXPECT_EQ(s.parameters, Settings{}.parameters);
 }
 
+TEST_F(SettingsFile, KeepsTheFilesOpenedLastTheNewestFirstAndEachOnce) {
+  Settings s;
+  for (int i = 0; i < 20; ++i) remember_recent(s, fmt::format("/a/session {}.h5", i));
+  remember_recent(s, "/a/session 15.h5");
+  EXPECT_LE(s.recent.size(), 10u);
+  EXPECT_EQ(s.recent[0], "/a/session 15.h5");
+  EXPECT_EQ(s.recent[1], "/a/session 19.h5");
+  EXPECT_EQ(std::ranges::count(s.recent, "/a/session 15.h5"), 1);
+  EXPECT_EQ(save_settings(s), "");
+  EXPECT_EQ(load().recent, s.recent);
+}
+
 TEST_F(SettingsFile, GivesEverythingBack) {
   Settings s;
   s.theme = Theme::light;

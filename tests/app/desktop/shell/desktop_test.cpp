@@ -187,7 +187,7 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   EXPECT_TRUE(loop().device_in_place()) << "the device stays in the loop";
   expect_off("another scene");
-  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/touch.h5");
+  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
   desktop->playback().start_rerun(desktop->settings().parameters);
   ASSERT_TRUE(until([&] { return desktop->playback().shown()->has_rerun(); }));
@@ -389,6 +389,39 @@ TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
   EXPECT_TRUE(has("saved"));
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
+}
+
+TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
+  frames(10);
+  desktop->toggle_coupling();
+  std::this_thread::sleep_for(250ms);  // a frame at high quality
+  frames(20);
+  const History& history = desktop->desk().stage().history;
+  const int kind = static_cast<int>(Channel::kind);
+  SampleIndex first = history.end() - 1;
+  while (first > history.first() && history.value(kind, first - 1) > 0.5f) --first;
+  ASSERT_FALSE(history.marks().empty());
+  const Mark& mark = history.marks().back();
+  EXPECT_EQ(mark.key, "coupling.kind");
+  EXPECT_NEAR(mark.time, history.time(first), 0.05);
+}
+
+TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
+  desktop->open_world("", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  EXPECT_TRUE(until([&] { return desktop->playback().on(); }));
+  EXPECT_TRUE(until([&] { return !document().loader().busy(); }));
+  EXPECT_TRUE(desktop->playback().on()) << "and goes on playing";
+  desktop->playback().close();
+  EXPECT_FALSE(document().scene().meshes.empty());
+}
+
+TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
+  EXPECT_TRUE(desktop->automatic_view());
+  desktop->look(Camera::View::top);
+  EXPECT_FALSE(desktop->automatic_view());
+  desktop->reset_view();
+  EXPECT_TRUE(desktop->automatic_view());
 }
 
 }  // namespace

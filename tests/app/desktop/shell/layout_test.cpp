@@ -63,7 +63,7 @@ TEST(WindowLayout, BothPanelsComeBackWithTheRoomForThem) {
   WindowLayout layout;
   Settings settings;
   layout(settings, window(900, 560, 1.5f));
-  const Layout at = layout(settings, window(1600, 900, 1.5f));
+  const Layout at = layout(settings, window(1800, 900, 1.5f));
   EXPECT_TRUE(at.show_left && at.show_right);
 }
 

@@ -1,0 +1,59 @@
+#include "app/desktop/shell/icon.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/style/palette.h"
+
+namespace limpid {
+namespace {
+
+struct Point {
+  double x, y;  // from the upper left corner, 0 to 1
+};
+
+struct Stroke {
+  std::array<Point, 3> points;
+  double radius;
+  Rgb rgb;
+};
+
+double distance(Point p, Point a, Point b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  const double along = std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y), 0.0, 1.0);
+  return std::hypot(p.x - a.x - along * x, p.y - a.y - along * y);
+}
+
+// The device a little below its proxy, as in a contact.
+const std::array kStrokes{
+    Stroke{{{{0.22, 0.80}, {0.56, 0.36}, {0.84, 0.88}}}, 0.075, ink(kDarkPalette, Ink::device)},
+    Stroke{{{{0.22, 0.80}, {0.48, 0.22}, {0.84, 0.68}}}, 0.09, ink(kDarkPalette, Ink::proxy)},
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> icon(int size) {
+  std::vector<std::uint8_t> pixels;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const Point p{(x + 0.5) / size, (y + 0.5) / size};
+      Rgb rgb;
+      double opacity = 0;
+      for (const Stroke& stroke : kStrokes) {
+        const double away = std::min(distance(p, stroke.points[0], stroke.points[1]),
+                                     distance(p, stroke.points[1], stroke.points[2]));
+        // An edge of one pixel.
+        const double cover = std::clamp((stroke.radius - away) * size + 0.5, 0.0, 1.0);
+        if (cover <= 0) continue;
+        rgb = mix(stroke.rgb, rgb, opacity > 0 ? static_cast<float>(1 - cover) : 0);
+        opacity += (1 - opacity) * cover;
+      }
+      pixels.insert(pixels.end(),
+                    {rgb.r, rgb.g, rgb.b, static_cast<std::uint8_t>(std::lround(255 * opacity))});
+    }
+  }
+  return pixels;
+}
+
+}  // namespace limpid

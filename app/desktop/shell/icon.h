@@ -1,0 +1,12 @@
+// The picture of the window in the desktop's lists: the ghost of an arm and its proxy.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace limpid {
+
+// `size` x `size` pixels of RGBA, from the upper left corner, not multiplied by their opacity.
+std::vector<std::uint8_t> icon(int size);
+
+}  // namespace limpid

@@ -1,0 +1,73 @@
+#include "app/style/words.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "app/style/ticks.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::array kWords{
+    std::pair{"coupling.eta", "Apparent inertia \xCE\xB7"},
+    std::pair{"observer.alpha", "Observer gain \xCE\xB1"},
+    std::pair{"coupling.damping", "Damping felt"},
+    std::pair{"coupling.band", "Band of the inertia"},
+    std::pair{"coupling.k_vc", "Coupling spring k_vc"},
+    std::pair{"coupling.b_vc", "Coupling damper b_vc"},
+    std::pair{"coupling.b_v", "Proxy damper b_v"},
+    std::pair{"ledger.energy", "Energy allowed E\xE2\x82\x80"},
+    std::pair{"hand.stiffness", "Grip stiffness"},
+    std::pair{"hand.damping", "Grip damping"},
+    std::pair{"device.torque_limit", "Motors' largest torque"},
+    std::pair{"device.damping", "Device damping b_d"},
+    std::pair{"device.friction", "Device friction"},
+    std::pair{"device.encoder_step", "Encoder step"},
+    std::pair{"observer.anti_windup", "Observer knows the motors' limit"},
+    std::pair{"observer.velocity", "Velocity estimate"},
+    std::pair{"model.inertia_error", "Error of the model's inertia"},
+    std::pair{"proxy.inertia_ratio", "Proxy inertia M\xE2\x82\x82/M\xE2\x82\x81"},
+};
+
+}  // namespace
+
+const char* caption(const ParameterInfo& info) {
+  for (const auto& [key, words] : kWords) {
+    if (std::string_view(key) == info.key) return words;
+  }
+  return info.label;
+}
+
+std::string with_unit(const ParameterInfo& info, double value) {
+  if (std::isnan(value)) return "arm's own";
+  const bool whole = std::holds_alternative<int Parameters::*>(info.field);
+  std::string text = whole ? std::to_string(std::lround(value)) : three_digits(value);
+  if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;
+  return text;
+}
+
+std::string mark_text(const ParameterInfo& info, const Parameters& p) {
+  const double value = parameter_number(p, info);
+  const bool of_device = std::string_view(info.key).starts_with("device.");
+  std::string text = with_unit(info, value);
+  if (std::isnan(value)) text = of_device ? "the arm's" : "automatic";
+  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    text = choice->words[choice->get(p)];
+  }
+  if (std::holds_alternative<bool Parameters::*>(info.field)) text = value != 0 ? "on" : "off";
+  return fmt::format("{} {}", info.label, text);
+}
+
+std::string energy_text(double joules) {
+  const bool large = std::abs(joules) >= 1;
+  const double shown = large ? joules : 1e3 * joules;
+  if (std::abs(shown) < 0.005) return "0 mJ";
+  const std::string digits = three_digits(std::abs(shown));
+  return fmt::format("{}{} {}", shown < 0 ? "\xE2\x88\x92" : "", digits, large ? "J" : "mJ");
+}
+
+}  // namespace limpid

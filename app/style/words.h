@@ -1,0 +1,22 @@
+// What people read of a parameter: words first, the symbol after.
+#pragma once
+
+#include <string>
+
+#include "core/tick/parameters.h"
+
+namespace limpid {
+
+// Beside a slider: "Apparent inertia η". What has no words of its own is called by its label.
+const char* caption(const ParameterInfo& info);
+
+// The number with its unit, as a slider shows it; what is not a number is the arm's own.
+std::string with_unit(const ParameterInfo& info, double value);
+
+// Where a plot marks that it has changed: "η 0.909".
+std::string mark_text(const ParameterInfo& info, const Parameters& p);
+
+// An energy with three digits, in J or mJ: "−64.2 mJ", "5.76 J".
+std::string energy_text(double joules);
+
+}  // namespace limpid

@@ -1,0 +1,61 @@
+#include "app/style/tooltip.h"
+
+#include <gtest/gtest.h>
+#include <imgui_internal.h>
+
+#include "tests/app/plot/imgui_frames.h"
+
+namespace limpid {
+namespace {
+
+class ATooltip : public ImGuiFrames {
+ protected:
+  // The tooltip of an item of a panel once its size is known, with the mouse on the item.
+  ImRect of_item(const ImRect& panel, const ImRect& item) {
+    const ImGuiWindow* shown = nullptr;
+    for (int i = 0; i < 4; ++i) {
+      ImGui::GetIO().MousePos = item.GetCenter();
+      frame([&] {
+        ImGui::SetNextWindowPos(panel.Min);
+        ImGui::SetNextWindowSize(panel.GetSize());
+        ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
+        ImGui::SetCursorScreenPos(item.Min);
+        ImGui::InvisibleButton("item", item.GetSize());
+        tooltip("What this is, in a sentence that is long enough for more than one line of text.");
+        ImGui::End();
+      });
+      shown = ImGui::FindWindowByName("##Tooltip_00");
+    }
+    EXPECT_NE(shown, nullptr);
+    return shown != nullptr ? shown->Rect() : ImRect();
+  }
+};
+
+TEST_F(ATooltip, CoversNeitherItsItemNorItsPanelAndStaysInTheWindow) {
+  const ImRect left({0, 20}, {250, 400}), right({560, 20}, {800, 400});
+  for (const ImRect& panel : {left, right}) {
+    for (const float y : {30.f, 200.f, 370.f}) {
+      const ImRect item({panel.Min.x + 10, y}, {panel.Max.x - 10, y + 20});
+      const ImRect tip = of_item(panel, item);
+      EXPECT_FALSE(tip.Overlaps(panel)) << panel.Min.x << ", " << y;
+      EXPECT_TRUE(ImRect({0, 0}, {800, 600}).Contains(tip)) << panel.Min.x << ", " << y;
+    }
+  }
+}
+
+TEST_F(ATooltip, StandsAboveABarBelowAndBelowABarAbove) {
+  for (const float top : {0.f, 560.f}) {
+    const ImRect bar({0, top}, {800, top + 40});
+    for (const float x : {20.f, 300.f, 700.f}) {
+      const ImRect item({x, top + 10}, {x + 60, top + 30});
+      const ImRect tip = of_item(bar, item);
+      EXPECT_FALSE(tip.Overlaps(item)) << x << ", " << top;
+      // Nor anything else in the bar, such as the time beside the timeline.
+      EXPECT_FALSE(tip.Overlaps(ImRect({0, top + 10}, {800, top + 30}))) << x << ", " << top;
+      EXPECT_TRUE(ImRect({0, 0}, {800, 600}).Contains(tip)) << x << ", " << top;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limpid

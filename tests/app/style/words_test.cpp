@@ -1,0 +1,92 @@
+#include "app/style/words.h"
+
+#include <gmock/gmock.h>
+
+#include <cctype>
+#include <set>
+
+#include "app/style/number_slider.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Words, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
+  for (std::uint8_t kind = 0; kind < kLaws; ++kind) {
+    for (const char* key : info(static_cast<CouplingKind>(kind)).sliders) {
+      const std::string words = caption(*find_parameter(key));
+      EXPECT_TRUE(std::isupper(static_cast<unsigned char>(words.front())) != 0) << words;
+      EXPECT_NE(words.find(' '), std::string::npos) << words;
+    }
+  }
+  EXPECT_STREQ(caption(*find_parameter("coupling.eta")), "Apparent inertia \xCE\xB7");
+}
+
+TEST(Words, MarkAChangeAsTheSliderReads) {
+  Parameters p;
+  p.eta = 1 / 1.1;
+  const ParameterInfo& eta = *find_parameter("coupling.eta");
+  EXPECT_EQ(mark_text(eta, p), "\xCE\xB7 " + with_unit(eta, p.eta));
+  EXPECT_THAT(mark_text(eta, p), HasSubstr("0.909"));
+  p.kind = CouplingKind::predictive;
+  EXPECT_THAT(mark_text(*find_parameter("coupling.kind"), p), HasSubstr("predictive"));
+  EXPECT_THAT(mark_text(*find_parameter("device.torque_limit"), p), HasSubstr("the arm's"));
+  EXPECT_THAT(mark_text(*find_parameter("coupling.damping"), p), HasSubstr("automatic"));
+  p.anti_windup = false;
+  EXPECT_THAT(mark_text(*find_parameter("observer.anti_windup"), p), HasSubstr("off"));
+}
+
+TEST(Words, WriteLargeEnergiesInJoules) {
+  EXPECT_EQ(energy_text(5.761), "5.76 J");
+  EXPECT_EQ(energy_text(0.0642), "64.2 mJ");
+  EXPECT_EQ(energy_text(-0.0642),
+            "\xE2\x88\x92"
+            "64.2 mJ");
+  EXPECT_EQ(energy_text(0), "0 mJ");
+  EXPECT_EQ(energy_text(-1e-9), "0 mJ");
+}
+
+struct Stepped : testing::TestWithParam<const char*> {
+  const ParameterInfo& info = *find_parameter(GetParam());
+  const double usual = parameter_number(Parameters{}, info);
+  double step(double value, int direction) const {
+    return slider_step(info, value, usual, direction);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Keys, Stepped,
+                         testing::Values("coupling.eta", "observer.alpha", "coupling.k_vc",
+                                         "hand.stiffness"));
+
+TEST_P(Stepped, ComesBackToThePapersValueExactly) {
+  for (int steps = 1; steps < 12; ++steps) {
+    for (const int direction : {1, -1}) {
+      double value = usual;
+      for (int i = 0; i < steps; ++i) value = step(value, direction);
+      EXPECT_NE(value, usual);
+      for (int i = 0; i < steps; ++i) value = step(value, -direction);
+      EXPECT_EQ(value, usual) << steps;
+    }
+  }
+}
+
+TEST_P(Stepped, MovesByAboutATenthToARoundNumber) {
+  for (double value = info.slider_minimum; value < 0.8 * info.slider_maximum;) {
+    const double next = step(value, 1);
+    EXPECT_GT(next / value, 1.04);
+    EXPECT_LT(next / value, 1.2);
+    EXPECT_EQ(std::stod(fmt::format("{:.2g}", next)), next) << "two digits";
+    value = next;
+  }
+}
+
+TEST_P(Stepped, FromBetweenGoesToTheNextOneAndStaysInsideTheSlider) {
+  EXPECT_GT(step(usual * 1.03, 1), usual * 1.03);
+  EXPECT_EQ(step(usual * 1.03, -1), usual);
+  EXPECT_EQ(step(info.slider_maximum, 1), info.slider_maximum);
+  EXPECT_EQ(step(info.slider_minimum, -1), info.slider_minimum);
+  EXPECT_GE(step(0, 1), info.slider_minimum);
+}
+
+}  // namespace
+}  // namespace limpid

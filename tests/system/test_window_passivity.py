@@ -1,0 +1,53 @@
+"""What the window says of energy: whose fault it is, and that it can be had and mended."""
+
+import time
+import unittest
+
+from window import WindowTest
+
+BREAK = (150, 192)  # the button, which says Repair once it was pressed
+FAULT = 1e-3  # from here on the panel says so [J]
+
+
+class Energy(WindowTest):
+    def hold(self) -> None:
+        """Takes the tip and keeps it where it is, a little aside."""
+        self.move(800, 315)
+        self.xdotool("mousedown", "1")
+        self.wait("the hand to hold", lambda s: s["grip"] == 1)
+        for step in range(10):
+            self.move(800 - step, 315 + step)
+            time.sleep(0.03)
+
+    def test_passivity_is_broken_by_a_button_and_repaired_by_it_or_by_undo(self) -> None:
+        before = self.state()
+        for end in ("Repair", "undo"):
+            with self.subTest(end):
+                self.click(*BREAK)
+                broken = self.wait("a small eta", lambda s: s["eta"] < 0.6 and s["kind"] == 1)
+                self.hold()
+                self.wait("energy that grows",
+                          lambda s: s["energy_total"] > broken["energy_total"] + 0.02)
+                self.xdotool("mouseup", "1")
+                if end == "undo":
+                    self.key("ctrl+z")
+                else:
+                    self.click(*BREAK)
+                self.wait("what was before",
+                          lambda s: s["eta"] == before["eta"] and s["kind"] == before["kind"])
+                self.key("BackSpace")
+                self.wait("a new start", lambda s: s["energy_total"] == 0)
+
+    def test_switching_while_pressing_is_no_fault_of_a_coupling(self) -> None:
+        self.press_onto_table()
+        self.wait("contact", lambda s: s["contact"] > 0.2)
+        for kind in (1, 2, 0, 1):
+            self.key("c")
+            self.wait("the next law", lambda s: s["kind"] == kind)
+            time.sleep(1)
+            self.assertLess(self.state()["energy_own"], FAULT, f"law {kind}")
+        self.xdotool("mouseup", "1")
+
+
+if __name__ == "__main__":
+    unittest.main()
