@@ -92,6 +92,7 @@ bool act_on_view(Action action, Desktop& desktop) {
     case Action::smaller_eta: change_eta(s.parameters, 1 / 1.1); return true;
     case Action::larger_eta: change_eta(s.parameters, 1.1); return true;
     case Action::toggle_ghost: s.show_ghost = !s.show_ghost; return true;
+    case Action::toggle_lens: s.show_lens = !s.show_lens; return true;
     case Action::toggle_left: s.show_left = !s.show_left; return true;
     case Action::toggle_right: s.show_right = !s.show_right; return true;
     case Action::toggle_plots: s.show_plots = !s.show_plots; return true;

@@ -81,7 +81,7 @@ Layout Frame::lay_out() {
        .transport = std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y)});
 }
 
-void Frame::draw_view(ScreenRect rect) {
+ViewScene Frame::view_scene() {
   int points_x = 0, points_y = 0, pixels_x = 0, pixels_y = 0;
   window_.size(points_x, points_y);
   window_.framebuffer_size(pixels_x, pixels_y);
@@ -96,7 +96,22 @@ void Frame::draw_view(ScreenRect rect) {
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
-  view_.draw(scene, desktop_.camera(), desktop_.desk().controls(), desktop_.settings(), rect);
+  return scene;
+}
+
+void Frame::draw_view(ScreenRect rect) {
+  view_.draw(view_scene(), desktop_.camera(), desktop_.desk().controls(), desktop_.settings(),
+             rect);
+}
+
+bool Frame::differs() {
+  bool different = false;
+  guard(desktop_.notices(), [&] {
+    const PlayedSession* session = desktop_.playback().shown();
+    different = (session != nullptr && session->player().playing()) ||
+                view_.differs(view_scene(), desktop_.camera(), desktop_.settings());
+  });
+  return different;
 }
 
 void Frame::draw_coupling(ScreenRect rect) {
