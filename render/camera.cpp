@@ -26,6 +26,8 @@ double nearest_turn(double angle, double reference) {
 
 }  // namespace
 
+Camera::Camera() : tan_y_(std::tan(kFieldOfView / 2)) {}
+
 void Camera::resize(double width, double height) {
   width_ = std::max(1.0, width);
   height_ = std::max(1.0, height);
@@ -85,7 +87,7 @@ void Camera::frame(const Bounds& bounds) {
   const Vec3 back = toward_eye(p.azimuth, p.elevation);
   const Vec3 side(-std::sin(p.azimuth), std::cos(p.azimuth), 0);
   const Vec3 top = back.cross(side);
-  const double tan_y = std::tan(kFieldOfView / 2), tan_x = tan_y * width_ / height_;
+  const double tan_y = tan_y_, tan_x = tan_y * width_ / height_;
   double distance = kNearest;
   for (int i = 0; i < 8; ++i) {
     const Vec3 d = bounds.corner(static_cast<Bounds::CornerType>(i)) - p.target;
@@ -129,7 +131,7 @@ Eigen::Matrix4d Camera::view() const {
 
 Eigen::Matrix4d Camera::projection() const {
   const double near = 0.05 * now_.distance, far = 4 * now_.distance + 4;
-  const double f = 1 / std::tan(kFieldOfView / 2);
+  const double f = 1 / tan_y_;
   Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
   m(0, 0) = f * height_ / width_;
   m(1, 1) = f;
@@ -147,7 +149,7 @@ std::optional<Eigen::Vector2d> Camera::project(const Vec3& point) const {
 }
 
 Ray Camera::ray(const Eigen::Vector2d& pixel) const {
-  const double tan_y = std::tan(kFieldOfView / 2), tan_x = tan_y * width_ / height_;
+  const double tan_y = tan_y_, tan_x = tan_y * width_ / height_;
   const double x = 2 * pixel.x() / width_ - 1, y = 1 - 2 * pixel.y() / height_;
   return {eye(), (forward() + x * tan_x * right() + y * tan_y * up()).normalized()};
 }
@@ -160,7 +162,22 @@ Vec3 Camera::plane_drag(const Eigen::Vector2d& pixel, const Vec3& through) const
 }
 
 double Camera::meters_per_pixel(const Vec3& point) const {
-  return 2 * std::tan(kFieldOfView / 2) * std::abs((point - eye()).dot(forward())) / height_;
+  return 2 * tan_y_ * std::abs((point - eye()).dot(forward())) / height_;
+}
+
+Camera Camera::magnified(const Vec3& about, double times, double width, double height) const {
+  Camera lens = *this;
+  lens.resize(width, height);
+  const Vec3 back = eye() - about;
+  Placement p;
+  p.target = about;
+  p.distance = std::max(back.norm(), 1e-3);
+  p.azimuth = back.head<2>().norm() > 1e-9 ? std::atan2(back.y(), back.x()) : now_.azimuth;
+  p.elevation =
+      std::clamp(std::asin(std::clamp(back.z() / p.distance, -1.0, 1.0)), -kSteepest, kSteepest);
+  lens.move_now(p);
+  lens.tan_y_ = meters_per_pixel(about) * lens.height_ / (2 * times * p.distance);
+  return lens;
 }
 
 }  // namespace limpid

@@ -16,6 +16,8 @@ struct Ray {
 
 class Camera {
  public:
+  Camera();
+
   // front looks at the device from +x, side from -y, top from +z; iso from front, right and above.
   enum class View { front, top, side, iso };
 
@@ -54,6 +56,9 @@ class Camera {
   Vec3 plane_drag(const Eigen::Vector2d& pixel, const Vec3& through) const;
   // How large one pixel is at this point [m].
   double meters_per_pixel(const Vec3& point) const;
+  // The same eye looking at `about` through a lens, in another viewport: there it appears `times`
+  // as large as in this one.
+  Camera magnified(const Vec3& about, double times, double width, double height) const;
 
  private:
   struct Placement {
@@ -68,6 +73,7 @@ class Camera {
   Placement now_, from_, goal_;
   double progress_ = 1;  // of the transition from from_ to goal_, 0 to 1
   double width_ = 1280, height_ = 720;
+  double tan_y_;  // of half the vertical field of view
 };
 
 }  // namespace limpid

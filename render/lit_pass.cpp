@@ -12,9 +12,17 @@ constexpr GLuint kColorUnit = 0, kShadowUnit = 1, kSurfaceUnit = 2, kNormalUnit 
                  kEmissionUnit = 4;
 
 std::string shadow_defines(const Quality& quality, int hard_taps) {
-  const int taps = quality.shadow_size <= 0 ? 0 : quality.soft ? 25 : hard_taps;
+  const int taps = quality.shadow_size <= 0 ? 0 : quality.soft ? 9 : hard_taps;
   return "SHADOW_TAPS " + std::to_string(taps) + "\nSHADOW_SIZE " +
          std::to_string(std::max(1, quality.shadow_size)) + ".0\n";
+}
+
+// Whether the coarse version's triangles are so small on the screen that nothing is lost by it.
+bool coarse_enough(const GpuModel& model, const glm::mat4& to_clip, float pixels) {
+  constexpr float kSmall = 6;  // a triangle [px]
+  std::size_t indices = 0;
+  for (const GpuModel::Piece& piece : model.pieces(true)) indices += piece.count;
+  return pixels * share_of_view(model.box(), to_clip) < kSmall * static_cast<float>(indices / 3);
 }
 
 // Vertices say everything about it.
@@ -57,9 +65,10 @@ void LitPass::draw_plain(const ShaderProgram& program, const std::vector<Drawabl
   program.set("tint", look.tint);
   each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
     if (!in_sight(model.box(), view * pose)) return;
+    const bool coarse = look.coarse || coarse_enough(model, view * pose, look.pixels);
     program.set("model", pose);
     model.bind();
-    for (const GpuModel::Piece& piece : model.pieces(look.coarse))
+    for (const GpuModel::Piece& piece : model.pieces(coarse))
       if (is_plain(piece.material) && in_sight(piece.box, view * pose)) model.draw(piece);
   });
 }
@@ -83,7 +92,8 @@ void LitPass::draw_textured(const std::vector<Drawable>& list, const Links& link
   bool begun = false;
   each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
     if (!in_sight(model.box(), view * pose)) return;
-    for (const GpuModel::Piece& piece : model.pieces(look.coarse)) {
+    const bool coarse = look.coarse || coarse_enough(model, view * pose, look.pixels);
+    for (const GpuModel::Piece& piece : model.pieces(coarse)) {
       const Finish& m = piece.material;
       if (!drawn_here(m) || !in_sight(piece.box, view * pose)) continue;
       if (!begun) {

@@ -39,9 +39,10 @@ class LitPass {
   LitPass(const std::filesystem::path& shaders, const Quality& quality);
 
   struct Look {
-    glm::vec4 tint{0};   // linear; w: how much of it
-    bool matte = false;  // diffuse light only, worked out at the vertices
-    bool coarse = false;
+    glm::vec4 tint{0};    // linear; w: how much of it
+    bool matte = false;   // diffuse light only, worked out at the vertices
+    bool coarse = false;  // else only what would look the same
+    float pixels = 1e9f;  // that the view has
   };
   // What hides what is behind it; `view` is the world to clip space.
   void draw_solid(const std::vector<Drawable>& list, const Links& links, const glm::mat4& view,

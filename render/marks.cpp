@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMetersPerNewton = 0.02;
 constexpr double kLeastForce = 0.02;    // [N], below it there is nothing to point at
-constexpr double kLeastError = 0.0004;  // [m]
+constexpr double kLeastError = 0.0001;  // [m]
+constexpr double kShadeHeight = 0.06;   // above it a tip leaves no shade [m]
 constexpr double kFlashTime = 0.25;     // [s]
 
 glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
@@ -55,6 +56,24 @@ void add_trail(const std::vector<Vec3>& trail, const palette::Rgb& color, LineBa
                 with_alpha(color, alpha(i)), LineBatch::Ends::flat);
 }
 
+// Friction's cone as long as the normal force's arrow would be: the arrow of the whole force ends
+// in its base, on the rim where it slips.
+void add_cone(const ContactMark& contact, std::vector<SolidMark>& out) {
+  const double along = kMetersPerNewton * contact.force.dot(contact.normal);
+  if (!(contact.friction > 0) || !(along > 0) || !std::isfinite(along)) return;
+  out.push_back({SolidMark::Shape::cone,
+                 place(contact.position + along * contact.normal, -contact.normal,
+                       contact.friction * along, along),
+                 contact.slips ? palette::kSlips : palette::kSticks});
+}
+
+void add_shade(const ContactShade& shade, double size, std::vector<glm::mat4>& out) {
+  const double near = 1 - shade.height / kShadeHeight;
+  if (!shade.position.allFinite() || !shade.normal.allFinite() || !(near > 0)) return;
+  const double radius = 0.020 * size * (1 + 0.6 * (1 - near));
+  out.push_back(place(shade.position, shade.normal, radius, std::min(1.0, near)));
+}
+
 }  // namespace
 
 Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale) {
@@ -66,8 +85,10 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
                             palette::kHand});
   for (const ContactMark& contact : state.contacts) {
     if (!contact.position.allFinite() || !(contact.force.norm() > 0)) continue;
-    if (state.show_forces)
+    if (state.show_forces) {
       add_arrow(contact.position, contact.force, palette::kContact, size, marks.solids);
+      add_cone(contact, marks.glass);
+    }
     const double age = std::clamp(contact.age / kFlashTime, 0.0, 1.0);
     const double radius = patch_radius(contact.force.norm()) * size;
     const Vec3 out = contact.normal.norm() > 0.5 ? contact.normal : contact.force;
@@ -75,6 +96,7 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
     marks.flashes.push_back({place(contact.position, out.normalized(), radius, radius),
                              glm::vec2(1 - age, 0.30 + 0.65 * age)});
   }
+  if (state.shade) add_shade(*state.shade, size, marks.shades);
   if (state.show_forces)
     add_arrow(state.device.tip, state.hand_force, palette::kHand, size, marks.solids);
   return marks;
@@ -91,21 +113,24 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
   if (state.show_hand && state.hand_grips && state.hand_target.allFinite())
     lines.add(to_glm(state.hand_target), to_glm(state.device.tip), 2.5f,
               with_alpha(palette::kHand, 1), with_alpha(palette::kHand, 1));
+  if (!state.show_error) return;
   const Vec3 error = state.device.tip - state.proxy.tip;
-  if (!state.show_error || !(error.norm() > kLeastError)) return;
   const bool dark = state.theme == Theme::dark;
   const glm::vec4 core = dark ? glm::vec4(1, 1, 1, 1) : glm::vec4(0.05, 0.05, 0.06, 1);
   const glm::vec4 edge = dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
   const glm::vec3 from = to_glm(state.device.tip), to = to_glm(state.proxy.tip);
-  lines.add(from, to, 6.5f, edge, edge);
-  lines.add(from, to, 3.5f, core, core);
-  // Each end carries the colour of its arm.
-  const auto dot = [&](const glm::vec3& at, const palette::Rgb& color) {
-    lines.add(at, at, 10.0f, edge, edge);
-    lines.add(at, at, 7.0f, with_alpha(color, 1), with_alpha(color, 1));
+  const bool both = !state.device.links.empty() && !state.proxy.links.empty();
+  if (both && error.norm() > kLeastError) {
+    lines.add(from, to, 6.5f, edge, edge);
+    lines.add(from, to, 3.5f, core, core);
+  }
+  // Each end carries the colour of its arm; where they agree the device's is a ring.
+  const auto dot = [&](const glm::vec3& at, const palette::Rgb& color, float width) {
+    lines.add(at, at, width + 3, edge, edge);
+    lines.add(at, at, width, with_alpha(color, 1), with_alpha(color, 1));
   };
-  dot(from, palette::kDevice);
-  dot(to, lighter(palette::kProxy, dark ? 0.25f : 0.0f));
+  if (!state.device.links.empty()) dot(from, palette::kDevice, 10);
+  if (!state.proxy.links.empty()) dot(to, lighter(palette::kProxy, dark ? 0.25f : 0.0f), 6);
 }
 
 void add_grid(const Bounds& area, Theme theme, LineBatch& lines) {

@@ -25,6 +25,8 @@ struct FlashMark {
 
 struct Marks {
   std::vector<SolidMark> solids;
+  std::vector<SolidMark> glass;  // translucent
+  std::vector<glm::mat4> shades;
   std::vector<FlashMark> flashes;
 };
 

@@ -17,6 +17,8 @@ inline constexpr Rgb kDevice = from_hex(0xE69F00);   // orange
 inline constexpr Rgb kProxy = from_hex(0x0072B2);    // blue
 inline constexpr Rgb kHand = from_hex(0x009E73);     // green
 inline constexpr Rgb kContact = from_hex(0xD55E00);  // vermilion
+inline constexpr Rgb kSticks = from_hex(0xCC79A7);   // purple
+inline constexpr Rgb kSlips = from_hex(0xF0E442);    // yellow
 inline constexpr Rgb kRerun = from_hex(0x56B4E9);    // sky blue
 
 }  // namespace limpid::palette

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "render/camera.h"
+#include "render/damage.h"
 #include "render/gl/gpu_model.h"
 #include "render/gl/line_batch.h"
 #include "render/gl/shader_program.h"
@@ -19,6 +21,9 @@
 #include "render/shadow_map.h"
 
 namespace limpid {
+
+// Unit, towards the key light.
+inline const glm::vec3 kToLight = glm::normalize(glm::vec3(-0.30f, -0.55f, 1.0f));
 
 struct PlacedMesh {
   std::shared_ptr<const Model> model;
@@ -37,11 +42,25 @@ class ScenePainter {
 
   // What all passes share: camera, light, colours. First of all.
   void begin_frame(const Mood& mood, const Camera& camera);
+  // What of the arm may look different from frame to frame; `casts`: with its shadow.
+  void note(const Links& links, bool casts, Damage& damage) const;
+  void note_ghost(const Links& links, const palette::Rgb& color, std::span<const float> outline,
+                  Damage& damage) const;
+  void note(const Marks& marks, Damage& damage) const;
+  void note(const LineBatch& lines, Damage& damage) const;
+  // Nothing beside `area` is drawn from now on; what lies there is left out as far as it is cheap.
+  void limit(const PixelArea& area, const PixelArea& whole) {
+    seen_ = cropped(view_, area, whole);
+    pixels_ = static_cast<float>(area.sizes().prod());
+  }
   void draw_shadows(const Links& proxy);
   // Proxy, base, scene, ground and backdrop.
   void draw_solid(const Mood& mood, const Links& proxy);
-  // A translucent arm of which only the outermost surface shows.
-  void draw_ghost(const Links& links, const palette::Rgb& color);
+  // A translucent arm of which only the outermost surface shows, with an outline this strong, 0
+  // to 1.
+  void draw_ghost(const Links& links, const palette::Rgb& color, std::span<const float> outline);
+  // Before any ghost.
+  void draw_shades(const Marks& marks) const;
   // Stops of joints and the arm's touching parts.
   void draw_glass(const Links& proxy);
   void draw_marks(const Marks& marks);
@@ -55,15 +74,18 @@ class ScenePainter {
 
  private:
   bool too_many_triangles() const;
+  void draw_still_shadows() const;
   void draw_outlines(const Mood& mood) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
+  void draw_ghost_outline(const Links& links, const palette::Rgb& color,
+                          std::span<const float> outline) const;
   void draw_ground() const;
-  void draw_solid_marks(const Marks& marks, float alpha) const;
+  void draw_solid_marks(const std::vector<SolidMark>& marks, glm::vec2 alpha) const;
 
   std::filesystem::path shaders_;
   Quality quality_;
-  ShaderProgram depth_only_, ghost_depth_, ghost_, flash_, line_, backdrop_, outline_;
+  ShaderProgram depth_only_, ghost_depth_, ghost_, flash_, line_, backdrop_, outline_, shade_;
   std::unique_ptr<LitPass> lit_;
   GlBuffer frame_block_;
   GlVertexArray no_vertices_;
@@ -73,8 +95,11 @@ class ScenePainter {
   // One for each model that is in meshes_, which keeps the model's address its own.
   std::map<std::shared_ptr<const Model>, std::shared_ptr<const GpuModel>> uploaded_;
   Bounds bounds_;
-  glm::mat4 view_{1.0f};  // world to clip space
-  float ground_height_ = 0, pixel_scale_ = 1;
+  glm::mat4 view_{1.0f};        // world to clip space
+  glm::mat4 seen_{1.0f};        // the same for what is drawn in this frame
+  Damage shadow_damage_;        // in the shadow map
+  bool still_shadows_ = false;  // those of what does not move are there
+  float ground_height_ = 0, pixel_scale_ = 1, pixels_ = 1;
   bool textured_world_ = false, coarse_ = false;
 };
 

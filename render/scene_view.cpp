@@ -4,9 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 
 #include "render/gl/frame_target.h"
 #include "render/gl/glm_door.h"
+#include "render/same_picture.h"
 #include "render/scene_painter.h"
 
 namespace limpid {
@@ -64,6 +66,60 @@ bool drawable(const MeshPicture& mesh) {
          placed(mesh).matrix().allFinite();
 }
 
+// What the switches of a state change everywhere.
+struct Still {
+  Theme theme = Theme::dark;
+  bool grid = true;
+  bool operator==(const Still&) const = default;
+};
+
+// One picture as it was drawn the last time.
+struct Sheet {
+  explicit Sheet(const std::filesystem::path& shaders) : target(shaders) {}
+
+  FrameTarget target;
+  LineBatch floor_lines, trails, lines_on_top;
+  Damage damage;
+  std::optional<ViewState> drawn;
+  Eigen::Matrix4d camera = Eigen::Matrix4d::Zero();
+  std::uint64_t version = 0;
+  Still still;
+  Eigen::Vector2i shown = Eigen::Vector2i::Zero();  // its size [px]
+
+  bool differs(const ViewState& state, const Camera& eye, std::uint64_t now) const {
+    constexpr double kTellable = 0.1;  // [px]
+    if (!drawn || version != now || shown.x() != eye.width() || shown.y() != eye.height() ||
+        camera != matrix_of(eye))
+      return true;
+    return !same_picture(state, *drawn, kTellable * eye.meters_per_pixel(state.proxy.tip));
+  }
+  static Eigen::Matrix4d matrix_of(const Camera& eye) { return eye.projection() * eye.view(); }
+};
+
+// How far each link of the ghost is from the proxy's, as the strength of its outline: at the same
+// place there is none, or it would surround the proxy.
+std::vector<float> outlines_of(const ArmPose& ghost, const ArmPose& proxy,
+                               double meters_per_pixel) {
+  std::vector<float> strengths(ghost.links.size(), 1.0f);
+  if (ghost.links.size() != proxy.links.size()) return strengths;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    const bool last = i + 1 == strengths.size();
+    const auto end = [&](const ArmPose& arm) {
+      return last ? arm.tip : Vec3(arm.links[i + 1].translation());
+    };
+    const Vec3 off = ghost.links[i].translation() - proxy.links[i].translation();
+    const double apart = std::max(off.norm(), (end(ghost) - end(proxy)).norm());
+    strengths[i] = static_cast<float>(std::clamp((apart / meters_per_pixel - 1) / 3, 0.0, 1.0));
+  }
+  return strengths;
+}
+
+FrameTarget::Area area_of(const PixelArea& area) {
+  if (area.isEmpty()) return {0, 0, 0, 0};
+  const Eigen::Vector2i size = area.sizes();
+  return {area.min().x(), area.min().y(), size.x(), size.y()};
+}
+
 }  // namespace
 
 struct SceneView::Impl {
@@ -73,7 +129,8 @@ struct SceneView::Impl {
         items(collect_items(arm, scene, visuals)),
         surroundings(surroundings_of(items, {})),
         painter(shaders, items, surroundings),
-        target(shaders) {}
+        main(shaders),
+        lens(shaders) {}
 
   void use_surroundings() {
     std::vector<Bounds> boxes;
@@ -84,7 +141,14 @@ struct SceneView::Impl {
     }
     surroundings = surroundings_of(items, boxes);
     painter.set_surroundings(surroundings);
+    ++version;
   }
+
+  // True: it is another picture than the last one.
+  bool draw(Sheet& sheet, const ViewState& wanted, const Camera& camera,
+            const FrameTarget::Area& to);
+  // What had to be drawn anew.
+  PixelArea paint(Sheet& sheet, const ViewState& state, const Camera& eye, double scale);
 
   ArmDescription arm;
   SceneItems items;
@@ -92,8 +156,8 @@ struct SceneView::Impl {
   std::vector<MeshPicture> meshes;
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
-  FrameTarget target;
-  LineBatch floor_lines, trails, lines_on_top;
+  Sheet main, lens;
+  std::uint64_t version = 1;  // of all that stands still
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,
@@ -127,42 +191,105 @@ void SceneView::set_meshes(std::span<const MeshPicture> meshes) {
   impl_->use_surroundings();
 }
 
-void SceneView::draw(const ViewState& state, const Camera& camera, int x, int y, int width,
+bool SceneView::draw(const ViewState& state, const Camera& camera, int x, int y, int width,
                      int height) {
-  if (width < 1 || height < 1) return;
+  return impl_->draw(impl_->main, state, camera, {x, y, width, height});
+}
+
+bool SceneView::draw_lens(const ViewState& state, const Camera& camera, int x, int y, int width,
+                          int height) {
+  return impl_->draw(impl_->lens, state, camera, {x, y, width, height});
+}
+
+bool SceneView::differs(const ViewState& state, const Camera& camera) const {
+  return impl_->main.differs(state, camera, impl_->version);
+}
+
+bool SceneView::Impl::draw(Sheet& sheet, const ViewState& wanted, const Camera& camera,
+                           const FrameTarget::Area& to) {
+  if (to.width < 1 || to.height < 1) return false;
   const CallersState caller;
-  ScenePainter& painter = impl_->painter;
+  Camera shown = camera;
+  shown.resize(to.width, to.height);
+  const bool differs = sheet.differs(wanted, shown, version);
+  if (differs) {
+    if (sheet.version != version) sheet.damage.spoil();
+    sheet.drawn = wanted;
+    sheet.version = version;
+    sheet.camera = Sheet::matrix_of(shown);
+    sheet.shown = {to.width, to.height};
+  }
   const double scale = std::clamp(painter.quality().scale, 0.1, 1.0);
-  const int columns = std::max(1, static_cast<int>(std::lround(width * scale)));
-  const int rows = std::max(1, static_cast<int>(std::lround(height * scale)));
-  Camera eye = camera;
-  eye.resize(columns, rows);
+  const int columns = std::max(1, static_cast<int>(std::lround(to.width * scale)));
+  const int rows = std::max(1, static_cast<int>(std::lround(to.height * scale)));
+  PixelArea changed;
+  if (differs) {
+    Camera eye = camera;
+    eye.resize(columns, rows);
+    changed = paint(sheet, *sheet.drawn, eye, scale);
+  } else {
+    sheet.target.begin(columns, rows, painter.quality().msaa);
+  }
+  sheet.target.finish(caller.framebuffer(), to, area_of(changed));
+  return differs;
+}
+
+PixelArea SceneView::Impl::paint(Sheet& sheet, const ViewState& state, const Camera& eye,
+                                 double scale) {
+  const auto columns = static_cast<int>(eye.width()), rows = static_cast<int>(eye.height());
   const Mood mood = mood_of(state.theme);
   const Links device = links_of(state.device), proxy = links_of(state.proxy);
-  for (LineBatch* lines : {&impl_->floor_lines, &impl_->trails, &impl_->lines_on_top})
-    lines->clear();
-  if (state.show_grid) add_grid(impl_->surroundings.grid, state.theme, impl_->floor_lines);
-  if (state.show_trail) add_trails(state, impl_->trails);
-  add_lines_on_top(state, impl_->lines_on_top);
+  const Links rerun = state.rerun ? links_of(*state.rerun) : Links{};
+  for (LineBatch* lines : {&sheet.floor_lines, &sheet.trails, &sheet.lines_on_top}) lines->clear();
+  if (state.show_grid) add_grid(surroundings.grid, state.theme, sheet.floor_lines);
+  if (state.show_trail) add_trails(state, sheet.trails);
+  add_lines_on_top(state, sheet.lines_on_top);
+  const Marks marks = collect_marks(state, eye, painter.pixel_scale() * scale);
+  const double mpp = eye.meters_per_pixel(state.proxy.tip) / painter.pixel_scale();
+  const std::vector<float> outline = outlines_of(state.device, state.proxy, mpp);
+  const std::vector<float> clear(rerun.size(), 1.0f);
 
   painter.begin_frame(mood, eye);
   painter.draw_shadows(proxy);
-  impl_->target.begin(columns, rows, painter.quality().msaa);
+  if (sheet.target.begin(columns, rows, painter.quality().msaa) ||
+      sheet.still != Still{state.theme, state.show_grid})
+    sheet.damage.spoil();
+  sheet.still = {state.theme, state.show_grid};
+  sheet.damage.begin(to_glm(Sheet::matrix_of(eye)), columns, rows);
+  painter.note(proxy, true, sheet.damage);
+  painter.note_ghost(rerun, palette::kRerun, clear, sheet.damage);
+  if (state.show_ghost) painter.note_ghost(device, palette::kDevice, outline, sheet.damage);
+  painter.note(sheet.trails, sheet.damage);
+  painter.note(sheet.lines_on_top, sheet.damage);
+  painter.note(marks, sheet.damage);
+  const PixelArea changed = sheet.damage.end();
+  if (changed.isEmpty()) return changed;
+
+  painter.limit(changed, sheet.damage.whole());
+  sheet.target.clear(area_of(changed));
   painter.draw_solid(mood, proxy);
-  painter.draw_lines(impl_->floor_lines, false);
+  painter.draw_shades(marks);
+  painter.draw_lines(sheet.floor_lines, false);
   painter.draw_glass(proxy);
-  if (state.rerun) painter.draw_ghost(links_of(*state.rerun), palette::kRerun);
-  if (state.show_ghost) painter.draw_ghost(device, palette::kDevice);
-  painter.draw_marks(collect_marks(state, eye, painter.pixel_scale() * scale));
-  painter.draw_lines(impl_->trails, false);
-  painter.draw_lines(impl_->lines_on_top, true);
-  impl_->target.finish(caller.framebuffer(), x, y, width, height);
+  if (!rerun.empty()) painter.draw_ghost(rerun, palette::kRerun, clear);
+  if (state.show_ghost) painter.draw_ghost(device, palette::kDevice, outline);
+  painter.draw_marks(marks);
+  painter.draw_lines(sheet.trails, false);
+  painter.draw_lines(sheet.lines_on_top, true);
+  return changed;
 }
 
 const Bounds& SceneView::bounds() const { return impl_->surroundings.bounds; }
 const Bounds& SceneView::grid() const { return impl_->surroundings.grid; }
 const Quality& SceneView::quality() const { return impl_->painter.quality(); }
-void SceneView::set_quality(const Quality& quality) { impl_->painter.set_quality(quality); }
-void SceneView::set_pixel_scale(double scale) { impl_->painter.set_pixel_scale(scale); }
+void SceneView::set_quality(const Quality& quality) {
+  impl_->painter.set_quality(quality);
+  ++impl_->version;
+}
+void SceneView::set_pixel_scale(double scale) {
+  if (static_cast<float>(scale) == static_cast<float>(impl_->painter.pixel_scale())) return;
+  impl_->painter.set_pixel_scale(scale);
+  ++impl_->version;
+}
 
 }  // namespace limpid

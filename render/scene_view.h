@@ -53,8 +53,14 @@ class SceneView {
 
   // Draws into a rectangle of the bound framebuffer, in its pixels, y up from the bottom as
   // OpenGL counts. Leaves that framebuffer and its viewport as they were, and no state behind
-  // that blends, tests, culls or clips.
-  void draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
+  // that blends, tests, culls or clips. Only what looks different than in the frame before is drawn
+  // anew; false: nothing did.
+  bool draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
+  // The same for a second picture beside the first, such as Camera::magnified() sees.
+  bool draw_lens(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
+  // Whether draw() would show anything new in a viewport as large as the camera's; a tenth of a
+  // pixel is not.
+  bool differs(const ViewState& state, const Camera& camera) const;
 
   // What a camera should frame: the arm, the room it works in and what can be touched there,
   // meshes included as far as they are within reach [m].

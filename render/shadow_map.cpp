@@ -8,8 +8,13 @@
 namespace limpid {
 
 ShadowMap::ShadowMap(int size) : size_(std::max(0, size)) {
+  allocate(still_);
+  allocate(all_);
+}
+
+void ShadowMap::allocate(const Layer& layer) const {
   const GLsizei edge = std::max(1, size_);
-  glBindTexture(GL_TEXTURE_2D, depth_);
+  glBindTexture(GL_TEXTURE_2D, layer.depth);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, edge, edge, 0, GL_DEPTH_COMPONENT,
                GL_UNSIGNED_INT, nullptr);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -25,10 +30,11 @@ ShadowMap::ShadowMap(int size) : size_(std::max(0, size)) {
 
   GLint before = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
-  glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, layer.depth, 0);
   glDrawBuffer(GL_NONE);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(before));
+  glReadBuffer(GL_NONE);
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
 }
 
 void ShadowMap::aim(const Bounds& box, const glm::vec3& to_light) {
@@ -39,15 +45,24 @@ void ShadowMap::aim(const Bounds& box, const glm::vec3& to_light) {
   texel_ = 2 * radius / static_cast<float>(std::max(1, size_));
 }
 
-void ShadowMap::begin() const {
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
+void ShadowMap::begin_still() const {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, still_.framebuffer);
   glViewport(0, 0, std::max(1, size_), std::max(1, size_));
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
+void ShadowMap::begin_moving(const PixelArea& area) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, still_.framebuffer);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, all_.framebuffer);
+  glViewport(0, 0, std::max(1, size_), std::max(1, size_));
+  const Eigen::Vector2i from = area.min(), to = area.max();
+  glBlitFramebuffer(from.x(), from.y(), to.x(), to.y(), from.x(), from.y(), to.x(), to.y(),
+                    GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
 void ShadowMap::bind(GLuint unit) const {
   glActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(GL_TEXTURE_2D, depth_);
+  glBindTexture(GL_TEXTURE_2D, all_.depth);
   glActiveTexture(GL_TEXTURE0);
 }
 

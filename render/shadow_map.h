@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "render/camera.h"
+#include "render/damage.h"
 #include "render/gl/gl_names.h"
 
 namespace limpid {
@@ -15,8 +16,10 @@ class ShadowMap {
 
   // Aims the light, given as the unit vector towards it, at a box of the world.
   void aim(const Bounds& box, const glm::vec3& to_light);
-  // Binds and clears the map for drawing; casters are drawn with clip() * model.
-  void begin() const;
+  // Casters are drawn with clip() * model: first, seldom, those that stay where they are, then in
+  // an area the others on a copy of that.
+  void begin_still() const;
+  void begin_moving(const PixelArea& area) const;
   void bind(GLuint unit) const;
 
   int size() const { return size_; }
@@ -26,8 +29,13 @@ class ShadowMap {
 
  private:
   int size_;
-  GlTexture depth_;
-  GlFramebuffer framebuffer_;
+  struct Layer {
+    GlTexture depth;
+    GlFramebuffer framebuffer;
+  };
+  void allocate(const Layer& layer) const;
+
+  Layer still_, all_;
   glm::mat4 clip_{1.0f};
   float texel_ = 0;
 };

@@ -20,6 +20,15 @@ struct ContactMark {
   Vec3 force = Vec3::Zero();     // on the proxy [N]
   double age = 1;                // since it began [s]; the flash lasts a quarter of a second
   Vec3 normal = Vec3::Zero();    // of the surface, out of what is touched; zero: along the force
+  double friction = 0;           // static, that the force has here [-]; 0: no cone
+  bool slips = false;            // along the surface, else it sticks
+};
+
+// Where the proxy's tip is near a surface: it darkens it there.
+struct ContactShade {
+  Vec3 position = Vec3::Zero();  // on the surface [m]
+  Vec3 normal = Vec3::UnitZ();   // of it
+  double height = 0;             // of the tip above it [m]
 };
 
 struct ViewState {
@@ -31,9 +40,10 @@ struct ViewState {
   bool hand_grips = false;         // draws the line from the target to the device tip
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
   std::vector<ContactMark> contacts;
+  std::optional<ContactShade> shade;
 
   bool show_ghost = true;
-  bool show_error = true;  // the line between the two tips
+  bool show_error = true;  // the two tips and the line between them
   bool show_trail = true;
   bool show_forces = true;
   bool show_grid = true;

@@ -48,11 +48,11 @@ float lit_share(vec3 p) {
   sum += texture(shadow_map, p + vec3(r, r, 0.0));
   return 0.25 * sum;
 #else
-  const float r = 1.9 / SHADOW_SIZE;
+  const float r = 2.4 / SHADOW_SIZE;
   float sum = 0.0;
-  for (int x = -2; x <= 2; ++x)
-    for (int y = -2; y <= 2; ++y) sum += texture(shadow_map, p + vec3(x, y, 0.0) * r);
-  return sum / 25.0;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y) sum += texture(shadow_map, p + vec3(x, y, 0.0) * r);
+  return sum / 9.0;
 #endif
 }
 #endif

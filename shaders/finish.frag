@@ -1,5 +1,5 @@
-// Brings the finished picture to where it belongs; where it has no samples of its own, edges are
-// found by their contrast and blurred along themselves (after Lottes' FXAA, with fewer samples).
+// Brings a picture of one sample a pixel to where it belongs: edges are found by their contrast and
+// blurred along themselves (after Lottes' FXAA, with fewer samples).
 uniform sampler2D picture;
 uniform vec4 place;  // the rectangle in the target: corner and size, at least the picture's
 out vec4 color;
@@ -11,7 +11,6 @@ float brightness(ivec2 p) {
 
 void main() {
   vec2 uv = (gl_FragCoord.xy - place.xy) / place.zw;
-#ifdef SMOOTH
   ivec2 p = ivec2(uv * view.xy);
   float nw = brightness(p + ivec2(-1, 1)), ne = brightness(p + ivec2(1, 1));
   float sw = brightness(p + ivec2(-1, -1)), se = brightness(p + ivec2(1, -1));
@@ -19,7 +18,4 @@ void main() {
   float flat_part = max(0.03 * (nw + ne + sw + se), 0.008);
   along = clamp(along / (min(abs(along.x), abs(along.y)) + flat_part), -1.6, 1.6) / view.xy;
   color = vec4(0.5 * (texture(picture, uv - along).rgb + texture(picture, uv + along).rgb), 1.0);
-#else
-  color = vec4(texture(picture, uv).rgb, 1.0);
-#endif
 }

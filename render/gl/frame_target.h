@@ -14,23 +14,37 @@ class FrameTarget {
  public:
   explicit FrameTarget(const std::filesystem::path& shaders);
 
-  // Binds a cleared target of this size; sizes may change every frame.
-  void begin(int width, int height, int samples);
-  // Brings the picture to a rectangle of `framebuffer`, which stays bound; it may be larger.
-  void finish(GLuint framebuffer, int x, int y, int width, int height);
+  struct Area {
+    int x, y, width, height;  // pixels, y up
+  };
+  // Binds a target of this size, in which the last frame still stands; true: nothing does, as it is
+  // new. Sizes may change every frame.
+  bool begin(int width, int height, int samples);
+  // What is drawn from now on changes this alone, which is cleared.
+  void clear(const Area& area);
+  // Brings the picture to a rectangle of `framebuffer`, which stays bound; it may be larger. Only
+  // `changed` differs from the frame before; nothing: the same picture again.
+  void finish(GLuint framebuffer, const Area& to, const Area& changed);
 
  private:
   struct Buffers {
     GlFramebuffer drawn, resolved;
     GlRenderbuffer color, depth;
     GlTexture picture;
+    // With soft edges, as large as shown; all of the picture but what changed is kept.
+    GlFramebuffer softened;
+    GlTexture soft;
   };
   void allocate();
+  void resolve(const Area& changed) const;
+  void soften(const Area& to, const Area& changed);
+  void show(GLuint picture, const Area& to) const;
 
-  ShaderProgram plain_, smooth_;
+  ShaderProgram smooth_;
   GlVertexArray no_vertices_;
   std::optional<Buffers> buffers_;
   int width_ = 0, height_ = 0, samples_ = 0;
+  int soft_width_ = 0, soft_height_ = 0;  // of what is softened already
 };
 
 }  // namespace limpid

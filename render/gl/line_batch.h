@@ -20,7 +20,6 @@ class LineBatch {
   // With the "line" program in use.
   void draw();
 
- private:
   struct Line {
     glm::vec3 from;
     float width;
@@ -28,6 +27,9 @@ class LineBatch {
     float round_ends;
     glm::vec4 color_from, color_to;
   };
+  const std::vector<Line>& lines() const { return lines_; }
+
+ private:
   std::vector<Line> lines_;
   GlVertexArray array_;
   GlBuffer buffer_;

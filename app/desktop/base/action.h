@@ -39,6 +39,7 @@ enum class Action : std::uint8_t {
   rerun,
   freeze_plots,
   toggle_ghost,
+  toggle_lens,
   toggle_help,
   toggle_left,
   toggle_right,

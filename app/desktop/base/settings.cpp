@@ -40,6 +40,7 @@ void each(S& s, Visit&& visit) {
   visit("show_trail", s.show_trail);
   visit("show_forces", s.show_forces);
   visit("show_grid", s.show_grid);
+  visit("show_lens", s.show_lens);
   visit("hold_on_release", s.hold_on_release);
   visit("hint_seen", s.hint_seen);
   visit("picture_quality", s.picture_quality);

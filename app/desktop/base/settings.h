@@ -17,6 +17,7 @@ struct Settings {
   double left = 300, right = 290, plots = 250;  // sizes of the panels at scale 1 [px]
   bool show_left = true, show_right = true, show_plots = true;
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
+  bool show_lens = true;  // while gap or contact is small
   bool hold_on_release = false;
   bool hint_seen = false;
   std::string picture_quality = "automatic";  // or high, medium, low

@@ -10,6 +10,7 @@
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "render/near_surface.h"
 
 namespace limpid {
 namespace {
@@ -37,21 +38,53 @@ constexpr std::array kLegend{LegendEntry{"device (ghost)", Ink::device},
                              LegendEntry{"contact force, 1 N = 2 cm", Ink::contact},
                              LegendEntry{"proxy of the re-run (ghost)", Ink::rerun}};
 
-void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect, ImDrawList& list) {
+void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
+                      const std::optional<ScreenRect>& lens, ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
   for (int cm = -30; cm <= 30; cm += 10) {
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
     if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
-    if (const auto pixel = camera.project(point)) {
+    const auto pixel = camera.project(point);
+    if (pixel && !(lens && lens->contains(at(rect, *pixel)))) {
       list.AddText(small, em, at(rect, *pixel), colour(colours.muted, 0.9f),
                    fmt::format("{} cm", cm).c_str());
     }
   }
 }
 
-void draw_legend(ScreenRect rect, bool rerun, ImDrawList& list) {
+// At the two tips: how far apart they are.
+void draw_gap(const ViewState& view, const Camera& camera, ScreenRect rect, ImDrawList& list) {
+  if (view.device.links.empty() || view.proxy.links.empty()) return;
+  const std::string text = gap_text((view.device.tip - view.proxy.tip).norm());
+  const auto pixel = camera.project(0.5 * (view.device.tip + view.proxy.tip));
+  if (text.empty() || !pixel) return;
+  ImFont* face = font(Face::small);
+  const float em = face->FontSize, pad = 0.35f * em;
+  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
+  const ImVec2 tips = at(rect, *pixel);
+  const float left = std::min(tips.x + 1.6f * em, rect.max.x - size.x - 2 * pad);
+  const ImVec2 place(left, tips.y - 2.2f * em);
+  const Palette& colours = current_palette();
+  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
+                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
+                     colour(colours.backdrop, 0.75f), 3);
+  list.AddText(face, em, place, colour(colours.text), text.c_str());
+}
+
+// What the cone at a contact says; nothing where there is none.
+const char* cone_text(const ViewState& view) {
+  const char* text = nullptr;
+  for (const ContactMark& contact : view.contacts) {
+    if (!(contact.friction > 0)) continue;
+    if (contact.slips) return "friction cone: slips";
+    text = "friction cone: sticks";
+  }
+  return text;
+}
+
+void draw_legend(ScreenRect rect, bool rerun, const char* cone, ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
@@ -64,6 +97,12 @@ void draw_legend(ScreenRect rect, bool rerun, ImDrawList& list) {
     list.AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), entry.text);
     y += 1.35f * em;
   }
+  if (cone == nullptr) return;
+  const float x = rect.min.x + 0.9f * em;
+  const bool slips = std::string_view(cone).ends_with("slips");
+  const Rgb tint = slips ? Rgb{0xF0, 0xE4, 0x42} : Rgb{0xCC, 0x79, 0xA7};  // as in the picture
+  list.AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f, colour(tint));
+  list.AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), cone);
 }
 
 // Of a first start: what to do.
@@ -107,6 +146,9 @@ ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) 
   }
   stage.memory.update(view, stage.rows().contacts(layout, scene.row),
                       layout.in(scene.row, Column::time)[0]);
+  const auto law = static_cast<CouplingKind>(layout.in(scene.row, Column::kind)[0]);
+  // Of the laws the predictive one alone renders friction.
+  add_surfaces(stage.document().scene, law == CouplingKind::predictive, view);
   view.show_ghost = settings.show_ghost;
   view.show_trail = settings.show_trail;
   view.show_forces = settings.show_forces;
@@ -123,21 +165,49 @@ bool ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
   const bool turned = handle_mouse(scene, camera, controls, settings, rect);
 
   const double scale = scene.pixel_scale;
-  const auto pixels = [&](float points) { return static_cast<int>(std::lround(points * scale)); };
+  const auto pixels = [&](float points) {
+    return static_cast<int>(std::lround(static_cast<double>(points) * scale));
+  };
   const ViewState view = state_of(scene, settings);
   SceneView& picture = scene.stage.picture;
   picture.set_pixel_scale(scale * static_cast<double>(current_scale()));
   scene.stage.draw_at(scene.quality);
   picture.draw(view, camera, pixels(rect.min.x), scene.pixel_height - pixels(rect.max.y),
                pixels(size.x), pixels(size.y));
-  if (scene.selected) draw_outline(*scene.selected, camera, rect, *ImGui::GetBackgroundDrawList());
+  drawn_ = rect;
+  if (settings.show_lens) {
+    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height});
+  } else {
+    magnifier_.hide();
+  }
+  draw_signs(scene, view, camera, settings, rect);
+  return turned;
+}
+
+// Over the picture: what is selected, words and numbers.
+void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                           const Settings& settings, ScreenRect rect) const {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  if (scene.selected) draw_outline(*scene.selected, camera, rect, list);
   list.PushClipRect(rect.min, rect.max);
-  if (settings.show_grid) draw_grid_labels(picture.grid(), camera, rect, list);
-  draw_legend(rect, !scene.rerun.empty(), list);
+  if (settings.show_grid) {
+    draw_grid_labels(scene.stage.picture.grid(), camera, rect, magnifier_.rect(), list);
+  }
+  draw_gap(view, camera, rect, list);
+  magnifier_.draw_frame(view, camera, list);
+  draw_legend(rect, !scene.rerun.empty(), view.show_forces ? cone_text(view) : nullptr, list);
   if (!settings.hint_seen && !scene.recorded) draw_hint(rect, list);
   list.PopClipRect();
-  return turned;
+}
+
+bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Settings& settings) {
+  if (!drawn_) return true;
+  Camera shown = camera;
+  const auto pixels = [&](float points) {
+    return std::round(static_cast<double>(points) * scene.pixel_scale);
+  };
+  shown.resize(pixels(drawn_->size().x), pixels(drawn_->size().y));
+  return scene.stage.picture.differs(state_of(scene, settings), shown);
 }
 
 bool ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,

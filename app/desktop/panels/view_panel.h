@@ -9,6 +9,7 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/base/stage.h"
 #include "app/desktop/document/scene_editor.h"
+#include "app/desktop/panels/magnifier.h"
 #include "app/live/live_loop.h"
 #include "app/plot/plot_frame.h"
 #include "render/camera.h"
@@ -36,14 +37,20 @@ class ViewPanel {
   // camera.
   bool draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
             ScreenRect rect);
+  // Whether anything in the picture has moved since it was drawn. Once a turn, before draw().
+  bool differs(const ViewScene& scene, const Camera& camera, const Settings& settings);
 
  private:
+  void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                  const Settings& settings, ScreenRect rect) const;
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
   bool handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                     ScreenRect rect);
   void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
                  const Eigen::Vector2d& pixel);
 
+  Magnifier magnifier_;
+  std::optional<ScreenRect> drawn_;  // where the view was
   bool dragging_ = false;
   Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
   Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]

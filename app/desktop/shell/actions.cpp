@@ -106,6 +106,7 @@ bool act_on_view(Action action, Desktop& desktop) {
     case Action::side_view: desktop.look(Camera::View::side); return true;
     case Action::top_view: desktop.look(Camera::View::top); return true;
     case Action::toggle_ghost: s.show_ghost = !s.show_ghost; return true;
+    case Action::toggle_lens: s.show_lens = !s.show_lens; return true;
     case Action::toggle_left: s.show_left = !s.show_left; return true;
     case Action::toggle_right: s.show_right = !s.show_right; return true;
     case Action::toggle_plots: s.show_plots = !s.show_plots; return true;

@@ -109,7 +109,7 @@ Layout Frame::lay_out() {
        .transport = std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y)});
 }
 
-void Frame::draw_view(ScreenRect rect) {
+ViewScene Frame::view_scene() {
   int points_x = 0, points_y = 0, pixels_x = 0, pixels_y = 0;
   window_.size(points_x, points_y);
   window_.framebuffer_size(pixels_x, pixels_y);
@@ -124,6 +124,10 @@ void Frame::draw_view(ScreenRect rect) {
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
+  return scene;
+}
+
+void Frame::draw_view(ScreenRect rect) {
   Camera& camera = desktop_.camera();
   const ImVec2 size = rect.size();
   const bool resized = camera.width() != static_cast<double>(size.x) ||
@@ -133,9 +137,19 @@ void Frame::draw_view(ScreenRect rect) {
     desktop_.reset_view();
     camera.finish();
   }
-  if (view_.draw(scene, camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
+  if (view_.draw(view_scene(), camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
     desktop_.keep_view();
   }
+}
+
+bool Frame::differs() {
+  bool different = false;
+  guard(desktop_.notices(), [&] {
+    const PlayedSession* session = desktop_.playback().shown();
+    different = (session != nullptr && session->player().playing()) ||
+                view_.differs(view_scene(), desktop_.camera(), desktop_.settings());
+  });
+  return different;
 }
 
 void Frame::draw_coupling(ScreenRect rect) {

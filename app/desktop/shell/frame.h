@@ -27,10 +27,13 @@ class Frame {
       : desktop_(desktop), window_(window), act_(std::move(act)), dialogs_(desktop) {}
 
   void draw();
+  // Whether the picture has changed since then, without anybody having touched the window.
+  bool differs();
   void drop_pictures() { dialogs_.drop_pictures(); }  // before the OpenGL context goes
 
  private:
   Layout lay_out();
+  ViewScene view_scene();
   void draw_view(ScreenRect rect);
   void draw_coupling(ScreenRect rect);
   void draw_side(ScreenRect rect);

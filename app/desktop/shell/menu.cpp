@@ -66,6 +66,7 @@ void view_menu(Settings& s, bool full_screen, const Act& act) {
   ImGui::MenuItem("Plots", "F4", &s.show_plots);
   ImGui::Separator();
   ImGui::MenuItem("Ghost of the device", "G", &s.show_ghost);
+  ImGui::MenuItem("Lens at the tip, x5", "M", &s.show_lens);
   ImGui::MenuItem("Trail", nullptr, &s.show_trail);
   ImGui::MenuItem("Forces", nullptr, &s.show_forces);
   ImGui::MenuItem("Floor grid", nullptr, &s.show_grid);

@@ -54,7 +54,7 @@ class Application {
 
  private:
   Window::Options prepare_window();
-  void do_frame();
+  void turn();
   bool asked_to_close();  // true: at once
   void say_what_was_saved();
 
@@ -64,7 +64,7 @@ class Application {
   Window window_;
   Frame frame_;
   double last_ = 0;
-  int frames_ = 0;
+  int turns_ = 0;
   bool leaving_ = false;
 };
 
@@ -95,8 +95,8 @@ void Application::run(const std::string& complaint) {
   if (!options_.session.empty()) desktop_.playback().open(options_.session);
   last_ = glfwGetTime();
   while (!leaving_) {
-    if (window_.begin_frame(desktop_.focus())) {
-      do_frame();
+    if (window_.wait()) {
+      turn();
     } else if (asked_to_close()) {
       break;
     }
@@ -117,20 +117,31 @@ bool Application::asked_to_close() {
   return false;
 }
 
-void Application::do_frame() {
+// The desktop goes on in every turn; a frame is drawn where there is something new to see.
+void Application::turn() {
   Notices& notices = desktop_.notices();
   if (interrupted) window_.close();
   const double now = glfwGetTime();
-  desktop_.document().hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
-  guard(notices, [&] { handle_keys(desktop_, window_); });
-  guard(notices, [&] { desktop_.open_files(window_.dropped()); });
+  bool drawing = window_.due();
+  if (drawing) {
+    window_.begin_frame(desktop_.focus());
+    desktop_.document().hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
+    guard(notices, [&] { handle_keys(desktop_, window_); });
+    guard(notices, [&] { desktop_.open_files(window_.dropped()); });
+  }
   guard(notices, [&] { desktop_.update(now - last_); });
   last_ = now;
-  frame_.draw();
-  window_.end_frame();
-  say_what_was_saved();
-  desktop_.automatic_quality().frame(window_.frame_time());
-  if (options_.print_state && ++frames_ % 6 == 0) {
+  const bool moved = frame_.differs();
+  if (moved && !drawing) window_.begin_frame(desktop_.focus());
+  drawing |= moved;
+  if (drawing) {
+    frame_.draw();
+    window_.end_frame();
+    say_what_was_saved();
+    // A picture that is shown again says nothing of what this computer can draw.
+    if (moved) desktop_.automatic_quality().frame(window_.frame_time());
+  }
+  if (options_.print_state && ++turns_ % 6 == 0) {
     int width = 0, height = 0;
     window_.size(width, height);
     print_state(desktop_, width, height);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "app/desktop/shell/icon.h"
+#include "app/desktop/shell/pacing.h"
 #include "app/style/theme.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
@@ -22,7 +23,6 @@
 namespace limpid {
 namespace {
 
-using SteadyClock = std::chrono::steady_clock;
 constexpr auto kFrame = std::chrono::microseconds(16667);
 constexpr int kLeastWidth = 900, kLeastHeight = 560;
 
@@ -69,6 +69,9 @@ struct Window::Impl {
   SteadyClock::time_point due = SteadyClock::now();
   SteadyClock::time_point began = due;
   double frame_time = 0;
+  Liveliness liveliness;
+  double refresh = 0;      // of the display, where exchanging buffers waits for it; else 0 [s]
+  bool exchanged = false;  // buffers, in the last turn
   struct Picture {
     std::filesystem::path file;
     double left, top, right, bottom;  // nothing: all
@@ -104,6 +107,8 @@ struct Window::Impl {
   }
 };
 
+void Window::touched(GLFWwindow* window) { Impl::of(window).liveliness.touch(SteadyClock::now()); }
+
 namespace {
 
 void set_icon(GLFWwindow* window) {
@@ -138,9 +143,19 @@ GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) 
   glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
                           std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
   move_into(area, window);
-  glfwSwapInterval(0);
   set_icon(window);
   return window;
+}
+
+// ImGui calls what is there before it.
+void watch_touches(GLFWwindow* window) {
+  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { Window::touched(w); });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Window::touched(w); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { Window::touched(w); });
 }
 
 std::string name_of_renderer() {
@@ -164,12 +179,16 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   const WorkArea area = work_area();
   impl_->screen_scale = area.scale;
   impl_->glfw = create_window(options, area);
+  impl_->refresh = pacing_refresh(impl_->glfw);
   impl_->renderer = name_of_renderer();
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
+  watch_touches(impl_->glfw);
   glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+    Window::touched(w);
     Impl::of(w).keys.key(key, action, modifiers);
   });
   glfwSetDropCallback(impl_->glfw, [](GLFWwindow* w, int count, const char** paths) {
+    Window::touched(w);
     for (int i = 0; i < count; ++i) Impl::of(w).dropped.emplace_back(paths[i]);
   });
 
@@ -179,6 +198,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
   // In place of ImGui's own: characters go to their owner.
   glfwSetCharCallback(impl_->glfw, [](GLFWwindow* w, unsigned character) {
+    Window::touched(w);
     Impl::of(w).keys.character(character);
   });
   ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -197,20 +217,29 @@ Window::~Window() {
   glfwTerminate();
 }
 
-bool Window::begin_frame(const Focus& focus) {
-  std::this_thread::sleep_until(impl_->due);
+bool Window::wait() {
+  Impl& w = *impl_;
+  // The display has waited already, unless it has stopped doing so.
+  const bool paced = w.refresh > 0 && std::exchange(w.exchanged, false);
+  const std::chrono::duration<double> least(0.5 * w.refresh);
+  std::this_thread::sleep_until(
+      paced ? w.began + std::chrono::duration_cast<SteadyClock::duration>(least) : w.due);
   // A frame that took too long does not hurry the next ones.
-  impl_->due = std::max(impl_->due + kFrame, SteadyClock::now());
-  impl_->began = SteadyClock::now();
-  impl_->keys.forget_pressed();
-  impl_->dropped.clear();
+  w.due = std::max(w.due + kFrame, SteadyClock::now());
+  w.began = SteadyClock::now();
+  w.keys.forget_pressed();
+  w.dropped.clear();
   glfwPollEvents();
-  if (glfwWindowShouldClose(impl_->glfw)) return false;
+  return glfwWindowShouldClose(w.glfw) == GLFW_FALSE;
+}
+
+bool Window::due() const { return impl_->liveliness.due(SteadyClock::now()); }
+
+void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  return true;
 }
 
 void Window::end_frame() {
@@ -226,6 +255,8 @@ void Window::end_frame() {
     }
   }
   glfwSwapBuffers(impl_->glfw);
+  impl_->exchanged = true;
+  impl_->liveliness.drawn(SteadyClock::now());
   const std::chrono::duration<double> took = SteadyClock::now() - impl_->began;
   impl_->frame_time = took.count();
 }

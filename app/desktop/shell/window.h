@@ -34,9 +34,13 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  // Waits until the next of 60 frames a second, collects input for who has the `focus` and begins
-  // ImGui's frame. False once the user closes the window.
-  bool begin_frame(const Focus& focus);
+  // A turn of the program: waits until the display, or else the next sixtieth of a second, is there
+  // and collects input. False once the user closes the window.
+  bool wait();
+  // Somebody touched the window, or its numbers are old: a frame has to be drawn in this turn.
+  bool due() const;
+  // Deals the input to who has the `focus` and begins ImGui's frame.
+  void begin_frame(const Focus& focus);
   // Draws ImGui over the picture and shows the frame.
   void end_frame();
 
@@ -58,6 +62,8 @@ class Window {
   void save_picture(const std::filesystem::path& png);
   void save_picture(const std::filesystem::path& png, double left, double top, double right,
                     double bottom);
+  // For the system's calls: somebody did something to it.
+  static void touched(GLFWwindow* window);
   // Pictures that the last end_frame() wrote, or could not write.
   const std::vector<SavedPicture>& saved() const;
 

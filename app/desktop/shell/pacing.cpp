@@ -1,0 +1,43 @@
+#include "app/desktop/shell/pacing.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+
+namespace limpid {
+namespace {
+
+constexpr auto kStirs = std::chrono::milliseconds(700);  // after a touch: hints fade, lists open
+constexpr auto kBeat = std::chrono::milliseconds(300);   // read-outs while nothing moves
+constexpr double kNearly = 0.7;                          // of a refresh
+
+}  // namespace
+
+bool display_paces(std::span<const double> exchanges, double refresh) {
+  return refresh > 0 && !exchanges.empty() &&
+         std::ranges::all_of(exchanges, [&](double t) { return t > kNearly * refresh; });
+}
+
+double pacing_refresh(GLFWwindow* window) {
+  glfwSwapInterval(1);
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+  const double refresh = mode != nullptr && mode->refreshRate > 0 ? 1.0 / mode->refreshRate : 0;
+  glfwSwapBuffers(window);  // the first ones are taken at once
+  glfwSwapBuffers(window);
+  std::array<double, 3> exchanges{};
+  for (double& took : exchanges) {
+    const double begin = glfwGetTime();
+    glfwSwapBuffers(window);
+    took = glfwGetTime() - begin;
+  }
+  return display_paces(exchanges, refresh) ? refresh : 0;
+}
+
+bool Liveliness::due(SteadyClock::time_point now) const {
+  return now - touched_ < kStirs || now - drawn_ >= kBeat;
+}
+
+}  // namespace limpid
