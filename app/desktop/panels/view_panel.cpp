@@ -7,6 +7,7 @@
 
 #include "app/desktop/panels/selection_outline.h"
 #include "app/style/palette.h"
+#include "app/style/picture_legend.h"
 #include "app/style/theme.h"
 #include "core/dynamics/inverse_kinematics.h"
 
@@ -38,26 +39,6 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
       list.AddText(small, em, at(rect, *pixel), colour(colours.muted, 0.9f),
                    fmt::format("{} cm", cm).c_str());
     }
-  }
-}
-
-void draw_legend(ScreenRect rect, ImDrawList& list) {
-  ImFont* small = font(Face::small);
-  const float em = small->FontSize;
-  const Palette& colours = current_palette();
-  struct Entry {
-    const char* text;
-    Ink ink;
-  };
-  float y = rect.min.y + 0.8f * em;
-  for (const Entry& entry :
-       {Entry{"device (ghost)", Ink::device}, Entry{"proxy", Ink::proxy}, Entry{"hand", Ink::hand},
-        Entry{"contact force, 1 N = 2 cm", Ink::contact}}) {
-    const float x = rect.min.x + 0.9f * em;
-    list.AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f,
-                         colour(ink(colours, entry.ink)));
-    list.AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), entry.text);
-    y += 1.35f * em;
   }
 }
 
@@ -118,7 +99,8 @@ void ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(rect.min, rect.max);
   if (settings.show_grid) draw_grid_labels(picture.grid(), camera, rect, list);
-  draw_legend(rect, list);
+  const float em = font(Face::small)->FontSize;
+  draw_picture_legend(list, {rect.min.x + 0.9f * em, rect.min.y + 0.8f * em});
   if (!settings.hint_seen && !scene.recorded) draw_hint(rect, list);
   list.PopClipRect();
 }
