@@ -86,7 +86,8 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   {
     Progress progress(
         {.title = "video", .whole = plan.duration(), .unit = "s", .rate = "times real time"});
-    end = film(session, file, order, interrupted, [&](double s) { progress.at(s); });
+    end = film(session, file, order, interrupted,
+               [&](double part) { progress.at(part * plan.duration()); });
   }
   if (end.stopped) {
     fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", end.seconds,

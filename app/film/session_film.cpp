@@ -11,8 +11,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kWhole = 30;    // so much of a session the plots show at once [s]
-constexpr double kPart = 10;     // of a longer one
+constexpr double kWhole = 30;          // so much of a session the plots show at once [s]
+constexpr double kPart = 10;           // of a longer one
+constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
 constexpr double kBefore = 1.0;  // what came before the first picture leaves its trail in it [s]
 
 std::string law_text(const RowLayout& layout, std::span<const double> row) {
@@ -111,6 +112,7 @@ FilmEnd film(const Session& session, const std::string& where, const FilmOrder& 
   VideoFile video(order.out, {order.look.width, order.look.height, plan.fps}, order.force);
   FilmFrame frame(order.look);
   Shown shown(session, where, plan);
+  const double drawing = video_kind(order.out) == VideoKind::gif ? kDrawingOfGif : 1;
   for (std::size_t i = 0; i < plan.pictures(); ++i) {
     if (stop) return {true, static_cast<double>(i) / plan.fps};
     const ViewState view = shown.play_to(plan.time(i));
@@ -119,9 +121,10 @@ FilmEnd film(const Session& session, const std::string& where, const FilmOrder& 
         .text = law_text(session.layout, shown.row()),
         .aside = order.title};
     video.add(frame.draw(shown.stage(), view, shown.camera(), caption, 1.0 / plan.fps));
-    at(static_cast<double>(i + 1) / plan.fps);
+    at(drawing * static_cast<double>(i + 1) / static_cast<double>(plan.pictures()));
   }
-  return {!video.finish(stop), plan.duration()};
+  const bool whole = video.finish(stop, [&](double part) { at(drawing + (1 - drawing) * part); });
+  return {!whole, plan.duration()};
 }
 
 }  // namespace limpid

@@ -44,9 +44,9 @@ struct FilmEnd {
   double seconds = 0;    // of the video that were drawn
 };
 
-// Draws at full quality, as fast as it goes. `at` is told how many seconds of the video are done.
-// `where` names the session in errors: FileError for what is refused before anything is written,
-// else std::runtime_error.
+// Draws at full quality, as fast as it goes. `at` is told the part of the work that is done, 0
+// to 1. `where` names the session in errors: FileError for what is refused before anything is
+// written, else std::runtime_error.
 FilmEnd film(const Session& session, const std::string& where, const FilmOrder& order,
              const std::atomic<bool>& stop, const std::function<void(double)>& at);
 

@@ -3,14 +3,30 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
 
 #include "app/video/video_file.h"
 
 namespace limpid {
 
-// Reads `lossless` twice, once for the colours and once for the pictures. Returns false, with an
-// incomplete `gif`, once `stop` is true. Errors: std::runtime_error with the reason alone.
-bool write_gif(const std::filesystem::path& lossless, const std::filesystem::path& gif,
-               const VideoFormat& format, const std::atomic<bool>& stop);
+// Pictures are kept as they are in a file until the last one is there and the colours are known.
+// Errors: std::runtime_error with the reason alone.
+class GifFile {
+ public:
+  GifFile(const std::filesystem::path& kept, const VideoFormat& format);
+  ~GifFile();
+
+  // As VideoFile::add().
+  void add(std::span<const unsigned char> rgba);
+  // False, with an incomplete `gif`, once `stop` is true. `at` is told the part that is done.
+  bool finish(const std::filesystem::path& gif, const std::atomic<bool>& stop,
+              const std::function<void(double)>& at);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace limpid

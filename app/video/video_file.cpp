@@ -36,7 +36,7 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
   return files;
 }
 
-fs::path lossless_of(const fs::path& part) { return fs::path(part) += ".frames"; }
+fs::path frames_of(const fs::path& part) { return fs::path(part) += ".frames"; }
 
 void check_format(const fs::path& out, const VideoFormat& format, VideoKind kind) {
   const auto even = [](int n) { return n >= kLeastVideo && n <= kLargestVideo && n % 2 == 0; };
@@ -92,6 +92,7 @@ struct VideoFile::Impl {
   VideoKind kind;
   bool force;
   std::optional<StreamFile> stream;
+  std::optional<GifFile> gif;
   std::uint64_t pictures = 0;
 
   // What goes wrong once writing has begun.
@@ -111,14 +112,14 @@ struct VideoFile::Impl {
       for (const fs::path& file : pictures_in(part)) fs::remove(file, none);
     }
     fs::remove(part, none);
-    fs::remove(lossless_of(part), none);
+    fs::remove(frames_of(part), none);
   }
 
   void open() {
     if (kind == VideoKind::pictures) {
       fs::create_directory(part);
     } else if (kind == VideoKind::gif) {
-      stream.emplace(lossless_of(part), format, lossless_coding(format.fps));
+      gif.emplace(frames_of(part), format);
     } else {
       stream.emplace(part, format, mp4_coding(format.fps));
     }
@@ -159,6 +160,7 @@ VideoFile::VideoFile(const fs::path& out, const VideoFormat& format, bool force)
 
 VideoFile::~VideoFile() {
   impl_->stream.reset();
+  impl_->gif.reset();
   impl_->remove_part();
 }
 
@@ -166,25 +168,23 @@ void VideoFile::add(std::span<const unsigned char> rgba) {
   Impl& v = *impl_;
   v.attempt([&] {
     if (v.stream) return v.stream->add(rgba);
+    if (v.gif) return v.gif->add(rgba);
     write_png(picture_file(v.part, ++v.pictures), v.format.width, v.format.height,
               {rgba.begin(), rgba.end()});
   });
 }
 
-bool VideoFile::finish(const std::atomic<bool>& stop) {
+bool VideoFile::finish(const std::atomic<bool>& stop, const std::function<void(double)>& at) {
   Impl& v = *impl_;
   return v.attempt([&] {
+    if (v.gif && !v.gif->finish(v.part, stop, at)) return false;
     if (v.stream) v.stream->finish();
-    v.stream.reset();
     if (stop) return false;
     if (v.kind == VideoKind::pictures) {
       v.publish_pictures();
-      return true;
+    } else {
+      publish(v.part, v.out, v.force);
     }
-    if (v.kind == VideoKind::gif && !write_gif(lossless_of(v.part), v.part, v.format, stop)) {
-      return false;
-    }
-    publish(v.part, v.out, v.force);
     return true;
   });
 }

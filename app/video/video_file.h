@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -38,9 +39,10 @@ class VideoFile {
   // std::runtime_error naming OUT and the reason, such as a full disk.
   void add(std::span<const unsigned char> rgba);
 
-  // Completes the video and gives it its name, unless `stop` becomes true meanwhile (a GIF's
-  // colours are chosen only now). Returns whether it is there. Errors: as add().
-  bool finish(const std::atomic<bool>& stop);
+  // Completes the video and gives it its name, unless `stop` becomes true meanwhile: a GIF is only
+  // written now, in the colours of all of its pictures, and `at` is told the part that is done.
+  // Returns whether the video is there. Errors: as add().
+  bool finish(const std::atomic<bool>& stop, const std::function<void(double)>& at);
 
  private:
   struct Impl;

@@ -71,7 +71,7 @@ class Videos : public testing::Test {
   void write(const fs::path& out, int pictures, int turn, bool force = false) {
     VideoFile video(out, kSmall, force);
     for (int i = 0; i < pictures; ++i) video.add(halves(kSmall, i < turn ? kRed : kBlue, kGrey));
-    ASSERT_TRUE(video.finish(kGoOn));
+    ASSERT_TRUE(video.finish(kGoOn, [](double) {}));
   }
   void expect_as_written(const SeenVideo& seen, std::size_t pictures, double within) {
     EXPECT_EQ(seen.width, kSmall.width);
@@ -142,7 +142,7 @@ TEST_F(Videos, WhatIsStoppedAtTheEndLeavesNothing) {
   for (const char* name : {"a.mp4", "a.gif", "pictures"}) {
     VideoFile video(dir_ / name, kSmall, false);
     video.add(halves(kSmall, kRed, kGrey));
-    EXPECT_FALSE(video.finish(kStop)) << name;
+    EXPECT_FALSE(video.finish(kStop, [](double) {})) << name;
   }
   EXPECT_THAT(left_there(), IsEmpty());
 }
