@@ -67,6 +67,8 @@ void VideoOptions::add(CLI::App& command) {
   of_video(rate);
   of_video(command.add_flag("--plots,!--no-plots", plots, "with the plots, or without"));
   of_video(command.add_flag("--force", force, "replace OUT if it exists"));
+  of_video(command.add_flag("--print-progress", print_progress,
+                            "print the part that is done, 0 to 1, line by line"));
 }
 
 int make_video(const std::string& file, const VideoOptions& options, double text_scale) {
@@ -86,8 +88,13 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   {
     Progress progress(
         {.title = "video", .whole = plan.duration(), .unit = "s", .rate = "times real time"});
-    end = film(session, file, order, interrupted,
-               [&](double part) { progress.at(part * plan.duration()); });
+    end = film(session, file, order, interrupted, [&](double part) {
+      progress.at(part * plan.duration());
+      if (options.print_progress) {
+        fmt::print("{:.3f}\n", part);
+        std::fflush(stdout);
+      }
+    });
   }
   if (end.stopped) {
     fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", end.seconds,

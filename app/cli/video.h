@@ -20,6 +20,7 @@ struct VideoOptions {
   double speed = 1;
   bool plots = true;
   bool force = false;
+  bool print_progress = false;
 
   void add(CLI::App& command);
 };
