@@ -2,7 +2,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
-#include "app/cli/video.h"
+#include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
 
 namespace limpid {
@@ -70,7 +70,7 @@ void check_no_world(const InputOptions& input) {
   }
 }
 
-int play(const WindowOptions& options) {
+int play(const WindowOptions& options, const MakeVideo& make_video) {
   if (options.video.out.empty()) return open_window(options);
   check_no_world(options.input);
   if (options.desktop.print_state) throw UsageError("--print-state: is of the window");
@@ -79,7 +79,7 @@ int play(const WindowOptions& options) {
 
 }  // namespace
 
-WindowCommands declare_window(CLI::App& app) {
+WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   auto options = std::make_shared<WindowOptions>();
   add(app, *options);
   auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
@@ -91,7 +91,9 @@ WindowCommands declare_window(CLI::App& app) {
       "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
       "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
   return {[options] { return open_window(*options); },
-          [options, played] { return play(both(*options, *played)); }};
+          [options, played, make_video = std::move(make_video)] {
+            return play(both(*options, *played), make_video);
+          }};
 }
 
 }  // namespace limpid

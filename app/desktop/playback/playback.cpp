@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "app/desktop/base/settings.h"
-#include "app/film/film_process.h"
+#include "app/session/film_process.h"
 #include "devices/files/session/session_csv.h"
 
 namespace limpid {

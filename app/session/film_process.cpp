@@ -1,4 +1,4 @@
-#include "app/film/film_process.h"
+#include "app/session/film_process.h"
 
 #include <fcntl.h>
 #include <poll.h>

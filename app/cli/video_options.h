@@ -1,6 +1,7 @@
-// `limpid play SESSION.h5 --video OUT`: options, and what they have done.
+// What `limpid play SESSION.h5 --video OUT` is asked for.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,7 +26,9 @@ struct VideoOptions {
   void add(CLI::App& command);
 };
 
-// Draws the session's video; returns the exit status. Errors: UsageError, FileError.
-int make_video(const std::string& session, const VideoOptions& options, double text_scale);
+// Makes the session's video; `text_scale` 0: as the size wants it. Returns the exit status. Errors:
+// UsageError, FileError.
+using MakeVideo =
+    std::function<int(const std::string& session, const VideoOptions& options, double text_scale)>;
 
 }  // namespace limpid
