@@ -6,6 +6,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/make_video.h"
 
 using namespace limpid;
 
@@ -53,7 +54,10 @@ int main(int argc, char** argv) {
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);
-  const WindowCommands window = declare_window(app);
+  const WindowCommands window = declare_window(
+      app, [argv](const std::string& session, const VideoOptions& options, double text_scale) {
+        return make_video(session, options, text_scale, argv);
+      });
   app.footer(
       "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
       "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");

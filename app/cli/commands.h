@@ -3,6 +3,8 @@
 
 #include <functional>
 
+#include "app/cli/video_options.h"
+
 namespace CLI {
 class App;
 }
@@ -23,6 +25,6 @@ Command declare_devices(CLI::App& app);
 struct WindowCommands {
   Command desktop, play;
 };
-WindowCommands declare_window(CLI::App& app);
+WindowCommands declare_window(CLI::App& app, MakeVideo make_video);
 
 }  // namespace limpid

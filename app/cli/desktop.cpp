@@ -2,6 +2,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
 
 namespace limpid {
@@ -11,6 +12,7 @@ struct WindowOptions {
   InputOptions input;
   DesktopOptions desktop;
   std::string session;
+  VideoOptions video;
 };
 
 void add(CLI::App& command, WindowOptions& options) {
@@ -57,17 +59,41 @@ int open_window(const WindowOptions& options) {
   return 0;
 }
 
+// Nothing is simulated for a video: what it shows is recorded.
+void check_no_world(const InputOptions& input) {
+  const bool any = !input.device.empty() || !input.scene.empty() || !input.configs.empty() ||
+                   !input.settings.empty() || input.coupling || input.eta || input.alpha;
+  if (any) {
+    throw UsageError(
+        "--video: shows the session as it was recorded; arm, scene and parameters are for the "
+        "window (`limpid run --hand SESSION.h5` runs it again under others)");
+  }
+}
+
+int play(const WindowOptions& options, const MakeVideo& make_video) {
+  if (options.video.out.empty()) return open_window(options);
+  check_no_world(options.input);
+  if (options.desktop.print_state) throw UsageError("--print-state: is of the window");
+  return make_video(options.session, options.video, options.desktop.ui_scale);
+}
+
 }  // namespace
 
-WindowCommands declare_window(CLI::App& app) {
+WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   auto options = std::make_shared<WindowOptions>();
   add(app, *options);
   auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
   auto played = std::make_shared<WindowOptions>();
   command->add_option("SESSION.h5", played->session, "the recording")->type_name("")->required();
+  played->video.add(*command);
   add(*command, *played);
+  command->footer(
+      "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
+      "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
   return {[options] { return open_window(*options); },
-          [options, played] { return open_window(both(*options, *played)); }};
+          [options, played, make_video = std::move(make_video)] {
+            return play(both(*options, *played), make_video);
+          }};
 }
 
 }  // namespace limpid

@@ -194,9 +194,10 @@ void draw_playback(const PlotFrame& frame, double time, bool held) {
   const float x = std::round(frame.x_of(time));
   if (x < frame.area.min.x || x > frame.area.max.x) return;
   const ImU32 rgba = colour(held ? frame.palette.text : frame.palette.accent);
-  const float wide = frame.scale;
-  frame.list.AddRectFilled({x - 0.5f * wide, frame.area.min.y}, {x + 0.5f * wide, frame.area.max.y},
-                           rgba);
+  const float wide = std::max(1.0f, std::round(frame.scale));
+  const float left = std::clamp(std::round(x - 0.5f * wide), frame.area.min.x,
+                                std::max(frame.area.min.x, frame.area.max.x - wide));
+  frame.list.AddRectFilled({left, frame.area.min.y}, {left + wide, frame.area.max.y}, rgba);
   const float r = 5 * frame.scale;
   frame.list.AddTriangleFilled({x - r, frame.area.min.y}, {x + r, frame.area.min.y},
                                {x, frame.area.min.y + 1.4f * r}, rgba);

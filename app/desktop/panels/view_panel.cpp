@@ -8,6 +8,7 @@
 
 #include "app/desktop/panels/selection_outline.h"
 #include "app/style/palette.h"
+#include "app/style/picture_legend.h"
 #include "app/style/theme.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "render/near_surface.h"
@@ -28,15 +29,6 @@ Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
   const Vec3 out = point - base;
   return out.norm() > limit ? Vec3(base + out.normalized() * limit) : point;
 }
-
-struct LegendEntry {
-  const char* text;
-  Ink ink;
-};
-constexpr std::array kLegend{LegendEntry{"device (ghost)", Ink::device},
-                             LegendEntry{"proxy", Ink::proxy}, LegendEntry{"hand", Ink::hand},
-                             LegendEntry{"contact force, 1 N = 2 cm", Ink::contact},
-                             LegendEntry{"proxy of the re-run (ghost)", Ink::rerun}};
 
 void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
                       const std::optional<ScreenRect>& lens, ImDrawList& list) {
@@ -73,36 +65,21 @@ void draw_gap(const ViewState& view, const Camera& camera, ScreenRect rect, ImDr
   list.AddText(face, em, place, colour(colours.text), text.c_str());
 }
 
-// What the cone at a contact says; nothing where there is none.
-const char* cone_text(const ViewState& view) {
-  const char* text = nullptr;
+// The friction cone at a contact; one that slips first.
+PictureLegend legend_of(const ViewState& view, bool rerun) {
+  PictureLegend legend{.beside = rerun ? "proxy of the re-run (ghost)" : nullptr};
+  if (!view.show_forces) return legend;
   for (const ContactMark& contact : view.contacts) {
-    if (!(contact.friction > 0)) continue;
-    if (contact.slips) return "friction cone: slips";
-    text = "friction cone: sticks";
+    if (!(contact.friction > 0) || legend.slips) continue;
+    legend.slips = contact.slips;
+    legend.cone = contact.slips ? "friction cone: slips" : "friction cone: sticks";
   }
-  return text;
+  return legend;
 }
 
-void draw_legend(ScreenRect rect, bool rerun, const char* cone, ImDrawList& list) {
-  ImFont* small = font(Face::small);
-  const float em = small->FontSize;
-  const Palette& colours = current_palette();
-  float y = rect.min.y + 0.8f * em;
-  for (const LegendEntry& entry : kLegend) {
-    if (entry.ink == Ink::rerun && !rerun) continue;
-    const float x = rect.min.x + 0.9f * em;
-    list.AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f,
-                         colour(ink(colours, entry.ink)));
-    list.AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), entry.text);
-    y += 1.35f * em;
-  }
-  if (cone == nullptr) return;
-  const float x = rect.min.x + 0.9f * em;
-  const bool slips = std::string_view(cone).ends_with("slips");
-  const Rgb tint = slips ? Rgb{0xF0, 0xE4, 0x42} : Rgb{0xCC, 0x79, 0xA7};  // as in the picture
-  list.AddCircleFilled({x + em * 0.3f, y + em * 0.55f}, em * 0.3f, colour(tint));
-  list.AddText(small, em, {x + em, y}, colour(colours.text, 0.85f), cone);
+ImVec2 legend_place(ScreenRect view) {
+  const float em = font(Face::small)->FontSize;
+  return {view.min.x + 0.9f * em, view.min.y + 0.8f * em};
 }
 
 // Of a first start: what to do.
@@ -112,7 +89,7 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
   const float size = face->FontSize * 1.15f;
   const char* lines[] = {"Drag with the left button: your hand pulls the arm onto the table.",
                          "Wheel while dragging: nearer and farther.",
-                         "C switches between the coupling laws."};
+                         "C switches the coupling: the standard one lets hand and world drift apart."};
   float line_y = rect.max.y - 5.2f * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
@@ -127,14 +104,8 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
 }  // namespace
 
 ScreenRect legend_box(ScreenRect view) {
-  const ImFont* small = font(Face::small);
-  const float em = small->FontSize;
-  float widest = 0;
-  for (const LegendEntry& entry : kLegend) {
-    widest = std::max(widest, small->CalcTextSizeA(em, 1e9f, 0, entry.text).x);
-  }
-  const auto lines = static_cast<float>(kLegend.size());
-  return {view.min, {view.min.x + 1.9f * em + widest, view.min.y + (0.8f + 1.35f * lines) * em}};
+  const ImVec2 place = legend_place(view), size = picture_legend_size();
+  return {view.min, {place.x + size.x, place.y + size.y}};
 }
 
 ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
@@ -195,7 +166,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   }
   draw_gap(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
-  draw_legend(rect, !scene.rerun.empty(), view.show_forces ? cone_text(view) : nullptr, list);
+  draw_picture_legend(list, legend_place(rect), legend_of(view, !scene.rerun.empty()));
   if (!settings.hint_seen && !scene.recorded) draw_hint(rect, list);
   list.PopClipRect();
 }

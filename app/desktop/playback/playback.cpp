@@ -1,7 +1,10 @@
 #include "app/desktop/playback/playback.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include "app/desktop/base/settings.h"
+#include "app/session/film_process.h"
 #include "devices/files/session/session_csv.h"
 
 namespace limpid {
@@ -41,6 +44,31 @@ void Playback::export_csv() {
                      write_csv(*session, out, false);
                      return fmt::format("Wrote {}", out.string());
                    });
+}
+
+namespace {
+
+// A name that is free, in a folder that can be written.
+fs::path video_of(const fs::path& session) {
+  const bool writable = ::access(fs::absolute(session).parent_path().c_str(), W_OK) == 0;
+  fs::path out = writable ? session : sessions_dir() / session.filename();
+  const std::string stem = out.stem().string();
+  out.replace_extension(".mp4");
+  for (int i = 2; fs::exists(out); ++i) out.replace_filename(fmt::format("{}-{}.mp4", stem, i));
+  return out;
+}
+
+}  // namespace
+
+void Playback::export_video() {
+  if (!shown_ || filming_.busy()) return;
+  const fs::path session = shown_->file(), out = video_of(session);
+  filming_.start(fmt::format("making {}", out.filename().string()),
+                 [session, out](BackgroundProgress& progress) {
+                   return film_beside(session, out, progress.cancel, progress.part)
+                              ? fmt::format("Wrote {}", out.string())
+                              : fmt::format("{} was not written.", out.filename().string());
+                 });
 }
 
 void Playback::recover_leftovers(const fs::path& folder) {
@@ -93,7 +121,9 @@ bool Playback::take_results() {
                    true);
     }
   }
-  if (auto text = exporting_.take()) notices_.say(*text);
+  for (Background<std::string>* work : {&exporting_, &filming_}) {
+    if (auto text = work->take()) notices_.say(*text);
+  }
   return opened;
 }
 

@@ -33,6 +33,12 @@ class Playback {
   void export_csv();
   bool exporting() const { return exporting_.busy(); }
 
+  // The video goes beside the session's file, or, where nothing can be written, to the user's own
+  // sessions; made as `limpid play --video` does.
+  void export_video();
+  const Background<std::string>& video() const { return filming_; }  // while it is made
+  void cancel_video() { filming_.ask_to_stop(); }
+
   // What there was last to look at; empty: nothing yet.
   const std::filesystem::path& last() const { return last_; }
   void set_last(const std::filesystem::path& file) { last_ = file; }
@@ -52,7 +58,7 @@ class Playback {
   std::filesystem::path last_;
   Background<std::optional<LoadedSession>> loading_;
   Background<Rerun> rerunning_;
-  Background<std::string> exporting_;
+  Background<std::string> exporting_, filming_;
 };
 
 }  // namespace limpid

@@ -14,6 +14,7 @@
 #include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
+#include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -91,6 +92,7 @@ void Frame::draw() {
   part([&] { dialogs_.draw_reading(); });
   part([&] { dialogs_.draw_experiments(); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
+  part([&] { draw_video_bar(desktop_.playback(), at.view); });
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });

@@ -101,6 +101,10 @@ void session_menu(Desktop& d, const Act& act) {
                       playback.on() && !playback.exporting())) {
     playback.export_csv();
   }
+  if (ImGui::MenuItem("Write as video (MP4)", nullptr, false,
+                      playback.on() && !playback.video().busy())) {
+    playback.export_video();
+  }
   item("Back to live", "Backspace", Action::back_to_live, act, playback.on());
   ImGui::Separator();
   if (ImGui::MenuItem("Experiments of the paper...", "F5")) d.open_dialog(Dialog::experiments);

@@ -3,19 +3,20 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "app/desktop/shell/icon.h"
 #include "app/desktop/shell/pacing.h"
+#include "app/style/imgui_gl.h"
 #include "app/style/theme.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
@@ -63,6 +64,7 @@ void move_into(const WorkArea& area, GLFWwindow* window) {
 
 struct Window::Impl {
   GLFWwindow* glfw = nullptr;
+  std::optional<ImGuiGl> imgui;
   std::string renderer;
   KeyInput keys;
   std::vector<std::filesystem::path> dropped;
@@ -192,27 +194,22 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
     for (int i = 0; i < count; ++i) Impl::of(w).dropped.emplace_back(paths[i]);
   });
 
-  IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;
+  impl_->imgui.emplace();
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
   // In place of ImGui's own: characters go to their owner.
   glfwSetCharCallback(impl_->glfw, [](GLFWwindow* w, unsigned character) {
     Window::touched(w);
     Impl::of(w).keys.character(character);
   });
-  ImGui_ImplOpenGL3_Init("#version 330 core");
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
   const double scale = options.ui_scale > 0 ? options.ui_scale : scale_x;
-  load_fonts(static_cast<float>(scale));
-  apply_theme(options.theme, static_cast<float>(scale));
+  ImGuiGl::set_up(options.theme, static_cast<float>(scale));
 }
 
 Window::~Window() {
-  ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
+  impl_->imgui.reset();
   glfwDestroyWindow(impl_->glfw);
   glfwTerminate();
 }
@@ -237,14 +234,13 @@ bool Window::due() const { return impl_->liveliness.due(SteadyClock::now()); }
 
 void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
-  ImGui_ImplOpenGL3_NewFrame();
+  ImGuiGl::begin_frame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
 }
 
 void Window::end_frame() {
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  ImGuiGl::render();
   impl_->saved.clear();
   for (const Impl::Picture& picture : std::exchange(impl_->pictures, {})) {
     SavedPicture& result = impl_->saved.emplace_back(SavedPicture{picture.file, ""});

@@ -20,53 +20,13 @@ constexpr const char* kPart = ".part";
   throw FileError(fmt::format("{}: {}: {}", file.string(), what, std::strerror(code)));
 }
 
-fs::path directory_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
-void sync(const fs::path& file, int flags) {
-  const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) fail(file, "cannot open", errno);
-  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  if (code != 0) fail(file, "cannot write", code);
-}
-
 }  // namespace
-
-fs::path part_of(const fs::path& out) {
-  fs::path part = out;
-  part += kPart;
-  return part;
-}
 
 fs::path recovered_name(const fs::path& part) {
   if (part.extension() != kPart || part.stem().empty()) {
     throw FileError(fmt::format("{}: not the .part file of a recording", part.string()));
   }
   return part.parent_path() / part.stem();
-}
-
-void check_place(const fs::path& out, bool force) {
-  std::error_code error;
-  if (out.filename().empty()) {
-    throw FileError(fmt::format("'{}': not the name of a file", out.string()));
-  }
-  if (fs::is_directory(out, error)) {
-    throw FileError(fmt::format("{}: is a directory", out.string()));
-  }
-  if (!force && fs::exists(out, error)) {
-    throw FileError(fmt::format("{}: exists; --force overwrites it", out.string()));
-  }
-  const fs::path directory = directory_of(out);
-  if (const std::string why = why_not_found(directory, "no such directory"); !why.empty()) {
-    throw FileError(fmt::format("{}: {}: {}", out.string(), why, directory.string()));
-  }
-  if (!fs::is_directory(directory, error)) {
-    throw FileError(fmt::format("{}: not a directory: {}", out.string(), directory.string()));
-  }
-  if (::faccessat(AT_FDCWD, directory.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    fail(out, "cannot write there", errno);
 }
 
 void check_session_info(const SessionInfo& info, const fs::path& file) {
@@ -77,18 +37,6 @@ void check_session_info(const SessionInfo& info, const fs::path& file) {
   if (info.dof < 1 || info.dof > kMaxDof) {
     throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
   }
-}
-
-void publish(const fs::path& finished, const fs::path& out, bool force) {
-  sync(finished, O_RDWR);
-  std::error_code error;
-  if (!force && fs::exists(out, error)) {
-    throw FileError(fmt::format("{}: appeared meanwhile and was left alone; --force overwrites it",
-                                out.string()));
-  }
-  fs::rename(finished, out, error);
-  if (error) fail(out, "cannot rename to it", error.value());
-  sync(directory_of(out), O_RDONLY | O_DIRECTORY);
 }
 
 WriteLock::WriteLock(const fs::path& file, Make make)

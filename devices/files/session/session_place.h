@@ -1,4 +1,4 @@
-// The names a session file goes through, and who may write there.
+// Recordings that were cut off, and who may write one.
 #pragma once
 
 #include <filesystem>
@@ -7,18 +7,11 @@
 
 namespace limpid {
 
-// OUT.h5 -> OUT.h5.part and back. Errors: FileError if the name does not end in .part.
-std::filesystem::path part_of(const std::filesystem::path& out);
+// OUT.h5.part -> OUT.h5. Errors: FileError if the name does not end in .part.
 std::filesystem::path recovered_name(const std::filesystem::path& part);
-
-// Whether `out` may be written, before anything is. Errors: FileError.
-void check_place(const std::filesystem::path& out, bool force);
 
 // Tick and number of joints. Errors: FileError naming `file`.
 void check_session_info(const SessionInfo& info, const std::filesystem::path& file);
-
-// Brings a finished file to the disk and gives it its name. Errors: FileError.
-void publish(const std::filesystem::path& finished, const std::filesystem::path& out, bool force);
 
 // Tells a recording that is running from one that was killed: held while writing, gone with the
 // process. Errors: FileError if the file cannot be opened, or somebody else holds it.

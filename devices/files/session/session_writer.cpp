@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "devices/files/place.h"
 #include "devices/files/session/session_file.h"
 #include "devices/files/session/session_place.h"
 

@@ -1,0 +1,34 @@
+// What `limpid play SESSION.h5 --video OUT` is asked for.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace limpid {
+
+struct VideoOptions {
+  std::string out;   // empty: no video is asked for
+  std::string size;  // WIDTHxHEIGHT
+  std::optional<int> fps;
+  double from = 0;
+  std::optional<double> to;
+  double speed = 1;
+  bool plots = true;
+  bool force = false;
+  bool print_progress = false;
+
+  void add(CLI::App& command);
+};
+
+// Makes the session's video; `text_scale` 0: as the size wants it. Returns the exit status. Errors:
+// UsageError, FileError.
+using MakeVideo =
+    std::function<int(const std::string& session, const VideoOptions& options, double text_scale)>;
+
+}  // namespace limpid

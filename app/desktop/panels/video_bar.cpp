@@ -1,0 +1,24 @@
+#include "app/desktop/panels/video_bar.h"
+
+#include <imgui.h>
+
+#include "app/desktop/widgets/widgets.h"
+
+namespace limpid {
+
+void draw_video_bar(Playback& playback, ScreenRect view) {
+  if (!playback.video().busy()) return;
+  const float em = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({view.max.x - em, view.min.y + em}, ImGuiCond_Always, {1, 0});
+  ImGui::Begin("video", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::TextUnformatted(playback.video().what().c_str());
+  progress_bar(playback.video().part(), 14 * em);
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel")) playback.cancel_video();
+  ImGui::End();
+}
+
+}  // namespace limpid

@@ -1,0 +1,102 @@
+#include "app/film/film_frame.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/plot/plot_frame.h"
+#include "app/style/picture_legend.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLeastScale = 0.75;  // below, text cannot be read
+constexpr float kPlotsShare = 0.33f;  // of the height
+constexpr float kPlotsHeight = 190;   // at least [px at scale 1]
+constexpr float kPlotWidth = 300;
+
+float scale_of(const FilmLook& look) {
+  const double fitting = std::min(look.width / 1280.0, look.height / 720.0);
+  return static_cast<float>(look.text_scale > 0 ? look.text_scale : std::max(kLeastScale, fitting));
+}
+
+}  // namespace
+
+FilmFrame::FilmFrame(const FilmLook& look)
+    : look_(look), scale_(scale_of(look)), context_(look.width, look.height) {
+  ImGuiGl::set_up(look.theme, scale_);
+  ImGui::GetIO().DisplaySize = {static_cast<float>(look.width), static_cast<float>(look.height)};
+}
+
+FilmFrame::Places FilmFrame::lay_out() const {
+  const auto width = static_cast<float>(look_.width), height = static_cast<float>(look_.height);
+  const float caption = std::round(1.7f * text_size(Face::regular, "0").y);
+  const float wanted = std::round(std::max(kPlotsShare * height, kPlotsHeight * scale_));
+  const float plots = look_.plots && 2 * wanted <= height ? wanted : 0;
+  return {.caption = {{0, 0}, {width, caption}},
+          .picture = {{0, caption}, {width, height - plots}},
+          .plots = {{0, height - plots}, {width, height}}};
+}
+
+std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const Camera& camera,
+                                           const FilmCaption& caption, double elapsed) {
+  ImGui::GetIO().DeltaTime = static_cast<float>(elapsed);
+  ImGuiGl::begin_frame();
+  ImGui::NewFrame();
+  const Places at = lay_out();
+  view.theme = look_.theme;
+  stage.draw_at(0);  // there is time
+  stage.picture.set_pixel_scale(scale_);
+  stage.picture.draw(view, camera, 0, static_cast<int>(at.plots.height()), look_.width,
+                     static_cast<int>(at.picture.height()));
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float em = font(Face::small)->FontSize;
+  if (at.picture.height() > 10 * em) {
+    draw_picture_legend(list, {0.9f * em, at.picture.min.y + 0.8f * em});
+  }
+  draw_caption(at.caption, caption);
+  if (at.plots.height() > 0) draw_plots(at.plots, stage);
+  ImGuiGl::render();
+  return read_rgba(look_.width, look_.height);
+}
+
+void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const Palette& colours = current_palette();
+  list.AddRectFilled(rect.min, rect.max, colour(colours.panel));
+  const float gap = std::round(12 * scale_);
+  const float top = rect.min.y + 0.5f * (rect.height() - text_size(Face::regular, "0").y);
+  float left = rect.min.x + gap, right = rect.max.x - gap;
+  const auto put = [&](Face face, Rgb rgb, const std::string& text) {
+    left += draw_clipped_text(list, face, {left, top}, rgb, text, right - left) + 2 * gap;
+  };
+  put(Face::semibold, colours.text, caption.time);
+  put(Face::regular, colours.text, caption.text);
+  const float aside = text_size(Face::regular, caption.aside).x;
+  if (right - aside < left) return;
+  draw_text(list, Face::regular, {right - aside, top}, colours.muted, caption.aside);
+}
+
+void FilmFrame::draw_plots(const ScreenRect& rect, Stage& stage) const {
+  ImGui::SetNextWindowPos(rect.min);
+  ImGui::SetNextWindowSize(rect.size());
+  ImGui::Begin("plots", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
+  stage.group.begin_frame(stage.history, stage.history.end_time());
+  const auto fitting =
+      static_cast<std::size_t>(std::max(1.0f, rect.width() / (kPlotWidth * scale_)));
+  const std::size_t shown = std::min(stage.plots.size(), fitting);
+  const auto count = static_cast<float>(shown);
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 size((room.x - gap * (count - 1)) / count, room.y);
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0) ImGui::SameLine();
+    // Nobody can click on the legend to have them back.
+    std::erase_if(stage.plots[i].spec().curves, [](const Curve& c) { return !c.visible; });
+    stage.plots[i].draw(stage.history, stage.group, size);
+  }
+  ImGui::End();
+}
+
+}  // namespace limpid

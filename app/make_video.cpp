@@ -1,0 +1,87 @@
+#include "app/make_video.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/base/interrupt.h"
+#include "app/cli/options.h"
+#include "app/cli/progress.h"
+#include "app/film/session_film.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "1280x720"
+FilmLook look(const VideoOptions& options, double text_scale) {
+  FilmLook look{.plots = options.plots, .text_scale = text_scale};
+  if (options.size.empty()) return look;
+  int width = 0, height = 0, read = 0;
+  if (std::sscanf(options.size.c_str(), "%5dx%5d%n", &width, &height, &read) != 2 ||
+      static_cast<std::size_t>(read) != options.size.size()) {
+    throw UsageError(
+        fmt::format("--size: \"{}\" is not allowed; allowed: WIDTHxHEIGHT, such as "
+                    "1280x720",
+                    options.size));
+  }
+  look.width = width;
+  look.height = height;
+  return look;
+}
+
+// Of a file, or of all that is in a folder [MB].
+double megabytes(const fs::path& out) {
+  std::error_code none;
+  if (!fs::is_directory(out, none)) return static_cast<double>(fs::file_size(out, none)) / 1e6;
+  double sum = 0;
+  for (const auto& entry : fs::directory_iterator(out, none)) {
+    sum += static_cast<double>(entry.file_size(none)) / 1e6;
+  }
+  return sum;
+}
+
+}  // namespace
+
+int make_video(const std::string& file, const VideoOptions& options, double text_scale,
+               char** /*words*/) {
+  const FilmOrder order{.out = options.out,
+                        .force = options.force,
+                        .look = look(options, text_scale),
+                        .fps = options.fps,
+                        .from = options.from,
+                        .to = options.to,
+                        .speed = options.speed,
+                        .title = fs::path(file).stem().string()};
+  const Session session = read_session(file);
+  const FilmCut plan = cut(order, session, file);
+  catch_interrupts();
+  const auto began = std::chrono::steady_clock::now();
+  FilmEnd end;
+  {
+    Progress progress(
+        {.title = "video", .whole = plan.duration(), .unit = "s", .rate = "times real time"});
+    end = film(session, file, order, interrupted, [&](double part) {
+      progress.at(part * plan.duration());
+      if (options.print_progress) {
+        fmt::print("{:.3f}\n", part);
+        std::fflush(stdout);
+      }
+    });
+  }
+  if (end.stopped) {
+    fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", end.seconds,
+               plan.duration(), options.out);
+    return 1;
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  fmt::print("{}: {} pictures, {:.2f} s, {} x {}, {:.2f} MB, made in {:.1f} s\n", options.out,
+             plan.pictures(), plan.duration(), order.look.width, order.look.height,
+             megabytes(options.out), took.count());
+  return 0;
+}
+
+}  // namespace limpid

@@ -1,0 +1,129 @@
+// What a video's pictures show, read back from their pixels. Skipped where EGL gives no context.
+#include "app/film/film_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "app/base/assets.h"
+#include "devices/files/arm/urdf_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kTick = 0.01, kShown = 2.0;  // [s]
+
+struct Picture {
+  int width, height;
+  std::vector<unsigned char> rgba;
+
+  Rgb at(int x, int y) const {
+    const auto i = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(x));
+    return {rgba[i], rgba[i + 1], rgba[i + 2]};
+  }
+};
+
+// The device ahead of the proxy by 20 mrad, in the proposed coupling.
+std::vector<double> row_at(const RowLayout& layout, double time) {
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const auto put = [&](Column column, double value) {
+    layout.in(std::span<double>(row), column)[0] = value;
+  };
+  put(Column::time, time);
+  put(Column::kind, 1);
+  put(Column::device_position, 0.02);
+  return row;
+}
+
+class FilmFrames : public testing::Test {
+ protected:
+  void begin(FilmLook look) {
+    look_ = look;
+    try {
+      frame_.emplace(look);
+    } catch (const std::runtime_error& error) {
+      GTEST_SKIP() << error.what();
+    }
+    History history({.channels = TraceChannels(layout_).count(), .seconds = 10, .tick = kTick});
+    stage_ = std::make_unique<Stage>(read_urdf(default_device()), SceneDocument{}, MeshModels{},
+                                     std::move(history), kShown);
+    camera_.reset(stage_->picture.bounds());
+    camera_.finish();
+  }
+  Picture draw_at(double time) {
+    for (; next_ * kTick <= time; ++next_) stage_->append(row_at(layout_, next_ * kTick));
+    const ViewState view = stage_->rows().view(layout_, row_at(layout_, time));
+    return {look_.width, look_.height,
+            frame_->draw(*stage_, view, camera_, {.time = "1.00 s", .text = {}, .aside = {}}, 0.1)};
+  }
+
+  const RowLayout layout_{3};
+  FilmLook look_;
+  std::optional<FilmFrame> frame_;
+  std::unique_ptr<Stage> stage_;
+  Camera camera_;
+  int next_ = 0;
+};
+
+// Where the first plot's curve begins and ends; below its title and legend, left of the next plot.
+std::pair<int, int> curve_ends(const Picture& picture) {
+  const Rgb ink = limpid::ink(kDarkPalette, Ink::proxy);
+  int first = picture.width, last = -1;
+  for (int y = picture.height * 2 / 3 + 40; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width / 3 - 10; ++x) {
+      const Rgb seen = picture.at(x, y);
+      const int off =
+          std::abs(seen.r - ink.r) + std::abs(seen.g - ink.g) + std::abs(seen.b - ink.b);
+      if (off > 60) continue;
+      first = std::min(first, x);
+      last = std::max(last, x);
+    }
+  }
+  return {first, last};
+}
+
+TEST_F(FilmFrames, HaveCurvesThatEndAtThePresent) {
+  ASSERT_NO_FATAL_FAILURE(begin({}));
+  if (!frame_) return;
+  const auto [from, half] = curve_ends(draw_at(0.5 * kShown));
+  const auto [same, whole] = curve_ends(draw_at(kShown));
+  ASSERT_GT(whole, from + 200) << "there is no curve";
+  EXPECT_EQ(from, same);
+  EXPECT_NEAR(static_cast<double>(half - from) / (whole - from), 0.5, 0.02);
+}
+
+TEST_F(FilmFrames, KeepNoCurvesInTheLegendThatNobodyCanSwitchOn) {
+  ASSERT_NO_FATAL_FAILURE(begin({}));
+  if (!frame_) return;
+  draw_at(0.1);
+  for (const Plot& plot : stage_->plots) {
+    EXPECT_FALSE(plot.spec().curves.empty());
+    for (const Curve& curve : plot.spec().curves) EXPECT_TRUE(curve.visible) << curve.label;
+  }
+}
+
+TEST_F(FilmFrames, WithoutPlotsAreThePictureDownToTheEdge) {
+  ASSERT_NO_FATAL_FAILURE(begin({.plots = false}));
+  if (!frame_) return;
+  const Picture picture = draw_at(0.1);
+  EXPECT_NE(picture.at(8, picture.height - 8), kDarkPalette.panel);
+  EXPECT_EQ(picture.at(4, 4), kDarkPalette.panel) << "the caption's background";
+}
+
+TEST_F(FilmFrames, WithPlotsHaveTheirPanelBelow) {
+  ASSERT_NO_FATAL_FAILURE(begin({}));
+  if (!frame_) return;
+  const Picture picture = draw_at(0.1);
+  EXPECT_EQ(picture.at(8, picture.height - 8), kDarkPalette.panel);
+}
+
+TEST_F(FilmFrames, LeaveThePlotsOutWhereThereIsNoRoom) {
+  ASSERT_NO_FATAL_FAILURE(begin({.width = 240, .height = 160}));
+  if (!frame_) return;
+  const Picture picture = draw_at(0.1);
+  EXPECT_NE(picture.at(8, picture.height - 8), kDarkPalette.panel);
+}
+
+}  // namespace
+}  // namespace limpid
