@@ -82,7 +82,8 @@ int play(const WindowOptions& options, const MakeVideo& make_video) {
 WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   auto options = std::make_shared<WindowOptions>();
   add(app, *options);
-  auto* command = app.add_subcommand("play", "the desktop app, playing a recorded session");
+  auto* command =
+      app.add_subcommand("play", "the desktop app, playing a recorded session; or its video");
   auto played = std::make_shared<WindowOptions>();
   command->add_option("SESSION.h5", played->session, "the recording")->type_name("")->required();
   played->video.add(*command);

@@ -16,8 +16,6 @@
 #include <string>
 #include <vector>
 
-extern char** environ;
-
 namespace limpid {
 namespace {
 
@@ -36,6 +34,7 @@ class Process {
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(errno);
     out_ = ends[0];
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;
