@@ -1,6 +1,7 @@
 #include "render/scene_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -74,8 +75,8 @@ struct Still {
 };
 
 // One picture as it was drawn the last time.
-struct Sheet {
-  explicit Sheet(const std::filesystem::path& shaders) : target(shaders) {}
+struct DrawnSheet {
+  explicit DrawnSheet(const std::filesystem::path& shaders) : target(shaders) {}
 
   FrameTarget target;
   LineBatch floor_lines, trails, lines_on_top;
@@ -129,8 +130,7 @@ struct SceneView::Impl {
         items(collect_items(arm, scene, visuals)),
         surroundings(surroundings_of(items, {})),
         painter(shaders, items, surroundings),
-        main(shaders),
-        lens(shaders) {}
+        sheets{DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders)} {}
 
   void use_surroundings() {
     std::vector<Bounds> boxes;
@@ -145,10 +145,10 @@ struct SceneView::Impl {
   }
 
   // True: it is another picture than the last one.
-  bool draw(Sheet& sheet, const ViewState& wanted, const Camera& camera,
+  bool draw(DrawnSheet& sheet, const ViewState& wanted, const Camera& camera,
             const FrameTarget::Area& to);
   // What had to be drawn anew.
-  PixelArea paint(Sheet& sheet, const ViewState& state, const Camera& eye, double scale);
+  PixelArea paint(DrawnSheet& sheet, const ViewState& state, const Camera& eye, double scale);
 
   ArmDescription arm;
   SceneItems items;
@@ -156,8 +156,8 @@ struct SceneView::Impl {
   std::vector<MeshPicture> meshes;
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
-  Sheet main, lens;
-  std::uint64_t version = 1;  // of all that stands still
+  std::array<DrawnSheet, 3> sheets;  // by SceneView::Sheet
+  std::uint64_t version = 1;         // of all that stands still
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,
@@ -192,20 +192,16 @@ void SceneView::set_meshes(std::span<const MeshPicture> meshes) {
 }
 
 bool SceneView::draw(const ViewState& state, const Camera& camera, int x, int y, int width,
-                     int height) {
-  return impl_->draw(impl_->main, state, camera, {x, y, width, height});
+                     int height, Sheet on) {
+  return impl_->draw(impl_->sheets[static_cast<std::size_t>(on)], state, camera,
+                     {x, y, width, height});
 }
 
-bool SceneView::draw_lens(const ViewState& state, const Camera& camera, int x, int y, int width,
-                          int height) {
-  return impl_->draw(impl_->lens, state, camera, {x, y, width, height});
+bool SceneView::differs(const ViewState& state, const Camera& camera, Sheet on) const {
+  return impl_->sheets[static_cast<std::size_t>(on)].differs(state, camera, impl_->version);
 }
 
-bool SceneView::differs(const ViewState& state, const Camera& camera) const {
-  return impl_->main.differs(state, camera, impl_->version);
-}
-
-bool SceneView::Impl::draw(Sheet& sheet, const ViewState& wanted, const Camera& camera,
+bool SceneView::Impl::draw(DrawnSheet& sheet, const ViewState& wanted, const Camera& camera,
                            const FrameTarget::Area& to) {
   if (to.width < 1 || to.height < 1) return false;
   const CallersState caller;
@@ -216,7 +212,7 @@ bool SceneView::Impl::draw(Sheet& sheet, const ViewState& wanted, const Camera& 
     if (sheet.version != version) sheet.damage.spoil();
     sheet.drawn = wanted;
     sheet.version = version;
-    sheet.camera = Sheet::matrix_of(shown);
+    sheet.camera = DrawnSheet::matrix_of(shown);
     sheet.shown = {to.width, to.height};
   }
   const double scale = std::clamp(painter.quality().scale, 0.1, 1.0);
@@ -234,7 +230,7 @@ bool SceneView::Impl::draw(Sheet& sheet, const ViewState& wanted, const Camera& 
   return differs;
 }
 
-PixelArea SceneView::Impl::paint(Sheet& sheet, const ViewState& state, const Camera& eye,
+PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, const Camera& eye,
                                  double scale) {
   const auto columns = static_cast<int>(eye.width()), rows = static_cast<int>(eye.height());
   const Mood mood = mood_of(state.theme);
@@ -255,7 +251,7 @@ PixelArea SceneView::Impl::paint(Sheet& sheet, const ViewState& state, const Cam
       sheet.still != Still{state.theme, state.show_grid})
     sheet.damage.spoil();
   sheet.still = {state.theme, state.show_grid};
-  sheet.damage.begin(to_glm(Sheet::matrix_of(eye)), columns, rows);
+  sheet.damage.begin(to_glm(DrawnSheet::matrix_of(eye)), columns, rows);
   painter.note(proxy, true, sheet.damage);
   painter.note_ghost(rerun, palette::kRerun, clear, sheet.damage);
   if (state.show_ghost) painter.note_ghost(device, palette::kDevice, outline, sheet.damage);

@@ -33,6 +33,10 @@ struct MeshPicture {
 
 class SceneView {
  public:
+  // Which of several pictures of one frame: each remembers how it was drawn the last time. A lens
+  // is what Camera::magnified() sees; beside is a second arm in the same scene.
+  enum class Sheet { main, lens, beside };
+
   // Loads the shaders, every visual of the arm and these of the scene. An arm without visuals is
   // drawn as capsules from joint to joint. Throws std::runtime_error naming the file (and line of a
   // shader) that is missing or wrong. Chooses the quality that suits GL_RENDERER.
@@ -55,12 +59,11 @@ class SceneView {
   // OpenGL counts. Leaves that framebuffer and its viewport as they were, and no state behind
   // that blends, tests, culls or clips. Only what looks different than in the frame before is drawn
   // anew; false: nothing did.
-  bool draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
-  // The same for a second picture beside the first, such as Camera::magnified() sees.
-  bool draw_lens(const ViewState& state, const Camera& camera, int x, int y, int width, int height);
+  bool draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height,
+            Sheet on = Sheet::main);
   // Whether draw() would show anything new in a viewport as large as the camera's; a tenth of a
   // pixel is not.
-  bool differs(const ViewState& state, const Camera& camera) const;
+  bool differs(const ViewState& state, const Camera& camera, Sheet on = Sheet::main) const;
 
   // What a camera should frame: the arm, the room it works in and what can be touched there,
   // meshes included as far as they are within reach [m].

@@ -71,13 +71,14 @@ void TraceChannels::append(History& history, std::span<const double> row,
   history.append(layout_.in(row, Column::time)[0], used);
 }
 
-std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
+std::vector<PlotSpec> TraceChannels::plots(const RunNames& names) const {
   const auto curve = [&](Channel c, std::string label, Ink ink, float shade, bool again) {
     Curve result;
     result.channel = static_cast<int>(c) + (again ? count() : 0);
-    result.label = again ? "re-run " + label : std::move(label);
-    result.ink = again ? Ink::rerun : ink;
-    result.shade = shade;
+    const std::string& run = again ? names.second : names.first;
+    result.label = run.empty() ? std::move(label) : run + " " + label;
+    result.ink = again && !names.twin ? Ink::rerun : ink;
+    result.shade = again && names.twin ? shade - 0.45f : shade;
     result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
     return result;
   };
@@ -103,7 +104,7 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
     plot->band_label = "motor at its limit";
   }
   for (const bool again : {false, true}) {
-    if (again && !rerun) break;
+    if (again && names.second.empty()) break;
     error.curves.push_back(curve(Channel::error, "|x_E|", Ink::proxy, 0, again));
     energy.curves.push_back(curve(Channel::energy_total, "total", Ink::energy, 0, again));
     energy.curves.push_back(
@@ -112,7 +113,7 @@ std::vector<PlotSpec> TraceChannels::plots(bool rerun) const {
     torque.curves.push_back(
         curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
     torque.curves.push_back(
-        curve(Channel::contact, "|f2|", Ink::contact, again ? -0.5f : 0, again));
+        curve(Channel::contact, "|f2|", Ink::contact, again && !names.twin ? -0.5f : 0, again));
   }
   for (int j = 0; j < std::min(layout_.dof(), kMostJointCurves); ++j) {
     const auto ink = static_cast<Ink>(static_cast<int>(Ink::joint_1) + j);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/plot/history.h"
@@ -29,6 +30,14 @@ enum class Channel : std::uint8_t {
 // [N m].
 std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
 
+// What the curves of two runs are called, in front of what they show.
+struct RunNames {
+  std::string first, second;  // of one run both are empty
+  bool twin = false;          // the second is another one now, not one of before
+
+  friend bool operator==(const RunNames&, const RunNames&) = default;
+};
+
 class TraceChannels {
  public:
   explicit TraceChannels(const RowLayout& layout);
@@ -46,9 +55,9 @@ class TraceChannels {
               std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
 
-  // The three plots: coordination error, controller energy, torques. With `rerun` a second run's
-  // channels follow the first one's and are drawn beside them.
-  std::vector<PlotSpec> plots(bool rerun) const;
+  // The three plots: coordination error, controller energy, torques. A second run's channels follow
+  // the first one's and are drawn beside them, if it has a name.
+  std::vector<PlotSpec> plots(const RunNames& names) const;
 
  private:
   RowLayout layout_;

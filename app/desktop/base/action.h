@@ -17,6 +17,7 @@ enum class Action : std::uint8_t {
   top_view,
   reset_camera,
   toggle_coupling,
+  toggle_twin,
   smaller_eta,
   larger_eta,
   smaller_alpha,

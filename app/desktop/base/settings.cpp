@@ -82,6 +82,11 @@ Settings load_settings(std::string& complaint) {
       s.parameters.tick = Parameters{}.tick;
       s.parameters.substeps = Parameters{}.substeps;
     }
+    if (const toml::table* twin = table["twin"].as_table()) {
+      std::ostringstream text;
+      text << toml::toml_formatter(*twin);
+      apply_config_text(s.twin.parameters, text.str(), file.string());
+    }
   } catch (const std::exception& e) {
     complaint = fmt::format("settings not read: {}", e.what());
   }
@@ -98,6 +103,7 @@ std::string save_settings(const Settings& settings) {
   toml::table all;
   all.insert("window", window);
   all.insert("parameters", toml::parse(config_text(settings.parameters)));
+  all.insert("twin", toml::parse(config_text(settings.twin.parameters)));
   std::ostringstream text;
   text << all << '\n';
   return try_write_atomically(settings_file(), text.str());

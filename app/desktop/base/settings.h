@@ -10,6 +10,17 @@
 
 namespace limpid {
 
+// A second run beside the first, on the same hand, under settings of its own.
+struct TwinSettings {
+  bool on = false;
+  bool edited = false;  // sliders and keys act on it, and not on the first
+  Parameters parameters = [] {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    return p;
+  }();
+};
+
 struct Settings {
   Theme theme = Theme::dark;
   double ui_scale = 0;  // 0: the screen's
@@ -31,6 +42,7 @@ struct Settings {
     p.kind = CouplingKind::predictive;
     return p;
   }();
+  TwinSettings twin;  // starts switched off
 };
 
 // This file was opened last.

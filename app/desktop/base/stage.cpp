@@ -45,10 +45,15 @@ Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, Hist
       document_(std::move(document)),
       rows_(arm_),
       channels_(RowLayout(arm_.dof())) {
-  for (PlotSpec& spec : channels_.plots(history.channels() > channels_.count())) {
-    plots.emplace_back(std::move(spec));
-  }
+  for (PlotSpec& spec : channels_.plots(names_)) plots.emplace_back(std::move(spec));
   show_meshes(models, std::nullopt);
+}
+
+void Stage::name_runs(const RunNames& names) {
+  if (names == names_) return;
+  names_ = names;
+  std::vector<PlotSpec> specs = channels_.plots(names_);
+  for (std::size_t i = 0; i < plots.size(); ++i) plots[i].spec() = std::move(specs[i]);
 }
 
 void Stage::show(const SceneDocument& document, const MeshModels& models,

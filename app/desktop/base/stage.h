@@ -28,6 +28,9 @@ class Stage {
   // picture stays as it was then.
   void show(const SceneDocument& document, const MeshModels& models,
             std::optional<std::size_t> highlighted);
+  // What the plots call their runs; a second one is drawn while it has a name.
+  void name_runs(const RunNames& names);
+  const RunNames& names() const { return names_; }
   // A level of Quality.
   void draw_at(int quality);
 
@@ -40,12 +43,12 @@ class Stage {
   void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
 
   // Adds a row to the plots, and a second run's beside it.
-  void append(std::span<const double> row, std::span<const double> beside) {
+  void append(std::span<const double> row, std::span<const double> beside = {}) {
     channels_.append(history, row, beside);
   }
 
   SceneView picture;
-  ViewMemory memory;
+  ViewMemory memory, twin_memory;
   History history;
   PlotGroup group;
   std::vector<Plot> plots;
@@ -57,6 +60,7 @@ class Stage {
   ArmDescription arm_;
   SceneDocument document_;
   int quality_ = -1;
+  RunNames names_;
   RowView rows_;
   TraceChannels channels_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <ctime>
 
 #include "app/device/device_book.h"
@@ -112,8 +113,25 @@ void Desk::let_go(std::unique_ptr<Device> device) {
       [done = std::shared_ptr<Device>(std::move(device))]() mutable { done.reset(); });
 }
 
-void Desk::update(const Parameters& p) {
+std::span<const double> Desk::twin_row() const {
+  if (!controls_.twin || loop_.device_in_place()) return {};
+  const auto row =
+      std::span(loop_.snapshot().twin).first(static_cast<std::size_t>(loop_.layout().stride()));
+  return std::isnan(row[0]) ? std::span<const double>() : row;
+}
+
+std::string Desk::why_twin_is_fixed() const {
+  if (recording()) return "Stop the recording before the twin comes or goes.";
+  if (loop_.device_in_place()) {
+    return "A twin needs the virtual arm: one hand cannot hold two real devices.";
+  }
+  return {};
+}
+
+void Desk::update(const Parameters& p, const Parameters* twin) {
   controls_.parameters = p;
+  controls_.twin = twin != nullptr;
+  if (twin != nullptr) controls_.twin_parameters = *twin;
   loop_.set(controls_);
   loop_.update();
   follow_recording();
@@ -175,9 +193,10 @@ void Desk::record(const RunPlan& plan, const fs::path& folder) {
       fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
-  opening_ =
-      file_errands_.run([file = folder / name, info = std::move(about), initial = plan.parameters] {
-        return std::make_unique<Recorder>(file, info, initial, false);
+  opening_ = file_errands_.run(
+      [file = folder / name, info = std::move(about), initial = plan.parameters, twin = plan.twin] {
+        return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
+                                          twin ? &twin->parameters : nullptr);
       });
 }
 

@@ -5,6 +5,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/desktop/base/notices.h"
@@ -41,7 +42,10 @@ class Desk {
   Controls& controls() { return controls_; }
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
-  std::span<const double> row() const;  // the newest
+  std::span<const double> row() const;       // the newest
+  std::span<const double> twin_row() const;  // the same of the twin; empty without one
+  // Why there can be no twin now, or the present one has to stay; empty if it may change.
+  std::string why_twin_is_fixed() const;
 
   // Whether force is on, or will be as soon as nothing keeps it off.
   bool force_armed() const;
@@ -67,7 +71,8 @@ class Desk {
   void save_beside(std::function<PlotNotice()> work);
 
   // Once a frame: the controls with these parameters to the loop, and its rows to the plots.
-  void update(const Parameters& p);
+  // `twin`: of a second run beside it; null: none.
+  void update(const Parameters& p, const Parameters* twin);
   // True once the loop has become unstable, once.
   bool became_unstable();
   // Marks in the plots that something changes with the next update().

@@ -210,8 +210,7 @@ void CouplingPanel::draw_break(Parameters& p, const ArmDescription& arm) {
 }
 
 void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-                         const ArmDescription* arm, ScreenRect rect) {
-  begin_panel("coupling", rect);
+                         const ArmDescription* arm) {
   kind_buttons(p);
   ImGui::Spacing();
   draw_sliders(p, analysis);
@@ -223,7 +222,6 @@ void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const Coupling
   }
   draw_energy(now.energy, p, analysis);
   draw_limited(now.limited);
-  ImGui::End();
 }
 
 }  // namespace limpid

@@ -73,8 +73,8 @@ void Magnifier::draw(SceneView& picture, const ViewState& state, const Camera& c
   const Camera lens =
       camera.magnified(middle(state), kMagnified, static_cast<double>(rect_->size().x),
                        static_cast<double>(rect_->size().y));
-  picture.draw_lens(state, lens, pixels(rect_->min.x), place.pixel_height - pixels(rect_->max.y),
-                    edge, edge);
+  picture.draw(state, lens, pixels(rect_->min.x), place.pixel_height - pixels(rect_->max.y), edge,
+               edge, SceneView::Sheet::lens);
 }
 
 void Magnifier::draw_frame(const ViewState& state, const Camera& camera, ImDrawList& list) const {

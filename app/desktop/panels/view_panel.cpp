@@ -87,9 +87,10 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   const float size = face->FontSize * 1.15f;
-  const char* lines[] = {"Drag with the left button: your hand pulls the arm onto the table.",
-                         "Wheel while dragging: nearer and farther.",
-                         "C switches the coupling: the standard one lets hand and world drift apart."};
+  const char* lines[] = {
+      "Drag with the left button: your hand pulls the arm onto the table.",
+      "Wheel while dragging: nearer and farther.",
+      "C switches the coupling: the standard one lets hand and world drift apart."};
   float line_y = rect.max.y - 5.2f * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
@@ -108,16 +109,15 @@ ScreenRect legend_box(ScreenRect view) {
   return {view.min, {place.x + size.x, place.y + size.y}};
 }
 
-ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
-  Stage& stage = scene.stage;
+namespace {
+
+// As one row has it, whichever run's.
+ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
+                  const Settings& settings) {
   const RowLayout& layout = stage.channels().layout();
-  ViewState view = stage.rows().view(layout, scene.row);
-  if (!scene.rerun.empty()) {
-    view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
-  }
-  stage.memory.update(view, stage.rows().contacts(layout, scene.row),
-                      layout.in(scene.row, Column::time)[0]);
-  const auto law = static_cast<CouplingKind>(layout.in(scene.row, Column::kind)[0]);
+  ViewState view = stage.rows().view(layout, row);
+  memory.update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
+  const auto law = static_cast<CouplingKind>(layout.in(row, Column::kind)[0]);
   // Of the laws the predictive one alone renders friction.
   add_surfaces(stage.document().scene, law == CouplingKind::predictive, view);
   view.show_ghost = settings.show_ghost;
@@ -128,31 +128,88 @@ ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) 
   return view;
 }
 
+constexpr float kBetween = 2;  // of the halves of a twin's picture [px]
+
+ScreenRect half_of(ScreenRect rect, bool right) {
+  const float middle = std::round((rect.min.x + rect.max.x) / 2);
+  return right ? ScreenRect{{middle + kBetween / 2, rect.min.y}, rect.max}
+               : ScreenRect{rect.min, {middle - kBetween / 2, rect.max.y}};
+}
+
+void draw_name(const std::string& name, ScreenRect half, ImDrawList& list) {
+  const Palette& colours = current_palette();
+  ImFont* face = font(Face::semibold);
+  const ImVec2 size = face->CalcTextSizeA(face->FontSize, 1e9f, 0, name.c_str());
+  const float pad = 0.4f * face->FontSize;
+  const ImVec2 at(std::round((half.min.x + half.max.x - size.x) / 2), half.min.y + 2 * pad);
+  list.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + size.x + pad, at.y + size.y + pad / 2},
+                     colour(colours.backdrop, 0.72f), 4);
+  list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
+}
+
+}  // namespace
+
+ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
+  Stage& stage = scene.stage;
+  ViewState view = view_of(stage, scene.row, stage.memory, settings);
+  if (!scene.rerun.empty()) {
+    const RowLayout& layout = stage.channels().layout();
+    view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
+  }
+  return view;
+}
+
+ViewState ViewPanel::twin_of(const ViewScene& scene, const Settings& settings) {
+  return view_of(scene.stage, scene.twin, scene.stage.twin_memory, settings);
+}
+
 bool ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                      ScreenRect rect) {
-  const ImVec2 size = rect.size();
+  const bool split = !scene.twin.empty();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!ImGui::IsAnyMouseDown()) on_right_ = split && half_of(rect, true).contains(mouse);
+  const ScreenRect under = split ? half_of(rect, on_right_) : rect;
+  const ImVec2 size = under.size();
   if (size.x < 8 || size.y < 8) return false;
   camera.resize(size.x, size.y);
-  const bool turned = handle_mouse(scene, camera, controls, settings, rect);
+  const bool turned = handle_mouse(scene, camera, controls, settings, under);
+  scene.stage.picture.set_pixel_scale(scene.pixel_scale * static_cast<double>(current_scale()));
+  scene.stage.draw_at(scene.quality);
+  drawn_ = split ? half_of(rect, false) : rect;
+  draw_halves(scene, camera, settings, rect);
+  return turned;
+}
 
+// The picture, or a twin's two with one camera.
+void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                            ScreenRect rect) {
+  SceneView& picture = scene.stage.picture;
   const double scale = scene.pixel_scale;
   const auto pixels = [&](float points) {
     return static_cast<int>(std::lround(static_cast<double>(points) * scale));
   };
+  const auto paint = [&](const ViewState& view, ScreenRect half, SceneView::Sheet sheet) {
+    picture.draw(view, camera, pixels(half.min.x), scene.pixel_height - pixels(half.max.y),
+                 pixels(half.width()), pixels(half.height()), sheet);
+  };
   const ViewState view = state_of(scene, settings);
-  SceneView& picture = scene.stage.picture;
-  picture.set_pixel_scale(scale * static_cast<double>(current_scale()));
-  scene.stage.draw_at(scene.quality);
-  picture.draw(view, camera, pixels(rect.min.x), scene.pixel_height - pixels(rect.max.y),
-               pixels(size.x), pixels(size.y));
-  drawn_ = rect;
-  if (settings.show_lens) {
+  paint(view, *drawn_, SceneView::Sheet::main);
+  if (settings.show_lens && scene.twin.empty()) {
     magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height});
   } else {
     magnifier_.hide();
   }
-  draw_signs(scene, view, camera, settings, rect);
-  return turned;
+  draw_signs(scene, view, camera, settings, *drawn_);
+  if (scene.twin.empty()) return;
+  const ScreenRect right = half_of(rect, true);
+  const ViewState twin = twin_of(scene, settings);
+  paint(twin, right, SceneView::Sheet::beside);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(right.min, right.max);
+  draw_gap(twin, camera, right, list);
+  list.PopClipRect();
+  draw_name(scene.names.first, *drawn_, list);
+  draw_name(scene.names.second, right, list);
 }
 
 // Over the picture: what is selected, words and numbers.
@@ -178,7 +235,10 @@ bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Sett
     return std::round(static_cast<double>(points) * scene.pixel_scale);
   };
   shown.resize(pixels(drawn_->size().x), pixels(drawn_->size().y));
-  return scene.stage.picture.differs(state_of(scene, settings), shown);
+  const SceneView& picture = scene.stage.picture;
+  return picture.differs(state_of(scene, settings), shown) ||
+         (!scene.twin.empty() &&
+          picture.differs(twin_of(scene, settings), shown, SceneView::Sheet::beside));
 }
 
 bool ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,

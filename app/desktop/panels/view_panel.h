@@ -22,6 +22,8 @@ struct ViewScene {
   std::span<const double> row;
   bool recorded = false;               // the row is a recording's
   std::span<const double> rerun = {};  // the row of its second run; or none
+  std::span<const double> twin = {};   // of a second run at the same time; or none
+  RunNames names = {};                 // of the two
   std::optional<SceneObject> selected = {};
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point
@@ -43,7 +45,10 @@ class ViewPanel {
  private:
   void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
                   const Settings& settings, ScreenRect rect) const;
+  void draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                   ScreenRect rect);
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
+  static ViewState twin_of(const ViewScene& scene, const Settings& settings);
   bool handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                     ScreenRect rect);
   void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
@@ -52,6 +57,7 @@ class ViewPanel {
   Magnifier magnifier_;
   std::optional<ScreenRect> drawn_;  // where the view was
   bool dragging_ = false;
+  bool on_right_ = false;       // the mouse, when it last began something
   Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
   Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]
 };

@@ -1,6 +1,7 @@
 #include "app/desktop/playback/played_session.h"
 
 #include "app/run/replay.h"
+#include "app/run/twin_settings.h"
 #include "app/style/words.h"
 #include "devices/files/file_error.h"
 
@@ -41,7 +42,9 @@ LoadedSession load_session(const fs::path& file) {
   auto session = std::make_shared<const Session>(read_session(file));
   if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
   RunPlan world = replay(*session, file.string(), {});
-  History history = history_of(*session, file.string(), world.arm, {});
+  const std::span<const double> twin =
+      session->twin ? std::span<const double>(session->twin->rows) : std::span<const double>();
+  History history = history_of(*session, file.string(), world.arm, twin);
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
@@ -81,13 +84,26 @@ PlayedSession::PlayedSession(LoadedSession loaded)
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
   auto stage =
       std::make_unique<Stage>(arm_, document_, models_, std::move(history), player_.duration());
-  stage->follow(session_parameters(player_.session(), file_.string()));
+  const Session& session = player_.session();
+  const Parameters p = session_parameters(session, file_.string());
+  stage->follow(p);
+  if (session.twin) {
+    const auto names = twin_names(p, session_parameters(*session.twin, file_.string()));
+    stage->name_runs({names[0], names[1], true});
+  }
   return stage;
 }
 
 void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
+  stage_->name_runs({"", "re-run", false});
   rerun_ = std::move(again.rows);
+}
+
+std::span<const double> PlayedSession::twin_row() const {
+  const Session& session = player_.session();
+  return session.twin && !has_rerun() ? session.twin->row(player_.index())
+                                      : std::span<const double>();
 }
 
 std::span<const double> PlayedSession::rerun_row() const {

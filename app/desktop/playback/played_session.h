@@ -53,6 +53,8 @@ class PlayedSession {
   bool has_rerun() const { return !rerun_.empty(); }
   // The second run's at the player's time; empty without one.
   std::span<const double> rerun_row() const;
+  // The twin's at the player's time; empty for a session of one run, and while there is a re-run.
+  std::span<const double> twin_row() const;
 
  private:
   std::unique_ptr<Stage> make_stage(History history) const;

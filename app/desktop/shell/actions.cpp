@@ -133,6 +133,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::toggle_force: d.desk().toggle_force(); break;
     case Action::start_over: d.desk().start_over(); break;
     case Action::toggle_coupling: d.toggle_coupling(); break;
+    case Action::toggle_twin: d.toggle_twin(); break;
     case Action::toggle_recording: d.toggle_recording(); break;
     case Action::toggle_playing: d.toggle_playing(); break;
     case Action::reset_camera: d.reset_view(); break;
@@ -153,7 +154,7 @@ void act_on_desktop(Action action, Desktop& d) {
 }  // namespace
 
 void carry_out(Action action, Desktop& desktop, Window& window) {
-  Parameters& parameters = desktop.settings().parameters;
+  Parameters& parameters = desktop.edited();
   const bool done = act_on_parameters(action, parameters) || act_on_view(action, desktop) ||
                     act_on_window(action, window) || act_on_document(action, desktop.document()) ||
                     act_on_playback(action, desktop.playback(), parameters);

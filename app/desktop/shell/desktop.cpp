@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/base/assets.h"
+#include "app/run/twin_settings.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
 #include "devices/files/arm/urdf_file.h"
@@ -22,7 +23,8 @@ Desktop::Desktop(Settings settings, const AskForPriority& ask)
                 .close = [this] { close_device(); },
                 .toggle_coupling = [this] { toggle_coupling(); }}),
       playback_(notices_),
-      analysed_(settings_.parameters) {
+      analysed_(settings_.parameters),
+      analysed_twin_(settings_.twin.parameters) {
   desk_.controls().parameters = settings_.parameters;
 }
 
@@ -89,10 +91,11 @@ void Desktop::drop_pictures() {
 
 void Desktop::update(double dt) {
   document_.note_changes();
+  follow_twin();
   follow_parameters();
   show_scene();
   hand_scene_over(false);
-  desk_.update(settings_.parameters);
+  desk_.update(settings_.parameters, settings_.twin.on ? &settings_.twin.parameters : nullptr);
   if (const auto recorded = desk_.take_recorded()) {
     playback_.set_last(*recorded);
     remember_recent(settings_, recorded->string());
@@ -118,18 +121,47 @@ std::span<const double> Desktop::row() const {
   return playback_.on() ? playback_.shown()->player().row() : desk_.row();
 }
 
-// Marks in the plots what has changed.
-void Desktop::follow_parameters() {
-  const Parameters& parameters = settings_.parameters;
-  if (parameters == analysed_) return;
+std::span<const double> Desktop::twin_row() const {
+  return playback_.on() ? playback_.shown()->twin_row() : desk_.twin_row();
+}
+
+Parameters& Desktop::edited() {
+  return edits_twin() ? settings_.twin.parameters : settings_.parameters;
+}
+
+// One hand, one device, one world for both; what the plots call them.
+void Desktop::follow_twin() {
+  TwinSettings& twin = settings_.twin;
+  if (desk_.loop().device_in_place()) twin.on = false;
+  share_world(settings_.parameters, twin.parameters);
+  if (!twin.on) return desk_.stage().name_runs({});
+  const auto names = twin_names(settings_.parameters, twin.parameters);
+  desk_.stage().name_runs({names[0], names[1], true});
+}
+
+// In the plots. What both runs have in common is marked once.
+void Desktop::mark_changes(const Parameters& now, const Parameters& before,
+                           const std::string& whose) {
   for (const ParameterInfo& info : parameter_table()) {
-    const std::string text = parameter_text(parameters, info);
-    if (playback_.on() || text == parameter_text(analysed_, info)) continue;
-    desk_.mark(mark_text(info, parameters), info.key);
+    if (parameter_text(now, info) == parameter_text(before, info)) continue;
+    if (!whose.empty() && !own_of_twin(info)) continue;
+    desk_.mark(whose + mark_text(info, now), whose + info.key);
   }
-  analysed_ = parameters;
+}
+
+void Desktop::follow_parameters() {
+  const Parameters &first = settings_.parameters, &twin = settings_.twin.parameters;
+  const bool changed = !(first == analysed_) || !(twin == analysed_twin_);
+  if (!changed && analysed_of_twin_ == edits_twin()) return;
+  if (!playback_.on()) {
+    mark_changes(first, analysed_, "");
+    if (settings_.twin.on) mark_changes(twin, analysed_twin_, "twin: ");
+  }
+  analysed_ = first;
+  analysed_twin_ = twin;
+  analysed_of_twin_ = edits_twin();
   const ArmDescription& arm = shown().arm();
-  analysis_ = analyze(arm, rest_pose(arm), parameters, std::nullopt);
+  analysis_ = analyze(arm, rest_pose(arm), edited(), std::nullopt);
 }
 
 int Desktop::quality_level() const {
@@ -147,7 +179,23 @@ Focus Desktop::focus() const {
           .playback = playback_.on()};
 }
 
-void Desktop::toggle_coupling() { settings_.parameters.kind = next(settings_.parameters.kind); }
+void Desktop::toggle_coupling() { edited().kind = next(edited().kind); }
+
+void Desktop::toggle_twin() {
+  if (const std::string why = desk_.why_twin_is_fixed(); !why.empty()) {
+    return notices_.say(why, true);
+  }
+  playback_.close();
+  TwinSettings& twin = settings_.twin;
+  twin.on = !twin.on;
+  twin.edited = false;
+  if (!twin.on) return notices_.say("The twin is gone. B brings it back.");
+  if (twin.parameters.kind == settings_.parameters.kind &&
+      twin.parameters.eta == settings_.parameters.eta) {
+    twin.parameters.kind = next(settings_.parameters.kind);
+  }
+  notices_.say("Two couplings on one hand. The tabs choose which one the sliders set.");
+}
 
 void Desktop::cut_force() {
   desk_.loop().cut();
@@ -177,6 +225,7 @@ void Desktop::start_recording() {
   plan.document.toml = document_.toml();
   plan.hand.source = desk_.loop().device_in_place() ? "device" : "mouse";
   plan.parameters = settings_.parameters;
+  if (settings_.twin.on) plan.twin = TwinPlan{settings_.twin.parameters, {}, {}};
   hand_scene_over(true);
   desk_.record(plan, sessions_dir());
 }

@@ -48,7 +48,11 @@ class Desktop {
   Stage& shown() { return playback_.on() ? playback_.shown()->stage() : desk_.stage(); }
   const Stage& shown() const { return playback_.on() ? playback_.shown()->stage() : desk_.stage(); }
   std::span<const double> row() const;
-  const Analysis& analysis() const { return analysis_; }  // at the arm's rest pose
+  std::span<const double> twin_row() const;  // empty without a twin
+  // What sliders and keys act on: the settings of one of two runs.
+  Parameters& edited();
+  bool edits_twin() const { return settings_.twin.on && settings_.twin.edited && !playback_.on(); }
+  const Analysis& analysis() const { return analysis_; }  // of these, at the arm's rest pose
   int quality_level() const;                              // of Quality, as the settings want it
 
   Dialog dialog() const { return dialog_; }  // that is open
@@ -58,6 +62,7 @@ class Desktop {
   Focus focus() const;
 
   void toggle_coupling();
+  void toggle_twin();
   void cut_force();
   void reset_parameters();
   void toggle_recording();
@@ -92,6 +97,8 @@ class Desktop {
   Workplace workplace() const;
   void start_recording();
   void follow_parameters();
+  void follow_twin();
+  void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
   void show_scene();
   void hand_scene_over(bool at_once);
 
@@ -107,7 +114,8 @@ class Desktop {
   Dialog dialog_ = Dialog::none;
   std::string device_file_;
   Analysis analysis_;
-  Parameters analysed_;  // that marks and analysis know
+  Parameters analysed_, analysed_twin_;  // that marks and analysis know
+  bool analysed_of_twin_ = false;
   SceneEditor::Version shown_;
   std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
   std::chrono::steady_clock::time_point touched_since_;

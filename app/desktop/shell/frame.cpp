@@ -14,6 +14,7 @@
 #include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
+#include "app/desktop/panels/twin_panel.h"
 #include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/widgets.h"
@@ -123,23 +124,28 @@ ViewScene Frame::view_scene() {
   if (const PlayedSession* session = desktop_.playback().shown()) {
     scene.recorded = true;
     scene.rerun = session->rerun_row();
+    scene.twin = session->twin_row();
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
+  if (!scene.recorded) scene.twin = desktop_.desk().twin_row();
+  if (!scene.twin.empty()) scene.names = desktop_.shown().names();
   return scene;
 }
 
 void Frame::draw_view(ScreenRect rect) {
   Camera& camera = desktop_.camera();
-  const ImVec2 size = rect.size();
-  const bool resized = camera.width() != static_cast<double>(size.x) ||
-                       camera.height() != static_cast<double>(size.y);
-  if (resized && desktop_.automatic_view() && size.x >= 8 && size.y >= 8) {
-    camera.resize(size.x, size.y);
+  const ViewScene scene = view_scene();
+  const float width = scene.twin.empty() ? rect.width() : rect.width() / 2;
+  constexpr double kApart = 2;  // between the halves of a twin, and rounding [px]
+  const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
+                       std::abs(camera.height() - static_cast<double>(rect.height())) > kApart;
+  if (resized && desktop_.automatic_view() && width >= 8 && rect.height() >= 8) {
+    camera.resize(width, rect.height());
     desktop_.reset_view();
     camera.finish();
   }
-  if (view_.draw(view_scene(), camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
+  if (view_.draw(scene, camera, desktop_.desk().controls(), desktop_.settings(), rect)) {
     desktop_.keep_view();
   }
 }
@@ -158,18 +164,26 @@ void Frame::draw_coupling(ScreenRect rect) {
   const Stage& shown = desktop_.shown();
   const TraceChannels& channels = shown.channels();
   const RowLayout& layout = channels.layout();
-  const auto at = [&](Column c) { return layout.in(desktop_.row(), c)[0]; };
+  const std::span<const double> twin = desktop_.twin_row();
+  const bool of_twin = desktop_.edits_twin() && !twin.empty();
+  const std::span<const double> row = of_twin ? twin : desktop_.row();
+  const auto at = [&](Column c) { return layout.in(row, c)[0]; };
   CouplingReading now{shown.energy,
                       {},
                       at(Column::energy_ledger),
                       at(Column::governor),
                       at(Column::damping_governor)};
   for (int j = 0; j < layout.dof(); ++j) {
-    if (channels.limited(desktop_.row(), j)) now.limited.push_back(j);
+    if (channels.limited(row, j)) now.limited.push_back(j);
   }
   const bool real = desktop_.desk().loop().device_in_place();
-  coupling_.draw(desktop_.settings().parameters, desktop_.analysis(), now,
-                 real ? nullptr : &shown.arm(), rect);
+  begin_panel("coupling", rect);
+  if (!twin.empty()) {
+    TwinSettings& settings = desktop_.settings().twin;
+    draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited);
+  }
+  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, real ? nullptr : &shown.arm());
+  ImGui::End();
 }
 
 // Scene, hand, device, analysis and timing.

@@ -96,6 +96,9 @@ void session_menu(Desktop& d, const Act& act) {
   Playback& playback = d.playback();
   item(d.desk().recording() ? "Stop recording" : "Record", "R", Action::toggle_recording, act);
   item("Play or pause", "P", Action::toggle_playing, act);
+  if (ImGui::MenuItem("Twin: two couplings on one hand", "B", d.settings().twin.on)) {
+    act(Action::toggle_twin);
+  }
   item("Re-run under present settings", "E", Action::rerun, act, playback.on());
   if (ImGui::MenuItem("Write as table (CSV)", nullptr, false,
                       playback.on() && !playback.exporting())) {

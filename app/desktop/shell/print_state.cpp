@@ -7,6 +7,18 @@
 
 namespace limpid {
 
+namespace {
+
+// |x_E| of the twin, 0 without one [rad].
+double twin_error(const Desktop& d) {
+  const TraceChannels& channels = d.shown().channels();
+  std::vector<double> values(static_cast<std::size_t>(channels.count()));
+  if (!d.twin_row().empty()) channels.values(d.twin_row(), values);
+  return values[static_cast<std::size_t>(Channel::error)];
+}
+
+}  // namespace
+
 void print_state(Desktop& d, int width, int height) {
   const Parameters& p = d.settings().parameters;
   const Desk& desk = d.desk();
@@ -31,7 +43,8 @@ void print_state(Desktop& d, int width, int height) {
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
-      "\"typing\": {}, \"notices\": {}, \"size\": [{}, {}]}}\n",
+      "\"typing\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": {:.6f}, \"size\": [{}, "
+      "{}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -42,7 +55,7 @@ void print_state(Desktop& d, int width, int height) {
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      notices.dump(), width, height);
+      notices.dump(), !d.twin_row().empty(), twin_error(d), width, height);
   std::fflush(stdout);
 }
 

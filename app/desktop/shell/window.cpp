@@ -17,7 +17,6 @@
 #include "app/desktop/shell/icon.h"
 #include "app/desktop/shell/pacing.h"
 #include "app/style/imgui_gl.h"
-#include "app/style/theme.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 

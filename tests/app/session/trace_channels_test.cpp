@@ -69,7 +69,7 @@ TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
 TEST(TraceChannels, AreToldApartByTheirColours) {
   const TraceChannels channels{RowLayout(7)};
   for (const Palette* palette : {&kDarkPalette, &kLightPalette}) {
-    for (const PlotSpec& plot : channels.plots(true)) {
+    for (const PlotSpec& plot : channels.plots({"", "re-run"})) {
       std::vector<Rgb> seen;
       for (const Curve& curve : plot.curves) {
         const Rgb rgb = ink(*palette, curve.ink, curve.shade);
@@ -87,7 +87,7 @@ TEST(TraceChannels, AreToldApartByTheirColours) {
 TEST_P(TraceChannelsOfJoints, ArePlottedOnlyWhereTheyExist) {
   const TraceChannels channels{RowLayout(GetParam())};
   for (const bool rerun : {false, true}) {
-    const auto plots = channels.plots(rerun);
+    const auto plots = channels.plots(rerun ? RunNames{"", "re-run"} : RunNames{});
     ASSERT_EQ(plots.size(), 3u);
     for (const PlotSpec& plot : plots) {
       EXPECT_FALSE(plot.title.empty());
