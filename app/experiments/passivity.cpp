@@ -201,7 +201,8 @@ Figure draw(const Runs& runs) {
   zero.title = "Commanded, where it changes sign";
   for (std::size_t i = 0; i < runs.compared(); ++i) {
     const bool standard = runs.cases[i].kind == CouplingKind::standard;
-    const char* color = standard ? kStandardInk : kFamilyInk[i];
+    const bool predictive = runs.cases[i].kind == CouplingKind::predictive;
+    const char* color = standard ? kStandardInk : predictive ? kPredictiveInk : kFamilyInk[i];
     add_case(total, runs.cases[i], color, runs.of(i), &Books::total);
     add_case(commanded, runs.cases[i], color, runs.of(i), &Books::commanded);
   }

@@ -33,7 +33,8 @@ bool TraceChannels::limited(std::span<const double> row, int joint) const {
   if (j >= limits_.size()) return false;
   const double given = std::abs(layout_.in(row, Column::motor_torque)[j]);
   const double asked = std::abs(layout_.in(row, Column::commanded_torque)[j]);
-  return given >= limits_[j] * (1 - 1e-9) && asked > given;
+  // A law that knows the limit asks for no more than that.
+  return given >= limits_[j] * (1 - 1e-9) && asked >= given * (1 - 1e-9);
 }
 
 void TraceChannels::values(std::span<const double> row, std::span<double> into) const {

@@ -22,7 +22,7 @@ enum class Channel : std::uint8_t {
   human,           // |f1| [N m]
   human_estimate,  // |f1_hat|
   contact,         // |f2|
-  limited,         // 1 while a motor gives all it can and is asked for more, else 0
+  limited,         // 1 while a motor gives all it can, else 0
   joints,          // x_E of each joint [rad]
 };
 
@@ -44,7 +44,7 @@ class TraceChannels {
 
   // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
-  // Whether the motor of a joint gives all it can in this row, and is asked for more.
+  // Whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 
   int count() const { return static_cast<int>(Channel::joints) + layout_.dof(); }

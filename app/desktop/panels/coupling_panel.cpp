@@ -156,9 +156,11 @@ void draw_ledger(const CouplingReading& now) {
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.
 void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
   const bool at_fault = info(p.kind).observes && (!a.passive || p.eta < a.eta_min_grip);
+  // A law with a ledger promises another thing: what the ledger says.
+  const bool judged = !info(p.kind).keeps_ledger;
   const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =
-      own > kGiven
+      judged && own > kGiven
           ? fmt::format(
                 "The coupling has given {} more than it took: it is not passive in this "
                 "grip.\nRaise \xCE\xB7, lower the observer's gain, or take the predictive law.",
