@@ -57,9 +57,9 @@ class SteadyPicture : public testing::Test {
 
   // A moment of a motion in which everything shows up by turns.
   void move(int step) {
-    const double t = 0.17 * step;
-    state_.proxy = pose_of(arm_, 0.3 * std::sin(t), 0.5 * std::cos(2 * t));
-    state_.device = pose_of(arm_, 0.3 * std::sin(t) + 0.05, 0.5 * std::cos(2 * t) + 0.1);
+    const double t = 0.9 * step;
+    state_.proxy = pose_of(arm_, 0.9 * std::sin(t), 0.5 * std::cos(2 * t));
+    state_.device = pose_of(arm_, 0.9 * std::sin(t) + 0.05, 0.5 * std::cos(2 * t) + 0.1);
     state_.show_ghost = step % 5 != 4;
     state_.contacts.clear();
     if (step % 3 == 0)
