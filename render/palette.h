@@ -19,6 +19,6 @@ inline constexpr Rgb kHand = from_hex(0x009E73);     // green
 inline constexpr Rgb kContact = from_hex(0xD55E00);  // vermilion
 inline constexpr Rgb kSticks = from_hex(0xCC79A7);   // purple
 inline constexpr Rgb kSlips = from_hex(0xF0E442);    // yellow
-inline constexpr Rgb kRerun = from_hex(0x56B4E9);    // sky blue
+inline constexpr Rgb kRerun = from_hex(0xF0E442);    // yellow, as in the plots
 
 }  // namespace limpid::palette

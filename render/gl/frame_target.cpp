@@ -20,7 +20,7 @@ void picture_texture(GLuint texture, int width, int height) {
 }  // namespace
 
 FrameTarget::FrameTarget(const std::filesystem::path& shaders)
-    : smooth_(shaders, "backdrop", "finish") {}
+    : smooth_(shaders, "backdrop", "finish"), scaled_(shaders, "backdrop", "finish", "SCALED 1") {}
 
 void FrameTarget::allocate() {
   Buffers& b = buffers_.emplace();
@@ -105,9 +105,10 @@ void FrameTarget::soften(const Area& to, const Area& changed) {
 void FrameTarget::show(GLuint picture, const Area& to) const {
   glViewport(to.x, to.y, to.width, to.height);
   glDisable(GL_DEPTH_TEST);
-  smooth_.use();
-  smooth_.set("picture", 0);
-  smooth_.set("place", glm::vec4(to.x, to.y, to.width, to.height));
+  const ShaderProgram& program = to.width == width_ ? smooth_ : scaled_;
+  program.use();
+  program.set("picture", 0);
+  program.set("place", glm::vec4(to.x, to.y, to.width, to.height));
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, picture);
   glBindVertexArray(no_vertices_);

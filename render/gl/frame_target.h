@@ -40,7 +40,7 @@ class FrameTarget {
   void soften(const Area& to, const Area& changed);
   void show(GLuint picture, const Area& to) const;
 
-  ShaderProgram smooth_;
+  ShaderProgram smooth_, scaled_;
   GlVertexArray no_vertices_;
   std::optional<Buffers> buffers_;
   int width_ = 0, height_ = 0, samples_ = 0;

@@ -15,7 +15,7 @@ constexpr double kLeastGap = 1e-5;                  // [m]
 constexpr double kTellable = 0.3, kLargest = 40;    // of a gap in the picture [points]
 constexpr double kMoment = 0.7;                     // that a lens stays without need [s]
 constexpr float kShare = 0.42f, kMostWide = 0.36f;  // of the view's height and width
-constexpr float kLeast = 110;                       // edge that is worth it, at scale 1 [points]
+constexpr float kLeast = 64;                        // edge that is worth it, at scale 1 [points]
 
 bool seen(const ViewState& state) {
   return !state.device.links.empty() && !state.proxy.links.empty() &&

@@ -39,7 +39,11 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
     if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
     const auto pixel = camera.project(point);
-    if (pixel && !(lens && lens->contains(at(rect, *pixel)))) {
+    const auto hidden = [&](float along) {
+      const ImVec2 place = at(rect, *pixel);
+      return lens && lens->contains({place.x + along, place.y + 0.5f * em});
+    };
+    if (pixel && !hidden(0) && !hidden(3 * em)) {
       list.AddText(small, em, at(rect, *pixel), colour(colours.muted, 0.9f),
                    fmt::format("{} cm", cm).c_str());
     }

@@ -56,6 +56,7 @@ const Case kCases[] = {
     {"E", GLFW_KEY_E, 0, Action::none, Action::rerun},
     {"X", GLFW_KEY_X, 0, Action::freeze_plots, Action::freeze_plots},
     {"G", GLFW_KEY_G, 0, Action::toggle_ghost, Action::toggle_ghost},
+    {"M", GLFW_KEY_M, 0, Action::toggle_lens, Action::toggle_lens},
     {"F1", GLFW_KEY_F1, 0, Action::toggle_help, Action::toggle_help},
     {"?", GLFW_KEY_SLASH, kShift, Action::toggle_help, Action::toggle_help},
     {"F2", GLFW_KEY_F2, 0, Action::toggle_left, Action::toggle_left},
