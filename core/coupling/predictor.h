@@ -76,6 +76,10 @@ class Predictor {
     sent_.fill(zero);
     active_ = 0;
   }
+  // The first reading: from here on the device is where the encoders say [rad].
+  void begin_at(const Vec<N>& y) {
+    for (Track& t : tracks_) t.x = t.x_ahead = t.x_met = y;
+  }
 
   // A reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; inside a cell
   // an encoder says nothing.
