@@ -124,7 +124,6 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   const Vec<N> zero = Vec<N>::Zero(at.x1.size());
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
-  ledger_.start(at.x1);
   y_ = at.x1;
   acted_ = slip_ = tau1_ = zero;
   elapsed_ = 0;
@@ -137,6 +136,9 @@ Whereabouts<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<
   if (elapsed_ > 0) {
     slip_ = in.x1 - y_ - elapsed_ * predictor_.w();
     predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step).p, both_);
+  } else {  // the first reading, maybe not quite where the device is
+    predictor_.begin_at(in.x1);
+    ledger_.start(in.x1);
   }
   y_ = in.x1;
   return {predictor_.x_now(), predictor_.v_now()};

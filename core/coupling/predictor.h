@@ -67,14 +67,18 @@ struct PredictorSettings {
 template <int N>
 class Predictor {
  public:
-  static constexpr int kMostDelay = 20;
+  static constexpr std::size_t kMostDelay = 20;
 
   // Velocity and torque of the hand as they are [rad, rad/s, N m].
   void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
     tracks_.fill({x, v, zero, f, x, v, 0, zero, x, v});
-    pending_.fill(zero);
+    sent_.fill(zero);
     active_ = 0;
+  }
+  // The first reading: from here on the device is where the encoders say [rad].
+  void begin_at(const Vec<N>& y) {
+    for (Track& t : tracks_) t.x = t.x_ahead = t.x_met = y;
   }
 
   // A reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; inside a cell
@@ -121,7 +125,7 @@ class Predictor {
       t.x_met = t.x;
       t.v_met = t.v;
       for (int k = 0; k < delay; ++k) {
-        const Vec<N> w = mean_velocity(t, t.v_met, pending_[static_cast<std::size_t>(k)]);
+        const Vec<N> w = mean_velocity(t, t.v_met, under_way(k));
         if (k == 0) t.w = w;
         t.x_met += T * w;
         t.v_met = 2 * w - t.v_met;
@@ -138,19 +142,15 @@ class Predictor {
 
   // The torque as it leaves for the motors at the coming tick [N m].
   void applied(const Vec<N>& tau, bool both) {
-    if (delay_ > 0) {
-      for (int k = 1; k < delay_; ++k) {
-        pending_[static_cast<std::size_t>(k - 1)] = pending_[static_cast<std::size_t>(k)];
-      }
-      pending_[static_cast<std::size_t>(delay_ - 1)] = tau;
-      return;
-    }
+    newest_ = (newest_ + 1) % kMostDelay;
+    sent_[newest_] = tau;
+    if (delay_ > 0) return;
     for (std::size_t m = 0; m < (both ? 2 : 1); ++m) {
       tracks_[m].w = mean_velocity(tracks_[m], tracks_[m].v, tau);
     }
   }
   // The torque that acts over the coming tick, if `tau` is sent now [N m].
-  const Vec<N>& acting(const Vec<N>& tau) const { return delay_ > 0 ? pending_[0] : tau; }
+  const Vec<N>& acting(const Vec<N>& tau) const { return delay_ > 0 ? under_way(0) : tau; }
   // Mean velocity foretold for the tick that begins [rad/s].
   const Vec<N>& w() const { return active().w; }
 
@@ -173,9 +173,17 @@ class Predictor {
     return t.D0_inverse.solve((2 / T_ * (t.Mp * v) + t.f + tau).eval());
   }
 
+  // The torque that will act in so many ticks, not yet sent for the present one [N m].
+  const Vec<N>& under_way(int ahead) const {
+    const std::size_t back = static_cast<std::size_t>(delay_ - 1 - ahead);
+    return sent_[(newest_ + kMostDelay - back) % kMostDelay];
+  }
+
   std::array<Track, 2> tracks_;
   std::size_t active_ = 0;
-  std::array<Vec<N>, kMostDelay> pending_;  // torques under way, the next to act first [N m]
+  // All that were sent, in a ring: a delay may turn out to be another one [N m].
+  std::array<Vec<N>, kMostDelay> sent_;
+  std::size_t newest_ = 0;
   int delay_ = 0;
   double T_ = 0.001;
 };

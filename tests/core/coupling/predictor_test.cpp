@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <numbers>
+#include <vector>
 
 #include "tests/support/random_arm.h"
 
@@ -135,6 +136,22 @@ TEST_P(PredictorOfJoints, MeetsTheDeviceWhereItWillBeAfterAKnownDelay) {
       if (k >= 60) {
         ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9);
       }
+    }
+  }
+}
+
+TEST_P(PredictorOfJoints, KnowsWhatIsUnderWayWhenTheDelayTurnsOutToBeAnother) {
+  predictor_.start(device_.x, none(), none());
+  std::vector<Vector> sent(20, none());
+  for (const int delay : {0, 3, 1, 20, 0, 5, 2}) {
+    for (int k = 0; k < 7; ++k) {
+      predictor_.correct(device_.x, T, 0, 0, false);
+      predictor_.model(device_.M, device_.C, device_.b, J_, T, {0, 1, 0.2}, 0, delay);
+      sent.push_back(random_.vector(n(), 0.2));
+      const Vector acts = sent[sent.size() - 1 - static_cast<std::size_t>(delay)];
+      ASSERT_EQ(predictor_.acting(sent.back()), acts) << delay << ' ' << k;
+      predictor_.applied(sent.back(), false);
+      device_.step(acts);
     }
   }
 }

@@ -102,6 +102,29 @@ TEST(PredictiveTaps, BeyondTheMotorsLimitGiveNoEnergyAndDoNotBuzz) {
   }
 }
 
+TEST(PredictiveCoupling, KnowsOfTheDeviceWhatItsEncodersSay) {
+  const ArmDescription arm = test::omni();
+  Parameters p = predictive(0.3);
+  p.encoder_step = 1e-3;
+  p.hand_stiffness = p.hand_damping = 0;
+  RigStart start = rest_at(arm, kTable);
+  start.x1 = start.x2 = (start.x1 / p.encoder_step).array().round().matrix() * p.encoder_step;
+  const auto first = [&](double part) {
+    RigStart within = start;
+    within.x1.array() += part * p.encoder_step;
+    Rig rig(arm, table({600}));
+    rig.start(p, within);
+    Rows rows(rig.layout());
+    rig.step(p, {{kTable, 1}}, rows.add());
+    return rows;
+  };
+  const Rows middle = first(0), aside = first(0.4);
+  for (const Column c : {Column::measured_position, Column::commanded_torque, Column::proxy_torque,
+                         Column::contact_torque, Column::energy_ledger}) {
+    EXPECT_EQ(middle.vec(0, c), aside.vec(0, c)) << static_cast<int>(c);
+  }
+}
+
 // The first `planes` of a corner: a floor, a wall ahead, a wall to the left.
 Scene corner(int planes, const Material& material) {
   Scene scene;

@@ -175,13 +175,12 @@ class _Input:
 
 
 def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
-    """And the pair at the first row. A simulated device starts where it is, not where its encoders
-    say."""
+    """And the pair at the first row."""
     given = _Input(s["/device/measured_position"], s["/device/motor_torque"], gains(s),
                    s.number("device.encoder_step")[:, 0] / 2,
                    s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen,
                    np.zeros(len(s), dtype=bool))  # fmt: skip
-    start = (s[f"/{name}"][0] for name in ("device/position", "device/velocity",
+    start = (s[f"/{name}"][0] for name in ("device/measured_position", "device/velocity",
                                            "hand/torque_estimate"))  # fmt: skip
     return given, _Pair(*(np.tile(value, (2, 1)) for value in start), np.zeros(2))
 

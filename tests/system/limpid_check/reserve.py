@@ -133,8 +133,6 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
     rows, n, t = len(s), s.dof, s.tick
     y, eta = s["/device/measured_position"], s["/coupling/eta"]
     moved = np.diff(y, axis=0, prepend=y[:1])
-    if rows > 1:  # a simulated device starts where it is, not where its encoders say
-        moved[1] = y[1] - s["/device/position"][0]
     edge = 2 * np.pi * s.number("coupling.band")[:, 0]
     step = s.number("device.encoder_step")[:, 0]
     held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.torque_limit)
