@@ -79,8 +79,11 @@ std::vector<PlotSpec> TraceChannels::plots(const RunNames& names) const {
     const std::string& run = again ? names.second : names.first;
     result.label = run.empty() ? std::move(label) : run + " " + label;
     result.ink = again && !names.twin ? Ink::rerun : ink;
-    result.shade = again && names.twin ? shade - 0.45f : shade;
-    result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
+    result.shade = again && names.twin ? shade + 0.55f : shade;
+    // Two runs leave no room for what is seldom asked for; a click on the legend shows it.
+    result.visible =
+        !names.twin || (c != Channel::energy_commanded && c != Channel::human_estimate);
+    if (!names.twin) result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
     return result;
   };
   PlotSpec error{.title = "coordination error |x_E|",

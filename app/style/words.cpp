@@ -23,6 +23,10 @@ constexpr std::array kWords{
     std::pair{"ledger.energy", "Energy allowed E\xE2\x82\x80"},
     std::pair{"hand.stiffness", "Grip stiffness"},
     std::pair{"hand.damping", "Grip damping"},
+    std::pair{"hand.mass", "Hand mass"},
+    std::pair{"device.delay", "Device delay"},
+    std::pair{"model.delay", "Delay that is known"},
+    std::pair{"predictor.preset", "Predictor"},
     std::pair{"device.torque_limit", "Motors' largest torque"},
     std::pair{"device.damping", "Device damping b_d"},
     std::pair{"device.friction", "Device friction"},
@@ -43,7 +47,9 @@ const char* caption(const ParameterInfo& info) {
 }
 
 std::string with_unit(const ParameterInfo& info, double value) {
-  if (std::isnan(value)) return "arm's own";
+  if (std::isnan(value)) {
+    return std::string_view(info.key).starts_with("device.") ? "arm's own" : "automatic";
+  }
   const bool whole = std::holds_alternative<int Parameters::*>(info.field);
   std::string text = whole ? std::to_string(std::lround(value)) : three_digits(value);
   if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;

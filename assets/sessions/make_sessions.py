@@ -24,6 +24,7 @@ SCENES = {  # scene: hand, seconds recorded (0: a thumbnail only)
     "proximal": ("proximal", 4.4), "spheres": ("spheres", 4.2), "relief": ("relief", 4.6),
     "gears": ("gears", 4), "leaf": ("leaf", 5.2),
 }
+STIFF = {"spheres", "relief", "gears", "leaf"}  # with materials that ask for the predictive coupling
 SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
 PART = (300, 138)             # of the picture: its left upper corner
 
@@ -50,6 +51,10 @@ def make(program, scene, folder):
     print(f"-- {scene}", flush=True)
     world = ["--scene", f"assets/scenes/{scene}.toml", "--hand", f"assets/hands/{hand}.csv",
              "--eta", "0.6"]
+    if scene in STIFF:
+        world += ["--coupling", "predictive"]
+    if scene == "gears":  # a light hand: the teeth are of brass, and the motors of an Omni
+        world += ["--set", "hand.stiffness=100"]
     picture = folder / f"{scene}.png"
     limpid(program, *world, "--picture", picture)
     thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")

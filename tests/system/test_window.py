@@ -11,7 +11,7 @@ from window import WindowTest
 
 class Window(WindowTest):
     def test_a_person_drags_onto_the_table_switches_records_plays_and_reruns(self) -> None:
-        self.assertEqual(self.state()["kind"], 0, "a first start shows the standard coupling")
+        self.assertEqual(self.state()["kind"], 0, "the coupling that was left")
         self.press_onto_table()
         apart = self.wait("contact", lambda s: s["contact"] > 0.2)
         time.sleep(1.5)
@@ -79,6 +79,13 @@ class Window(WindowTest):
         self.start()
         self.assertEqual(len(list(sessions.glob("*.part"))), 0)
         self.assertEqual(len(list(sessions.glob("*.h5"))), 1)
+
+
+class FirstStart(WindowTest):
+    LAW = None
+
+    def test_has_the_coupling_that_feels_best_and_stays_passive(self) -> None:
+        self.assertEqual(self.state()["kind"], 2)
 
 
 if __name__ == "__main__":

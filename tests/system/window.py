@@ -20,13 +20,15 @@ class WindowTest(unittest.TestCase):
     """One window for all of a test; its state comes as a line of JSON ten times a second."""
 
     SIZE = (WIDTH, HEIGHT)  # of the window, as it was left the last time
+    LAW = "standard"        # the coupling, likewise; none: a first start's
 
     def setUp(self) -> None:
         self.home = Path(tempfile.mkdtemp(prefix="limpid-window-"))
         self.addCleanup(shutil.rmtree, self.home, ignore_errors=True)
         settings = self.home / "config/limpid/settings.toml"
         settings.parent.mkdir(parents=True)
-        settings.write_text(f"[window]\nwidth = {self.SIZE[0]}\nheight = {self.SIZE[1]}\n")
+        settings.write_text(f"[window]\nwidth = {self.SIZE[0]}\nheight = {self.SIZE[1]}\n"
+                            + (f'[parameters]\ncoupling.kind = "{self.LAW}"\n' if self.LAW else ""))
         read, write = os.pipe()
         self.xvfb = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1600x900x24", "-nolisten", "tcp",

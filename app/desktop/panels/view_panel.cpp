@@ -212,6 +212,8 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   list.PushClipRect(right.min, right.max);
   draw_gap(twin, camera, right, list);
   list.PopClipRect();
+  list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+                     colour(current_palette().border));
   draw_name(scene.names.first, *drawn_, list);
   draw_name(scene.names.second, right, list);
 }

@@ -1,5 +1,7 @@
 #include "app/desktop/shell/icon.h"
 
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,6 +56,17 @@ std::vector<std::uint8_t> icon(int size) {
     }
   }
   return pixels;
+}
+
+void set_icon(GLFWwindow* window) {
+  std::array<std::vector<std::uint8_t>, 3> pixels;
+  std::array<GLFWimage, 3> images{};
+  int size = 16;
+  for (std::size_t i = 0; i < pixels.size(); ++i, size *= 2) {
+    pixels[i] = icon(size);
+    images[i] = {size, size, pixels[i].data()};
+  }
+  glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
 }
 
 }  // namespace limpid

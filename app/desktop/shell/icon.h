@@ -4,9 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+struct GLFWwindow;
+
 namespace limpid {
 
 // `size` x `size` pixels of RGBA, from the upper left corner, not multiplied by their opacity.
 std::vector<std::uint8_t> icon(int size);
+// Gives it to the window, in several sizes.
+void set_icon(GLFWwindow* window);
 
 }  // namespace limpid

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -111,17 +110,6 @@ struct Window::Impl {
 void Window::touched(GLFWwindow* window) { Impl::of(window).liveliness.touch(SteadyClock::now()); }
 
 namespace {
-
-void set_icon(GLFWwindow* window) {
-  std::array<std::vector<std::uint8_t>, 3> pixels;
-  std::array<GLFWimage, 3> images{};
-  int size = 16;
-  for (std::size_t i = 0; i < pixels.size(); ++i, size *= 2) {
-    pixels[i] = icon(size);
-    images[i] = {size, size, pixels[i].data()};
-  }
-  glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
-}
 
 // Throws std::runtime_error where there is none to be had.
 GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {

@@ -1,0 +1,82 @@
+"""Two runs on one hand: from the command line, and in the window."""
+
+import unittest
+
+import h5py
+import numpy
+
+from support import WithAnArm, limpid
+from window import WindowTest
+
+
+class Headless(WithAnArm):
+    def test_standard_drifts_beside_the_chosen_law_on_one_hand(self) -> None:
+        out = self.record(*self.arm, "--coupling", "predictive", "--twin")
+        with h5py.File(out) as file:
+            self.assertEqual(set(file["coupling/kind"][...]), {2})
+            self.assertEqual(set(file["twin/coupling/kind"][...]), {0})
+            numpy.testing.assert_array_equal(file["hand/target"], file["twin/hand/target"])
+
+            def error(run: h5py.Group) -> float:
+                apart = run["device/position"][...] - run["proxy/position"][...]
+                return numpy.linalg.norm(apart, axis=1).max()
+
+            self.assertGreater(error(file["twin"]), 20 * error(file))
+            self.assertIn("standard", file["twin"].attrs["config"])
+        said = limpid("info", out).out
+        self.assertIn("two runs on one hand", said)
+        table = self.out(".csv")
+        self.assertEqual(limpid("info", out, "--csv", table).status, 0)
+        self.assertIn("twin_device_position_1_rad", table.open().readline())
+
+    def test_any_pair_comes_again_bit_for_bit(self) -> None:
+        first = self.record(*self.arm, "--coupling", "predictive", "--twin", "coupling.eta=0.3",
+                            "coupling.band=4")
+        again = self.record("--hand", first)
+        with h5py.File(first) as a, h5py.File(again) as b:
+            for name in ("device/position", "proxy/contact_torque", "energy/port"):
+                for run in ("", "twin/"):
+                    numpy.testing.assert_array_equal(a[run + name], b[run + name])
+            self.assertEqual(set(b["twin/coupling/eta"][...]), {0.3})
+
+    def test_what_is_no_setting_is_refused_before_anything_is_written(self) -> None:
+        for wrong in ("coupling.etta=1", "coupling.eta=-1", "loop.tick=0.002"):
+            with self.subTest(wrong):
+                out = self.out()
+                result = limpid("run", *self.arm, "--twin", wrong, "--record", out)
+                self.assertEqual(result.status, 2, result)
+                self.assertFalse(out.exists() or self.part(out).exists())
+
+
+class Window(WindowTest):
+    LAW = "predictive"
+
+    def test_b_sets_two_couplings_beside_each_other_and_records_both(self) -> None:
+        self.assertFalse(self.state()["twin"])
+        self.key("b")
+        self.wait("the twin", lambda s: s["twin"])
+        x, y = 480, 315  # the tip, in the left half
+        self.move(x, y)
+        self.xdotool("mousedown", "1")
+        self.wait("the hand to hold", lambda s: s["grip"] == 1)
+        self.key("r")
+        for step in range(60):
+            self.move(x, y + 3 * step)
+        pressed = self.wait("standard to drift",
+                            lambda s: s["twin_error"] > 0.01 and s["error"] < 1e-3)
+        self.assertGreater(pressed["contact"], 0)
+        self.key("b")
+        self.wait_for_notice("Stop the recording")
+        self.key("r")
+        self.wait("the end", lambda s: not s["recording"])
+        self.xdotool("mouseup", "1")
+        session = max((self.home / "data/limpid/sessions").glob("*.h5"))
+        with h5py.File(session) as file:
+            self.assertEqual(len(file["twin/time"]), len(file["time"]))
+        self.check_rerun_is_the_same(session)
+        self.key("p")
+        self.wait("playback of both", lambda s: s["playing"] and s["twin"])
+
+
+if __name__ == "__main__":
+    unittest.main()
