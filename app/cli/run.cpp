@@ -190,7 +190,11 @@ Command declare_run(CLI::App& app) {
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
   command
       ->add_option_function<std::vector<std::string>>(
-          "--twin", [options](const auto& settings) { options->twin = settings; },
+          "--twin",
+          [options](const auto& settings) {
+            options->twin = settings;
+            std::erase(*options->twin, "");  // of --twin alone
+          },
           "a second run on the same hand beside this one: with the standard coupling, or with "
           "these "
           "settings changed")

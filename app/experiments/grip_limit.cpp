@@ -1,6 +1,8 @@
 #include "app/experiments/grip_limit.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "core/math/eigen.h"
 
 namespace limpid {
 namespace {
@@ -25,7 +27,7 @@ bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parame
   A.block(3 * n, 0, n, n) = spring * I;
   A.block(3 * n, n, n, n) = drag * I;
   A.block(3 * n, 3 * n, n, n) = -spring * I;
-  const Eigen::VectorXcd poles = A.eigenvalues();
+  const Eigen::VectorXcd poles = eigenvalues(A);
   return poles.real().maxCoeff() < 1e-9 * poles.cwiseAbs().maxCoeff();
 }
 

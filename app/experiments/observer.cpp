@@ -1,7 +1,6 @@
 // Section 3.1: how fast the human force observer is, for every gain.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include "app/experiments/harmonics.h"
 #include "app/experiments/observer_response.h"
 #include "app/experiments/series.h"
+#include "core/math/eigen.h"
 
 namespace limpid {
 namespace {
@@ -44,8 +44,8 @@ struct Modes {
 
 Modes modes_of(const ArmDescription& arm) {
   const Eigen::MatrixXd M = inertia_at(arm, rest_at(arm, start()).x1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(M);
-  return {solved.eigenvalues(), solved.eigenvectors()};
+  const SymmetricEigen solved = symmetric_eigen(M);
+  return {solved.values, solved.vectors};
 }
 
 std::size_t ticks(double seconds) {

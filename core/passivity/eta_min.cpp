@@ -1,8 +1,10 @@
 #include "core/passivity/eta_min.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "core/math/eigen.h"
 
 namespace limpid {
 
@@ -30,11 +32,11 @@ double eta_min_grip(const LockedMode& mode, double k_h, double b_h) {
 
 std::vector<LockedMode> locked_modes(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b,
                                      double alpha) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(M_L);
+  const SymmetricEigen modes = symmetric_eigen(M_L);
   std::vector<LockedMode> result;
   for (Eigen::Index i = 0; i < M_L.rows(); ++i) {
-    const auto u = modes.eigenvectors().col(i);
-    result.push_back({modes.eigenvalues()[i], u.dot(b.cwiseProduct(u)), alpha});
+    const auto u = modes.vectors.col(i);
+    result.push_back({modes.values[i], u.dot(b.cwiseProduct(u)), alpha});
   }
   return result;
 }
@@ -54,7 +56,7 @@ Eigen::VectorXcd grip_poles(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b
   A.block(2 * n, 0, n, n) = -alpha * M_inverse * K_h;
   A.block(2 * n, n, n, n) = -alpha * M_inverse * B_h;
   A.block(2 * n, 2 * n, n, n) = -alpha * M_inverse;
-  return A.eigenvalues();
+  return eigenvalues(A);
 }
 
 double eta_min_grip(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b, double alpha,

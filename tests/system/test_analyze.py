@@ -121,6 +121,23 @@ class Analyze(SystemTest):
             self.assert_close(w_f / w_c, 0.035 / b)
         self.assert_close(found["eta_min"], 0.035 / (0.035 + b))
 
+    def test_the_tip_has_the_walls_and_the_weight_that_theory_gives_it(self) -> None:
+        for eta, tick in ((1.0, 1e-3), (0.4, 5e-4)):
+            with self.subTest(eta=eta, tick=tick):
+                tip = self.analyze("--set", f"coupling.eta={eta}", "--set", f"loop.tick={tick}")["tip"]
+                damping, mass = tip["damping"], tip["mass"]
+                self.assert_close(tip["every_hand"], 2 * damping / tick)
+                lever2 = 0.012 / damping  # every joint of the built-in arm has 0.012 N m s/rad
+                b = (0.012 + 0.012 + 10 * tick / 2) / lever2 + 2
+                self.assert_close(tip["proposed"]["wall"], eta * b / (tick / 2 + 0.012 / 10))
+                self.assert_close(tip["standard"]["wall"], 10 / lever2)
+                self.assertGreater(tip["predictive"]["wall"], 10000)
+                felt = dict(zip(tip["frequency"], tip["predictive"]["felt_mass"]))
+                self.assertAlmostEqual(felt[2], eta * mass, delta=0.03 * mass)
+                least = max(0, 1 - eta) * mass * 2 * math.pi * 5.3
+                self.assert_close(tip["least_damping"], least)
+                self.assertGreaterEqual(min(tip["predictive"]["felt_damping"][:3]), least)
+
     def test_without_json_it_speaks_to_people(self) -> None:
         result = limpid("analyze")
         self.assertEqual(result.status, 0, result.err)

@@ -49,8 +49,8 @@ TEST(TipLimits, OfThePapersLawsAreItsSpringAndItsLag) {
 TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
   Scene scene;
   EXPECT_EQ(limits({}, scene).scene, 0);
-  scene.planes.push_back({.material = {.stiffness = 600}});
-  scene.spheres.push_back({.material = {.stiffness = 5000}});
+  scene.planes.emplace_back().material.stiffness = 600;
+  scene.spheres.emplace_back().material.stiffness = 5000;
   EXPECT_EQ(limits({}, scene).scene, 5000);
 }
 

@@ -399,11 +399,35 @@ TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   const History& history = desktop->desk().stage().history;
   const int kind = static_cast<int>(Channel::kind);
   SampleIndex first = history.end() - 1;
-  while (first > history.first() && history.value(kind, first - 1) > 0.5f) --first;
+  const float now = history.value(kind, first);
+  while (first > history.first() && history.value(kind, first - 1) == now) --first;
   ASSERT_FALSE(history.marks().empty());
   const Mark& mark = history.marks().back();
   EXPECT_EQ(mark.key, "coupling.kind");
   EXPECT_NEAR(mark.time, history.time(first), 0.05);
+}
+
+TEST_F(ADesktop, RunsATwinWhoseSettingsAreItsOwnAndWhoseWorldIsNot) {
+  frames(5);
+  desktop->toggle_twin();
+  frames(20);
+  EXPECT_FALSE(desktop->twin_row().empty());
+  TwinSettings& twin = desktop->settings().twin;
+  EXPECT_NE(twin.parameters.kind, desktop->settings().parameters.kind);
+  twin.edited = true;
+  EXPECT_EQ(&desktop->edited(), &twin.parameters);
+  const CouplingKind first = desktop->settings().parameters.kind;
+  desktop->toggle_coupling();  // of the twin
+  EXPECT_EQ(desktop->settings().parameters.kind, first);
+  desktop->settings().parameters.hand_stiffness = 432;
+  frames(20);
+  EXPECT_EQ(twin.parameters.hand_stiffness, 432);
+  EXPECT_EQ(desktop->desk().stage().names().second, name(twin.parameters.kind));
+  desktop->toggle_twin();
+  frames(20);
+  EXPECT_TRUE(desktop->twin_row().empty());
+  EXPECT_EQ(&desktop->edited(), &desktop->settings().parameters);
+  EXPECT_TRUE(desktop->desk().stage().names().second.empty());
 }
 
 TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {

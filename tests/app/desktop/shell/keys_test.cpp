@@ -32,6 +32,7 @@ const Case kCases[] = {
     {"3", GLFW_KEY_3, 0, Action::top_view, Action::top_view},
     {"0", GLFW_KEY_0, 0, Action::reset_camera, Action::reset_camera},
     {"C", GLFW_KEY_C, 0, Action::toggle_coupling, Action::toggle_coupling},
+    {"B", GLFW_KEY_B, 0, Action::toggle_twin, Action::toggle_twin},
     {"[", GLFW_KEY_LEFT_BRACKET, 0, Action::smaller_eta, Action::smaller_eta, true},
     {"]", GLFW_KEY_RIGHT_BRACKET, 0, Action::larger_eta, Action::larger_eta, true},
     {"Shift+[", GLFW_KEY_LEFT_BRACKET, kShift, Action::smaller_alpha, Action::smaller_alpha, true},

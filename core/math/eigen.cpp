@@ -1,0 +1,14 @@
+#include "core/math/eigen.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace limpid {
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
+
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(A);
+  return {solved.eigenvalues(), solved.eigenvectors()};
+}
+
+}  // namespace limpid

@@ -1,0 +1,18 @@
+// Eigenvalues of matrices of any size, compiled once: Eigen's solvers take seconds to compile.
+#pragma once
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+// Of a square matrix, in no order.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+
+// Of a symmetric matrix: values in rising order, and unit vectors, a column each.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
+
+}  // namespace limpid
