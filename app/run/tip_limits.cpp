@@ -12,15 +12,17 @@
 namespace limpid {
 namespace {
 
-// Where the predictive coupling was found to end, with the built-in arm: walls up to 20,000 N/m
-// were tried at 1 ms; a step of the encoder may change the wall's force by so much; a tick of delay
-// that it does not know of.
+// Where the predictive coupling was found to end, with the built-in arm (experiment zwidth): walls
+// up to 20,000 N/m were tried at 1 ms, at 2 ms they end at 3,500; a step of the encoder may change
+// the wall's force by so much, and be so much of a speed; hands heavier than expected leave half of
+// what theory does; a tick of delay that it does not know of.
 constexpr double kTried = 20000, kTriedTick = 0.001;        // [N/m], [s]
 constexpr double kFineStep = 0.11, kCoarseStep = 0.22;      // [N]
+constexpr double kFineSpeed = 0.3, kSoftest = 100;          // [rad/s], [N/m]
 constexpr double kCoarseWall = 2000, kUnknownDelay = 2000;  // [N/m]
 
 TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const Parameters& p) {
-  TipLimits::Wall wall{kTried * std::min(1.0, std::pow(kTriedTick / p.tick, 1.5)),
+  TipLimits::Wall wall{kTried * std::min(1.0, std::pow(kTriedTick / p.tick, 2.5)),
                        "the stiffest wall that was tried"};
   const auto bound = [&](double stiffness, std::string by) {
     if (stiffness < wall.stiffness) wall = {stiffness, std::move(by)};
@@ -32,8 +34,11 @@ TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const 
     bound(coarse ? std::min(kCoarseWall, kCoarseStep / at_tip) : kFineStep / at_tip,
           fmt::format("the encoder's step of {:.2g} rad, as measured with the built-in arm", q));
   }
+  if (q <= PredictorSettings::kCoarse && q > kFineSpeed * p.tick) {
+    bound(kSoftest, "the encoder's step, too coarse for so short a tick: see predictor.preset");
+  }
   if (p.hand_mass_at_tip > p.hand_mass) {
-    bound(mistaken_wall(l.tip, s), "a hand that is heavier than the predictor takes it for");
+    bound(mistaken_wall(l.tip, s) / 2, "a hand that is heavier than the predictor takes it for");
   }
   if (p.device_delay != p.delay) {
     bound(kUnknownDelay, "a delay that is not known, as measured: see model.delay");

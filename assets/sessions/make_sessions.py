@@ -54,7 +54,7 @@ def make(program, scene, folder):
     if scene in STIFF:
         world += ["--coupling", "predictive"]
     if scene == "gears":  # a light hand: the teeth are of brass, and the motors of an Omni
-        world += ["--set", "hand.stiffness=100"]
+        world += ["--set", "hand.stiffness=50"]
     picture = folder / f"{scene}.png"
     limpid(program, *world, "--picture", picture)
     thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
