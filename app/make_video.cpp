@@ -84,4 +84,9 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   return 0;
 }
 
+int make_story_video(const std::string& /*script*/, const VideoOptions& /*options*/,
+                     char** /*words*/) {
+  throw UsageError("--video: not yet");
+}
+
 }  // namespace limpid
