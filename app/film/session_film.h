@@ -6,8 +6,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/film/film_frame.h"
+#include "app/story/story.h"
 #include "app/video/video_file.h"
 #include "devices/files/session/session.h"
 
@@ -22,6 +24,7 @@ struct FilmOrder {
   std::optional<double> to = {};  // none: its end
   double speed = 1;               // of the session in the video, 0.01 to 100
   std::string title = {};         // at the right of the caption
+  std::vector<StoryStep> steps = {};  // of the story that was recorded; none: it is no story's
 };
 
 // Moments of a session, one for each picture of its video.

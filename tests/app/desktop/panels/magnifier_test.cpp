@@ -1,5 +1,7 @@
 #include "app/desktop/panels/magnifier.h"
 
+#include "app/desktop/base/picture_signs.h"
+
 #include <gtest/gtest.h>
 
 namespace limpid {
