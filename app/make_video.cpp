@@ -45,7 +45,6 @@ double megabytes(const fs::path& out) {
   return sum;
 }
 
-
 FilmOrder order_of(const VideoOptions& options, double text_scale) {
   return {.out = options.out,
           .force = options.force,

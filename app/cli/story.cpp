@@ -46,16 +46,13 @@ void print_numbers(const Story& story, const Session& session) {
 
 Told tell_with_progress(const Story& story) {
   catch_interrupts();
-  Progress progress({.title = "story",
-                     .whole = story.seconds(),
-                     .unit = "s",
-                     .rate = "times real time"});
+  Progress progress(
+      {.title = "story", .whole = story.seconds(), .unit = "s", .rate = "times real time"});
   return tell(story, interrupted, [&](double seconds) { progress.at(seconds); });
 }
 
 int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
-  const std::string script =
-      options.script.empty() ? default_story().string() : options.script;
+  const std::string script = options.script.empty() ? default_story().string() : options.script;
   if (!options.video.out.empty()) return make_video(script, options.video, 0);
   const Story story = read_story(script);
   if (options.check) {

@@ -21,9 +21,9 @@ struct FilmLook {
 };
 
 struct FilmCaption {
-  std::string time;   // "12.34 s"
-  std::string text;   // what is in force
-  std::string aside;  // at the right, if there is room
+  std::string time;       // "12.34 s"
+  std::string text;       // what is in force
+  std::string aside;      // at the right, if there is room
   std::string told = {};  // over the picture, in lines as they fit
 };
 

@@ -12,10 +12,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kWhole = 30;          // so much of a session the plots show at once [s]
-constexpr double kPart = 10;           // of a longer one
+constexpr double kWhole = 30;          // the plots show all of what is no longer than that [s]
+constexpr double kPart = 10;           // of what is longer
 constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
-constexpr double kCameraSlower = 3;  // than where somebody waits for it
+constexpr double kCameraSlower = 3;    // than where somebody waits for it
 constexpr double kBefore = 1.0;  // what came before the first picture leaves its trail in it [s]
 
 std::string law_text(const RowLayout& layout, std::span<const double> row) {
@@ -23,6 +23,19 @@ std::string law_text(const RowLayout& layout, std::span<const double> row) {
   const auto kind = static_cast<CouplingKind>(at(Column::kind));
   return fmt::format("{} coupling,  \u03b7 {:.2f},  \u03b1 {:.3g} N m s/rad", info(kind).key,
                      at(Column::eta), at(Column::alpha));
+}
+
+// So much of a session the plots show at once [s]; of a story all between one beginning and the
+// next.
+double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) {
+  double longest = 0, began = cut.from;
+  for (const StoryStep& step : steps) {
+    if (!step.anew || step.begins <= cut.from || step.begins >= cut.to) continue;
+    longest = std::max(longest, step.begins - began);
+    began = step.begins;
+  }
+  longest = std::max(longest, cut.to - began);
+  return longest <= kWhole ? longest : kPart;
 }
 
 // A session on its stage, played from one time to the next.
@@ -38,7 +51,7 @@ class Shown {
       : session_(session),
         order_(order),
         frame_(frame),
-        stage_(stage(session, where, cut)),
+        stage_(stage(session, where, cut, order.steps)),
         row_(index(cut.from)),
         seconds_(1.0 / cut.fps) {
     runs_.emplace_back(session, session_parameters(session, where));
@@ -82,10 +95,10 @@ class Shown {
     std::size_t next = 0;  // change
   };
 
-  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut) {
+  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut,
+                     const std::vector<StoryStep>& steps) {
     RunPlan world = replay(session, where, {});
-    const double length = cut.to - cut.from;
-    const double shown = length <= kWhole ? length : kPart;
+    const double shown = longest_stretch(steps, cut);
     History history({.channels = TraceChannels(session.layout).count() * (session.twin ? 2 : 1),
                      .seconds = shown + 1,
                      .tick = session.info.tick});
@@ -128,8 +141,20 @@ class Shown {
     }
     stage_.follow(runs_.front().parameters);
     if (!session_.twin || !order_.steps.empty()) return;
-    const auto names = twin_names(runs_[0].parameters, runs_[1].parameters);
+    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters));
+  }
+  // Of two runs the plots show what a sentence can say: no estimate, no second energy.
+  void name_runs(const std::array<std::string, 2>& names) {
     stage_.name_runs({names[0], names[1], true});
+    const int one = stage_.channels().count();
+    for (Plot& plot : stage_.plots) {
+      for (Curve& curve : plot.spec().curves) {
+        const auto channel = static_cast<Channel>(curve.channel % one);
+        if (channel == Channel::energy_commanded || channel == Channel::human_estimate) {
+          curve.visible = false;
+        }
+      }
+    }
   }
   double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
 
@@ -148,7 +173,8 @@ class Shown {
     camera_.look(aim.view);
     camera_.frame(aim.of.value_or(stage_.picture.bounds()));
     if (step == nullptr) return;
-    if (step->beside) stage_.name_runs({step->names[0], step->names[1], true});
+    if (step->anew) stage_.history.clear();
+    if (step->beside) name_runs(step->names);
     if (!step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
   }
 

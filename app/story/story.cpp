@@ -83,7 +83,8 @@ class Reader {
     file_.allow_only({"title", "device", "scene", "seconds", "step"});
     story_.title = short_text(file_, "title", file_.need(file_.text("title"), "title"));
     read_world();
-    const double end = file_.need(file_.number("seconds", {0, kLongestStory, true, "s"}), "seconds");
+    const double end =
+        file_.need(file_.number("seconds", {0, kLongestStory, true, "s"}), "seconds");
     const std::vector<TomlTable> steps = file_.tables("step");
     if (steps.empty()) file_.refuse_missing("step");
     StoryHand hand(story_.plan.arm, where_, folder_);
@@ -95,8 +96,7 @@ class Reader {
     }
     story_.plan.hand = hand.path();
     settings_.into(story_.plan);
-    story_.plan.rows =
-        static_cast<std::uint64_t>(std::llround(end / story_.plan.parameters.tick));
+    story_.plan.rows = static_cast<std::uint64_t>(std::llround(end / story_.plan.parameters.tick));
     return std::move(story_);
   }
 
@@ -120,7 +120,7 @@ class Reader {
 
   void read_step(const TomlTable& step, double begins, double ends) {
     step.allow_only({"time", "caption", "mark", "names", "hand", "set", "first", "twin", "beside",
-                     "camera"});
+                     "anew", "camera"});
     if (!(ends >= begins + kShortestStep)) {
       step.refuse("time", fmt::format("at least {} s before what comes next, which is at {} s",
                                       kShortestStep, ends));
@@ -133,6 +133,7 @@ class Reader {
     read.mark = short_text(step, "mark", step.text("mark").value_or(""));
     read.names = names_in(step, settings_);
     read.beside = flag_in(step, "beside", true);
+    read.anew = flag_in(step, "anew", false);
     read.camera = camera_in(step, where_);
   }
 
@@ -146,9 +147,8 @@ class Reader {
 }  // namespace
 
 const StoryStep& step_at(const std::vector<StoryStep>& steps, double time) {
-  const auto next = std::ranges::find_if(steps, [time](const StoryStep& step) {
-    return step.begins > time + 1e-9;
-  });
+  const auto next = std::ranges::find_if(
+      steps, [time](const StoryStep& step) { return step.begins > time + 1e-9; });
   return next == steps.begin() ? steps.front() : *(next - 1);
 }
 

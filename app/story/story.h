@@ -1,6 +1,6 @@
 // A script that plays itself: where the hand goes, which settings two runs on it have when, where
-// to look from, and a sentence for each step. Its file is TOML; assets/stories/README.md says how to
-// write one.
+// to look from, and a sentence for each step. Its file is TOML; assets/stories/README.md says how
+// to write one.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ struct StoryStep {
   std::string caption;          // a sentence
   std::string mark;             // in the plots where it begins; empty: none
   std::array<std::string, 2> names;
-  bool beside = true;                     // the second run is shown, too
+  bool beside = true;                      // the second run is shown, too
+  bool anew = false;                       // the plots begin anew
   std::optional<StoryCamera> camera = {};  // none: as in the step before
 };
 

@@ -63,9 +63,10 @@ void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
     const auto [t, x, y, z] = point_in(step, each);
     const std::uint32_t line = each.source().begin.line;
     if (!(t > before && begins + t < ends)) {
-      throw FileError(fmt::format(
-          "{}:{}: step.hand: {} s after {} s; allowed: increasing, and before the step ends at {} s",
-          where_, line, t, std::max(before, 0.0), ends - begins));
+      throw FileError(
+          fmt::format("{}:{}: step.hand: {} s after {} s; allowed: increasing, and before the step "
+                      "ends at {} s",
+                      where_, line, t, std::max(before, 0.0), ends - begins));
     }
     if (before < 0 && t > 0) {
       const Vec3 here = position_.empty() ? Vec3(x, y, z) : position_.back();
@@ -87,8 +88,9 @@ void StoryHand::read_file(const TomlTable& step, const std::string& file, double
 
 void StoryHand::add(double time, const Vec3& point, std::uint32_t line) {
   const auto refuse = [&](const std::string& why) {
-    throw FileError(fmt::format("{}:{}: step.hand: the point ({:.4f}, {:.4f}, {:.4f}) m at {:.3f} s {}",
-                                where_, line, point.x(), point.y(), point.z(), time, why));
+    throw FileError(
+        fmt::format("{}:{}: step.hand: the point ({:.4f}, {:.4f}, {:.4f}) m at {:.3f} s {}", where_,
+                    line, point.x(), point.y(), point.z(), time, why));
   };
   if (near_.size() == 0) near_ = rest_pose(arm_);
   auto x = inverse_kinematics(arm_, point, near_);

@@ -49,8 +49,8 @@ void check(const std::string& setting, std::size_t lane, double time) {
 
 void StorySettings::read(const TomlTable& step, const std::string& where, double time) {
   const std::array<Parameters, 2> before = now_;
-  for (const auto& [key, lane] : {std::pair{"set", kBoth}, {"first", kMainLane},
-                                  {"twin", kTwinLane}}) {
+  for (const auto& [key, lane] :
+       {std::pair{"set", kBoth}, {"first", kMainLane}, {"twin", kTwinLane}}) {
     for (const auto& [setting, line] : settings_in(step, key)) {
       try {
         check(setting, lane, time);

@@ -31,8 +31,7 @@ StepNumbers numbers(const StoryStep& step, const Session& run) {
     n.largest_contact =
         std::max(n.largest_contact, std::sqrt(square(run.at(k, Column::contact_torque))));
     human += square(run.layout.human_torque(run.row(k)));
-    const double risen =
-        run.at(k, Column::energy_total)[0] - run.at(from, Column::energy_total)[0];
+    const double risen = run.at(k, Column::energy_total)[0] - run.at(from, Column::energy_total)[0];
     n.energy_given = std::max(n.energy_given, risen);
   }
   if (to > from) n.rms_human = std::sqrt(human / static_cast<double>(to - from));

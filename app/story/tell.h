@@ -23,8 +23,7 @@ struct Told {
 
 // The same story gives the same rows, bit for bit, but for how long each tick took. `at` is told
 // the seconds that have been told.
-Told tell(const Story& story, const std::atomic<bool>& stop,
-          const std::function<void(double)>& at);
+Told tell(const Story& story, const std::atomic<bool>& stop, const std::function<void(double)>& at);
 
 // Of both runs, for each step that was told. `session` has a twin.
 std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,

@@ -31,7 +31,7 @@ void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, I
   const float em = face->FontSize, pad = 0.35f * em;
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
   const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
-                    picture.min.y + static_cast<float>(pixel->y()));
+                             picture.min.y + static_cast<float>(pixel->y()));
   const float left = std::min(tips.x + 1.6f * em, picture.max.x - size.x - 2 * pad);
   const ImVec2 place(left, tips.y - 2.2f * em);
   const Palette& colours = current_palette();

@@ -1,8 +1,8 @@
 #include "app/desktop/panels/magnifier.h"
 
-#include "app/desktop/base/picture_signs.h"
-
 #include <gtest/gtest.h>
+
+#include "app/desktop/base/picture_signs.h"
 
 namespace limpid {
 namespace {
