@@ -54,6 +54,10 @@ int main(int argc, char** argv) {
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);
+  commands["story"] =
+      declare_story(app, [argv](const std::string& script, const VideoOptions& options, double) {
+        return make_story_video(script, options, argv);
+      });
   const WindowCommands window = declare_window(
       app, [argv](const std::string& session, const VideoOptions& options, double text_scale) {
         return make_video(session, options, text_scale, argv);

@@ -10,6 +10,7 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/film/session_film.h"
+#include "app/story/tell.h"
 
 namespace limpid {
 namespace {
@@ -44,44 +45,71 @@ double megabytes(const fs::path& out) {
   return sum;
 }
 
-}  // namespace
+FilmOrder order_of(const VideoOptions& options, double text_scale) {
+  return {.out = options.out,
+          .force = options.force,
+          .look = look(options, text_scale),
+          .fps = options.fps,
+          .from = options.from,
+          .to = options.to,
+          .speed = options.speed};
+}
 
-int make_video(const std::string& file, const VideoOptions& options, double text_scale,
-               char** /*words*/) {
-  const FilmOrder order{.out = options.out,
-                        .force = options.force,
-                        .look = look(options, text_scale),
-                        .fps = options.fps,
-                        .from = options.from,
-                        .to = options.to,
-                        .speed = options.speed,
-                        .title = fs::path(file).stem().string()};
-  const Session session = read_session(file);
-  const FilmCut plan = cut(order, session, file);
-  catch_interrupts();
+int stopped(double at, double whole, const std::string& out) {
+  fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", at, whole, out);
+  return 1;
+}
+
+int make(const FilmOrder& order, const Session& session, const std::string& where,
+         bool print_progress) {
+  const FilmCut plan = cut(order, session, where);
   const auto began = std::chrono::steady_clock::now();
   FilmEnd end;
   {
     Progress progress(
         {.title = "video", .whole = plan.duration(), .unit = "s", .rate = "times real time"});
-    end = film(session, file, order, interrupted, [&](double part) {
+    end = film(session, where, order, interrupted, [&](double part) {
       progress.at(part * plan.duration());
-      if (options.print_progress) {
+      if (print_progress) {
         fmt::print("{:.3f}\n", part);
         std::fflush(stdout);
       }
     });
   }
-  if (end.stopped) {
-    fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", end.seconds,
-               plan.duration(), options.out);
-    return 1;
-  }
+  const std::string out = order.out.string();
+  if (end.stopped) return stopped(end.seconds, plan.duration(), out);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-  fmt::print("{}: {} pictures, {:.2f} s, {} x {}, {:.2f} MB, made in {:.1f} s\n", options.out,
-             plan.pictures(), plan.duration(), order.look.width, order.look.height,
-             megabytes(options.out), took.count());
+  fmt::print("{}: {} pictures, {:.2f} s, {} x {}, {:.2f} MB, made in {:.1f} s\n", out,
+             plan.pictures(), plan.duration(), order.look.width, order.look.height, megabytes(out),
+             took.count());
   return 0;
+}
+
+}  // namespace
+
+int make_video(const std::string& file, const VideoOptions& options, double text_scale,
+               char** /*words*/) {
+  FilmOrder order = order_of(options, text_scale);
+  order.title = fs::path(file).stem().string();
+  const Session session = read_session(file);
+  cut(order, session, file);
+  catch_interrupts();
+  return make(order, session, file, options.print_progress);
+}
+
+int make_story_video(const std::string& script, const VideoOptions& options, char** /*words*/) {
+  const Story story = read_story(script);
+  FilmOrder order = order_of(options, 0);
+  order.title = story.title;
+  order.steps = story.steps;
+  catch_interrupts();
+  Told told;
+  {
+    Progress progress({.title = "story", .whole = story.seconds(), .unit = "s", .rate = ""});
+    told = tell(story, interrupted, [&](double seconds) { progress.at(seconds); });
+  }
+  if (told.end.stopped) return stopped(0, story.seconds(), options.out);
+  return make(order, told.session, script, options.print_progress);
 }
 
 }  // namespace limpid

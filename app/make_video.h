@@ -9,5 +9,7 @@ namespace limpid {
 // As MakeVideo says; `words` are the command line, which limpid hands on to limpid-video.
 int make_video(const std::string& session, const VideoOptions& options, double text_scale,
                char** words);
+// The same of a story's script.
+int make_story_video(const std::string& script, const VideoOptions& options, char** words);
 
 }  // namespace limpid

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
 #include "app/style/picture_legend.h"
 
@@ -39,26 +40,82 @@ FilmFrame::Places FilmFrame::lay_out() const {
           .plots = {{0, height - plots}, {width, height}}};
 }
 
+ImVec2 FilmFrame::viewport(bool halves) const {
+  const ScreenRect picture = lay_out().picture;
+  return halves ? half_of(picture, false).size() : picture.size();
+}
+
 std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const Camera& camera,
-                                           const FilmCaption& caption, double elapsed) {
+                                           const FilmCaption& caption, double elapsed,
+                                           std::optional<ViewState> beside) {
   ImGui::GetIO().DeltaTime = static_cast<float>(elapsed);
   ImGuiGl::begin_frame();
   ImGui::NewFrame();
   const Places at = lay_out();
   view.theme = look_.theme;
+  if (beside) beside->theme = look_.theme;
   stage.draw_at(0);  // there is time
   stage.picture.set_pixel_scale(scale_);
-  stage.picture.draw(view, camera, 0, static_cast<int>(at.plots.height()), look_.width,
-                     static_cast<int>(at.picture.height()));
+  draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float em = font(Face::small)->FontSize;
   if (at.picture.height() > 10 * em) {
     draw_picture_legend(list, {0.9f * em, at.picture.min.y + 0.8f * em});
   }
   draw_caption(at.caption, caption);
+  if (!caption.told.empty()) draw_told(at.picture, caption.told);
   if (at.plots.height() > 0) draw_plots(at.plots, stage);
   ImGuiGl::render();
   return read_rgba(look_.width, look_.height);
+}
+
+void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
+                             const Camera& camera, const ViewState* beside) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto paint = [&](const ViewState& state, const ScreenRect& part, SceneView::Sheet sheet) {
+    stage.picture.draw(state, camera, static_cast<int>(part.min.x),
+                       look_.height - static_cast<int>(part.max.y), static_cast<int>(part.width()),
+                       static_cast<int>(part.height()), sheet);
+  };
+  if (beside == nullptr) return paint(view, rect, SceneView::Sheet::main);
+  const auto half = [&](const ViewState& state, bool right, const std::string& name) {
+    const ScreenRect part = half_of(rect, right);
+    paint(state, part, right ? SceneView::Sheet::beside : SceneView::Sheet::main);
+    Camera shown = camera;
+    shown.resize(part.width(), part.height());
+    list.PushClipRect(part.min, part.max);
+    draw_gap(state, shown, part, list);
+    draw_run_name(name, part, list);
+    list.PopClipRect();
+  };
+  half(view, false, stage.names().first);
+  half(*beside, true, stage.names().second);
+}
+
+// At the bottom of the picture, centred.
+void FilmFrame::draw_told(const ScreenRect& picture, const std::string& told) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  ImFont* face = font(Face::semibold);
+  const float size = std::round(1.2f * face->FontSize), pad = 0.6f * size;
+  const float room = 0.86f * picture.width();
+  std::vector<std::string> lines;
+  for (const char *at = told.c_str(), *end = at + told.size(); at < end;) {
+    const char* stop = face->CalcWordWrapPositionA(size / face->FontSize, at, end, room);
+    if (stop == at) ++stop;  // a word that is wider than the picture
+    lines.emplace_back(at, stop);
+    at = stop;
+    while (at < end && *at == ' ') ++at;
+  }
+  const float line = 1.25f * size;
+  float y = picture.max.y - pad - line * static_cast<float>(lines.size());
+  const Palette& colours = current_palette();
+  list.AddRectFilled({picture.min.x, y - pad}, picture.max, colour(colours.backdrop, 0.72f));
+  for (const std::string& text : lines) {
+    const float width = face->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
+    const ImVec2 at(std::round((picture.min.x + picture.max.x - width) / 2), std::round(y));
+    list.AddText(face, size, at, colour(colours.text), text.c_str());
+    y += line;
+  }
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {

@@ -1,10 +1,12 @@
 // One picture of a video: the 3D picture, the window's plots below it and a caption above.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/desktop/base/stage.h"
+#include "app/plot/plot_frame.h"
 #include "app/style/imgui_gl.h"
 #include "render/camera.h"
 #include "render/gl/offscreen.h"
@@ -19,9 +21,10 @@ struct FilmLook {
 };
 
 struct FilmCaption {
-  std::string time;   // "12.34 s"
-  std::string text;   // what is in force
-  std::string aside;  // at the right, if there is room
+  std::string time;       // "12.34 s"
+  std::string text;       // what is in force
+  std::string aside;      // at the right, if there is room
+  std::string told = {};  // over the picture, in lines as they fit
 };
 
 // Draws without a display, in an OpenGL context of its own: make it before the stages it draws, on
@@ -32,16 +35,23 @@ class FilmFrame {
   explicit FilmFrame(const FilmLook& look);
 
   // `view` in the stage's picture, and of its plots what its history holds by now, with a line at
-  // the newest row; `elapsed` since the last picture [s]. Four bytes a pixel, top row first.
+  // the newest row; `elapsed` since the last picture [s]. With a second run `beside` it, each has
+  // half of the picture and the name that the stage gives it. Four bytes a pixel, top row first.
   std::vector<unsigned char> draw(Stage& stage, ViewState view, const Camera& camera,
-                                  const FilmCaption& caption, double elapsed);
+                                  const FilmCaption& caption, double elapsed,
+                                  std::optional<ViewState> beside = {});
+  // The viewport that the camera should expect [px].
+  ImVec2 viewport(bool halves) const;
 
  private:
   struct Places {
     ScreenRect caption, picture, plots;
   };
   Places lay_out() const;
+  void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
+                    const Camera& camera, const ViewState* beside) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
+  void draw_told(const ScreenRect& picture, const std::string& told) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 
   FilmLook look_;

@@ -6,14 +6,16 @@
 #include <cmath>
 
 #include "app/run/replay.h"
+#include "app/run/twin_settings.h"
 #include "core/coupling/laws.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kWhole = 30;          // so much of a session the plots show at once [s]
-constexpr double kPart = 10;           // of a longer one
+constexpr double kWhole = 30;          // the plots show all of what is no longer than that [s]
+constexpr double kPart = 10;           // of what is longer
 constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
+constexpr double kCameraSlower = 3;    // than where somebody waits for it
 constexpr double kBefore = 1.0;  // what came before the first picture leaves its trail in it [s]
 
 std::string law_text(const RowLayout& layout, std::span<const double> row) {
@@ -23,36 +25,81 @@ std::string law_text(const RowLayout& layout, std::span<const double> row) {
                      at(Column::eta), at(Column::alpha));
 }
 
+// So much of a session the plots show at once [s]; of a story all between one beginning and the
+// next.
+double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) {
+  double longest = 0, began = cut.from;
+  for (const StoryStep& step : steps) {
+    if (!step.anew || step.begins <= cut.from || step.begins >= cut.to) continue;
+    longest = std::max(longest, step.begins - began);
+    began = step.begins;
+  }
+  longest = std::max(longest, cut.to - began);
+  return longest <= kWhole ? longest : kPart;
+}
+
 // A session on its stage, played from one time to the next.
 class Shown {
  public:
-  Shown(const Session& session, const std::string& where, const FilmCut& cut)
-      : session_(session), stage_(stage(session, where, cut)), row_(index(cut.from)) {
-    camera_.reset(stage_.picture.bounds());
+  struct Moment {
+    ViewState view;
+    std::optional<ViewState> beside;  // of a twin's second run
+  };
+
+  Shown(const Session& session, const std::string& where, const FilmOrder& order,
+        const FilmCut& cut, const FilmFrame& frame)
+      : session_(session),
+        order_(order),
+        frame_(frame),
+        stage_(stage(session, where, cut, order.steps)),
+        row_(index(cut.from)),
+        seconds_(1.0 / cut.fps) {
+    runs_.emplace_back(session, session_parameters(session, where));
+    if (session.twin) runs_.emplace_back(*session.twin, session_parameters(*session.twin, where));
+    apply_changes(row_);
+    enter_step(row_);
     camera_.finish();
     const double step = cut.speed / cut.fps;
-    for (double t = std::max(0.0, cut.from - kBefore); t < cut.from; t += step) view(index(t));
+    for (double t = std::max(0.0, cut.from - kBefore); t < cut.from; t += step) see(index(t));
   }
 
   // Up to `time` [s], which never goes back.
-  ViewState play_to(double time) {
+  Moment play_to(double time) {
+    camera_.advance(seconds_ / kCameraSlower);
     const std::size_t now = index(time);
     for (; row_ <= now; ++row_) {
-      stage_.append(session_.row(row_));
-      mark_changes();
+      apply_changes(row_);
+      enter_step(row_);
+      stage_.append(session_.row(row_), session_.twin ? session_.twin->row(row_) : Row());
     }
-    return view(now);
+    return see(now);
   }
-  std::span<const double> row() const { return session_.row(row_ - 1); }
+  FilmCaption caption() const {
+    const std::span<const double> row = session_.row(row_ - 1);
+    FilmCaption caption{.time = fmt::format("{:.2f} s", session_.layout.in(row, Column::time)[0]),
+                        .text = law_text(session_.layout, row),
+                        .aside = order_.title};
+    if (twin_shown()) caption.text = stage_.names().first + "  |  " + stage_.names().second;
+    if (step_ != nullptr) caption.told = step_->caption;
+    return caption;
+  }
   Stage& stage() { return stage_; }
   const Camera& camera() const { return camera_; }
 
  private:
-  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut) {
+  using Row = std::span<const double>;
+  struct Run {
+    Run(const Session& s, const Parameters& p) : session(s), parameters(p) {}
+    const Session& session;
+    Parameters parameters;
+    std::size_t next = 0;  // change
+  };
+
+  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut,
+                     const std::vector<StoryStep>& steps) {
     RunPlan world = replay(session, where, {});
-    const double length = cut.to - cut.from;
-    const double shown = length <= kWhole ? length : kPart;
-    History history({.channels = TraceChannels(session.layout).count(),
+    const double shown = longest_stretch(steps, cut);
+    History history({.channels = TraceChannels(session.layout).count() * (session.twin ? 2 : 1),
                      .seconds = shown + 1,
                      .tick = session.info.tick});
     return {std::move(world.arm), std::move(world.document), std::move(world.models),
@@ -62,27 +109,85 @@ class Shown {
     const auto k = static_cast<std::size_t>(time / session_.info.tick + 1e-6);
     return std::min(k, session_.size() - 1);
   }
-  ViewState view(std::size_t k) {
+  bool twin_shown() const { return session_.twin && (step_ == nullptr || step_->beside); }
+
+  Moment see(std::size_t k) {
+    Moment moment{.view = view(session_.row(k), stage_.memory), .beside = {}};
+    if (session_.twin) {
+      const ViewState beside = view(session_.twin->row(k), stage_.twin_memory);
+      if (twin_shown()) moment.beside = beside;
+    }
+    return moment;
+  }
+  ViewState view(Row row, ViewMemory& memory) const {
     const RowLayout& layout = session_.layout;
-    const std::span<const double> row = session_.row(k);
     ViewState view = stage_.rows().view(layout, row);
-    stage_.memory.update(view, stage_.rows().contacts(layout, row),
-                         layout.in(row, Column::time)[0]);
+    memory.update(view, stage_.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
     return view;
   }
-  void mark_changes() {
-    for (const SettingChange& change : session_.changes) {
-      if (change.row != row_) continue;
-      std::string label = change.setting;
-      std::erase(label, '"');
-      stage_.history.mark(session_.at(row_, Column::time)[0], label);
+
+  // Those up to row k; a story marks its steps instead.
+  void apply_changes(std::size_t k) {
+    for (Run& run : runs_) {
+      const std::vector<SettingChange>& changes = run.session.changes;
+      for (; run.next < changes.size() && changes[run.next].row <= k; ++run.next) {
+        const SettingChange& change = changes[run.next];
+        apply_change(run.parameters, change);
+        if (&run != &runs_.front() || change.row < k || !order_.steps.empty()) continue;
+        std::string label = change.setting;
+        std::erase(label, '"');
+        stage_.history.mark(time_at(k), label);
+      }
     }
+    stage_.follow(runs_.front().parameters);
+    if (!session_.twin || !order_.steps.empty()) return;
+    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters));
+  }
+  // Of two runs the plots show what a sentence can say: no estimate, no second energy.
+  void name_runs(const std::array<std::string, 2>& names) {
+    stage_.name_runs({names[0], names[1], true});
+    const int one = stage_.channels().count();
+    for (Plot& plot : stage_.plots) {
+      for (Curve& curve : plot.spec().curves) {
+        const auto channel = static_cast<Channel>(curve.channel % one);
+        if (channel == Channel::energy_commanded || channel == Channel::human_estimate) {
+          curve.visible = false;
+        }
+      }
+    }
+  }
+  double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
+
+  void enter_step(std::size_t k) {
+    const StoryStep* step = order_.steps.empty() ? nullptr : &step_at(order_.steps, time_at(k));
+    if (step == step_ && aimed_) return;
+    step_ = step;
+    aimed_ = true;
+    StoryCamera aim;
+    for (const StoryStep& each : order_.steps) {
+      if (each.camera) aim = *each.camera;
+      if (&each == step) break;
+    }
+    const ImVec2 viewport = frame_.viewport(twin_shown());
+    camera_.resize(viewport.x, viewport.y);
+    camera_.look(aim.view);
+    camera_.frame(aim.of.value_or(stage_.picture.bounds()));
+    if (step == nullptr) return;
+    if (step->anew) stage_.history.clear();
+    if (step->beside) name_runs(step->names);
+    if (!step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
   }
 
   const Session& session_;
+  const FilmOrder& order_;
+  const FilmFrame& frame_;
   Stage stage_;
   Camera camera_;
   std::size_t row_;  // the next one for the plots
+  double seconds_;   // of a picture
+  std::vector<Run> runs_;
+  const StoryStep* step_ = nullptr;
+  bool aimed_ = false;
 };
 
 }  // namespace
@@ -111,16 +216,13 @@ FilmEnd film(const Session& session, const std::string& where, const FilmOrder& 
   const FilmCut plan = cut(order, session, where);
   VideoFile video(order.out, {order.look.width, order.look.height, plan.fps}, order.force);
   FilmFrame frame(order.look);
-  Shown shown(session, where, plan);
+  Shown shown(session, where, order, plan, frame);
   const double drawing = video_kind(order.out) == VideoKind::gif ? kDrawingOfGif : 1;
   for (std::size_t i = 0; i < plan.pictures(); ++i) {
     if (stop) return {true, static_cast<double>(i) / plan.fps};
-    const ViewState view = shown.play_to(plan.time(i));
-    const FilmCaption caption{
-        .time = fmt::format("{:.2f} s", session.layout.in(shown.row(), Column::time)[0]),
-        .text = law_text(session.layout, shown.row()),
-        .aside = order.title};
-    video.add(frame.draw(shown.stage(), view, shown.camera(), caption, 1.0 / plan.fps));
+    const Shown::Moment now = shown.play_to(plan.time(i));
+    video.add(frame.draw(shown.stage(), now.view, shown.camera(), shown.caption(), 1.0 / plan.fps,
+                         now.beside));
     at(drawing * static_cast<double>(i + 1) / static_cast<double>(plan.pictures()));
   }
   const bool whole = video.finish(stop, [&](double part) { at(drawing + (1 - drawing) * part); });

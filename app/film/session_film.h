@@ -6,8 +6,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/film/film_frame.h"
+#include "app/story/story.h"
 #include "app/video/video_file.h"
 #include "devices/files/session/session.h"
 
@@ -17,11 +19,12 @@ struct FilmOrder {
   std::filesystem::path out = {};
   bool force = false;
   FilmLook look = {};
-  std::optional<int> fps = {};    // none: what is usual for such a file
-  double from = 0;                // [s] of the session
-  std::optional<double> to = {};  // none: its end
-  double speed = 1;               // of the session in the video, 0.01 to 100
-  std::string title = {};         // at the right of the caption
+  std::optional<int> fps = {};        // none: what is usual for such a file
+  double from = 0;                    // [s] of the session
+  std::optional<double> to = {};      // none: its end
+  double speed = 1;                   // of the session in the video, 0.01 to 100
+  std::string title = {};             // at the right of the caption
+  std::vector<StoryStep> steps = {};  // of the story that was recorded; none: it is no story's
 };
 
 // Moments of a session, one for each picture of its video.

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/desktop/base/picture_signs.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kLeastGap = 1e-5;                  // [m]
 constexpr double kTellable = 0.3, kLargest = 40;    // of a gap in the picture [points]
 constexpr double kMoment = 0.7;                     // that a lens stays without need [s]
 constexpr float kShare = 0.42f, kMostWide = 0.36f;  // of the view's height and width
@@ -44,12 +44,6 @@ std::optional<ScreenRect> corner_for(ScreenRect view, ImVec2 tips) {
 }
 
 }  // namespace
-
-std::string gap_text(double meters) {
-  const double mm = 1000 * meters;
-  if (!(meters >= kLeastGap)) return "";
-  return mm < 9.95 ? fmt::format("gap {:.2f} mm", mm) : fmt::format("gap {:.1f} mm", mm);
-}
 
 bool worth_magnifying(const ViewState& state, const Camera& camera) {
   if (!seen(state)) return false;

@@ -14,9 +14,6 @@ namespace limpid {
 
 inline constexpr double kMagnified = 5;
 
-// "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
-std::string gap_text(double meters);
-
 // There is a gap or a contact, and it is small in a picture of this camera.
 bool worth_magnifying(const ViewState& state, const Camera& camera);
 

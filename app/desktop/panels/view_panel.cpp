@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/desktop/base/picture_signs.h"
 #include "app/desktop/panels/selection_outline.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
@@ -48,25 +49,6 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
                    fmt::format("{} cm", cm).c_str());
     }
   }
-}
-
-// At the two tips: how far apart they are.
-void draw_gap(const ViewState& view, const Camera& camera, ScreenRect rect, ImDrawList& list) {
-  if (view.device.links.empty() || view.proxy.links.empty()) return;
-  const std::string text = gap_text((view.device.tip - view.proxy.tip).norm());
-  const auto pixel = camera.project(0.5 * (view.device.tip + view.proxy.tip));
-  if (text.empty() || !pixel) return;
-  ImFont* face = font(Face::small);
-  const float em = face->FontSize, pad = 0.35f * em;
-  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
-  const ImVec2 tips = at(rect, *pixel);
-  const float left = std::min(tips.x + 1.6f * em, rect.max.x - size.x - 2 * pad);
-  const ImVec2 place(left, tips.y - 2.2f * em);
-  const Palette& colours = current_palette();
-  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
-                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
-                     colour(colours.backdrop, 0.75f), 3);
-  list.AddText(face, em, place, colour(colours.text), text.c_str());
 }
 
 // The friction cone at a contact; one that slips first.
@@ -132,25 +114,6 @@ ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
   return view;
 }
 
-constexpr float kBetween = 2;  // of the halves of a twin's picture [px]
-
-ScreenRect half_of(ScreenRect rect, bool right) {
-  const float middle = std::round((rect.min.x + rect.max.x) / 2);
-  return right ? ScreenRect{{middle + kBetween / 2, rect.min.y}, rect.max}
-               : ScreenRect{rect.min, {middle - kBetween / 2, rect.max.y}};
-}
-
-void draw_name(const std::string& name, ScreenRect half, ImDrawList& list) {
-  const Palette& colours = current_palette();
-  ImFont* face = font(Face::semibold);
-  const ImVec2 size = face->CalcTextSizeA(face->FontSize, 1e9f, 0, name.c_str());
-  const float pad = 0.4f * face->FontSize;
-  const ImVec2 at(std::round((half.min.x + half.max.x - size.x) / 2), half.min.y + 2 * pad);
-  list.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + size.x + pad, at.y + size.y + pad / 2},
-                     colour(colours.backdrop, 0.72f), 4);
-  list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
-}
-
 }  // namespace
 
 ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
@@ -214,8 +177,8 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   list.PopClipRect();
   list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
                      colour(current_palette().border));
-  draw_name(scene.names.first, *drawn_, list);
-  draw_name(scene.names.second, right, list);
+  draw_run_name(scene.names.first, *drawn_, list);
+  draw_run_name(scene.names.second, right, list);
 }
 
 // Over the picture: what is selected, words and numbers.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "devices/files/hand/hand_through.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
@@ -177,6 +178,16 @@ HandPath hand_of(const Session& session, const std::string& where) {
     path.grip.push_back(grip);
   }
   start_at_zero(path);
+  find_velocities(path);
+  return path;
+}
+
+HandPath hand_through(std::vector<double> time, std::vector<Vec3> position, std::string source) {
+  HandPath path;
+  path.grip.assign(time.size(), 1);
+  path.time = std::move(time);
+  path.position = std::move(position);
+  path.source = std::move(source);
   find_velocities(path);
   return path;
 }

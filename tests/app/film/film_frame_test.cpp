@@ -58,6 +58,18 @@ class FilmFrames : public testing::Test {
             frame_->draw(*stage_, view, camera_, {.time = "1.00 s", .text = {}, .aside = {}}, 0.1)};
   }
 
+  Picture draw_beside(const std::vector<double>& row, const std::vector<double>& other,
+                      const std::string& told = {}) {
+    const ViewState view = stage_->rows().view(layout_, row);
+    const ImVec2 size = frame_->viewport(true);
+    camera_.resize(size.x, size.y);
+    stage_->name_runs({"a", "a", true});
+    return {
+        look_.width, look_.height,
+        frame_->draw(*stage_, view, camera_, {.time = {}, .text = {}, .aside = {}, .told = told},
+                     0.1, stage_->rows().view(layout_, other))};
+  }
+
   const RowLayout layout_{3};
   FilmLook look_;
   std::optional<FilmFrame> frame_;
@@ -123,6 +135,47 @@ TEST_F(FilmFrames, LeaveThePlotsOutWhereThereIsNoRoom) {
   if (!frame_) return;
   const Picture picture = draw_at(0.1);
   EXPECT_NE(picture.at(8, picture.height - 8), kDarkPalette.panel);
+}
+
+// Pixels of the left half that look otherwise in the right one; below the legend.
+int differing(const Picture& picture) {
+  const int half = picture.width / 2, left = half - 1, right = half + 1;
+  int count = 0;
+  for (int y = 130; y < picture.height - 100; ++y) {
+    for (int x = 0; x < left - 1; ++x) {
+      const Rgb a = picture.at(x, y), b = picture.at(right + x, y);
+      if (std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) > 30) ++count;
+    }
+  }
+  return count;
+}
+
+TEST_F(FilmFrames, ShowTwoRunsInHalvesThroughOneCamera) {
+  ASSERT_NO_FATAL_FAILURE(begin({.plots = false}));
+  if (!frame_) return;
+  const std::vector<double> row = row_at(layout_, 0);
+  std::vector<double> turned = row;
+  layout_.in(std::span<double>(turned), Column::proxy_position)[0] = 0.3;
+  EXPECT_LT(differing(draw_beside(row, row)), 200);
+  EXPECT_GT(differing(draw_beside(row, turned)), 2000);
+}
+
+TEST_F(FilmFrames, TellTheirSentenceAtTheBottomOfThePicture) {
+  ASSERT_NO_FATAL_FAILURE(begin({.plots = false}));
+  if (!frame_) return;
+  const std::vector<double> row = row_at(layout_, 0);
+  const auto bright = [&](const Picture& picture) {
+    int count = 0;
+    for (int y = picture.height - 60; y < picture.height; ++y) {
+      for (int x = picture.width / 3; x < picture.width * 2 / 3; ++x) {
+        const Rgb seen = picture.at(x, y);
+        if (seen.r > 200 && seen.g > 200 && seen.b > 200) ++count;
+      }
+    }
+    return count;
+  };
+  const int without = bright(draw_beside(row, row));
+  EXPECT_GT(bright(draw_beside(row, row, "Something that is told.")), without + 200);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/desktop/base/picture_signs.h"
+
 namespace limpid {
 namespace {
 

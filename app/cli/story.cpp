@@ -1,0 +1,101 @@
+#include "app/story/story.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "app/base/interrupt.h"
+#include "app/cli/commands.h"
+#include "app/cli/options.h"
+#include "app/cli/progress.h"
+#include "app/story/tell.h"
+
+namespace limpid {
+namespace {
+
+struct StoryOptions {
+  std::string script;
+  std::string record;
+  bool check = false;
+  VideoOptions video;
+};
+
+void print_steps(const Story& story) {
+  for (const StoryStep& step : story.steps) {
+    fmt::print("{:5.1f} to {:5.1f} s  {}\n", step.begins, step.ends, step.caption);
+  }
+}
+
+void print_numbers(const Story& story, const Session& session) {
+  const auto all = measure(story.steps, session);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const StoryStep& step = story.steps[i];
+    fmt::print("{:.1f} to {:.1f} s  {}\n", step.begins, step.ends, step.caption);
+    std::size_t width = 0;
+    for (const std::string& name : step.names) width = std::max(width, name.size());
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+      const StepNumbers& n = all[i][lane];
+      fmt::print(
+          "    {:{}}  |x_E| up to {:.4g} mrad, |f1| {:.4g} N m rms, |f2| up to {:.4g} N m, E_c "
+          "rises by {:.4g} mJ\n",
+          step.names[lane], width, 1e3 * n.largest_error, n.rms_human, n.largest_contact,
+          1e3 * n.energy_given);
+    }
+  }
+}
+
+Told tell_with_progress(const Story& story) {
+  catch_interrupts();
+  Progress progress(
+      {.title = "story", .whole = story.seconds(), .unit = "s", .rate = "times real time"});
+  return tell(story, interrupted, [&](double seconds) { progress.at(seconds); });
+}
+
+int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
+  const std::string script = options.script.empty() ? default_story().string() : options.script;
+  if (!options.video.out.empty()) return make_video(script, options.video, 0);
+  const Story story = read_story(script);
+  if (options.check) {
+    print_steps(story);
+    return 0;
+  }
+  const Told told = tell_with_progress(story);
+  print_numbers(story, told.session);
+  if (!options.record.empty()) {
+    write_session(told.session, options.record, options.video.force);
+    fmt::print("recorded {} ticks of both runs in {}\n", told.session.size(), options.record);
+  }
+  if (told.end.diverged) {
+    fmt::print(stderr, "limpid: unstable from t = {:.3f} s on: {}\n", told.end.diverged_at,
+               told.end.why);
+    return 1;
+  }
+  if (told.end.stopped) {
+    fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s\n",
+               static_cast<double>(told.session.size()) * told.session.info.tick, story.seconds());
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command declare_story(CLI::App& app, MakeVideo make_video) {
+  auto* command = app.add_subcommand(
+      "story", "a script that plays itself: what happens in each step, a session, a video");
+  auto options = std::make_shared<StoryOptions>();
+  command->add_option("FILE.toml", options->script, "the script; default: the one that comes along")
+      ->type_name("");
+  auto* record =
+      command->add_option("--record", options->record, "write both runs to this session file")
+          ->type_name("OUT.h5");
+  auto* check = command->add_flag("--check", options->check, "read the script and list its steps");
+  options->video.add(*command);
+  CLI::Option* video = command->get_option("--video");
+  command->get_option("--force")->remove_needs(video);  // of a session, too
+  video->excludes(record)->excludes(check);
+  record->excludes(check);
+  command->footer("How to write one: assets/stories/README.md.");
+  return [options, make_video = std::move(make_video)] { return tell_story(*options, make_video); };
+}
+
+}  // namespace limpid

@@ -1,0 +1,61 @@
+#include "app/desktop/base/picture_signs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLeastGap = 1e-5;  // to speak of [m]
+constexpr float kBetween = 2;       // of the halves of a twin's picture [px]
+
+}  // namespace
+
+std::string gap_text(double meters) {
+  const double mm = 1000 * meters;
+  if (!(meters >= kLeastGap)) return "";
+  return mm < 9.95 ? fmt::format("gap {:.2f} mm", mm) : fmt::format("gap {:.1f} mm", mm);
+}
+
+void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
+  if (view.device.links.empty() || view.proxy.links.empty()) return;
+  const std::string text = gap_text((view.device.tip - view.proxy.tip).norm());
+  const auto pixel = camera.project(0.5 * (view.device.tip + view.proxy.tip));
+  if (text.empty() || !pixel) return;
+  ImFont* face = font(Face::small);
+  const float em = face->FontSize, pad = 0.35f * em;
+  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
+  const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
+                             picture.min.y + static_cast<float>(pixel->y()));
+  const float left = std::min(tips.x + 1.6f * em, picture.max.x - size.x - 2 * pad);
+  const ImVec2 place(left, tips.y - 2.2f * em);
+  const Palette& colours = current_palette();
+  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
+                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
+                     colour(colours.backdrop, 0.75f), 3);
+  list.AddText(face, em, place, colour(colours.text), text.c_str());
+}
+
+void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {
+  const Palette& colours = current_palette();
+  ImFont* face = font(Face::semibold);
+  const ImVec2 size = face->CalcTextSizeA(face->FontSize, 1e9f, 0, name.c_str());
+  const float pad = 0.4f * face->FontSize;
+  const ImVec2 at(std::round((half.min.x + half.max.x - size.x) / 2), half.min.y + 2 * pad);
+  list.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + size.x + pad, at.y + size.y + pad / 2},
+                     colour(colours.backdrop, 0.72f), 4);
+  list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
+}
+
+ScreenRect half_of(ScreenRect picture, bool right) {
+  const float middle = std::round((picture.min.x + picture.max.x) / 2);
+  return right ? ScreenRect{{middle + kBetween / 2, picture.min.y}, picture.max}
+               : ScreenRect{picture.min, {middle - kBetween / 2, picture.max.y}};
+}
+
+}  // namespace limpid

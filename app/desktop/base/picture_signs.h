@@ -1,0 +1,24 @@
+// Words and numbers over the picture of arm and scene.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "app/plot/plot_frame.h"
+#include "render/camera.h"
+#include "render/view_state.h"
+
+namespace limpid {
+
+// "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
+std::string gap_text(double meters);
+// At the two tips: how far apart they are. `picture` is where the camera's picture is.
+void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
+// What a run of a twin is called, at the top of its half.
+void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
+
+// The halves of a twin's picture.
+ScreenRect half_of(ScreenRect picture, bool right);
+
+}  // namespace limpid

@@ -1,0 +1,35 @@
+// Runs a story, and measures what happens in each of its steps.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "app/story/story.h"
+
+namespace limpid {
+
+// What one run did in one step.
+struct StepNumbers {
+  double largest_error = 0;    // |x_E| [rad]
+  double rms_human = 0;        // |f1| [N m]
+  double largest_contact = 0;  // |f2| [N m]
+  double energy_given = 0;     // the most that E_c rose above where the step found it [J]
+};
+
+struct Told {
+  Session session;  // both runs, in memory
+  RunEnd end;
+};
+
+// The same story gives the same rows, bit for bit, but for how long each tick took. `at` is told
+// the seconds that have been told.
+Told tell(const Story& story, const std::atomic<bool>& stop, const std::function<void(double)>& at);
+
+// Of both runs, for each step that was told. `session` has a twin.
+std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
+                                                const Session& session);
+
+// Errors: as SessionWriter.
+void write_session(const Session& session, const std::filesystem::path& out, bool force);
+
+}  // namespace limpid
