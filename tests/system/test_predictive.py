@@ -105,10 +105,19 @@ class Predictive(SystemTest):
         lines = [f"{t!r},{0.19 + 0.02 * t!r},{0.01 * t!r},{z!r}" for t, z in zip(time, height)]
         cls.taps = cls.directory / "taps.csv"
         cls.taps.write_text("time_s,x_m,y_m,z_m\n" + "\n".join(lines) + "\n")
+        cls.smooth = cls.directory / "smooth.toml"
+        cls.smooth.write_text('title = "Table without friction"\nabout = "It does not hold on."\n'
+                              '[[plane]]\nname = "top"\npoint = [0.2, 0.0, -0.04]\n'
+                              'normal = [0.0, 0.0, 1.0]\nstiffness = 600.0\n')
 
     @property
     def tap(self) -> Words:
         return ["--hand", self.taps]
+
+    @property
+    def tap_smooth(self) -> Words:
+        """On what can be recomputed from its material."""
+        return [*self.tap, "--scene", self.smooth]
 
     def recorded(self, *options: str | Path) -> Session:
         return self.run_and_read("--coupling", "predictive", *options)
@@ -132,7 +141,7 @@ class Predictive(SystemTest):
                 for hand in ([], _HEAVY):
                     options = ["--eta", eta, *encoder, *hand]
                     with self.subTest(" ".join(options)):
-                        s = self.recorded(*self.tap, *options)
+                        s = self.recorded(*self.tap_smooth, *options)
                         self.assert_touched(s)
                         self.assert_recomputed(s, "wall force", "tau1 predictive")
 
@@ -156,7 +165,7 @@ class Predictive(SystemTest):
     def test_motors_at_their_limit_are_recomputed(self) -> None:
         for limit in ("0.02", "0.1"):
             with self.subTest(limit):
-                s = self.recorded(*self.tap, "--set", f"device.torque_limit={limit}", "--eta",
+                s = self.recorded(*self.tap_smooth, "--set", f"device.torque_limit={limit}", "--eta",
                                   "0.6", "--set", "hand.stiffness=2000")  # fmt: skip
                 spent = np.any(np.abs(s["/device/motor_torque"]) >= float(limit), axis=1)
                 self.assertGreater(spent.sum(), 100)
@@ -164,8 +173,7 @@ class Predictive(SystemTest):
 
     def test_governors_that_act_are_recomputed(self) -> None:
         scene = self.out(".toml")
-        table_top = (ASSETS / "scenes/table.toml").read_text().partition("[[visual]]")[0]
-        scene.write_text(table_top.replace("600.0", "15000.0"))
+        scene.write_text(self.smooth.read_text().replace("600.0", "15000.0"))
         settings = ["ledger.energy=1e-4", "predictor.hand_mass=0", "predictor.mu=0.3",
                     "hand.mass=0.3", "hand.stiffness=3000", "hand.damping=0",
                     "device.torque_limit=50"]  # fmt: skip
@@ -186,7 +194,7 @@ class Predictive(SystemTest):
         }.items():  # fmt: skip
             with self.subTest(name):
                 words = [word for setting in settings for word in ("--set", setting)]
-                s = self.recorded(*self.tap, "--eta", "0.8", *words)
+                s = self.recorded(*self.tap_smooth, "--eta", "0.8", *words)
                 self.assert_recomputed(s, "wall force", "tau1 predictive")
 
     def assert_caught(self, name: str, path: Path) -> None:
@@ -196,7 +204,7 @@ class Predictive(SystemTest):
 
     def test_each_breach_is_caught(self) -> None:
         for encoder, breaches in (([], _BREACHES), (_FINE, _COARSE_BREACHES)):
-            path = self.record("--coupling", "predictive", "--eta", "0.3", *encoder, *self.tap)
+            path = self.record("--coupling", "predictive", "--eta", "0.3", *encoder, *self.tap_smooth)
             with h5py.File(path, "r") as file:
                 names = {name for name, _ in _columns(file)}
                 rows = {name: file[name][()] for name in names}
@@ -213,7 +221,7 @@ class Predictive(SystemTest):
                     self.assert_caught(check, other)
 
     def test_wrong_settings_are_caught(self) -> None:
-        path = self.record("--coupling", "predictive", "--eta", "0.3", *self.tap)
+        path = self.record("--coupling", "predictive", "--eta", "0.3", *self.tap_smooth)
         config = read_session(path).attributes["config"]
         for key, (right, wrong, check) in _WRONG_SETTINGS.items():
             with self.subTest(key):

@@ -1,5 +1,6 @@
 """Two runs on one hand: from the command line, and in the window."""
 
+import time
 import unittest
 
 import h5py
@@ -55,7 +56,8 @@ class Window(WindowTest):
         self.assertFalse(self.state()["twin"])
         self.key("b")
         self.wait("the twin", lambda s: s["twin"])
-        x, y = 480, 315  # the tip, in the left half
+        time.sleep(1)  # until it is drawn
+        x, y = 551, 286  # the tip, in the left half
         self.move(x, y)
         self.xdotool("mousedown", "1")
         self.wait("the hand to hold", lambda s: s["grip"] == 1)

@@ -12,7 +12,7 @@ from window import WindowTest
 LETTERS = "rcfpgxle1 2[]?d"
 # What typing must leave alone.
 LASTING = ("force", "recording", "playing", "kind", "eta", "alpha", "objects", "selected", "dirty")
-ETA = (250, 99)  # on its slider, right of its value
+ETA = (250, 128)  # on its slider, right of its value
 NAME = (1100, 176)  # of the selected object
 
 

@@ -5,7 +5,7 @@ import unittest
 
 from window import WindowTest
 
-BREAK = (150, 192)  # the button, which says Repair once it was pressed
+BREAK = (150, 236)  # the button, which says Repair once it was pressed
 FAULT = 1e-3  # from here on the panel says so [J]
 
 

@@ -68,7 +68,10 @@ void kind_buttons(Parameters& p) {
     tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+  // As high for every law, so that nothing below it moves when they change.
+  const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
   ImGui::TextWrapped("%s", info(p.kind).verdict);
+  ImGui::SetCursorPosY(below);
   ImGui::PopStyleColor();
 }
 

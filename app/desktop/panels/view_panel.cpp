@@ -193,7 +193,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   draw_gap(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
   draw_picture_legend(list, legend_place(rect), legend_of(view, !scene.rerun.empty()));
-  if (!settings.hint_seen && !scene.recorded) draw_hint(rect, list);
+  if (!settings.hint_seen && !scene.recorded && scene.twin.empty()) draw_hint(rect, list);
   list.PopClipRect();
 }
 

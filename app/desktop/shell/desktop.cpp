@@ -192,7 +192,8 @@ void Desktop::toggle_twin() {
   if (!twin.on) return notices_.say("The twin is gone. B brings it back.");
   if (twin.parameters.kind == settings_.parameters.kind &&
       twin.parameters.eta == settings_.parameters.eta) {
-    twin.parameters.kind = next(settings_.parameters.kind);
+    using enum CouplingKind;
+    twin.parameters.kind = settings_.parameters.kind == standard ? predictive : standard;
   }
   notices_.say("Two couplings on one hand. The tabs choose which one the sliders set.");
 }
