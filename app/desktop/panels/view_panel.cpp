@@ -167,7 +167,10 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     magnifier_.hide();
   }
   draw_signs(scene, view, camera, settings, *drawn_);
-  if (scene.twin.empty()) return;
+  if (scene.twin.empty()) {
+    draw_told(scene.told, rect, *ImGui::GetBackgroundDrawList());
+    return;
+  }
   const ScreenRect right = half_of(rect, true);
   const ViewState twin = twin_of(scene, settings);
   paint(twin, right, SceneView::Sheet::beside);
@@ -177,6 +180,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   list.PopClipRect();
   draw_run_name(scene.names.first, *drawn_, list);
   draw_run_name(scene.names.second, right, list);
+  draw_told(scene.told, rect, list);
 }
 
 // Over the picture: what is selected, words and numbers.
