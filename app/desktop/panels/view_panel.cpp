@@ -175,6 +175,8 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   const ViewState twin = twin_of(scene, settings);
   paint(twin, right, SceneView::Sheet::beside);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+                     colour(current_palette().backdrop));
   list.PushClipRect(right.min, right.max);
   draw_gap(twin, camera, right, list);
   list.PopClipRect();

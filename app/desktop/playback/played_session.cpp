@@ -11,6 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kOfStory = 12;  // that the plots show at once: about a step [s]
+
 // The plots hold the whole recording, and the re-run if there is one.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
                    std::span<const double> again) {
@@ -96,8 +98,8 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       stage_(make_stage(std::move(loaded.history))) {}
 
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
-  auto stage =
-      std::make_unique<Stage>(arm_, document_, models_, std::move(history), player_.duration());
+  auto stage = std::make_unique<Stage>(arm_, document_, models_, std::move(history),
+                                       steps_.empty() ? player_.duration() : kOfStory);
   const Session& session = player_.session();
   const Parameters p = session_parameters(session, file_.string());
   stage->follow(p);
