@@ -63,7 +63,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
     draw_picture_legend(list, {0.9f * em, at.picture.min.y + 0.8f * em});
   }
   draw_caption(at.caption, caption);
-  if (!caption.told.empty()) draw_told(at.picture, caption.told);
+  draw_told(caption.told, at.picture, list);
   if (at.plots.height() > 0) draw_plots(at.plots, stage);
   ImGuiGl::render();
   return read_rgba(look_.width, look_.height);
@@ -90,32 +90,6 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
   };
   half(view, false, stage.names().first);
   half(*beside, true, stage.names().second);
-}
-
-// At the bottom of the picture, centred.
-void FilmFrame::draw_told(const ScreenRect& picture, const std::string& told) const {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  ImFont* face = font(Face::semibold);
-  const float size = std::round(1.2f * face->FontSize), pad = 0.6f * size;
-  const float room = 0.86f * picture.width();
-  std::vector<std::string> lines;
-  for (const char *at = told.c_str(), *end = at + told.size(); at < end;) {
-    const char* stop = face->CalcWordWrapPositionA(size / face->FontSize, at, end, room);
-    if (stop == at) ++stop;  // a word that is wider than the picture
-    lines.emplace_back(at, stop);
-    at = stop;
-    while (at < end && *at == ' ') ++at;
-  }
-  const float line = 1.25f * size;
-  float y = picture.max.y - pad - line * static_cast<float>(lines.size());
-  const Palette& colours = current_palette();
-  list.AddRectFilled({picture.min.x, y - pad}, picture.max, colour(colours.backdrop, 0.72f));
-  for (const std::string& text : lines) {
-    const float width = face->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
-    const ImVec2 at(std::round((picture.min.x + picture.max.x - width) / 2), std::round(y));
-    list.AddText(face, size, at, colour(colours.text), text.c_str());
-    y += line;
-  }
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {

@@ -51,7 +51,6 @@ class FilmFrame {
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
                     const Camera& camera, const ViewState* beside) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
-  void draw_told(const ScreenRect& picture, const std::string& told) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 
   FilmLook look_;

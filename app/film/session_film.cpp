@@ -163,11 +163,7 @@ class Shown {
     if (step == step_ && aimed_) return;
     step_ = step;
     aimed_ = true;
-    StoryCamera aim;
-    for (const StoryStep& each : order_.steps) {
-      if (each.camera) aim = *each.camera;
-      if (&each == step) break;
-    }
+    const StoryCamera aim = step == nullptr ? StoryCamera{} : camera_in(order_.steps, *step);
     const ImVec2 viewport = frame_.viewport(twin_shown());
     camera_.resize(viewport.x, viewport.y);
     camera_.look(aim.view);

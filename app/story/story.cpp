@@ -33,7 +33,7 @@ Camera::View view_in(const TomlTable& table, const char* key) {
   return static_cast<Camera::View>(at - kViews.begin());
 }
 
-std::optional<StoryCamera> camera_in(const TomlTable& step, const std::string& where) {
+std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where) {
   const toml::node* node = step.find("camera");
   if (node == nullptr) return std::nullopt;
   if (node->is_string()) return StoryCamera{view_in(step, "camera")};
@@ -134,7 +134,7 @@ class Reader {
     read.names = names_in(step, settings_);
     read.beside = flag_in(step, "beside", true);
     read.anew = flag_in(step, "anew", false);
-    read.camera = camera_in(step, where_);
+    read.camera = camera_said(step, where_);
   }
 
   const TomlTable& file_;
@@ -150,6 +150,15 @@ const StoryStep& step_at(const std::vector<StoryStep>& steps, double time) {
   const auto next = std::ranges::find_if(
       steps, [time](const StoryStep& step) { return step.begins > time + 1e-9; });
   return next == steps.begin() ? steps.front() : *(next - 1);
+}
+
+StoryCamera camera_in(const std::vector<StoryStep>& steps, const StoryStep& step) {
+  StoryCamera camera;
+  for (const StoryStep& each : steps) {
+    if (each.camera) camera = *each.camera;
+    if (each.begins >= step.begins) break;
+  }
+  return camera;
 }
 
 Story parse_story(const std::string& text, const std::string& where, const fs::path& folder) {

@@ -41,6 +41,9 @@ struct Story {
 // The step at that time [s]; the last one holds to the end.
 const StoryStep& step_at(const std::vector<StoryStep>& steps, double time);
 
+// Where to look from in that step, whichever step said so.
+StoryCamera camera_in(const std::vector<StoryStep>& steps, const StoryStep& step);
+
 // Errors: FileError "FILE:LINE: KEY: ..." for text that is not TOML, keys that are unknown or
 // missing, values that are not allowed, steps or points of the hand that are not in order, points
 // the arm does not reach.

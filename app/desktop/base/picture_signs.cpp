@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -50,6 +51,31 @@ void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {
   list.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + size.x + pad, at.y + size.y + pad / 2},
                      colour(colours.backdrop, 0.72f), 4);
   list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
+}
+
+void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list) {
+  if (told.empty()) return;
+  ImFont* face = font(Face::semibold);
+  const float size = std::round(1.2f * face->FontSize), pad = 0.6f * size;
+  const float room = 0.86f * picture.width();
+  std::vector<std::string> lines;
+  for (const char *at = told.c_str(), *end = at + told.size(); at < end;) {
+    const char* stop = face->CalcWordWrapPositionA(size / face->FontSize, at, end, room);
+    if (stop == at) ++stop;  // a word that is wider than the picture
+    lines.emplace_back(at, stop);
+    at = stop;
+    while (at < end && *at == ' ') ++at;
+  }
+  const float line = 1.25f * size;
+  float y = picture.max.y - pad - line * static_cast<float>(lines.size());
+  const Palette& colours = current_palette();
+  list.AddRectFilled({picture.min.x, y - pad}, picture.max, colour(colours.backdrop, 0.72f));
+  for (const std::string& text : lines) {
+    const float width = face->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
+    const ImVec2 at(std::round((picture.min.x + picture.max.x - width) / 2), std::round(y));
+    list.AddText(face, size, at, colour(colours.text), text.c_str());
+    y += line;
+  }
 }
 
 ScreenRect half_of(ScreenRect picture, bool right) {

@@ -18,6 +18,9 @@ void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, I
 // What a run of a twin is called, at the top of its half.
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
 
+// A sentence at the bottom of a picture, in lines as they fit.
+void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list);
+
 // The halves of a twin's picture.
 ScreenRect half_of(ScreenRect picture, bool right);
 

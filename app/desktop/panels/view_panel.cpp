@@ -167,11 +167,16 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     magnifier_.hide();
   }
   draw_signs(scene, view, camera, settings, *drawn_);
-  if (scene.twin.empty()) return;
+  if (scene.twin.empty()) {
+    draw_told(scene.told, rect, *ImGui::GetBackgroundDrawList());
+    return;
+  }
   const ScreenRect right = half_of(rect, true);
   const ViewState twin = twin_of(scene, settings);
   paint(twin, right, SceneView::Sheet::beside);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+                     colour(current_palette().backdrop));
   list.PushClipRect(right.min, right.max);
   draw_gap(twin, camera, right, list);
   list.PopClipRect();
@@ -179,6 +184,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
                      colour(current_palette().border));
   draw_run_name(scene.names.first, *drawn_, list);
   draw_run_name(scene.names.second, right, list);
+  draw_told(scene.told, rect, list);
 }
 
 // Over the picture: what is selected, words and numbers.

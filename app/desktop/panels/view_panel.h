@@ -24,6 +24,7 @@ struct ViewScene {
   std::span<const double> rerun = {};  // the row of its second run; or none
   std::span<const double> twin = {};   // of a second run at the same time; or none
   RunNames names = {};                 // of the two
+  std::string told = {};               // a story's sentence
   std::optional<SceneObject> selected = {};
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point

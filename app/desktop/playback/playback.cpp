@@ -17,6 +17,13 @@ void Playback::open(const fs::path& file) {
       [file](BackgroundProgress&) -> std::optional<LoadedSession> { return load_session(file); });
 }
 
+void Playback::open_story() {
+  loading_.start("running the story",
+                 [out = sessions_dir() / "story.h5"](BackgroundProgress& progress) {
+                   return load_story(out, progress);
+                 });
+}
+
 void Playback::close() {
   rerunning_.cancel();
   shown_.reset();

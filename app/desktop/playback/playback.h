@@ -14,6 +14,8 @@ class Playback {
 
   // The session comes in beside the window and is shown then.
   void open(const std::filesystem::path& file);
+  // The story that comes along, run anew.
+  void open_story();
   bool loading() const { return loading_.busy(); }
   const std::string& what() const { return loading_.what(); }  // for people, while loading
   void close();

@@ -2,6 +2,7 @@
 
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
+#include "app/story/tell.h"
 #include "app/style/words.h"
 #include "devices/files/file_error.h"
 
@@ -9,6 +10,8 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kOfStory = 12;  // that the plots show at once: about a step [s]
 
 // The plots hold the whole recording, and the re-run if there is one.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
@@ -53,6 +56,18 @@ LoadedSession load_session(const fs::path& file) {
           .history = std::move(history)};
 }
 
+std::optional<LoadedSession> load_story(const fs::path& out, BackgroundProgress& progress) {
+  const Story story = read_story(default_story());
+  const Told told = tell(story, progress.cancel,
+                         [&](double seconds) { progress.part = seconds / story.seconds(); });
+  if (told.end.stopped) return std::nullopt;
+  fs::create_directories(out.parent_path());
+  write_session(told.session, out, true);
+  LoadedSession loaded = load_session(out);
+  loaded.steps = story.steps;
+  return loaded;
+}
+
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 BackgroundProgress& progress) {
   const RunPlan plan = replay(session, where, chosen);
@@ -79,11 +94,12 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       arm_(std::move(loaded.arm)),
       document_(std::move(loaded.document)),
       models_(std::move(loaded.models)),
+      steps_(std::move(loaded.steps)),
       stage_(make_stage(std::move(loaded.history))) {}
 
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
-  auto stage =
-      std::make_unique<Stage>(arm_, document_, models_, std::move(history), player_.duration());
+  auto stage = std::make_unique<Stage>(arm_, document_, models_, std::move(history),
+                                       steps_.empty() ? player_.duration() : kOfStory);
   const Session& session = player_.session();
   const Parameters p = session_parameters(session, file_.string());
   stage->follow(p);
@@ -100,10 +116,15 @@ void PlayedSession::show(Rerun again) {
   rerun_ = std::move(again.rows);
 }
 
+const StoryStep* PlayedSession::step() const {
+  return steps_.empty() ? nullptr : &step_at(steps_, player_.time());
+}
+
 std::span<const double> PlayedSession::twin_row() const {
   const Session& session = player_.session();
-  return session.twin && !has_rerun() ? session.twin->row(player_.index())
-                                      : std::span<const double>();
+  const bool shown = step() == nullptr || step()->beside;
+  return session.twin && !has_rerun() && shown ? session.twin->row(player_.index())
+                                               : std::span<const double>();
 }
 
 std::span<const double> PlayedSession::rerun_row() const {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "app/run/simulate.h"
 #include "app/session/background.h"
 #include "app/session/player.h"
+#include "app/story/story.h"
 
 namespace limpid {
 
@@ -21,6 +23,7 @@ struct LoadedSession {
   SceneDocument document;
   MeshModels models;
   History history;
+  std::vector<StoryStep> steps = {};  // of the story that it tells; none: it is no story
 };
 
 // A second run of a recording's hand.
@@ -32,6 +35,10 @@ struct Rerun {
 
 // Neither is for the window's thread. Errors: FileError and the like.
 LoadedSession load_session(const std::filesystem::path& file);
+// Runs the story that comes along and leaves it in `out`, which is replaced; nothing if it was
+// cancelled.
+std::optional<LoadedSession> load_story(const std::filesystem::path& out,
+                                        BackgroundProgress& progress);
 // Under `chosen`, where these may be changed; without rows if it was cancelled.
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 BackgroundProgress& progress);
@@ -47,6 +54,10 @@ class PlayedSession {
   const Player& player() const { return player_; }
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
+
+  // Of the story that is told, at the player's time; null: it is no story.
+  const StoryStep* step() const;
+  const std::vector<StoryStep>& steps() const { return steps_; }
 
   // From now on beside the recording. Errors: as Stage.
   void show(Rerun again);
@@ -64,6 +75,7 @@ class PlayedSession {
   ArmDescription arm_;
   SceneDocument document_;
   MeshModels models_;
+  std::vector<StoryStep> steps_;
   std::vector<double> rerun_;  // rows of the second run; or none
   std::unique_ptr<Stage> stage_;
 };

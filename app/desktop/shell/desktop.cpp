@@ -103,7 +103,9 @@ void Desktop::update(double dt) {
   if (playback_.update(dt)) {
     camera_.frame(shown().picture.bounds());
     remember_recent(settings_, playback_.last().string());
+    step_ = nullptr;
   }
+  follow_story();
   take_loaded();
   devices_.update();
   camera_.advance(dt);
@@ -137,6 +139,20 @@ void Desktop::follow_twin() {
   if (!twin.on) return desk_.stage().name_runs({});
   const auto names = twin_names(settings_.parameters, twin.parameters);
   desk_.stage().name_runs({names[0], names[1], true});
+}
+
+// What a story's step wants to be looked at from, and what it calls the runs.
+void Desktop::follow_story() {
+  const StoryStep* step = playback_.on() ? playback_.shown()->step() : nullptr;
+  if (step == step_) return;
+  step_ = step;
+  if (step == nullptr) return reset_view();
+  playback_.shown()->stage().name_runs({step->names[0], step->names[1], true});
+  const StoryCamera aim = camera_in(playback_.shown()->steps(), *step);
+  reset_view();
+  if (!aim.of && aim.view == Camera::View::iso) return;
+  look(aim.view);
+  camera_.frame(aim.of.value_or(shown().picture.bounds()));
 }
 
 // In the plots. What both runs have in common is marked once.
@@ -239,6 +255,11 @@ void Desktop::toggle_playing() {
   } else {
     open_dialog(Dialog::open_session);
   }
+}
+
+void Desktop::play_story() {
+  settings_.hint_seen = true;
+  playback_.open_story();
 }
 
 }  // namespace limpid

@@ -67,6 +67,7 @@ class Desktop {
   void reset_parameters();
   void toggle_recording();
   void toggle_playing();
+  void play_story();
 
   // Loading goes on beside the window; what is there stays until it is done.
   void open_scene(const std::filesystem::path& file);
@@ -98,6 +99,7 @@ class Desktop {
   void start_recording();
   void follow_parameters();
   void follow_twin();
+  void follow_story();
   void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
   void show_scene();
   void hand_scene_over(bool at_once);
@@ -110,6 +112,7 @@ class Desktop {
   Playback playback_;
   Camera camera_;
   bool automatic_view_ = true;
+  const StoryStep* step_ = nullptr;  // of the story, that the camera knows
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
   std::string device_file_;

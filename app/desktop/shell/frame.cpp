@@ -12,6 +12,7 @@
 #include "app/desktop/panels/notice_list.h"
 #include "app/desktop/panels/parameter_rows.h"
 #include "app/desktop/panels/plots_panel.h"
+#include "app/desktop/panels/story_bar.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/panels/twin_panel.h"
@@ -94,6 +95,9 @@ void Frame::draw() {
   part([&] { dialogs_.draw_experiments(); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
   part([&] { draw_video_bar(desktop_.playback(), at.view); });
+  part([&] {
+    if (story_asked_for(desktop_.playback(), settings, at.view)) desktop_.play_story();
+  });
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
@@ -125,6 +129,7 @@ ViewScene Frame::view_scene() {
     scene.recorded = true;
     scene.rerun = session->rerun_row();
     scene.twin = session->twin_row();
+    if (const StoryStep* step = session->step()) scene.told = step->caption;
   } else if (const auto ref = desktop_.document().editor().selected()) {
     scene.selected = object_of(desktop_.document().scene(), *ref);
   }
@@ -134,6 +139,7 @@ ViewScene Frame::view_scene() {
 }
 
 void Frame::draw_view(ScreenRect rect) {
+  if (story_taken_over(desktop_.playback(), rect)) act_(Action::back_to_live);
   Camera& camera = desktop_.camera();
   const ViewScene scene = view_scene();
   const float width = scene.twin.empty() ? rect.width() : rect.width() / 2;

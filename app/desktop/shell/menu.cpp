@@ -143,6 +143,7 @@ void device_menu(Desktop& d, const Act& act) {
 
 void help_menu(Desktop& d) {
   if (!ImGui::BeginMenu("Help")) return;
+  if (ImGui::MenuItem("Play the story")) d.play_story();
   if (ImGui::MenuItem("Keys and mouse", "?")) d.open_dialog(Dialog::help);
   if (ImGui::MenuItem("About Limpid")) d.open_dialog(Dialog::about);
   ImGui::EndMenu();
