@@ -99,14 +99,9 @@ Touch TapBench::touch(const TrialResult& result) const {
 }
 
 TipAlong tip_at_table() {
-  const ArmDescription description = read_urdf(default_device());
-  const Arm<kAnyDof> arm(description);
-  const Eigen::VectorXd x = rest_at(description, Vec3(kAhead, 0, TapBench::kSurface)).x1;
-  Arm<kAnyDof>::Frames frames;
-  arm.frames(x, frames);
-  Jacobian<kAnyDof> J;
-  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
-  return tip_along(J, inertia_at(description, x), device_damping(description, {}), Vec3::UnitZ());
+  const ArmDescription arm = read_urdf(default_device());
+  const ArmAt at = arm_at(arm, rest_at(arm, Vec3(kAhead, 0, TapBench::kSurface)).x1);
+  return tip_along(at.J, at.M, device_damping(arm, {}), Vec3::UnitZ());
 }
 
 }  // namespace limpid

@@ -16,6 +16,17 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
   return b_d;
 }
 
+ArmAt arm_at(const ArmDescription& description, const Eigen::VectorXd& x) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames frames;
+  arm.frames(x, frames);
+  Mat<kAnyDof> M;
+  arm.inertia(frames, M);
+  Jacobian<kAnyDof> J;
+  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
+  return {M, J};
+}
+
 namespace {
 
 // All but the grip.
@@ -43,16 +54,10 @@ struct Held {
 };
 
 Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p) {
-  const Arm<kAnyDof> arm(description);
-  Arm<kAnyDof>::Frames frames;
-  arm.frames(x, frames);
-  Mat<kAnyDof> M;
-  arm.inertia(frames, M);
-  Jacobian<kAnyDof> J;
-  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
-  const Eigen::MatrixXd JJ = J.transpose() * J;
+  const ArmAt arm = arm_at(description, x);
+  const Eigen::MatrixXd JJ = arm.J.transpose() * arm.J;
   const Eigen::VectorXd b = device_damping(description, p).array() + p.b_v;
-  return {(1 + p.inertia_ratio) * M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
+  return {(1 + p.inertia_ratio) * arm.M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
 }
 
 }  // namespace

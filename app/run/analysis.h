@@ -26,6 +26,13 @@ struct Analysis {
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
 
+// An arm at rest at configuration x [rad].
+struct ArmAt {
+  Eigen::MatrixXd M;  // inertia (n x n) [kg m^2]
+  Eigen::MatrixXd J;  // of the tip (3 x n) [m]
+};
+ArmAt arm_at(const ArmDescription& arm, const Eigen::VectorXd& x);
+
 // At configuration x, the hand's spring and damper at the tip. w_b [rad/s].
 Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  std::optional<double> w_b);

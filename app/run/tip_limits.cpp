@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "app/run/analysis.h"
-#include "core/dynamics/arm.h"
 
 namespace limpid {
 namespace {
@@ -62,18 +61,12 @@ double stiffest(const Scene& scene) {
 
 TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x,
                      const Parameters& p, const Scene& scene) {
-  const Arm<kAnyDof> arm(description);
-  Arm<kAnyDof>::Frames frames;
-  arm.frames(x, frames);
-  Mat<kAnyDof> M;
-  arm.inertia(frames, M);
-  Jacobian<kAnyDof> J;
-  arm.point_jacobian(frames, arm.dof() - 1, arm.tip(frames), J);
+  const ArmAt arm = arm_at(description, x);
   const Eigen::VectorXd b_d = device_damping(description, p);
-  const Vec3 n = least_damped(J, b_d);
+  const Vec3 n = least_damped(arm.J, b_d);
 
   TipLimits l;
-  l.tip = tip_along(J, M, b_d, n);
+  l.tip = tip_along(arm.J, arm.M, b_d, n);
   const double lever2 = l.tip.lever2;
   const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip};
   const auto at = [&l](CouplingKind kind) -> TipLimits::Wall& {

@@ -29,7 +29,8 @@ constexpr Rgb rgb(std::uint32_t hex) {
 constexpr Rgb mix(Rgb a, Rgb b, float part) {
   const auto blend = [part](std::uint8_t from, std::uint8_t to) {
     const auto f = static_cast<float>(from);
-    return static_cast<std::uint8_t>(f + (static_cast<float>(to) - f) * part + 0.5f);
+    const float blended = f + (static_cast<float>(to) - f) * part;
+    return static_cast<std::uint8_t>(blended + 0.5f);  // NOLINT(bugprone-incorrect-roundings)
   };
   return {blend(a.r, b.r), blend(a.g, b.g), blend(a.b, b.b)};
 }

@@ -56,10 +56,14 @@ class Window(WindowTest):
         self.assertFalse(self.state()["twin"])
         self.key("b")
         self.wait("the twin", lambda s: s["twin"])
-        time.sleep(1)  # until it is drawn
-        x, y = 551, 286  # the tip, in the left half
+        x, y = 551, 286  # the tip, in the left half, once that is drawn
         self.move(x, y)
-        self.xdotool("mousedown", "1")
+        for _ in range(20):
+            self.xdotool("mousedown", "1")
+            time.sleep(0.5)
+            if self.state()["grip"] == 1:
+                break
+            self.xdotool("mouseup", "1")
         self.wait("the hand to hold", lambda s: s["grip"] == 1)
         self.key("r")
         for step in range(60):
