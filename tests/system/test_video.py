@@ -14,7 +14,7 @@ from pathlib import Path
 
 from support import ASSETS, LIMPID, Result, Started, SystemTest, limpid
 
-SESSION = ASSETS / "sessions" / "touch.h5"  # 8.491 s
+SESSION = ASSETS / "sessions" / "table.h5"  # 8.491 s
 SMALL = ("--size", "320x180", "--no-plots")
 
 
