@@ -132,8 +132,8 @@ TEST(StoryScripts, RefuseSettingsThatCannotHoldForOneRunOrFromThere) {
                  "in the first step only");
 }
 
-// Errors of 0.3 rad in the first step's last row and 0.1 rad from there on; E_c that climbs from
-// -2 J by 1 J, and falls.
+// An error of 0.3 rad amid the first step, of 0.4 rad in the second one's first row; E_c that
+// climbs from -2 J by 1 J, and falls.
 TEST(StoryNumbers, AreOfOneStepEach) {
   Story story = parse(kWhole);
   Session session;
@@ -144,7 +144,7 @@ TEST(StoryNumbers, AreOfOneStepEach) {
     session.layout.in(std::span(session.rows).subspan(k * stride, stride), column)[0] = value;
   };
   for (std::size_t k = 0; k < 5000; ++k) {
-    put(k, Column::device_position, k == 2499 ? 0.3 : k < 2500 ? 0 : 0.1);
+    put(k, Column::device_position, k == 1200 ? 0.3 : k < 2500 ? 0 : k == 2500 ? 0.4 : 0.1);
     put(k, Column::hand_torque, k < 2500 ? 0 : k % 2 == 0 ? 3 : -4);
     put(k, Column::energy_total, k < 2500 ? 0 : k == 3000 ? -1 : -2);
   }
@@ -152,7 +152,7 @@ TEST(StoryNumbers, AreOfOneStepEach) {
   const auto all = measure(story.steps, session);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_DOUBLE_EQ(all[0][0].largest_error, 0.3);
-  EXPECT_DOUBLE_EQ(all[1][1].largest_error, 0.1);
+  EXPECT_DOUBLE_EQ(all[1][1].largest_error, 0.4);
   EXPECT_DOUBLE_EQ(all[0][0].rms_human, 0);
   EXPECT_NEAR(all[1][0].rms_human, std::sqrt(12.5), 1e-12);
   EXPECT_DOUBLE_EQ(all[0][0].energy_given, 0);
