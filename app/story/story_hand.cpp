@@ -38,7 +38,7 @@ std::array<double, 4> point_in(const TomlTable& step, const toml::node& node) {
 
 std::filesystem::path file_of_story(const std::filesystem::path& folder, const std::string& kind,
                                     const std::string& name) {
-  const std::filesystem::path beside = folder / name;
+  std::filesystem::path beside = folder / name;
   if (std::filesystem::exists(beside)) return beside;
   const std::filesystem::path own = data_dir() / "assets" / kind / name;
   return std::filesystem::exists(own) ? own : beside;
