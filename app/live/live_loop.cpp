@@ -1,7 +1,9 @@
 #include "app/live/live_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -49,6 +51,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   rows_.assign(2 * stride, 0.0);
   row_ = std::span(rows_).first(stride);
   of_twin_ = std::span(rows_).subspan(stride);
+  std::ranges::fill(of_twin_, std::numeric_limits<double>::quiet_NaN());
   home_ = rebase_ = std::move(start);
   parameters_ = p;
   limits_ = {};  // as a new rig has them; the first tick lowers them again
@@ -177,7 +180,7 @@ void LiveLoop::tick(const TickTiming& timing) {
   const HandInput hand = hand_input(controls);
   follow_recorder(hand.target);
   const RigInput input = rig_input(timing, hand);
-  twin_.step(controls.twin && !in_place_, controls.twin_parameters, *rig_, input, of_twin_);
+  if (!in_place_) twin_.step(controls.twin, controls.twin_parameters, *rig_, input, of_twin_);
   if (twin_.changed() && recording_to_ != nullptr && recording_to_->of_twin()) {
     recording_to_->changed(twin_.parameters(), kTwinLane);
   }
@@ -202,6 +205,7 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   rig_->rebase(parameters_, rebase_, target);
   twin_.rebase(target);
   offered->changed(parameters_);
+  if (offered->of_twin()) offered->changed(twin_.parameters(), kTwinLane);
 }
 
 void LiveLoop::publish(const TickTiming& timing) {

@@ -15,16 +15,17 @@ void Twin::step(bool on, const Parameters& p, const Rig& first, const RigInput& 
                 std::span<double> row) noexcept {
   changed_ = running_ && !(p == parameters_);
   parameters_ = p;
-  if (!on || !rig_) {
+  if (!on) {
+    if (running_) std::ranges::fill(row, std::numeric_limits<double>::quiet_NaN());
     running_ = false;
-    std::ranges::fill(row, std::numeric_limits<double>::quiet_NaN());
     return;
   }
-  if (!running_) {
+  if (!running_ || anew_) {
     first.present(start_);
     start_.armed = first.force().armed();
     rig_->start(parameters_, start_);
     running_ = true;
+    anew_ = false;
   }
   rig_->step(parameters_, input, row);
 }

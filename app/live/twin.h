@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "devices/rig/rig.h"
 
@@ -14,26 +13,28 @@ class Twin {
  public:
   // Not the loop's: they allocate.
   void open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes);
-  void close() { rig_.reset(); }
+  void close() {
+    rig_.reset();
+    running_ = changed_ = false;
+  }
 
-  // The loop's. One tick, into `row`; begins where `first` stands when it is switched on, and is
-  // not a number while it is off.
+  // The loop's. One tick, into `row`; begins where `first` stands when it is switched on. `row` is
+  // the same at every call, and not a number from when it is switched off.
   void step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
             std::span<double> row) noexcept;
-  void begin_anew() noexcept { running_ = false; }  // at the next step
+  void begin_anew() noexcept { anew_ = true; }  // at the next step
   // Between two ticks, as Rig::rebase().
   void rebase(const Vec3& target) noexcept;
   void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
   const Parameters& parameters() const { return parameters_; }
   // Whether they have changed at the last step.
   bool changed() const { return changed_; }
-  bool running() const { return running_; }
 
  private:
   std::unique_ptr<Rig> rig_;
   Parameters parameters_;
   RigStart start_;
-  bool running_ = false, changed_ = false;
+  bool running_ = false, anew_ = false, changed_ = false;
 };
 
 }  // namespace limpid

@@ -123,10 +123,6 @@ void Chart::dashes(const std::vector<ChartPoint>& points, ImU32 colour) const {
   }
 }
 
-void Chart::dot(ChartPoint at, ImU32 colour) const {
-  ImGui::GetWindowDrawList()->AddCircleFilled(place(at), 3 * current_scale(), colour);
-}
-
 void Chart::text(ImVec2 at, const std::string& words, ImU32 colour, bool right) const {
   ImFont* small = font(Face::small);
   const ImVec2 size = text_size(Face::small, words);

@@ -33,7 +33,6 @@ class Chart {
   const ScreenRect& inside() const { return inside_; }
   void line(const std::vector<ChartPoint>& points, ImU32 colour, float width = 1.8f) const;
   void dashes(const std::vector<ChartPoint>& points, ImU32 colour) const;
-  void dot(ChartPoint at, ImU32 colour) const;
   // In small letters, kept inside the frame. `right`: ends there instead of beginning there.
   void text(ImVec2 at, const std::string& words, ImU32 colour, bool right = false) const;
 

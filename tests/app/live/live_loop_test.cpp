@@ -131,6 +131,33 @@ TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
   EXPECT_EQ(test::first_difference(test::rows_of(*session.twin), twin), -1);
 }
 
+TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
+  const test::TempDir dir;
+  LiveLoop loop({});
+  Controls controls;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  controls.twin = true;
+  loop.open(plan.arm, plan.document.scene, controls.parameters, kHome);
+  loop.set(controls);
+  let_live(loop, 50);
+  plan.parameters = controls.parameters;
+  plan.twin = TwinPlan{controls.twin_parameters, {}, {}};
+  auto recorder = std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters,
+                                             false, Recorder::kLiveRoom, &plan.twin->parameters);
+  controls.twin_parameters.k_vc = 7;
+  loop.set(controls);
+  let_live(loop, 50);
+  loop.record(std::move(recorder));
+  let_live(loop, 100);
+  loop.finish_recording();
+  loop.close();
+  const Session session = read_session(dir / "a.h5");
+  ASSERT_TRUE(session.twin);
+  ASSERT_EQ(session.twin->changes.size(), 1u);
+  EXPECT_EQ(session.twin->changes[0].row, 0u);
+  EXPECT_EQ(session.twin->changes[0].key(), "coupling.k_vc");
+}
+
 TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
   LiveLoop loop({});
   Controls controls;
