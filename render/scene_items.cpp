@@ -4,7 +4,7 @@
 #include <array>
 
 #include "render/mesh_shapes.h"
-#include "render/model/gltf_model.h"
+#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -43,7 +43,7 @@ Model model_of(const Visual& visual) {
     case Visual::Shape::sphere: return make_sphere(visual.size.x(), kPlainArm);
     case Visual::Shape::mesh: break;
   }
-  Model model = load_gltf(visual.mesh);
+  Model model = load_model_file(visual.mesh);
   for (Vertex& v : model.vertices) {
     const Eigen::Vector3f scale = visual.size.cast<float>();
     v.position = v.position.cwiseProduct(scale);
@@ -107,7 +107,7 @@ void add_scene(const Scene& scene, std::span<const VisualPicture> seen, double r
                SceneItems& items) {
   std::vector<Bounds> visuals;
   for (const VisualPicture& visual : seen) {
-    Item item{load_gltf(visual.file), visual.pose, -1};
+    Item item{load_model_file(visual.file), visual.pose, -1};
     transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
     visuals.push_back(moved(item.model.bounds(), item.pose));
     items.world.push_back(std::move(item));

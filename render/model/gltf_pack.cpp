@@ -133,9 +133,9 @@ std::vector<unsigned char> pack_gltf(std::span<const unsigned char> bytes, const
   if (all.empty()) return {};
   gltf["buffers"] = json::array({{{"byteLength", all.size()}}});
   Bytes out = binary_file(gltf, all);
-  if (out.size() > kLargestGltf) {
+  if (out.size() > kLargestModelFiles) {
     throw std::runtime_error(name + ": is, with the files it refers to, larger than the " +
-                             std::to_string(kLargestGltf >> 20) + " MiB that are read");
+                             std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
   }
   return out;
 }
