@@ -211,13 +211,10 @@ Model Reader::read() {
       file_.refuse("requires the extension " + name + ", which is not read");
   seen_.assign(gltf_.nodes.size(), false);
   for (const int node : roots()) add_node(node, Eigen::Affine3d::Identity(), 0);
-  if (indices_.empty()) file_.refuse("contains no triangles");
+  if (indices_.empty()) file_.refuse(kNoTriangles);
   join_parts(model_, indices_);
-  check_wanted(progress_);
   model_.unit = 1;
   model_.up = Model::Up::y;
-  add_coarse(model_);
-  if (progress_.part) *progress_.part = 1;
   return std::move(model_);
 }
 
@@ -225,9 +222,16 @@ Model Reader::read() {
 
 Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
                  const std::filesystem::path& folder, const LoadProgress& progress) {
-  const GltfFile source = parse_gltf_file(bytes, name, folder);
-  if (progress.part) *progress.part = 0.3;
-  return Reader(source, name, progress).read();
+  Model model;
+  {
+    const GltfFile source = parse_gltf_file(bytes, name, folder);
+    if (progress.part) *progress.part = 0.3;
+    model = Reader(source, name, progress).read();
+  }  // the file's buffers go before more memory is needed
+  check_wanted(progress);
+  add_coarse(model);
+  if (progress.part) *progress.part = 1;
+  return model;
 }
 
 Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress) {

@@ -16,6 +16,9 @@ inline constexpr std::size_t kMostNodes = 1'000'000;
 inline constexpr int kDeepestNode = 256;
 inline constexpr float kFarthest = 1e6f;  // from the origin, of the model's units
 
+inline constexpr const char* kNoTriangles =
+    "contains no triangles; points and lines cannot be touched";
+
 // Indices by how their triangles look.
 using IndicesByFinish = std::map<Finish, std::vector<std::uint32_t>>;
 

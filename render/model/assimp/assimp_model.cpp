@@ -1,4 +1,4 @@
-#include "render/model/assimp_model.h"
+#include "render/model/assimp/assimp_model.h"
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -8,34 +8,26 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
-#include <memory>
-#include <new>
 #include <numeric>
 #include <stdexcept>
 
-#include "render/model/assimp_files.h"
-#include "render/model/assimp_guard.h"
-#include "render/model/assimp_material.h"
+#include "render/model/assimp/assimp_files.h"
+#include "render/model/assimp/assimp_material.h"
 #include "render/model/model_building.h"
-#include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
 
 class Progress : public Assimp::ProgressHandler {
  public:
-  explicit Progress(const LoadProgress& progress) : progress_(progress) {}
-  bool Update(float) override {
-    check_wanted(progress_);
-    return true;
-  }
+  explicit Progress(const std::function<void(double)>& tell) : tell_(tell) {}
+  bool Update(float) override { return true; }
   void UpdateFileRead(int step, int steps) override {
-    Update(0);
-    if (progress_.part && steps > 0) *progress_.part = 0.1 + 0.5 * step / steps;
+    if (steps > 0) tell_(0.8 * step / steps);
   }
 
  private:
-  LoadProgress progress_;
+  const std::function<void(double)>& tell_;
 };
 
 // Only the importer of this kind: assimp guesses at others by what a file contains.
@@ -46,6 +38,13 @@ void keep_importer(Assimp::Importer& importer, const std::string& kind) {
   }
 }
 
+// What assimp says about a file of points or lines only means nothing to its owner.
+std::string in_words(const std::string& why) {
+  for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
+    if (why.find(said) != why.npos) return kNoTriangles;
+  return why.empty() ? "is not valid" : why;
+}
+
 Eigen::Affine3d transform(const aiMatrix4x4& m) {
   Eigen::Affine3d out;
   out.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0,
@@ -53,20 +52,19 @@ Eigen::Affine3d transform(const aiMatrix4x4& m) {
   return out;
 }
 
+[[noreturn]] void refuse(const std::string& why) { throw std::runtime_error(one_line(why)); }
+
 Eigen::Vector3f vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 class Builder {
  public:
-  Builder(const aiScene& scene, const std::string& kind, const std::string& name,
-          AssimpFiles& files, const LoadProgress& progress)
+  Builder(const aiScene& scene, const std::string& kind, AssimpFiles& files)
       : scene_(scene),
-        // These say how each facet lies, not how a surface is meant to look.
+        // Those of STL say how each facet lies, not how a surface is meant to look.
         use_normals_(kind != "stl"),
-        name_(name),
-        progress_(progress),
-        materials_(scene, kind, name, files, model_) {}
+        materials_(scene, kind, files) {}
 
-  Model build();
+  AssimpModel build();
 
  private:
   void add_node(const aiNode& node, const Eigen::Affine3d& parent, int depth);
@@ -74,14 +72,9 @@ class Builder {
   std::size_t weld(const aiMesh& mesh, bool normals, std::vector<unsigned>& place) const;
   void add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine3d& to_model,
                     std::span<const unsigned> place, std::size_t count);
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw std::runtime_error(name_ + ": " + one_line(why));
-  }
 
   const aiScene& scene_;
   bool use_normals_;
-  const std::string& name_;
-  LoadProgress progress_;
   Model model_;
   AssimpMaterials materials_;
   std::size_t triangles_ = 0, nodes_ = 0;
@@ -137,7 +130,6 @@ void Builder::add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine
 }
 
 void Builder::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model) {
-  check_wanted(progress_);
   if (!to_model.matrix().allFinite()) refuse("has a transform that is not finite");
   if (mesh.mNumFaces == 0 || !mesh.HasPositions()) return;
   if ((triangles_ += mesh.mNumFaces) > kMostTriangles)
@@ -181,22 +173,17 @@ void Builder::add_node(const aiNode& node, const Eigen::Affine3d& parent, int de
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], here, depth + 1);
 }
 
-Model Builder::build() {
+AssimpModel Builder::build() {
   add_node(*scene_.mRootNode, Eigen::Affine3d::Identity(), 0);
   join_parts(model_, indices_);
-  if (model_.indices.empty()) refuse("contains no triangles");
-  return std::move(model_);
+  if (model_.indices.empty()) refuse(kNoTriangles);
+  return {std::move(model_), materials_.pictures(), false};
 }
 
 }  // namespace
 
-Model parse_with_assimp(std::span<const unsigned char> bytes, const std::string& kind,
-                        const std::string& name, const std::filesystem::path& folder,
-                        const LoadProgress& progress) {
-  guard_counts(bytes, kind, name);
-  Companions companions(name, folder, bytes.size());
-  const std::string main = "model." + kind;
-  auto* const files = new AssimpFiles(bytes, main, companions);
+AssimpModel read_with_assimp(AssimpFiles* files, const std::string& kind,
+                             const std::function<void(double)>& progress) {
   Assimp::Importer importer;
   importer.SetIOHandler(files);  // owns it from now on, as the next
   importer.SetProgressHandler(new Progress(progress));
@@ -204,25 +191,13 @@ Model parse_with_assimp(std::span<const unsigned char> bytes, const std::string&
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = nullptr;
-  std::string why = "is too large for the memory";
-  try {
-    scene = importer.ReadFile(main, aiProcess_Triangulate | aiProcess_SortByPType);
-    if (scene == nullptr) why = importer.GetErrorString();
-  } catch (const LoadCancelled&) {
-    throw;
-  } catch (const std::exception&) {
-  }
-  check_wanted(progress);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    throw std::runtime_error(name + ": " + one_line(why.empty() ? "is not valid" : why));
-  Model model = Builder(*scene, kind, name, *files, progress).build();
-  for (const std::string& warning : files->warnings()) add_warning(model, warning);
-  read_conventions(bytes, kind, model);
-  importer.FreeScene();
-  add_coarse(model);
-  if (progress.part) *progress.part = 1;
-  return model;
+  const aiScene* const scene =
+      importer.ReadFile(files->main(), aiProcess_Triangulate | aiProcess_SortByPType);
+  if (scene == nullptr || scene->mRootNode == nullptr) refuse(in_words(importer.GetErrorString()));
+  AssimpModel out = Builder(*scene, kind, *files).build();
+  out.model.warnings = files->warnings();
+  out.outside = files->any_read();
+  return out;
 }
 
 }  // namespace limpid

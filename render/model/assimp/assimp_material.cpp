@@ -1,4 +1,4 @@
-#include "render/model/assimp_material.h"
+#include "render/model/assimp/assimp_material.h"
 
 #include <assimp/scene.h>
 
@@ -50,17 +50,12 @@ AssimpMaterial AssimpMaterials::read(const aiMaterial& from) {
 }
 
 int AssimpMaterials::picture(const std::string& file) {
-  const auto [place, is_new] = pictures_.try_emplace(file, -1);
+  const auto [place, is_new] = numbers_.try_emplace(file, -1);
   if (!is_new) return place->second;
-  const auto bytes = files_.read(file);
+  auto bytes = files_.read(file);
   if (bytes.empty()) return -1;
-  auto image = images_.decode(bytes, name_);
-  if (!image) {
-    add_warning(model_, "\"" + one_line(file) + "\" is " + kUnknownPicture);
-    return -1;
-  }
-  model_.images.push_back(std::move(*image));
-  return place->second = static_cast<int>(model_.images.size()) - 1;
+  pictures_.push_back(std::move(bytes));
+  return place->second = static_cast<int>(pictures_.size()) - 1;
 }
 
 }  // namespace limpid

@@ -1,8 +1,9 @@
-#include "render/model/assimp_files.h"
+#include "render/model/assimp/assimp_files.h"
 
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace limpid {
 namespace {
@@ -53,6 +54,7 @@ std::string portable(std::string file) {
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
   if (std::strchr(mode, 'w') != nullptr) return nullptr;
   if (file == main_) return new Stream(bytes_);
+  if (std::string_view(file).starts_with(kStem)) return nullptr;
   auto found = read(file);
   return found.empty() ? nullptr : new Stream(std::move(found));
 }

@@ -13,9 +13,11 @@ namespace limpid {
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  // The model is the file `main`. All of these outlive this.
-  AssimpFiles(std::span<const unsigned char> bytes, std::string main, Companions& companions)
-      : bytes_(bytes), main_(std::move(main)), companions_(companions) {}
+  // All of these outlive this.
+  AssimpFiles(std::span<const unsigned char> bytes, const std::string& kind, Companions& companions)
+      : bytes_(bytes), main_(kStem + kind), companions_(companions) {}
+
+  const std::string& main() const { return main_; }  // the model's name here
 
   bool Exists(const char* file) const override { return file == main_; }
   char getOsSeparator() const override { return '/'; }
@@ -29,6 +31,9 @@ class AssimpFiles : public Assimp::IOSystem {
   bool any_read() const { return any_read_; }  // beside the model
 
  private:
+  // Assimp looks for materials by the model's name, too, where it has not been told of any.
+  static constexpr const char* kStem = "the model itself.";
+
   std::span<const unsigned char> bytes_;
   std::string main_;
   Companions& companions_;

@@ -1,12 +1,12 @@
-// Materials as assimp has them, with the pictures they use.
+// Materials as assimp has them, with the files of the pictures they use.
 #pragma once
 
 #include <map>
 #include <string>
+#include <vector>
 
-#include "render/model/assimp_files.h"
+#include "render/model/assimp/assimp_files.h"
 #include "render/model/model.h"
-#include "render/model/model_images.h"
 
 struct aiMaterial;
 struct aiScene;
@@ -23,13 +23,13 @@ struct AssimpMaterial {
 
 class AssimpMaterials {
  public:
-  // Pictures are added to model.images. All of these outlive this.
-  AssimpMaterials(const aiScene& scene, const std::string& kind, const std::string& name,
-                  AssimpFiles& files, Model& model)
-      : scene_(scene), kind_(kind), name_(name), files_(files), model_(model) {}
+  // All of these outlive this.
+  AssimpMaterials(const aiScene& scene, const std::string& kind, AssimpFiles& files)
+      : scene_(scene), kind_(kind), files_(files) {}
 
-  // Decodes the pictures of a material that is new.
   const AssimpMaterial& at(unsigned index);
+  // Encoded as they came; Finish::color is a number in this list.
+  const std::vector<std::vector<unsigned char>>& pictures() const { return pictures_; }
 
  private:
   AssimpMaterial read(const aiMaterial& from);
@@ -37,12 +37,10 @@ class AssimpMaterials {
 
   const aiScene& scene_;
   const std::string& kind_;
-  const std::string& name_;
   AssimpFiles& files_;
-  Model& model_;
-  ModelImages images_;
   std::map<unsigned, AssimpMaterial> known_;
-  std::map<std::string, int> pictures_;
+  std::map<std::string, int> numbers_;  // of pictures, by their files
+  std::vector<std::vector<unsigned char>> pictures_;
 };
 
 }  // namespace limpid
