@@ -13,13 +13,14 @@ constexpr double kTouch = 0.02, kShade = 0.06;  // how far off a surface is look
 constexpr double kSame = 0.01;                  // of friction's limit: at it [-]
 
 std::optional<Surface> distance_to(const MeshObstacle& mesh, const Vec3& at, double within) {
-  if (!mesh.shape || !(mesh.scale > 0)) return std::nullopt;
-  const Vec3 local = mesh.pose.inverse() * at / mesh.scale - mesh.shape->middle();
+  if (!mesh.shape || !(mesh.size() > 0)) return std::nullopt;
+  const Pose stood = mesh.stood();
+  const Vec3 local = stood.inverse() * at / mesh.size() - mesh.shape->middle();
   MeshPoint found;
-  if (!mesh.shape->nearest(local, within / mesh.scale, MeshPoint::kNone, found))
+  if (!mesh.shape->nearest(local, within / mesh.size(), MeshPoint::kNone, found))
     return std::nullopt;
   const double side = found.normal.dot(local - found.point) < 0 ? -1 : 1;
-  return Surface{side * mesh.scale * found.distance, mesh.pose.linear() * found.normal};
+  return Surface{side * mesh.size() * found.distance, stood.linear() * found.normal};
 }
 
 bool slips(const ContactMark& contact, const Material& material) {

@@ -9,7 +9,7 @@ namespace limpid {
 
 // A vertex v of the model appears at pose * (scale * v).
 struct VisualPicture {
-  std::filesystem::path file;  // glTF
+  std::filesystem::path file;  // a model
   Pose pose = Pose::Identity();
   double scale = 1;
 };

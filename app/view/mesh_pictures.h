@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/run/scene_meshes.h"
+#include "devices/files/scene/model_units.h"
 #include "render/scene_view.h"
 
 namespace limpid {
@@ -16,7 +17,7 @@ inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshMode
   std::vector<MeshPicture> pictures;
   for (std::size_t i = 0; i < std::min(scene.meshes.size(), models.size()); ++i) {
     const MeshObstacle& mesh = scene.meshes[i];
-    pictures.push_back({models[i], mesh.pose, mesh.scale, highlighted == i});
+    pictures.push_back({models[i], mesh.stood(), mesh.size(), highlighted == i});
   }
   return pictures;
 }
@@ -24,7 +25,7 @@ inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshMode
 inline std::vector<VisualPicture> visual_pictures(const SceneDocument& document) {
   std::vector<VisualPicture> pictures;
   for (const SceneVisual& visual : document.visuals) {
-    pictures.push_back({visual.file, visual.pose, visual.scale});
+    pictures.push_back({visual.file, visual.pose, usual_unit(visual.file) * visual.scale});
   }
   return pictures;
 }

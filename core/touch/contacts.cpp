@@ -66,8 +66,8 @@ void Contacts<N>::take_over(const Contacts& other) {
     const MeshObstacle& mesh = scene_.meshes[static_cast<std::size_t>(mine.mesh)];
     for (const MeshContact<N>& theirs : other.meshes_) {
       const MeshObstacle& before = other.scene_.meshes[static_cast<std::size_t>(theirs.mesh)];
-      if (mesh.shape != before.shape || mesh.scale != before.scale ||
-          mesh.pose.matrix() != before.pose.matrix() || mine.link != theirs.link ||
+      if (mesh.shape != before.shape || mesh.size() != before.size() ||
+          mesh.stood().matrix() != before.stood().matrix() || mine.link != theirs.link ||
           mine.on_link != theirs.on_link || mine.touch.radius() != theirs.touch.radius()) {
         continue;
       }

@@ -22,11 +22,11 @@ constexpr int kMostLooks = 3;  // around a convex surface
 MeshTouch::MeshTouch(const MeshObstacle& mesh, double radius)
     : shape_(mesh.shape),
       closed_(mesh.shape->health().closed()),
-      pose_(mesh.pose),
-      scale_(mesh.scale),
+      pose_(mesh.stood()),
+      scale_(mesh.size()),
       radius_(radius),
       skin_(kSkin * mesh.shape->radius()),
-      look_(kLook / mesh.scale) {
+      look_(kLook / mesh.size()) {
   r_ = std::max(radius / scale_, skin_);
   tolerance_ = 1e-5 * r_ + 0.1 * skin_;
 }

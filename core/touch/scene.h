@@ -53,14 +53,26 @@ struct Probe {
   double radius = 0;         // [m]
 };
 
-// A model of triangles. Its points are pose * (scale * p).
+// A model of triangles. Its points are stood() * (size() * p).
 struct MeshObstacle {
   std::string name;
   std::string model;             // which one: the name that the scene's text has for its file
   Pose pose = Pose::Identity();  // [m]
   double scale = 1;
+  double unit = 1;    // of the model's coordinates [m]
+  bool y_up = false;  // the model's y axis points up, else its z axis
   Material material{};
   std::shared_ptr<const TriangleMesh> shape;  // the model's, built before it is touched
+
+  double size() const { return unit * scale; }
+  Pose stood() const {
+    Pose out = pose;
+    if (y_up) {
+      out.linear().col(1) = pose.linear().col(2);
+      out.linear().col(2) = -pose.linear().col(1);
+    }
+    return out;
+  }
 };
 
 struct Scene {

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,7 +19,7 @@ struct Elements {
   std::size_t count = 0, stride = 0;
   int components = 0, component_type = 0;
   bool normalized = false;
-  std::shared_ptr<const std::vector<unsigned char>> own;  // of a sparse accessor, put together
+  std::shared_ptr<const std::vector<unsigned char>> own;  // of what no buffer holds as it is
 };
 
 class GltfAccessor {
@@ -28,9 +29,18 @@ class GltfAccessor {
 
   // All of these throw std::runtime_error naming the file for what does not exist or fit.
   Elements elements(int accessor);
-  std::span<const unsigned char> view(int buffer_view) const;
+  std::span<const unsigned char> view(int buffer_view);
   Eigen::Vector4f element(const Elements& e, std::size_t i) const;  // missing parts: 0 0 0 1
   std::uint32_t index(const Elements& e, std::size_t i) const;
+
+  Eigen::Matrix4f matrix(const Elements& e, std::size_t i) const;  // of an accessor of MAT4
+
+  struct Kind {
+    int components = 0, component_type = 0;
+  };
+  Kind kind(int accessor) const;
+  // From now on the accessor has these elements, packed; of the file's component type if it is 0.
+  void replace(int accessor, std::vector<unsigned char> bytes, int component_type = 0);
 
   template <class List>
   const auto& at(const List& list, int index, const char* what) const {
@@ -42,11 +52,16 @@ class GltfAccessor {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
+  std::span<const unsigned char> part(int buffer, std::size_t offset, std::size_t length,
+                                      int view) const;
   void fill_in(const tinygltf::Accessor& accessor, Elements& e);
+  void take(std::size_t bytes);  // of memory for what no buffer holds as it is
 
   const tinygltf::Model& gltf_;
   const std::string& name_;
-  std::size_t sparse_bytes_ = 0;  // put together so far
+  std::size_t own_bytes_ = 0;                        // taken so far
+  std::map<int, std::vector<unsigned char>> views_;  // decompressed
+  std::map<int, Elements> replaced_;                 // accessors
 };
 
 }  // namespace limpid

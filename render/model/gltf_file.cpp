@@ -1,12 +1,19 @@
 #include "render/model/gltf_file.h"
 
+#include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
+#include "render/model/glb_bytes.h"
+#include "render/model/gltf_draco.h"
 #include "render/model/gltf_guard.h"
 
 namespace limpid {
 namespace {
+
+using nlohmann::json;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 
@@ -27,6 +34,7 @@ std::span<const unsigned char> json_of_glb(std::span<const unsigned char> bytes,
   if (bytes.size() < 20) refuse(name, "is too short for a glTF file");
   if (word_at(bytes, 0) != 0x46546C67u)
     refuse(name, "is not a glTF file (it begins neither with glTF nor {)");
+  if (word_at(bytes, 4) == 1) refuse(name, kOldGltf);
   if (word_at(bytes, 4) != 2)
     refuse(name, "is glTF " + std::to_string(word_at(bytes, 4)) + ", not 2");
   if (word_at(bytes, 8) != bytes.size())
@@ -52,16 +60,35 @@ std::span<const unsigned char> json_of_text(std::span<const unsigned char> bytes
   return !bytes.empty() && bytes[0] == '{' ? bytes : bytes.subspan(bytes.size());
 }
 
+// The bytes of a data URI of a kind that tinygltf does not know, as WebP.
+std::optional<std::vector<unsigned char>> embedded(const std::string& uri) {
+  constexpr std::string_view kMark = ";base64,";
+  const auto at = uri.find(kMark);
+  if (at == uri.npos) return std::nullopt;
+  const std::string known = "data:application/octet-stream" + uri.substr(at);
+  std::vector<unsigned char> bytes;
+  std::string kind;
+  if (!tinygltf::DecodeDataURI(&bytes, kind, known, 0, false)) return std::nullopt;
+  return bytes;
+}
+
 bool read_other(std::vector<unsigned char>* out, std::string* error, const std::string& uri,
                 void* user) {
   auto& around = *static_cast<Companions*>(user);
-  auto bytes = around.none() ? std::nullopt : around.read(uri);
-  if (!bytes) {
-    if (error) *error = around.none() ? "it must contain everything itself" : "it does not exist";
-    return false;
+  std::string why = around.none() ? "it must contain everything itself" : "it does not exist";
+  try {
+    auto bytes = uri.starts_with("data:") ? embedded(uri)
+                 : around.none()          ? std::nullopt
+                                          : around.read(uri);
+    if (bytes) {
+      *out = std::move(*bytes);
+      return true;
+    }
+  } catch (const std::runtime_error& e) {  // fatal for a buffer, not for a picture
+    why = e.what();
   }
-  *out = std::move(*bytes);
-  return true;
+  if (error) *error = why;
+  return false;
 }
 
 // Pictures stay encoded: which of them are needed is not known yet. Those in buffer views stay
@@ -78,6 +105,89 @@ bool keep_encoded(tinygltf::Image* image, const int index, std::string*, std::st
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+bool contains(std::span<const unsigned char> text, std::string_view word) {
+  return std::search(text.begin(), text.end(), word.begin(), word.end()) != text.end();
+}
+
+// What is in an array of that name; an empty one where there is none.
+json& list(json& object, const char* key) {
+  json& found = object[key];
+  if (!found.is_array()) found = json::array();
+  return found;
+}
+
+// Whether anything lies in the buffer: views that are compressed name another one for that.
+bool is_used(json& gltf, std::size_t buffer) {
+  const auto names = [&](const json& object) {
+    const auto found = object.find("buffer");
+    return found != object.end() && *found == buffer;
+  };
+  for (const json& view : list(gltf, "bufferViews")) {
+    if (!view.is_object()) continue;
+    bool packed = false;
+    for (const json& extension : view.value("extensions", json::object())) {
+      if (!extension.is_object() || !extension.contains("mode")) continue;
+      packed = true;
+      if (names(extension)) return true;
+    }
+    if (!packed && names(view)) return true;
+  }
+  return false;
+}
+
+// Buffers that exist in name only, for readers without meshopt: each would be taken for the binary
+// chunk. They become a byte. Returns how many others have no uri.
+std::size_t shrink_fallbacks(json& gltf) {
+  std::size_t embedded = 0;
+  json& buffers = list(gltf, "buffers");
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    json& buffer = buffers[i];
+    if (!buffer.is_object() || buffer.contains("uri")) continue;
+    if (is_used(gltf, i)) {
+      ++embedded;
+      continue;
+    }
+    buffer["byteLength"] = 1;
+    buffer["uri"] = "data:application/octet-stream;base64,AA==";
+  }
+  return embedded;
+}
+
+// tinygltf wants indices to have a buffer view; those in Draco data have none.
+void give_views(json& gltf) {
+  json& accessors = list(gltf, "accessors");
+  for (json& mesh : list(gltf, "meshes")) {
+    if (!mesh.is_object()) continue;
+    for (json& primitive : list(mesh, "primitives")) {
+      const json packed =
+          primitive.value(json::json_pointer("/extensions") / kDracoExtension, json());
+      const json indices = primitive.value("indices", json());
+      if (!packed.is_object() || !indices.is_number_unsigned()) continue;
+      const auto at = indices.get<std::size_t>();
+      if (at < accessors.size() && accessors[at].is_object() &&
+          !accessors[at].contains("bufferView"))
+        accessors[at]["bufferView"] = packed.value("bufferView", json(0));
+    }
+  }
+}
+
+// The file with what tinygltf would not understand in other words.
+std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
+                                    std::span<const unsigned char> text, bool binary,
+                                    const std::string& name) {
+  json gltf = json::parse(text.begin(), text.end(), nullptr, false);
+  if (shrink_fallbacks(gltf) > (binary ? 1 : 0))
+    refuse(name, "has more than one buffer without a uri");
+  give_views(gltf);
+  for (const char* key : {"buffers", "bufferViews", "accessors", "meshes"})
+    if (gltf[key].empty()) gltf.erase(key);  // a list must not be
+  const std::string changed = gltf.dump();
+  if (!binary) return {changed.begin(), changed.end()};
+  const std::size_t data = static_cast<std::size_t>(text.data() - bytes.data()) + text.size() + 8;
+  const auto rest = bytes.subspan(std::min(data, bytes.size()));
+  return glb_bytes(changed, {rest.begin(), rest.end()});
+}
+
 }  // namespace
 
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
@@ -91,9 +201,15 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
   if (bytes.size() > kLargestModelFiles)
     refuse(name,
            "is larger than the " + std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
-  const auto text = json_of_text(bytes);
+  auto text = json_of_text(bytes);
   const bool binary = text.empty();
-  guard_gltf_json(binary ? json_of_glb(bytes, name) : text, name);
+  if (binary) text = json_of_glb(bytes, name);
+  std::vector<unsigned char> changed;
+  if (guard_gltf_json(text, name) > (binary ? 1 : 0) || contains(text, kDracoExtension)) {
+    changed = reworded(bytes, text, binary, name);
+    bytes = changed;
+    text = binary ? json_of_glb(bytes, name) : bytes;
+  }
 
   GltfFile out;
   Companions around(name, folder, bytes.size());

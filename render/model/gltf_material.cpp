@@ -102,14 +102,21 @@ int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& 
     return -1;
   }
   const auto& texture = file_.at(source_.gltf.textures, info.index, "texture");
-  if (texture.source < 0) {
-    warn("a texture of an unknown kind is left out");
+  int source = texture.source;
+  std::string kinds;
+  for (const auto& [name, value] : texture.extensions) {
+    kinds += " " + name;
+    if (source < 0 && name == "EXT_texture_webp" && value.Get("source").IsInt())
+      source = value.Get("source").GetNumberAsInt();
+  }
+  if (source < 0) {
+    warn("a texture of a kind that is not read is left out:" + one_line(kinds));
     return -1;
   }
-  file_.at(source_.gltf.images, texture.source, "image");
+  file_.at(source_.gltf.images, source, "image");
   tinygltf::Sampler sampler;
   if (texture.sampler >= 0) sampler = file_.at(source_.gltf.samplers, texture.sampler, "sampler");
-  const int image = picture(texture.source, srgb, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT));
+  const int image = picture(source, srgb, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT));
   if (image < 0) return -1;
   placed = true;
   to.uv_set = set;

@@ -25,8 +25,7 @@ struct GltfMaterial {
 class GltfMaterials {
  public:
   // Pictures are added to model.images, what is left out to model.warnings.
-  GltfMaterials(const GltfFile& source, const GltfAccessor& file, const std::string& name,
-                Model& model)
+  GltfMaterials(const GltfFile& source, GltfAccessor& file, const std::string& name, Model& model)
       : source_(source), file_(file), name_(name), model_(model) {}
 
   // Decodes the pictures of a material that is new. -1: none, plain grey.
@@ -40,7 +39,7 @@ class GltfMaterials {
   void warn(const std::string& what);
 
   const GltfFile& source_;
-  const GltfAccessor& file_;
+  GltfAccessor& file_;
   const std::string& name_;
   Model& model_;
   ModelImages images_;

@@ -4,8 +4,10 @@
 #include <numeric>
 
 #include "render/model/gltf_accessor.h"
+#include "render/model/gltf_draco.h"
 #include "render/model/gltf_file.h"
 #include "render/model/gltf_material.h"
+#include "render/model/gltf_rest.h"
 #include "render/model/gltf_triangles.h"
 #include "render/model/model_building.h"
 #include "render/model/simplify.h"
@@ -22,7 +24,8 @@ class Reader {
         file_(source.gltf, name),
         materials_(source, file_, name, model_),
         progress_(progress),
-        expected_(std::max<std::size_t>(1, source.gltf.nodes.size())) {
+        poses_(source.gltf.nodes.size(), Eigen::Affine3d::Identity()),
+        rest_(source.gltf, file_, poses_) {
     for (const std::string& warning : source.warnings) add_warning(model_, warning);
   }
 
@@ -31,20 +34,27 @@ class Reader {
  private:
   std::vector<int> roots() const;
   Eigen::Affine3d transform(const tinygltf::Node& node) const;
-  void add_node(int node, const Eigen::Affine3d& parent, int depth);
-  void add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model);
-  void add_vertices(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
-                    const Elements& positions, const Eigen::Affine3d& to_model);
-  bool add_normals(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
-                   std::size_t count, const Eigen::Affine3d& to_model);
+  void place_node(int node, const Eigen::Affine3d& parent, int depth);
+  void add_primitive(const tinygltf::Primitive& primitive, int node);
+  void add_vertices(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
+                    const std::vector<std::uint32_t>& used, const Elements& positions);
+  void add_streams(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
+                   std::size_t count);
+  bool add_normals(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
+                   const std::vector<std::uint32_t>& used, std::size_t count);
 
   const tinygltf::Model& gltf_;
   GltfAccessor file_;
   Model model_;
   GltfMaterials materials_;
   LoadProgress progress_;
-  std::size_t expected_, nodes_ = 0, primitives_ = 0, triangles_ = 0;
-  std::vector<bool> seen_;  // nodes
+  std::size_t primitives_ = 0, triangles_ = 0;
+  std::vector<bool> seen_;              // nodes
+  std::vector<int> with_mesh_;          // nodes, in order
+  NodePoses poses_;                     // of nodes
+  Eigen::Affine3d to_model_;            // from the present primitive
+  std::vector<Eigen::Affine3f> moves_;  // the same of each vertex, where there is a skin
+  GltfRest rest_;
   VertexUse use_;
   IndicesByFinish indices_;
 };
@@ -71,41 +81,31 @@ Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
   return out;
 }
 
-void Reader::add_node(int index, const Eigen::Affine3d& parent, int depth) {
+void Reader::place_node(int index, const Eigen::Affine3d& parent, int depth) {
   if (depth > kDeepestNode) file_.refuse("has nodes nested deeper than 256");
   const tinygltf::Node& node = file_.at(gltf_.nodes, index, "node");
   // With one parent a node, the work is bounded by the size of the file.
-  if (seen_[static_cast<std::size_t>(index)])
+  const auto at = static_cast<std::size_t>(index);
+  if (seen_[at])
     file_.refuse("node " + std::to_string(index) + " has two parents or is in a circle");
-  seen_[static_cast<std::size_t>(index)] = true;
-  const Eigen::Affine3d here = parent * transform(node);
-  if (node.skin >= 0) add_warning(model_, "skins are left out: shown as modelled");
-  if (node.mesh >= 0)
-    for (const auto& primitive : file_.at(gltf_.meshes, node.mesh, "mesh").primitives)
-      add_primitive(primitive, here);
-  if (progress_.part)
-    *progress_.part = 0.3 + 0.6 * static_cast<double>(++nodes_) / static_cast<double>(expected_);
-  for (const int child : node.children) add_node(child, here, depth + 1);
+  seen_[at] = true;
+  poses_[at] = parent * transform(node);
+  if (node.mesh >= 0) with_mesh_.push_back(index);
+  for (const int child : node.children) place_node(child, poses_[at], depth + 1);
 }
 
-int attribute(const tinygltf::Primitive& primitive, const std::string& key) {
-  const auto found = primitive.attributes.find(key);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
-
-void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model) {
+void Reader::add_primitive(const tinygltf::Primitive& primitive, int index) {
+  const tinygltf::Node& node = gltf_.nodes[static_cast<std::size_t>(index)];
+  to_model_ = poses_[static_cast<std::size_t>(index)];
   check_wanted(progress_);
   if (++primitives_ > kMostPrimitives) file_.refuse("has more than 1 million parts over all nodes");
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     add_warning(model_, "points and lines are left out");
     return;
   }
-  if (primitive.extensions.count("KHR_draco_mesh_compression") != 0 &&
-      attribute(primitive, "POSITION") >= 0 &&
-      file_.at(gltf_.accessors, attribute(primitive, "POSITION"), "accessor").bufferView < 0)
-    file_.refuse("is compressed with KHR_draco_mesh_compression, which is not read");
-  if (attribute(primitive, "POSITION") < 0) file_.refuse("a mesh has no POSITION");
-  const Elements positions = file_.elements(attribute(primitive, "POSITION"));
+  if (attribute_of(primitive.attributes, "POSITION") < 0) file_.refuse("a mesh has no POSITION");
+  decode_draco(primitive, file_, kMostTriangles - triangles_);
+  const Elements positions = file_.elements(attribute_of(primitive.attributes, "POSITION"));
   if (positions.components != 3) file_.refuse("POSITION must have three components");
 
   auto [corners, looked_at] =
@@ -116,42 +116,51 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Af
   if (model_.vertices.size() + used.size() > kMostVertices)
     file_.refuse("has more than 8 million vertices over all nodes");
   const auto first = static_cast<std::uint32_t>(model_.vertices.size());
-  add_vertices(primitive, used, positions, to_model);
+  add_vertices(primitive, node, used, positions);
 
-  if (to_model.linear().determinant() < 0)
+  // A skin brings its vertices to the scene itself.
+  if (moves_.empty() && to_model_.linear().determinant() < 0)
     for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i], corners[i + 1]);
   Finish finish = materials_.at(primitive.material).material;
-  finish.flat = !add_normals(primitive, used, positions.count, to_model);
+  finish.flat = !add_normals(primitive, node, used, positions.count);
   fill_normals(std::span(model_.vertices).subspan(first), corners);
   auto& list = indices_[finish];
   list.reserve(list.size() + corners.size());
   for (const std::uint32_t corner : corners) list.push_back(first + corner);
 }
 
-void Reader::add_vertices(const tinygltf::Primitive& primitive,
-                          const std::vector<std::uint32_t>& used, const Elements& positions,
-                          const Eigen::Affine3d& to_model) {
+void Reader::add_vertices(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
+                          const std::vector<std::uint32_t>& used, const Elements& positions) {
   const GltfMaterial& material = materials_.at(primitive.material);
-  const std::size_t first = model_.vertices.size();
-  for (const std::uint32_t i : used) {
+  moves_ = rest_.moves(node, primitive, used, positions.count);
+  const auto shifts = rest_.shifts(node, primitive, "POSITION", used, positions.count);
+  for (std::size_t i = 0; i < used.size(); ++i) {
     Vertex v;
-    const Vec3 here = file_.element(positions, i).head<3>().cast<double>();
-    v.position = (to_model * here).cast<float>();
+    Eigen::Vector3f here = file_.element(positions, used[i]).head<3>();
+    if (!shifts.empty()) here += shifts[i];
+    v.position = moves_.empty() ? Eigen::Vector3f((to_model_ * here.cast<double>()).cast<float>())
+                                : Eigen::Vector3f(moves_[i] * here);
     if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
-      file_.refuse("a vertex is farther than 1000 km from the origin");
+      file_.refuse("a vertex is farther than a million from the origin");
     v.normal.setZero();
     v.color = material.color;
     v.opacity = material.opacity;
     v.surface = material.surface;
     model_.vertices.push_back(v);
   }
-  // One optional stream of the primitive into the fields of the vertices.
+  add_streams(primitive, used, positions.count);
+}
+
+// The optional streams of the primitive into the fields of the vertices.
+void Reader::add_streams(const tinygltf::Primitive& primitive,
+                         const std::vector<std::uint32_t>& used, std::size_t count) {
+  const GltfMaterial& material = materials_.at(primitive.material);
+  const std::size_t first = model_.vertices.size() - used.size();
   const auto stream = [&](const std::string& key, int fewest, auto&& put) {
-    const int accessor = attribute(primitive, key);
+    const int accessor = attribute_of(primitive.attributes, key);
     if (accessor < 0) return;
     Elements e = file_.elements(accessor);
-    if (e.count != positions.count || e.components < fewest)
-      file_.refuse(key + " does not match POSITION");
+    if (e.count != count || e.components < fewest) file_.refuse(key + " does not match POSITION");
     if (key == "COLOR_0") e.normalized = true;  // always, though some files do not say so
     for (std::size_t i = 0; i < used.size(); ++i)
       put(model_.vertices[first + i], file_.element(e, used[i]));
@@ -168,17 +177,20 @@ void Reader::add_vertices(const tinygltf::Primitive& primitive,
 }
 
 // False where there are none.
-bool Reader::add_normals(const tinygltf::Primitive& primitive,
-                         const std::vector<std::uint32_t>& used, std::size_t count,
-                         const Eigen::Affine3d& to_model) {
-  const int accessor = attribute(primitive, "NORMAL");
-  const Eigen::Matrix3f turn = to_model.linear().cast<float>().inverse().transpose();
+bool Reader::add_normals(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
+                         const std::vector<std::uint32_t>& used, std::size_t count) {
+  const int accessor = attribute_of(primitive.attributes, "NORMAL");
+  const Eigen::Matrix3f turn = to_model_.linear().cast<float>().inverse().transpose();
   if (accessor < 0 || !turn.allFinite()) return false;
   const Elements e = file_.elements(accessor);
   if (e.count != count || e.components < 3) file_.refuse("NORMAL does not match POSITION");
+  const auto shifts = rest_.shifts(node, primitive, "NORMAL", used, count);
   const std::size_t first = model_.vertices.size() - used.size();
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const Eigen::Vector3f turned = turn * file_.element(e, used[i]).head<3>();
+    Eigen::Vector3f own = file_.element(e, used[i]).head<3>();
+    if (!shifts.empty()) own += shifts[i];
+    const Eigen::Vector3f turned =
+        moves_.empty() ? Eigen::Vector3f(turn * own) : Eigen::Vector3f(moves_[i].linear() * own);
     const float length = turned.norm();
     if (length > 1e-12f && std::isfinite(length))
       model_.vertices[first + i].normal = turned / length;
@@ -202,15 +214,31 @@ std::vector<int> Reader::roots() const {
   return all;
 }
 
+// How something looks may be left out, what shape it has may not.
+bool may_be_left_out(const std::string& extension) {
+  constexpr std::array kKnown = {kDracoExtension, "EXT_meshopt_compression",
+                                 "KHR_meshopt_compression", "KHR_mesh_quantization"};
+  constexpr std::array kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                                 "KHR_lights_",    "EXT_lights_",  "KHR_technique"};
+  const auto begins = [&](const char* with) { return extension.starts_with(with); };
+  return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end() ||
+         std::any_of(kLooks.begin(), kLooks.end(), begins);
+}
+
 Model Reader::read() {
-  constexpr std::array kKnown = {"KHR_texture_transform", "KHR_mesh_quantization",
-                                 "KHR_lights_punctual"};
   for (const std::string& name : gltf_.extensionsRequired)
-    if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end() &&
-        !name.starts_with("KHR_materials_"))
+    if (!may_be_left_out(name))
       file_.refuse("requires the extension " + name + ", which is not read");
   seen_.assign(gltf_.nodes.size(), false);
-  for (const int node : roots()) add_node(node, Eigen::Affine3d::Identity(), 0);
+  for (const int node : roots()) place_node(node, Eigen::Affine3d::Identity(), 0);
+  for (std::size_t i = 0; i < with_mesh_.size(); ++i) {
+    const int mesh = gltf_.nodes[static_cast<std::size_t>(with_mesh_[i])].mesh;
+    for (const auto& primitive : file_.at(gltf_.meshes, mesh, "mesh").primitives)
+      add_primitive(primitive, with_mesh_[i]);
+    if (progress_.part)
+      *progress_.part = 0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(with_mesh_.size());
+  }
+  if (!gltf_.animations.empty()) add_warning(model_, "its movement is left out: it stays at rest");
   if (indices_.empty()) file_.refuse(kNoTriangles);
   join_parts(model_, indices_);
   model_.unit = 1;

@@ -77,12 +77,12 @@ void Document::add_model(LoadedModel loaded, const Workplace& at) {
   place_mesh(loaded.mesh, bounds, scene(), at);
   const double scale = loaded.mesh.scale;
   const std::size_t triangles = loaded.mesh.shape->triangles();
-  const double centimetres = 100 * scale * bounds.sizes().maxCoeff();
+  const double centimetres = 100 * loaded.mesh.size() * bounds.sizes().maxCoeff();
   editor_.add(std::move(loaded.mesh), std::move(loaded.file), loaded.model);
-  std::string text =
-      fmt::format("Added {}: {} triangles, {:.3g} cm{}. Ctrl+Z removes it.",
-                  name_of(scene(), *editor_.selected()), with_commas(triangles), centimetres,
-                  scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
+  std::string text = fmt::format("Added {}: {} triangles, {}, {:.3g} cm{}. Ctrl+Z removes it.",
+                                 name_of(scene(), *editor_.selected()), with_commas(triangles),
+                                 text_of(loaded.axes), centimetres,
+                                 scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
   for (const std::string& warning : loaded.warnings) text += "\n" + warning;
   notices_.say(text);
 }

@@ -2,10 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
-#include "devices/files/rpy.h"
 #include "render/scene_items.h"
 
 namespace limpid {
@@ -81,10 +79,9 @@ double handy_scale(double extent) {
 }
 
 void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at) {
-  mesh.scale = handy_scale(model.sizes().maxCoeff());
+  mesh.scale = handy_scale(mesh.unit * model.sizes().maxCoeff());
   mesh.pose = Pose::Identity();
-  mesh.pose.linear() = rotation({std::numbers::pi / 2, 0, 0});
-  const Bounds upright = moved(model, Eigen::Affine3d(mesh.pose) * Eigen::Scaling(mesh.scale));
+  const Bounds upright = moved(model, Eigen::Affine3d(mesh.stood()) * Eigen::Scaling(mesh.size()));
   const Vec3 place = find_place(upright.sizes(), table_height(scene, at.rest), at);
   const Vec3 shift = place - upright.center();
   mesh.pose.translation() = (shift * 1e4).array().round() / 1e4;              // to 0.1 mm

@@ -30,7 +30,7 @@ Vec3 find_place(const Vec3& size, std::optional<double> table, const Workplace& 
 // else what makes it 8 cm, in round numbers.
 double handy_scale(double extent);
 
-// Scales a mesh of these bounds (in its own units, y up), sets it upright and gives it a place.
+// Scales a mesh of these bounds (as its file has them) and gives it a place, upright.
 void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at);
 
 }  // namespace limpid

@@ -9,6 +9,7 @@
 
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/model_units.h"
 #include "devices/files/scene/scene_limits.h"
 #include "render/scene_items.h"
 
@@ -69,6 +70,7 @@ void hold(Box& box) {
 void hold(MeshObstacle& mesh) {
   hold(mesh.pose);
   hold(mesh.scale, kScale, 1);
+  if (model_unit(mesh.unit) == nullptr) mesh.unit = 1;
   hold(mesh.material);
 }
 void hold(JointContact& contact) {
@@ -119,7 +121,7 @@ Eigen::AlignedBox3d bounds_of(const SceneObject& object, const Model* model) {
     box = Eigen::AlignedBox3d(Vec3(-cuboid->size / 2), Vec3(cuboid->size / 2));
     box = moved(box, Eigen::Affine3d(cuboid->pose));
   } else if (const auto* mesh = std::get_if<MeshObstacle>(&object); mesh && model) {
-    box = moved(model->bounds(), Eigen::Affine3d(mesh->pose) * Eigen::Scaling(mesh->scale));
+    box = moved(model->bounds(), Eigen::Affine3d(mesh->stood()) * Eigen::Scaling(mesh->size()));
   }
   return box;
 }

@@ -46,7 +46,10 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   model.bytes = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
   const MeshModels models = build_meshes(one, progress);
   std::vector<std::string> warnings = mesh_warnings(one.scene, models);
-  return {std::move(mesh), std::move(model), models.front(), std::move(warnings)};
+  const ModelAxes axes = axes_of(*models.front(), file);
+  mesh.unit = axes.unit;
+  mesh.y_up = axes.y_up;
+  return {std::move(mesh), std::move(model), models.front(), axes, std::move(warnings)};
 }
 
 void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {

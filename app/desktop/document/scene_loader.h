@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "app/run/model_axes.h"
 #include "app/run/scene_meshes.h"
 #include "app/session/background.h"
 #include "core/dynamics/arm_description.h"
@@ -24,6 +25,7 @@ struct LoadedModel {
   MeshObstacle mesh;  // named for its file; without a place
   ModelFile file;
   std::shared_ptr<const Model> model;
+  ModelAxes axes;  // as the mesh has them
   std::vector<std::string> warnings;
 };
 using Loaded = std::variant<LoadedScene, LoadedModel>;

@@ -11,6 +11,7 @@
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/model_units.h"
 #include "devices/files/scene/scene_limits.h"
 
 namespace limpid {
@@ -91,6 +92,35 @@ bool joint_stiffness(double& value) {
   info.slider_minimum = 0.1;
   info.slider_maximum = 1e3;
   return slider(value, info, JointContact{}.stiffness, of_material.meaning);
+}
+
+// How the numbers of the model's file are meant.
+bool choose_axes(MeshObstacle& mesh) {
+  bool changed = false;
+  const auto label = [](const char* text, const char* help) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    tooltip(help);
+    ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+    ImGui::SetNextItemWidth(-1);
+  };
+  label("Unit of the file", "What its coordinates are in. Many formats do not say.");
+  const ModelUnit* const present = model_unit(mesh.unit);
+  if (ImGui::BeginCombo("##unit", present ? present->name : "")) {
+    for (const ModelUnit& each : kModelUnits) {
+      if (!ImGui::Selectable(each.name, &each == present)) continue;
+      mesh.unit = each.metres;
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
+  label("Axis up", "Which of the file's axes points up when nothing is turned.");
+  int axis = mesh.y_up ? 0 : 1;
+  if (ImGui::Combo("##up", &axis, "y\0z\0")) {
+    mesh.y_up = axis == 0;
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace
@@ -189,7 +219,7 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
   std::string_view what = edit_material(mesh.material);
   if (position(mesh.pose)) what = "place";
   if (edit_rotation(mesh.pose)) what = "rotation";
-  double millimetres = 1e3 * mesh.scale * extent_;
+  double millimetres = 1e3 * mesh.size() * extent_;
   if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
                   "1: as large as its file says.")) {
     what = "scale";
@@ -197,9 +227,10 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
   if (drag_number("Largest extent", millimetres, kMillimetreSpeed, 0.1, 1e5, "%.1f mm",
                   "Sets the scale.") &&
       extent_ > 0) {
-    mesh.scale = 1e-3 * millimetres / extent_;
+    mesh.scale = 1e-3 * millimetres / (mesh.unit * extent_);
     what = "scale";
   }
+  if (choose_axes(mesh)) what = "axes";
   read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.model.c_str());
   const std::string health = mesh.shape->health().text();
   ImGui::PushTextWrapPos(0);

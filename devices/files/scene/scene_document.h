@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// glTF.
+// Of any kind that is read.
 struct ModelFile {
   std::string path;  // where it was found; empty: inside a recorded session
   ModelBytes bytes;  // with all it refers to, once its shape was built
@@ -18,7 +18,7 @@ struct ModelFile {
 
 // Something to look at only.
 struct SceneVisual {
-  std::string file;  // glTF, absolute path
+  std::string file;  // of a model, absolute path
   Pose pose = Pose::Identity();
   double scale = 1;
 };

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/model_units.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
@@ -113,9 +115,10 @@ Probe probe(const TomlTable& t, const ArmDescription& arm) {
 
 std::string model_file(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
-  std::string extension = fs::path(file).extension();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension != ".glb" && extension != ".gltf") t.refuse("file", "a glTF file (.glb, .gltf)");
+  constexpr std::array kKinds{".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"};
+  if (std::ranges::find(kKinds, small_suffix(file)) == kKinds.end()) {
+    t.refuse("file", fmt::format("a model ({})", fmt::join(kKinds, ", ")));
+  }
   return file;
 }
 
@@ -142,13 +145,28 @@ ModelFile read_model(const TomlTable& t, const std::string& file, const fs::path
           std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
 }
 
+double unit(const TomlTable& t, const std::string& file) {
+  const auto wanted = t.text("unit");
+  if (!wanted) return usual_unit(file);
+  std::vector<std::string> names;
+  for (const ModelUnit& each : kModelUnits) {
+    if (each.name == *wanted) return each.metres;
+    names.push_back(fmt::format("\"{}\"", each.name));
+  }
+  t.refuse("unit", fmt::format("{}", fmt::join(names, ", ")));
+}
+
 MeshObstacle mesh(const TomlTable& t) {
-  allow_with_material(t, {"name", "file", "position", "rpy", "scale"});
+  allow_with_material(t, {"name", "file", "position", "rpy", "scale", "unit", "up"});
   MeshObstacle out;
   out.name = name(t);
   out.model = model_file(t);
   out.pose = optional_pose(t);
   out.scale = t.number("scale", kScale).value_or(1);
+  out.unit = unit(t, out.model);
+  const std::string up = t.text("up").value_or("z");
+  if (up != "y" && up != "z") t.refuse("up", "\"y\", \"z\"");
+  out.y_up = up == "y";
   out.material = material(t);
   return out;
 }

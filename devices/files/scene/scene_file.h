@@ -28,10 +28,13 @@
 //
 //     [[mesh]]                     # a model of triangles
 //     name = "gear"
-//     file = "gear.glb"            # glTF, from the scene file's folder
+//     file = "gear.glb"            # or .gltf, .stl, .obj, .ply, .dae; from the scene file's folder
 //     position = [0.2, 0.0, 0.0]   # optional, as rpy and scale
 //     rpy = [0.0, 0.0, 0.5]
 //     scale = 1.0
+//     unit = "m"                   # of the file's coordinates: "m", "cm", "mm", "in" or "ft";
+//                                  # optional: else "mm" of .stl, "m" of all others
+//     up = "z"                     # the file's axis that points up: "y" or "z" (optional)
 //     stiffness = 600.0
 //
 //     [[joint_contact]]
@@ -49,7 +52,7 @@
 //     radius = 0.01
 //
 //     [[visual]]                   # to look at only
-//     file = "table.glb"           # glTF, from the scene file's folder
+//     file = "table.glb"           # as of a mesh; in its usual unit, z up
 //     position = [0.0, 0.0, 0.0]   # optional, as rpy and scale
 //     rpy = [0.0, 0.0, 0.0]
 //     scale = 1.0

@@ -2,6 +2,7 @@
 
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
+#include "devices/files/scene/model_units.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/scene/scene_writer.h"
@@ -16,6 +17,12 @@ using Bytes = std::vector<unsigned char>;
 Bytes read_bytes(const fs::path& file) {
   const std::string text = read_text(file, scene_limits::kLargestModel);
   return {text.begin(), text.end()};
+}
+
+// Kinds of models that consist of several files, as a rule.
+bool has_companions(const fs::path& file) {
+  const std::string suffix = small_suffix(file);
+  return suffix == ".gltf" || suffix == ".obj" || suffix == ".dae";
 }
 
 // The models of a scene, brought to where its file can name them.
@@ -46,7 +53,7 @@ class Models {
     if (there) {
       const fs::path inside = path.lexically_relative(folder_);
       if (!inside.empty() && *inside.begin() != "..") return inside.string();
-      if (path.extension() == ".gltf") return path.string();
+      if (has_companions(path)) return path.string();
     }
     return bytes != nullptr ? copy(fs::path(name), *bytes) : copy(fs::path(name), read_bytes(path));
   }

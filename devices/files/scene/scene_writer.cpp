@@ -7,6 +7,7 @@
 #include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/model_units.h"
 
 namespace limpid {
 namespace {
@@ -152,6 +153,9 @@ std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
     text.put("name", mesh.name);
     text.put("file", mesh.model);
     text.put_place(mesh.pose, mesh.scale);
+    const ModelUnit* const unit = model_unit(mesh.unit);
+    if (unit && mesh.unit != usual_unit(mesh.model)) text.put("unit", std::string(unit->name));
+    if (mesh.y_up) text.put("up", std::string("y"));
     put_material(text, mesh.material);
   }
   for (const JointContact& contact : scene.joint_contacts) {

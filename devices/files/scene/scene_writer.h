@@ -17,8 +17,8 @@ std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
 
 // Writes the scene to `file` at one stroke, and returns it as that file has it. Models in the
 // file's folder are named relative to it; others are copied beside it, under another name where a
-// different file has theirs, except for .gltf files: they consist of several and stay where they
-// are. Errors: FileError; `file` is then as it was.
+// different file has theirs, except for .gltf, .obj and .dae: they consist of several and stay
+// where they are. Errors: FileError; `file` is then as it was.
 SceneDocument save_scene(const SceneDocument& document, const ArmDescription& arm,
                          const std::filesystem::path& file);
 

@@ -72,8 +72,9 @@ TEST(Place, OfAModelIsUprightOnTheTable) {
   // glTF's y is up: 10 m tall, 4 m deep, off its origin.
   const Bounds model(Vec3(3, 5, 1), Vec3(6, 15, 5));
   MeshObstacle mesh;
+  mesh.y_up = true;
   place_mesh(mesh, model, table(-0.04), desk());
-  const Bounds stands = moved(model, Eigen::Affine3d(mesh.pose) * Eigen::Scaling(mesh.scale));
+  const Bounds stands = moved(model, Eigen::Affine3d(mesh.stood()) * Eigen::Scaling(mesh.size()));
   EXPECT_NEAR(stands.sizes().z(), 0.08, 1e-3);
   EXPECT_NEAR(stands.sizes().x(), 0.024, 1e-3);
   EXPECT_NEAR(stands.sizes().y(), 0.032, 1e-3);
