@@ -26,7 +26,11 @@ bool coarse_enough(const GpuModel& model, const glm::mat4& to_clip, float pixels
 }
 
 // Vertices say everything about it.
-bool is_plain(const Finish& m) { return m == Finish{}; }
+bool is_plain(const Finish& m) {
+  Finish plain;
+  plain.flat = m.flat;
+  return m == plain;
+}
 
 }  // namespace
 

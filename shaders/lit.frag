@@ -2,7 +2,7 @@
 in vec3 at;
 in vec3 facing;
 in vec4 base;
-in vec2 metal_rough;
+in vec3 metal_rough;
 in vec3 shadow_at;
 out vec4 color;
 
@@ -44,12 +44,18 @@ vec3 studio(vec3 d, float a) {
 void main() {
   vec3 n = normalize(facing);
   vec4 own = base;
-  vec2 surface = metal_rough;
+  vec2 surface = metal_rough.xy;
+  bool flat_shaded = metal_rough.z > 0.5;
+  if (flat_shaded) {
+    // The triangle's own, on the side that is seen.
+    n = normalize(cross(dFdx(at), dFdy(at)));
+    if (dot(n, eye.xyz - at) < 0.0) n = -n;
+  }
 #ifdef TEXTURED
   own *= texture(color_texture, texel);
   if (own.a < cutoff) discard;
   surface *= texture(surface_texture, texel).bg;
-  if (!gl_FrontFacing) n = -n;
+  if (!gl_FrontFacing && !flat_shaded) n = -n;
   n = bumped(n);
 #endif
   vec3 albedo = own.rgb;

@@ -2,13 +2,13 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 color;    // square roots of linear light, opacity
-layout(location = 4) in vec2 surface;  // metallic, roughness
+layout(location = 4) in vec3 surface;  // metallic, roughness, 1: drawn flat
 uniform mat4 model;
 uniform vec4 tint;  // linear; w: how much
 out vec3 at;
 out vec3 facing;
 out vec4 base;
-out vec2 metal_rough;
+out vec3 metal_rough;
 out vec3 shadow_at;
 #ifdef TEXTURED
 out vec2 texel;

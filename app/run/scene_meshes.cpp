@@ -2,25 +2,13 @@
 
 #include <filesystem>
 
+#include "app/run/model_report.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/file_error.h"
 #include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
-
-std::shared_ptr<const TriangleMesh> shape_of(const Model& model, const std::string& where,
-                                             const std::atomic<bool>* cancel) {
-  std::vector<Eigen::Vector3f> corners;
-  corners.reserve(model.vertices.size());
-  for (const Vertex& v : model.vertices) corners.push_back(v.position);
-  try {
-    return std::make_shared<const TriangleMesh>(corners, model.indices, cancel);
-  } catch (const std::exception& e) {
-    if (cancel != nullptr && cancel->load()) throw LoadCancelled(where + ": cancelled");
-    throw FileError(where + ": " + e.what());
-  }
-}
 
 std::string where(const SceneDocument& document, const MeshObstacle& mesh) {
   const std::string& path = document.models.at(mesh.model).path;
@@ -49,8 +37,8 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
       // What it refers to is not there any more when a recording is opened; so recordings get one
       // file.
       std::vector<unsigned char> whole;
-      models.push_back(std::make_shared<const Model>(
-          parse_model(*file.bytes, name, folder, progress, &whole)));
+      models.push_back(
+          std::make_shared<const Model>(parse_model(*file.bytes, name, folder, progress, &whole)));
       if (!whole.empty()) {
         file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }
@@ -71,8 +59,9 @@ std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& mod
     for (const std::string& warning : models[i]->warnings) {
       lines.push_back(mesh.name + ": " + warning);
     }
-    const std::string health = mesh.shape->health().text();
-    if (!health.empty()) lines.push_back(mesh.name + ": " + health);
+    for (const std::string& line : touch_warnings(*models[i], *mesh.shape)) {
+      lines.push_back(mesh.name + ": " + line);
+    }
   }
   return lines;
 }

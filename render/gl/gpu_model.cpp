@@ -16,7 +16,7 @@ struct PackedVertex {
   std::array<float, 2> uv;
   std::array<std::int16_t, 4> normal;
   std::array<std::uint8_t, 4> color;    // square roots of linear light, opacity
-  std::array<std::uint8_t, 4> surface;  // metallic, roughness
+  std::array<std::uint8_t, 4> surface;  // metallic, roughness, all of it: drawn flat
 };
 
 std::uint8_t byte(float unit) {
@@ -90,6 +90,11 @@ GpuModel::GpuModel(const Model& model)
   std::vector<PackedVertex> vertices;
   vertices.reserve(model.vertices.size());
   for (const Vertex& v : model.vertices) vertices.push_back(packed(v));
+  for (const Part& part : model.parts) {
+    if (!part.material.flat) continue;
+    for (std::uint32_t i = 0; i < part.count; ++i)
+      vertices[model.indices[part.first + i]].surface[2] = 255;
+  }
   std::vector<std::uint32_t> indices = model.indices;
   indices.insert(indices.end(), model.coarse.begin(), model.coarse.end());
 
@@ -105,7 +110,7 @@ GpuModel::GpuModel(const Model& model)
   attribute(1, 3, GL_SHORT, GL_TRUE, offsetof(PackedVertex, normal));
   attribute(2, 2, GL_FLOAT, GL_FALSE, offsetof(PackedVertex, uv));
   attribute(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(PackedVertex, color));
-  attribute(4, 2, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(PackedVertex, surface));
+  attribute(4, 3, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(PackedVertex, surface));
   glBindVertexArray(0);
   glBindBuffer(GL_ARRAY_BUFFER, 0);
   for (const Image& image : model.images) textures_.push_back(upload(image));

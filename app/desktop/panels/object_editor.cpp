@@ -13,6 +13,7 @@
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/model_units.h"
 #include "devices/files/scene/scene_limits.h"
+#include "devices/files/scene/usual_materials.h"
 
 namespace limpid {
 namespace {
@@ -75,9 +76,33 @@ ParameterInfo slider_of(const MaterialKey& each) {
           .meaning = ""};
 }
 
+// What stands before a control, on its line.
+void caption(const char* text, const char* help) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  tooltip(help);
+  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+  ImGui::SetNextItemWidth(-1);
+}
+
+bool choose_material(Material& material) {
+  bool changed = false;
+  caption("Material", "A usual one, to begin with; what it is made of stands below.");
+  const UsualMaterial* const present = usual_material(material);
+  if (!ImGui::BeginCombo("##material", present ? present->name : "its own")) return false;
+  for (const UsualMaterial& each : kUsualMaterials) {
+    if (!ImGui::Selectable(each.name, &each == present)) continue;
+    material = each.material;
+    changed = true;
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
 // What was changed; nothing, as a rule.
 std::string_view edit_material(Material& material) {
   std::string_view what;
+  if (choose_material(material)) what = "material";
   for (const MaterialKey& each : kMaterialKeys) {
     const double usual = Material{}.*each.field;
     if (slider(material.*each.field, slider_of(each), usual, each.meaning)) what = each.key;
@@ -97,14 +122,7 @@ bool joint_stiffness(double& value) {
 // How the numbers of the model's file are meant.
 bool choose_axes(MeshObstacle& mesh) {
   bool changed = false;
-  const auto label = [](const char* text, const char* help) {
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(text);
-    tooltip(help);
-    ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
-    ImGui::SetNextItemWidth(-1);
-  };
-  label("Unit of the file", "What its coordinates are in. Many formats do not say.");
+  caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
   const ModelUnit* const present = model_unit(mesh.unit);
   if (ImGui::BeginCombo("##unit", present ? present->name : "")) {
     for (const ModelUnit& each : kModelUnits) {
@@ -114,7 +132,7 @@ bool choose_axes(MeshObstacle& mesh) {
     }
     ImGui::EndCombo();
   }
-  label("Axis up", "Which of the file's axes points up when nothing is turned.");
+  caption("Axis up", "Which of the file's axes points up when nothing is turned.");
   int axis = mesh.y_up ? 0 : 1;
   if (ImGui::Combo("##up", &axis, "y\0z\0")) {
     mesh.y_up = axis == 0;
@@ -127,11 +145,7 @@ bool choose_axes(MeshObstacle& mesh) {
 
 bool drag_number(const char* label, double& value, double speed, double least, double most,
                  const char* format, const char* help) {
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(label);
-  tooltip(help);
-  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
-  ImGui::SetNextItemWidth(-1);
+  caption(label, help);
   ImGui::PushID(label);
   const bool changed =
       ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,

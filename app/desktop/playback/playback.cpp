@@ -24,6 +24,14 @@ void Playback::open_story() {
                  });
 }
 
+void Playback::run_hand(const fs::path& file, RunPlan world) {
+  const fs::path out = sessions_dir() / fmt::format("hand-{}.h5", file.stem().string());
+  loading_.start(fmt::format("running {}", file.filename().string()),
+                 [file, out, world = std::move(world)](BackgroundProgress& progress) {
+                   return load_hand(file, world, out, progress);
+                 });
+}
+
 void Playback::close() {
   rerunning_.cancel();
   shown_.reset();

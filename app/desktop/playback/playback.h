@@ -16,6 +16,8 @@ class Playback {
   void open(const std::filesystem::path& file);
   // The story that comes along, run anew.
   void open_story();
+  // A hand's path through this world (all of a plan but the hand), run beside the window.
+  void run_hand(const std::filesystem::path& file, RunPlan world);
   bool loading() const { return loading_.busy(); }
   const std::string& what() const { return loading_.what(); }  // for people, while loading
   void close();

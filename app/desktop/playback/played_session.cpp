@@ -1,10 +1,17 @@
 #include "app/desktop/playback/played_session.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
 #include "app/story/tell.h"
 #include "app/style/words.h"
 #include "devices/files/file_error.h"
+#include "devices/files/hand/hand_file.h"
 
 namespace limpid {
 namespace {
@@ -66,6 +73,28 @@ std::optional<LoadedSession> load_story(const fs::path& out, BackgroundProgress&
   LoadedSession loaded = load_session(out);
   loaded.steps = story.steps;
   return loaded;
+}
+
+std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, const fs::path& out,
+                                       BackgroundProgress& progress) {
+  world.hand = read_hand(hand);
+  world.rows =
+      static_cast<std::uint64_t>(std::llround(world.hand.duration() / world.parameters.tick));
+  fs::create_directories(out.parent_path());
+  Recorder recorder(out, session_info(world), world.parameters, true, Recorder::kWaitingRoom);
+  RunEnd end;
+  try {
+    end = simulate(world, {.realtime = false, .stop = &progress.cancel},
+                   [&](std::span<const double> row, const Parameters*) {
+                     progress.part =
+                         static_cast<double>(recorder.rows()) / static_cast<double>(world.rows);
+                     return recorder.push_waiting(row);
+                   });
+  } catch (const std::invalid_argument& e) {
+    throw FileError(fmt::format("{}: {}", hand.string(), e.what()));
+  }
+  recorder.finish();
+  return progress.cancel ? std::nullopt : std::optional(load_session(out));
 }
 
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,

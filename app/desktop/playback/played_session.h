@@ -39,6 +39,11 @@ LoadedSession load_session(const std::filesystem::path& file);
 // cancelled.
 std::optional<LoadedSession> load_story(const std::filesystem::path& out,
                                         BackgroundProgress& progress);
+// Runs the path of a hand in this world and leaves it in `out`, which is replaced; nothing if it
+// was cancelled.
+std::optional<LoadedSession> load_hand(const std::filesystem::path& hand, RunPlan world,
+                                       const std::filesystem::path& out,
+                                       BackgroundProgress& progress);
 // Under `chosen`, where these may be changed; without rows if it was cancelled.
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 BackgroundProgress& progress);

@@ -73,6 +73,8 @@ class Desktop {
   void open_scene(const std::filesystem::path& file);
   void add_model(const std::filesystem::path& file);
   void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
+  void open_arm(const std::filesystem::path& file);  // a virtual one; errors: FileError
+  void run_hand(const std::filesystem::path& file);
   void add_object(SceneObject object);
   void frame_selected();
   // Where the scene has no file of the user's own, its name is asked for.

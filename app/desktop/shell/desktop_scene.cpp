@@ -14,13 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
 
-std::string lower_extension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 }  // namespace
 
 std::string Desktop::why_fixed() const {
@@ -46,24 +39,6 @@ void Desktop::open_scene(const fs::path& file) {
 
 void Desktop::add_model(const fs::path& file) {
   if (document_.may_edit()) document_.loader().add_model(file);
-}
-
-void Desktop::open_files(const std::vector<fs::path>& files) {
-  for (const fs::path& file : files) {
-    const std::string extension = lower_extension(file);
-    if (extension == ".toml") {
-      open_scene(file);
-    } else if (extension == ".glb" || extension == ".gltf") {
-      add_model(file);
-    } else if (extension == ".h5") {
-      playback_.open(file);
-    } else {
-      notices_.say(fmt::format("{}: not opened. Drop models (.glb, .gltf), scenes (.toml) or "
-                               "recordings (.h5) here.",
-                               file.filename().string()),
-                   true);
-    }
-  }
 }
 
 void Desktop::take_loaded() {

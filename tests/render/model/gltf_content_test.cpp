@@ -78,6 +78,33 @@ TEST(GltfContent, AppliesTheExceptionsOfASparseAccessor) {
   EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 3);
 }
 
+// glTF 2.0, 3.6.2.1: without a buffer view the elements are zeros.
+TEST(GltfContent, ReadsZerosWhereThereIsNoData) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  file.attribute("TEXCOORD_0", file.accessor(-1, 5126, "VEC2", 3));
+  file.attribute("COLOR_0", file.accessor(-1, 5126, "VEC3", 3));
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  for (const Vertex& v : model.vertices) EXPECT_TRUE(v.color.isZero(0) && v.uv.isZero(0));
+}
+
+// 3.7.2.1: without normals it is drawn flat.
+TEST(GltfContent, IsFlatWithoutNormals) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  EXPECT_TRUE(parse_gltf(file.binary(), "part.glb").parts[0].material.flat);
+  file.attribute("NORMAL", file.accessor(file.view(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}),
+                                         5126, "VEC3", 3));
+  EXPECT_FALSE(parse_gltf(file.binary(), "part.glb").parts[0].material.flat);
+}
+
+TEST(GltfContent, SaysWhatGltfOneIs) {
+  for (const char* json : {R"({"asset":{"version":"1.0"}})", R"({"meshes":{"a":{}}})"}) {
+    const std::string text = json;
+    EXPECT_NE(refusal(Bytes(text.begin(), text.end())).find("is glTF 1.0"), std::string::npos);
+  }
+}
+
 TEST(GltfContent, RefusesASparseAccessorThatChangesWhatIsNotThere) {
   GltfBuilder file;
   const int which = file.view(std::vector<std::uint8_t>{3});

@@ -120,7 +120,9 @@ TEST(GltfModel, RefusesEveryTruncation) {
 TEST(GltfModel, RefusesAnotherVersion) {
   Bytes bytes = glb(triangle_json(), triangle_data());
   bytes[4] = 1;
-  expect_refusal(bytes, "is glTF 1, not 2");
+  expect_refusal(bytes, "is glTF 1.0");
+  bytes[4] = 3;
+  expect_refusal(bytes, "is glTF 3, not 2");
 }
 
 TEST(GltfModel, RefusesAnIndexOutsideOfTheMesh) {

@@ -1,0 +1,95 @@
+// What the desktop does with files that are dropped on it, or named when it starts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "app/base/assets.h"
+#include "app/desktop/shell/desktop.h"
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/scene/model_units.h"
+#include "render/model/model_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Earlier ones change what later ones go into.
+enum class DropKind : std::uint8_t { arm, scene, model, session, hand, unknown };
+
+DropKind drop_kind(const fs::path& file) {
+  std::error_code none;
+  const std::string suffix = small_suffix(file);
+  if (fs::is_directory(file, none)) return DropKind::unknown;
+  if (suffix == ".urdf") return DropKind::arm;
+  if (suffix == ".toml") return DropKind::scene;
+  if (is_model_file(file)) return DropKind::model;
+  if (suffix == ".h5") return DropKind::session;
+  if (suffix == ".csv") return DropKind::hand;
+  return DropKind::unknown;
+}
+
+std::string why_not_opened(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  constexpr std::size_t kMost = 4;
+  std::string text = fmt::format(
+      "{}",
+      fmt::join(names.begin(),
+                names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMost)), ", "));
+  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
+  return fmt::format(
+      "{}: not opened. Drop models ({}), scenes (.toml), recordings (.h5), a hand's path (.csv) or "
+      "an arm (.urdf) here.",
+      text, kModelSuffixes);
+}
+
+}  // namespace
+
+void Desktop::open_files(const std::vector<fs::path>& files) {
+  std::vector<fs::path> sorted = files, unknown;
+  std::ranges::stable_sort(sorted, {}, drop_kind);
+  for (const fs::path& file : sorted) {
+    try {
+      switch (drop_kind(file)) {
+        case DropKind::arm: open_arm(file); break;
+        case DropKind::scene: open_scene(file); break;
+        case DropKind::model: add_model(file); break;
+        case DropKind::session: playback_.open(file); break;
+        case DropKind::hand: run_hand(file); break;
+        case DropKind::unknown: unknown.push_back(file); break;
+      }
+    } catch (const std::exception& e) {
+      notices_.say(e.what(), true);
+    }
+  }
+  if (!unknown.empty()) notices_.say(why_not_opened(unknown), true);
+}
+
+void Desktop::open_arm(const fs::path& file) {
+  if (desk_.recording() || desk_.loop().device_in_place()) {
+    notices_.say(desk_.recording() ? "Stop the recording (R) before taking another arm."
+                                   : "Take the device out (Device) before taking another arm.",
+                 true);
+    return;
+  }
+  const ArmDescription arm = read_urdf(file);
+  playback_.close();
+  device_file_ = fs::absolute(file).lexically_normal().string();
+  change_arm(arm, nullptr);
+  notices_.say(fmt::format("Arm: {}, {} joints.", arm.name, arm.dof()));
+}
+
+// Along the path as fast as it goes, in the present world; the window plays what came of it.
+void Desktop::run_hand(const fs::path& file) {
+  RunPlan plan;
+  plan.arm = desk_.stage().arm();
+  plan.document = document_.editor().document();
+  plan.document.toml = document_.toml();
+  plan.models = document_.editor().models();
+  plan.parameters = settings_.parameters;
+  playback_.run_hand(file, std::move(plan));
+}
+
+}  // namespace limpid

@@ -1,0 +1,123 @@
+#include "app/run/model_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "app/run/model_axes.h"
+#include "devices/files/file_error.h"
+#include "render/model/model_file.h"
+
+namespace limpid {
+namespace {
+
+// A closed body thinner than this part of its size is pushed through before it is felt.
+constexpr double kThin = 0.005;
+constexpr std::size_t kProbes = 2000;  // triangles that are looked at
+
+// What the body holds by the divergence theorem, in its own units; below zero where its surface
+// faces inwards.
+double volume(const Model& model, const Vec3& middle) {
+  double sum = 0;
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) {
+      return Vec3(model.vertices[model.indices[i + k]].position.cast<double>() - middle);
+    };
+    sum += at(0).dot(at(1).cross(at(2))) / 6;
+  }
+  return sum;
+}
+
+// The share of triangles from which it is less than `thin` to the other side of the body.
+double thin_share(const Model& model, const TriangleMesh& shape, double thin) {
+  const std::size_t count = model.indices.size() / 3;
+  const std::size_t step = std::max<std::size_t>(1, count / kProbes);
+  std::size_t looked = 0, found = 0;
+  for (std::size_t t = 0; t < count; t += step) {
+    const auto at = [&](std::size_t k) {
+      return Vec3(model.vertices[model.indices[3 * t + k]].position.cast<double>() -
+                  shape.middle());
+    };
+    const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0));
+    if (!(n.norm() > 0)) continue;
+    const Vec3 inward = -n.normalized(), middle = (at(0) + at(1) + at(2)) / 3;
+    const double skin = 1e-4 * shape.radius();
+    MeshPoint other;
+    ++looked;
+    if (shape.crossing(middle + skin * inward, middle + thin * inward, other) &&
+        other.normal.dot(inward) > 0.5)
+      ++found;
+  }
+  return looked > 0 ? static_cast<double>(found) / static_cast<double>(looked) : 0;
+}
+
+std::string counted(std::size_t n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+std::string size_text(const Model& model, double unit) {
+  const Vec3 mm = 1e3 * unit * model.bounds().sizes();
+  return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", mm.x(), mm.y(), mm.z());
+}
+
+std::size_t materials(const Model& model) {
+  std::set<std::array<float, 4>> looks;
+  for (const Vertex& v : model.vertices)
+    looks.insert({v.color.x(), v.color.y(), v.color.z(), v.opacity});
+  return std::max(looks.size() <= 64 ? looks.size() : 0, model.parts.size());
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> shape_of(const Model& model, const std::string& where,
+                                             const std::atomic<bool>* cancel) {
+  std::vector<Eigen::Vector3f> corners;
+  corners.reserve(model.vertices.size());
+  for (const Vertex& v : model.vertices) corners.push_back(v.position);
+  try {
+    return std::make_shared<const TriangleMesh>(corners, model.indices, cancel);
+  } catch (const std::exception& e) {
+    if (cancel != nullptr && cancel->load()) throw LoadCancelled(where + ": cancelled");
+    throw FileError(where + ": " + e.what());
+  }
+}
+
+std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& shape) {
+  std::vector<std::string> lines;
+  if (const std::string health = shape.health().text(); !health.empty()) lines.push_back(health);
+  if (!shape.health().closed()) return lines;
+  if (volume(model, shape.middle()) < 0) {
+    lines.push_back("its faces look inwards: it is felt from inside, as a hollow");
+  }
+  const double size = model.bounds().sizes().maxCoeff();
+  const double share = thin_share(model, shape, kThin * size);
+  if (share > 0.2) {
+    lines.push_back(fmt::format("{:.0f} % of its surface is a wall thinner than {:.2g} % of its "
+                                "size: pressed hard, the tip may slip around its edge",
+                                100 * share, 100 * kThin));
+  }
+  return lines;
+}
+
+ModelReport report_on_model(const std::filesystem::path& file, const LoadProgress& progress) {
+  const Model model = load_model_file(file, progress);
+  const auto shape = shape_of(model, file.string(), progress.cancel);
+  const ModelAxes axes = axes_of(model, file);
+  ModelReport report;
+  const auto fact = [&](const char* what, const std::string& value) {
+    report.facts.push_back(fmt::format("{:<12}{}", what, value));
+  };
+  fact("triangles", fmt::format("{}", shape->triangles()));
+  fact("size", size_text(model, axes.unit));
+  fact("read as", text_of(axes));
+  fact("surface", shape->health().closed() ? "closed" : "open");
+  fact("materials", fmt::format("{}", materials(model)));
+  fact("textures", counted(model.images.size(), "picture"));
+  report.warnings = model.warnings;
+  for (const std::string& line : touch_warnings(model, *shape)) report.warnings.push_back(line);
+  return report;
+}
+
+}  // namespace limpid

@@ -1,0 +1,198 @@
+// glTF files whose numbers and pictures are compressed, made here by the codecs' own encoders.
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <gtest/gtest.h>
+#include <meshoptimizer.h>
+#include <webp/encode.h>
+
+#include "render/model/gltf_model.h"
+#include "render/model/gltf_pack.h"
+#include "tests/render/model/gltf_builder.h"
+
+namespace limpid {
+namespace {
+
+using Eigen::Vector3f;
+
+// Two triangles of different size, not in a plane.
+const std::array<Vector3f, 6> kSoup = {Vector3f(0, 0, 0), Vector3f(1, 0, 0), Vector3f(0, 2, 0),
+                                       Vector3f(0, 0, 5), Vector3f(1, 0, 5), Vector3f(0, 4, 6)};
+
+// Whatever order and number of vertices a codec leaves: the triangles' corners, sorted.
+std::vector<std::array<float, 9>> triangles(const Model& model) {
+  std::vector<std::array<float, 9>> out;
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) {
+    std::array<std::array<float, 3>, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3f& p = model.vertices[model.indices[i + k]].position;
+      corners[k] = {p.x(), p.y(), p.z()};
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::array<float, 9> flat{};
+    for (std::size_t k = 0; k < 9; ++k) flat[k] = corners[k / 3][k % 3];
+    out.push_back(flat);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::array<float, 9>> soup() {
+  Model model;
+  for (const Vector3f& p : kSoup) {
+    model.indices.push_back(static_cast<std::uint32_t>(model.vertices.size()));
+    model.vertices.push_back({p, Vector3f::UnitZ()});
+  }
+  return triangles(model);
+}
+
+Bytes draco_bytes() {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(2);
+  const int at = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  for (std::uint32_t i = 0; i < 2; ++i)
+    builder.SetAttributeValuesForFace(at, draco::FaceIndex(i), kSoup[3 * i].data(),
+                                      kSoup[3 * i + 1].data(), kSoup[3 * i + 2].data());
+  const auto mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+  return {buffer.data(), buffer.data() + buffer.size()};
+}
+
+GltfBuilder draco_file(const Bytes& bytes) {
+  GltfBuilder file;
+  const int view = file.view(bytes);
+  file.attribute("POSITION", file.accessor(-1, 5126, "VEC3", 6));
+  file.primitive = R"(,"indices":)" + std::to_string(file.accessor(-1, 5125, "SCALAR", 6)) +
+                   R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
+                   std::to_string(view) + R"(,"attributes":{"POSITION":0}}})";
+  file.more = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
+  return file;
+}
+
+TEST(GltfCompressed, ReadsDraco) {
+  const GltfBuilder file = draco_file(draco_bytes());
+  EXPECT_EQ(triangles(parse_gltf(file.binary(), "part.glb")), soup());
+  EXPECT_TRUE(parse_gltf(file.binary(), "part.glb").parts[0].material.flat);
+}
+
+TEST(GltfCompressed, RefusesDracoThatIsBroken) {
+  Bytes bytes = draco_bytes();
+  for (const std::size_t length : {std::size_t{1}, bytes.size() / 2, bytes.size() - 1}) {
+    const GltfBuilder file =
+        draco_file(Bytes(bytes.begin(), bytes.begin() + static_cast<long>(length)));
+    EXPECT_THROW(parse_gltf(file.binary(), "part.glb"), std::runtime_error) << length;
+  }
+}
+
+std::string meshopt(int buffer, std::size_t at, std::size_t length, std::size_t stride,
+                    std::size_t count, const std::string& mode) {
+  return R"({"buffer":1,"byteLength":)" + std::to_string(stride * count) +
+         R"(,"extensions":{"EXT_meshopt_compression":{"buffer":)" + std::to_string(buffer) +
+         R"(,"byteOffset":)" + std::to_string(at) + R"(,"byteLength":)" + std::to_string(length) +
+         R"(,"byteStride":)" + std::to_string(stride) + R"(,"count":)" + std::to_string(count) +
+         R"(,"mode":")" + mode + "\"}}}";
+}
+
+// Positions and indices compressed; the second buffer exists in name only.
+Bytes meshopt_file(const std::string& fallback) {
+  Bytes data(meshopt_encodeVertexBufferBound(6, sizeof(Vector3f)));
+  data.resize(
+      meshopt_encodeVertexBuffer(data.data(), data.size(), kSoup.data(), 6, sizeof(Vector3f)));
+  const std::size_t first = data.size();
+  data.resize((data.size() + 3) / 4 * 4);
+  const std::size_t at = data.size();
+  const std::array<std::uint32_t, 6> corners = {0, 1, 2, 3, 4, 5};
+  Bytes indices(meshopt_encodeIndexBufferBound(6, 6));
+  indices.resize(meshopt_encodeIndexBuffer(indices.data(), indices.size(), corners.data(), 6));
+  data.insert(data.end(), indices.begin(), indices.end());
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"extensionsRequired":["EXT_meshopt_compression"],)"
+      R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":6},)"
+      R"({"bufferView":1,"componentType":5125,"type":"SCALAR","count":6}],"bufferViews":[)" +
+      meshopt(0, 0, first, sizeof(Vector3f), 6, "ATTRIBUTES") + "," +
+      meshopt(0, at, indices.size(), 4, 6, "TRIANGLES") + R"(],"buffers":[{"byteLength":)" +
+      std::to_string(data.size()) + R"(},{"byteLength":100000)" + fallback + "}]}";
+  return glb(json, data);
+}
+
+TEST(GltfCompressed, ReadsMeshoptWithABufferThatIsNotThere) {
+  for (const char* fallback :
+       {"", R"(,"extensions":{"EXT_meshopt_compression":{"fallback":true}})"})
+    EXPECT_EQ(triangles(parse_gltf(meshopt_file(fallback), "part.glb")), soup());
+}
+
+TEST(GltfCompressed, RefusesMeshoptThatIsBroken) {
+  Bytes bytes = meshopt_file("");
+  for (std::size_t i = bytes.size() - 60; i < bytes.size(); i += 7) {
+    Bytes broken = bytes;
+    broken[i] = static_cast<unsigned char>(~broken[i]);
+    try {
+      parse_gltf(broken, "part.glb");
+    } catch (const std::runtime_error& e) {
+      EXPECT_EQ(std::string(e.what()).find("part.glb: "), 0u);
+    }
+  }
+  const std::string odd = R"("count":5)";
+  std::string text(bytes.begin(), bytes.end());
+  text.replace(text.rfind(R"("count":6)"), odd.size(), odd);  // of triangles
+  EXPECT_THROW(parse_gltf(Bytes(text.begin(), text.end()), "part.glb"), std::runtime_error);
+}
+
+// Four pixels, encoded without loss.
+const std::array<std::uint8_t, 16> kPixels = {255, 0, 0,   255, 0, 255, 0, 255,
+                                              0,   0, 255, 255, 9, 8,   7, 200};
+
+Bytes webp() {
+  std::uint8_t* out = nullptr;
+  const std::size_t size = WebPEncodeLosslessRGBA(kPixels.data(), 2, 2, 8, &out);
+  Bytes bytes(out, out + size);
+  WebPFree(out);
+  return bytes;
+}
+
+GltfBuilder textured(const std::string& texture, const Bytes& picture) {
+  GltfBuilder file;
+  file.positions(kSquare);
+  file.attribute("TEXCOORD_0", file.accessor(file.view(std::vector<float>(8)), 5126, "VEC2", 4));
+  const int view = file.view(picture);
+  file.primitive = R"(,"mode":5,"material":0)";
+  file.more =
+      R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[)" +
+      texture + R"(],"images":[{"mimeType":"image/webp","bufferView":)" + std::to_string(view) +
+      "}]";
+  return file;
+}
+
+TEST(GltfCompressed, ReadsWebP) {
+  const Model model = parse_gltf(
+      textured(R"({"extensions":{"EXT_texture_webp":{"source":0}}})", webp()).binary(), "part.glb");
+  ASSERT_EQ(model.images.size(), 1u);
+  EXPECT_TRUE(std::equal(kPixels.begin(), kPixels.end(), model.images[0].rgba.begin(),
+                         model.images[0].rgba.end()));
+}
+
+TEST(GltfCompressed, LeavesABrokenWebPOut) {
+  Bytes half = webp();
+  half.resize(half.size() / 2);
+  const Model model = parse_gltf(
+      textured(R"({"extensions":{"EXT_texture_webp":{"source":0}}})", half).binary(), "a.glb");
+  EXPECT_TRUE(model.images.empty());
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("no PNG, JPEG or WebP"), std::string::npos);
+}
+
+TEST(GltfCompressed, StaysTouchableWithoutAPictureOfAnUnknownKind) {
+  GltfBuilder file =
+      textured(R"({"extensions":{"KHR_texture_basisu":{"source":0}}})", {1, 2, 3, 4});
+  file.more += R"(,"extensionsRequired":["KHR_texture_basisu"])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.indices.size(), 6u);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("KHR_texture_basisu"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limpid

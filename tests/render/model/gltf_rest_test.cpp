@@ -1,0 +1,92 @@
+// Where the vertices of a glTF file are that is made to move: at rest.
+#include <gtest/gtest.h>
+
+#include "render/model/gltf_model.h"
+#include "tests/render/model/gltf_builder.h"
+
+namespace limpid {
+namespace {
+
+using Eigen::Vector3f;
+
+// A corner each at the origin, at x = 1 and at y = 1.
+GltfBuilder corner() {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  return file;
+}
+
+std::vector<Vector3f> places(const GltfBuilder& file) {
+  std::vector<Vector3f> out;
+  for (const Vertex& v : parse_gltf(file.binary(), "part.glb").vertices) out.push_back(v.position);
+  return out;
+}
+
+// A target that lifts the second vertex by 1, and one that moves all by 10 along x.
+GltfBuilder morphed(const std::string& node) {
+  GltfBuilder file = corner();
+  const int lift =
+      file.accessor(file.view(std::vector<float>{0, 0, 0, 0, 0, 1, 0, 0, 0}), 5126, "VEC3", 3);
+  const int move =
+      file.accessor(file.view(std::vector<float>{10, 0, 0, 10, 0, 0, 10, 0, 0}), 5126, "VEC3", 3);
+  file.primitive = R"(,"targets":[{"POSITION":)" + std::to_string(lift) + R"(},{"POSITION":)" +
+                   std::to_string(move) + "}]";
+  file.nodes = node;
+  return file;
+}
+
+TEST(GltfRest, AddsMorphTargetsByTheNodesWeights) {
+  const auto at = places(morphed(R"({"mesh":0,"weights":[0.5,0.1]})"));
+  EXPECT_TRUE(at[0].isApprox(Vector3f(1, 0, 0)));
+  EXPECT_TRUE(at[1].isApprox(Vector3f(2, 0, 0.5f)));
+}
+
+TEST(GltfRest, LeavesMorphTargetsOutWithoutWeights) {
+  EXPECT_TRUE(places(morphed(R"({"mesh":0})"))[1].isApprox(Vector3f(1, 0, 0)));
+}
+
+// The first vertex on joint 1, the second on joint 2, the third between the two.
+GltfBuilder skinned(const std::string& more_of_skin) {
+  GltfBuilder file = corner();
+  file.attribute(
+      "JOINTS_0",
+      file.accessor(file.view(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}), 5121,
+                    "VEC4", 3));
+  file.attribute(
+      "WEIGHTS_0",
+      file.accessor(file.view(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}), 5126,
+                    "VEC4", 3));
+  // What the mesh's own node says about its place does not count.
+  file.nodes = R"({"mesh":0,"skin":0,"translation":[99,99,99]},{"translation":[0,0,2]},)"
+               R"({"translation":[0,0,4]})";
+  file.roots = "0,1,2";
+  file.more = R"(,"skins":[{"joints":[1,2])" + more_of_skin + "}]";
+  return file;
+}
+
+TEST(GltfRest, HoldsASkinByItsJoints) {
+  const auto at = places(skinned(""));
+  EXPECT_TRUE(at[0].isApprox(Vector3f(0, 0, 2)));
+  EXPECT_TRUE(at[1].isApprox(Vector3f(1, 0, 4)));
+  EXPECT_TRUE(at[2].isApprox(Vector3f(0, 1, 3)));
+}
+
+TEST(GltfRest, TakesASkinFromWhereItWasBound) {
+  GltfBuilder file = skinned(R"(,"inverseBindMatrices":3)");
+  std::vector<float> down = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -2, 1};
+  std::vector<float> both = down;
+  both.insert(both.end(), down.begin(), down.end());
+  ASSERT_EQ(file.accessor(file.view(both), 5126, "MAT4", 2), 3);
+  const auto at = places(file);
+  EXPECT_TRUE(at[0].isApprox(Vector3f(0, 0, 0)));
+  EXPECT_TRUE(at[1].isApprox(Vector3f(1, 0, 2)));
+}
+
+TEST(GltfRest, RefusesAJointThatDoesNotExist) {
+  GltfBuilder file = skinned("");
+  file.more = R"(,"skins":[{"joints":[1]}])";
+  EXPECT_THROW(parse_gltf(file.binary(), "part.glb"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace limpid
