@@ -287,14 +287,4 @@ Vec3 Arm<N>::point_drift(const Frames& f, int link, const Vec3& world, const Vec
 template class Arm<3>;
 template class Arm<kAnyDof>;
 
-Eigen::VectorXd rest_pose(const ArmDescription& arm) {
-  Eigen::VectorXd x(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const bool limited = std::isfinite(joint.lower) && std::isfinite(joint.upper);
-    x[i] = limited ? (joint.lower + joint.upper) / 2 : 0;
-  }
-  return x;
-}
-
 }  // namespace limpid

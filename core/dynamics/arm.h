@@ -130,7 +130,8 @@ class Arm {
 extern template class Arm<3>;
 extern template class Arm<kAnyDof>;
 
-// The middle of each joint's limits, 0 where there are none [rad].
+// The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
+// tip a direction in which it cannot move, as an arm stretched out has [rad].
 Eigen::VectorXd rest_pose(const ArmDescription& arm);
 
 }  // namespace limpid

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/math/sizes.h"
 
 namespace limpid {
+
+struct Model;  // a picture, of no interest here
 
 struct Joint {
   std::string name;
@@ -28,14 +32,17 @@ struct Link {
 };
 
 // What to draw: one shape fixed to a link. `size` is the box's edges, (radius, length, -) of a
-// cylinder along z, (radius, -, -) of a sphere, or the scale of a mesh.
+// cylinder along z, (radius, -, -) of a sphere, or the scale of a mesh, negative where it mirrors.
+// A stand-in is what could not be read: a link of which nothing else is seen is drawn as a capsule.
 struct Visual {
-  enum class Shape { mesh, box, cylinder, sphere };
+  enum class Shape { mesh, box, cylinder, sphere, stand_in };
   int link = -1;                   // index into links, -1 the base
   Pose origin = Pose::Identity();  // in the link frame
   Shape shape = Shape::mesh;
-  std::string mesh;  // absolute path of a glTF file
+  std::string mesh = {};  // absolute path of a model; glTF ones have y up, which is turned to z
   Vec3 size = Vec3::Ones();
+  std::optional<Eigen::Vector4f> color = {};  // sRGB and opacity; of a mesh without its own
+  std::shared_ptr<const Model> model = {};    // of the mesh, once somebody has read it
 };
 
 // A named frame of the file: every URDF link, also those merged through fixed joints.
@@ -50,9 +57,11 @@ struct ArmDescription {
   std::vector<Joint> joints;    // n, base first
   std::vector<Link> links;      // n, link i is moved by joint i; its frame is that of joint i
   Pose tip = Pose::Identity();  // in the last link's frame
+  std::string tip_link;         // the file's link that it is the origin of
   std::vector<NamedFrame> frames;
   std::vector<Visual> visuals;
-  std::string urdf;  // the text it came from
+  std::string urdf;                   // the text it came from
+  std::vector<std::string> warnings;  // what the text lacks, and what took its place, for people
 
   int dof() const { return static_cast<int>(joints.size()); }
 };

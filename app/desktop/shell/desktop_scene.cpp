@@ -57,9 +57,11 @@ void Desktop::open_files(const std::vector<fs::path>& files) {
       add_model(file);
     } else if (extension == ".h5") {
       playback_.open(file);
+    } else if (extension == ".urdf" || extension == ".xacro") {
+      open_arm(file);
     } else {
-      notices_.say(fmt::format("{}: not opened. Drop models (.glb, .gltf), scenes (.toml) or "
-                               "recordings (.h5) here.",
+      notices_.say(fmt::format("{}: not opened. Drop models (.glb, .gltf), scenes (.toml), "
+                               "arms (.urdf) or recordings (.h5) here.",
                                file.filename().string()),
                    true);
     }
