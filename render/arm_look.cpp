@@ -7,6 +7,7 @@
 #include <set>
 
 #include "render/mesh_shapes.h"
+#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -14,6 +15,12 @@ namespace {
 using Models = std::map<std::string, std::shared_ptr<const Model>>;
 
 // glTF has y up; arms have z up, and so have STL, OBJ and Collada in URDF, whatever they say.
+bool is_gltf(const std::filesystem::path& file) {
+  std::string suffix = file.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return suffix == ".glb" || suffix == ".gltf";
+}
+
 Model upright(Model model) {
   for (Vertex& v : model.vertices) {
     v.position = Eigen::Vector3f(v.position.x(), -v.position.z(), v.position.y());
@@ -77,7 +84,8 @@ Model model_of(const Visual& visual) {
 
 // Empty files and files of nothing but a point show nothing.
 std::shared_ptr<const Model> read(const Visual& visual, const LoadProgress& progress) {
-  Model model = upright(load_gltf(visual.mesh, progress));
+  Model model = load_model_file(visual.mesh, progress);
+  if (is_gltf(visual.mesh)) model = upright(std::move(model));
   const Bounds box = model.bounds();
   if (model.indices.empty() || box.isEmpty() || !(box.diagonal().norm() > 0)) {
     throw std::runtime_error(visual.mesh + ": nothing to see in it");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/dynamics/arm_description.h"
-#include "render/model/gltf_model.h"
+#include "render/model/load_progress.h"
 #include "render/scene_items.h"
 
 namespace limpid {

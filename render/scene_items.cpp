@@ -5,7 +5,7 @@
 
 #include "render/arm_look.h"
 #include "render/mesh_shapes.h"
-#include "render/model/gltf_model.h"
+#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -63,7 +63,7 @@ void add_scene(const Scene& scene, std::span<const VisualPicture> seen, double r
                SceneItems& items) {
   std::vector<Bounds> visuals;
   for (const VisualPicture& visual : seen) {
-    Item item{load_gltf(visual.file), visual.pose, -1};
+    Item item{load_model_file(visual.file), visual.pose, -1};
     transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
     visuals.push_back(moved(item.model.bounds(), item.pose));
     items.world.push_back(std::move(item));

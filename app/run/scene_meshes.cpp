@@ -4,7 +4,7 @@
 
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/file_error.h"
-#include "render/model/gltf_pack.h"
+#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -46,11 +46,12 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
     }
     const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
     try {
-      models.push_back(
-          std::make_shared<const Model>(parse_gltf(*file.bytes, name, folder, progress)));
       // What it refers to is not there any more when a recording is opened; so recordings get one
       // file.
-      if (auto whole = pack_gltf(*file.bytes, name, folder); !whole.empty()) {
+      std::vector<unsigned char> whole;
+      models.push_back(std::make_shared<const Model>(
+          parse_model(*file.bytes, name, folder, progress, &whole)));
+      if (!whole.empty()) {
         file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }
     } catch (const LoadCancelled&) {

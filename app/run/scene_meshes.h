@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "devices/files/scene/scene_document.h"
-#include "render/model/gltf_model.h"
+#include "render/model/load_progress.h"
+#include "render/model/model.h"
 
 namespace limpid {
 

@@ -1,8 +1,6 @@
 #include "render/model/gltf_file.h"
 
-#include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include "render/model/gltf_guard.h"
@@ -54,46 +52,15 @@ std::span<const unsigned char> json_of_text(std::span<const unsigned char> bytes
   return !bytes.empty() && bytes[0] == '{' ? bytes : bytes.subspan(bytes.size());
 }
 
-// What a file may refer to: files in its folder and below, of a limited size together.
-struct Surroundings {
-  const std::string& name;
-  std::filesystem::path folder;
-  std::size_t left;  // bytes
-
-  std::filesystem::path resolve(const std::string& uri) const {
-    const std::string what = "refers to \"" + uri + "\"";
-    const std::filesystem::path relative(uri);
-    const bool odd = uri.empty() || relative.is_absolute() || uri.find(':') != uri.npos ||
-                     uri.find('\\') != uri.npos || std::any_of(uri.begin(), uri.end(), [](char c) {
-                       return static_cast<unsigned char>(c) < 0x20;
-                     });
-    if (odd || std::find(relative.begin(), relative.end(), "..") != relative.end())
-      refuse(name, what + "; allowed are files in its own folder");
-    std::error_code error;
-    const auto home = std::filesystem::canonical(folder, error);
-    const auto file = std::filesystem::weakly_canonical(home / relative, error);
-    const auto inside = std::mismatch(home.begin(), home.end(), file.begin(), file.end());
-    if (error || inside.first != home.end())
-      refuse(name, what + ", which is outside of its own folder");
-    return file;
-  }
-};
-
 bool read_other(std::vector<unsigned char>* out, std::string* error, const std::string& uri,
                 void* user) {
-  auto& around = *static_cast<Surroundings*>(user);
-  if (around.folder.empty()) {
-    if (error) *error = "it must contain everything itself";
+  auto& around = *static_cast<Companions*>(user);
+  auto bytes = around.none() ? std::nullopt : around.read(uri);
+  if (!bytes) {
+    if (error) *error = around.none() ? "it must contain everything itself" : "it does not exist";
     return false;
   }
-  const auto file = around.resolve(uri);
-  std::error_code none;
-  if (!std::filesystem::exists(file, none)) {
-    if (error) *error = "it does not exist";
-    return false;
-  }
-  *out = read_bytes(file, around.left);
-  around.left -= out->size();
+  *out = std::move(*bytes);
   return true;
 }
 
@@ -113,29 +80,6 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
-std::string one_line(std::string text) {
-  constexpr std::size_t kLongest = 300;
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  return text;
-}
-
-std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) refuse(path.string(), "cannot be read");
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = file ? static_cast<std::streamoff>(file.tellg()) : std::streamoff{-1};
-  if (size < 0) refuse(path.string(), "cannot be read");
-  if (static_cast<std::size_t>(size) > most)
-    refuse(path.string(), "makes the model larger than the " + std::to_string(kLargestGltf >> 20) +
-                              " MiB that are read");
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
-  file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!file) refuse(path.string(), "cannot be read");
-  return bytes;
-}
-
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
                                          const std::string& name) {
   const auto text = json_of_text(bytes);
@@ -144,14 +88,15 @@ std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
 
 GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,
                          const std::filesystem::path& folder) {
-  if (bytes.size() > kLargestGltf)
-    refuse(name, "is larger than the " + std::to_string(kLargestGltf >> 20) + " MiB that are read");
+  if (bytes.size() > kLargestModelFiles)
+    refuse(name,
+           "is larger than the " + std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
   const auto text = json_of_text(bytes);
   const bool binary = text.empty();
   guard_gltf_json(binary ? json_of_glb(bytes, name) : text, name);
 
   GltfFile out;
-  Surroundings around{name, folder, kLargestGltf - bytes.size()};
+  Companions around(name, folder, bytes.size());
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, &out.pictures);
   loader.SetFsCallbacks({[](const std::string&, void*) { return true; },

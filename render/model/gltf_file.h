@@ -8,15 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "render/model/companions.h"
+
 namespace limpid {
-
-inline constexpr std::size_t kLargestGltf = std::size_t{512} << 20;  // with all it refers to
-
-// Throws std::runtime_error naming the file if it is no file, larger than `most` or unreadable.
-std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most);
-
-// Words of a file made fit for a message: no line ends, no control characters, not too long.
-std::string one_line(std::string text);
 
 // The JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,

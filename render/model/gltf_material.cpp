@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/model/model_building.h"
+
 namespace limpid {
 namespace {
 
@@ -43,13 +45,6 @@ Image::Wrap wrap_of(int gl) {
 }
 
 }  // namespace
-
-void add_warning(Model& model, const std::string& what) {
-  constexpr std::size_t kMost = 20;
-  auto& list = model.warnings;
-  if (list.size() < kMost && std::find(list.begin(), list.end(), what) == list.end())
-    list.push_back(what);
-}
 
 void GltfMaterials::warn(const std::string& what) { add_warning(model_, what); }
 
@@ -133,8 +128,7 @@ int GltfMaterials::picture(int source, bool srgb, Image::Wrap wrap_u, Image::Wra
   if (!image) {
     warn("image " + std::to_string(source) +
          (from.uri.empty() ? "" : " (\"" + one_line(from.uri) + "\")") +
-         (bytes.empty() ? " is missing" : " is no PNG or JPEG that can be read") +
-         ", it is left out");
+         (bytes.empty() ? " is missing, it is left out" : std::string(" is ") + kUnknownPicture));
     return -1;
   }
   image->srgb = srgb;

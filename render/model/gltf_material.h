@@ -7,8 +7,8 @@
 
 #include "render/model/gltf_accessor.h"
 #include "render/model/gltf_file.h"
-#include "render/model/gltf_image.h"
 #include "render/model/model.h"
+#include "render/model/model_images.h"
 
 namespace limpid {
 
@@ -43,12 +43,9 @@ class GltfMaterials {
   const GltfAccessor& file_;
   const std::string& name_;
   Model& model_;
-  GltfImages images_;
+  ModelImages images_;
   std::map<int, GltfMaterial> known_;
   std::map<std::tuple<int, bool, Image::Wrap, Image::Wrap>, int> pictures_;
 };
-
-// Adds a line unless it is there already or there are many.
-void add_warning(Model& model, const std::string& what);
 
 }  // namespace limpid

@@ -1,23 +1,19 @@
 #include "render/model/gltf_model.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "render/model/gltf_accessor.h"
 #include "render/model/gltf_file.h"
 #include "render/model/gltf_material.h"
 #include "render/model/gltf_triangles.h"
+#include "render/model/model_building.h"
 #include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
 
-constexpr std::size_t kMostVertices = 8'000'000;
-constexpr std::size_t kMostTriangles = 6'000'000;
 constexpr std::size_t kMostPrimitives = 1'000'000;  // over all nodes
-constexpr int kDeepestNode = 256;
-constexpr float kFarthest = 1e6f;  // [m]
 
 class Reader {
  public:
@@ -41,8 +37,6 @@ class Reader {
                     const Elements& positions, const Eigen::Affine3d& to_model);
   bool add_normals(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& used,
                    std::size_t count, const Eigen::Affine3d& to_model);
-  void join_parts();
-  void check_wanted() const;
 
   const tinygltf::Model& gltf_;
   GltfAccessor file_;
@@ -52,12 +46,8 @@ class Reader {
   std::size_t expected_, nodes_ = 0, primitives_ = 0, triangles_ = 0;
   std::vector<bool> seen_;  // nodes
   VertexUse use_;
-  std::map<Finish, std::vector<std::uint32_t>> indices_;  // of the model, by material
+  IndicesByFinish indices_;
 };
-
-void Reader::check_wanted() const {
-  if (progress_.cancel && progress_.cancel->load()) throw LoadCancelled("loading was cancelled");
-}
 
 Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
   Eigen::Affine3d out = Eigen::Affine3d::Identity();
@@ -104,7 +94,7 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& key) {
 }
 
 void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& to_model) {
-  check_wanted();
+  check_wanted(progress_);
   if (++primitives_ > kMostPrimitives) file_.refuse("has more than 1 million parts over all nodes");
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     add_warning(model_, "points and lines are left out");
@@ -130,9 +120,10 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, const Eigen::Af
 
   if (to_model.linear().determinant() < 0)
     for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i], corners[i + 1]);
-  if (!add_normals(primitive, used, positions.count, to_model))
-    smooth_normals(std::span(model_.vertices).subspan(first), corners);
-  auto& list = indices_[materials_.at(primitive.material).material];
+  Finish finish = materials_.at(primitive.material).material;
+  finish.flat = !add_normals(primitive, used, positions.count, to_model);
+  fill_normals(std::span(model_.vertices).subspan(first), corners);
+  auto& list = indices_[finish];
   list.reserve(list.size() + corners.size());
   for (const std::uint32_t corner : corners) list.push_back(first + corner);
 }
@@ -148,7 +139,7 @@ void Reader::add_vertices(const tinygltf::Primitive& primitive,
     v.position = (to_model * here).cast<float>();
     if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
       file_.refuse("a vertex is farther than 1000 km from the origin");
-    v.normal = Eigen::Vector3f::UnitZ();
+    v.normal.setZero();
     v.color = material.color;
     v.opacity = material.opacity;
     v.surface = material.surface;
@@ -211,15 +202,6 @@ std::vector<int> Reader::roots() const {
   return all;
 }
 
-void Reader::join_parts() {
-  for (auto& [material, list] : indices_) {
-    model_.parts.push_back({static_cast<std::uint32_t>(model_.indices.size()),
-                            static_cast<std::uint32_t>(list.size()), material});
-    model_.indices.insert(model_.indices.end(), list.begin(), list.end());
-    list = {};
-  }
-}
-
 Model Reader::read() {
   constexpr std::array kKnown = {"KHR_texture_transform", "KHR_mesh_quantization",
                                  "KHR_lights_punctual"};
@@ -229,11 +211,10 @@ Model Reader::read() {
       file_.refuse("requires the extension " + name + ", which is not read");
   seen_.assign(gltf_.nodes.size(), false);
   for (const int node : roots()) add_node(node, Eigen::Affine3d::Identity(), 0);
-  if (indices_.empty()) file_.refuse("contains no triangles");
-  join_parts();
-  check_wanted();
-  add_coarse(model_);
-  if (progress_.part) *progress_.part = 1;
+  if (indices_.empty()) file_.refuse(kNoTriangles);
+  join_parts(model_, indices_);
+  model_.unit = 1;
+  model_.up = Model::Up::y;
   return std::move(model_);
 }
 
@@ -241,13 +222,20 @@ Model Reader::read() {
 
 Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
                  const std::filesystem::path& folder, const LoadProgress& progress) {
-  const GltfFile source = parse_gltf_file(bytes, name, folder);
-  if (progress.part) *progress.part = 0.3;
-  return Reader(source, name, progress).read();
+  Model model;
+  {
+    const GltfFile source = parse_gltf_file(bytes, name, folder);
+    if (progress.part) *progress.part = 0.3;
+    model = Reader(source, name, progress).read();
+  }  // the file's buffers go before more memory is needed
+  check_wanted(progress);
+  add_coarse(model);
+  if (progress.part) *progress.part = 1;
+  return model;
 }
 
 Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress) {
-  const auto bytes = read_bytes(path, kLargestGltf);
+  const auto bytes = read_bytes(path, kLargestModelFiles);
   if (progress.part) *progress.part = 0.1;
   const auto folder = path.parent_path();
   return parse_gltf(bytes, path.string(), folder.empty() ? "." : folder, progress);

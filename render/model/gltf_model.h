@@ -10,33 +10,20 @@
 // No OpenGL is needed: link limpid_gltf.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <span>
-#include <stdexcept>
 #include <string>
 
+#include "render/model/load_progress.h"
 #include "render/model/model.h"
 
 namespace limpid {
-
-// How far a load has come, and whether it is still wanted; either may be null.
-struct LoadProgress {
-  std::atomic<double>* part = nullptr;        // 0 to 1
-  const std::atomic<bool>* cancel = nullptr;  // asked several times a second
-};
-
-struct LoadCancelled : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // All triangles of the default scene with the nodes' transforms applied. Kept are positions,
 // normals, one set of texture coordinates, vertex colours and the metallic-roughness material with
 // its textures; left out with a warning are points, lines, textures that cannot be read.
 //
-// Throws std::runtime_error with one line naming the file for anything unreadable, broken or
-// larger than is read: 512 MiB of files, 8 million vertices and 6 million triangles over all
-// nodes, 1 GiB of decoded pictures; LoadCancelled when `cancel` was set.
+// Limits and errors: those of model_file.h.
 Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress = {});
 
 // The same from memory; `name` stands for the file in messages. Other files are read from inside

@@ -1,13 +1,11 @@
 #include "render/model/gltf_pack.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "render/model/glb_bytes.h"
 #include "render/model/gltf_file.h"
 
 namespace limpid {
@@ -15,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
-
-constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
 
 // The list of that name; an empty one if there is none.
 json& list(json& gltf, const char* key) {
@@ -35,16 +31,6 @@ bool any_outside(const json& gltf, const char* key) {
   const auto found = gltf.find(key);
   return found != gltf.end() && found->is_array() &&
          std::any_of(found->begin(), found->end(), lies_outside);
-}
-
-void fill_up(Bytes& bytes, unsigned char filler) {
-  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
-}
-
-void put(Bytes& out, std::size_t number) {
-  const auto bytes =
-      std::bit_cast<std::array<unsigned char, 4>>(static_cast<std::uint32_t>(number));
-  out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
 // Where a view, or an extension of one, says which bytes of which buffer it stands for.
@@ -102,23 +88,6 @@ void bring_in_pictures(json& gltf, const GltfFile& file, Bytes& all) {
   if (images.empty()) gltf.erase("images");  // a list must not be empty
 }
 
-Bytes binary_file(const json& gltf, const Bytes& data) {
-  const std::string dumped = gltf.dump();
-  Bytes text(dumped.begin(), dumped.end());
-  fill_up(text, ' ');
-  Bytes out;
-  put(out, kMagic);
-  put(out, 2);
-  put(out, 12 + 8 + text.size() + 8 + data.size());
-  put(out, text.size());
-  put(out, kJson);
-  out.insert(out.end(), text.begin(), text.end());
-  put(out, data.size());
-  put(out, kBinary);
-  out.insert(out.end(), data.begin(), data.end());
-  return out;
-}
-
 }  // namespace
 
 std::vector<unsigned char> pack_gltf(std::span<const unsigned char> bytes, const std::string& name,
@@ -132,10 +101,10 @@ std::vector<unsigned char> pack_gltf(std::span<const unsigned char> bytes, const
   bring_in_pictures(gltf, file, all);
   if (all.empty()) return {};
   gltf["buffers"] = json::array({{{"byteLength", all.size()}}});
-  Bytes out = binary_file(gltf, all);
-  if (out.size() > kLargestGltf) {
+  Bytes out = glb_bytes(gltf.dump(), all);
+  if (out.size() > kLargestModelFiles) {
     throw std::runtime_error(name + ": is, with the files it refers to, larger than the " +
-                             std::to_string(kLargestGltf >> 20) + " MiB that are read");
+                             std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
   }
   return out;
 }

@@ -62,19 +62,4 @@ const std::vector<std::uint32_t>& VertexUse::renumber(std::vector<std::uint32_t>
   return used_;
 }
 
-void smooth_normals(std::span<Vertex> vertices, std::span<const std::uint32_t> corners) {
-  std::vector<Vec3> sum(vertices.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
-    const auto at = [&](std::size_t k) {
-      return Vec3(vertices[corners[i + k]].position.cast<double>());
-    };
-    const Vec3 a = at(0), n = (at(1) - a).cross(at(2) - a);
-    for (std::size_t k = 0; k < 3; ++k) sum[corners[i + k]] += n;
-  }
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    const double length = sum[i].norm();
-    if (length > 0) vertices[i].normal = (sum[i] / length).cast<float>();
-  }
-}
-
 }  // namespace limpid

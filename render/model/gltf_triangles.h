@@ -30,7 +30,4 @@ class VertexUse {
   std::vector<std::uint32_t> place_, used_;
 };
 
-// Each vertex takes the mean direction of its triangles, by their size.
-void smooth_normals(std::span<Vertex> vertices, std::span<const std::uint32_t> corners);
-
 }  // namespace limpid

@@ -41,6 +41,7 @@ struct Finish {
   Alpha alpha = Alpha::opaque;
   float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there
   bool two_sided = false;
+  bool flat = false;  // each triangle as it lies, not as the vertices' normals say
 
   auto operator<=>(const Finish&) const = default;
 };
@@ -51,6 +52,7 @@ struct Part {
 };
 
 struct Model {
+  enum class Up : std::uint8_t { unsaid, y, z };
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
   std::vector<Part> parts;             // one a material, together all indices in order
@@ -58,6 +60,8 @@ struct Model {
   // Of a large model a version with fewer triangles over the same vertices; else empty.
   std::vector<std::uint32_t> coarse;
   std::vector<Part> coarse_parts;
+  double unit = 0;                    // of the coordinates, as the file says [m]; 0: it does not
+  Up up = Up::unsaid;                 // the axis
   std::vector<std::string> warnings;  // what was left out of the file, a line each
 
   Eigen::AlignedBox3d bounds() const {

@@ -1,4 +1,4 @@
-#include "render/model/gltf_image.h"
+#include "render/model/model_images.h"
 
 #include <stb/stb_image.h>
 
@@ -29,8 +29,8 @@ bool is_jpeg(std::span<const unsigned char> bytes) {
 
 }  // namespace
 
-std::optional<Image> GltfImages::decode(std::span<const unsigned char> bytes,
-                                        const std::string& name) {
+std::optional<Image> ModelImages::decode(std::span<const unsigned char> bytes,
+                                         const std::string& name) {
   // Only the two kinds that glTF has; stb would try many more.
   if (bytes.size() > kMostBytes || !(is_png(bytes) || is_jpeg(bytes))) return std::nullopt;
   const auto length = static_cast<int>(bytes.size());

@@ -1,0 +1,44 @@
+// What assimp gets to read: the model from memory, and what lies beside it.
+#pragma once
+
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/model/companions.h"
+
+namespace limpid {
+
+class AssimpFiles : public Assimp::IOSystem {
+ public:
+  // All of these outlive this.
+  AssimpFiles(std::span<const unsigned char> bytes, const std::string& kind, Companions& companions)
+      : bytes_(bytes), main_(kStem + kind), companions_(companions) {}
+
+  const std::string& main() const { return main_; }  // the model's name here
+
+  bool Exists(const char* file) const override { return file == main_; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+  // Pictures and material files by the names that models have for them; empty: not there, or not
+  // to be read, for which there is a warning then.
+  std::vector<unsigned char> read(const std::string& file);
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  bool any_read() const { return any_read_; }  // beside the model
+
+ private:
+  // Assimp looks for materials by the model's name, too, where it has not been told of any.
+  static constexpr const char* kStem = "the model itself.";
+
+  std::span<const unsigned char> bytes_;
+  std::string main_;
+  Companions& companions_;
+  std::vector<std::string> warnings_;
+  bool any_read_ = false;
+};
+
+}  // namespace limpid

@@ -1,0 +1,203 @@
+#include "render/model/assimp/assimp_model.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+#include <numeric>
+#include <stdexcept>
+
+#include "render/model/assimp/assimp_files.h"
+#include "render/model/assimp/assimp_material.h"
+#include "render/model/model_building.h"
+
+namespace limpid {
+namespace {
+
+class Progress : public Assimp::ProgressHandler {
+ public:
+  explicit Progress(const std::function<void(double)>& tell) : tell_(tell) {}
+  bool Update(float) override { return true; }
+  void UpdateFileRead(int step, int steps) override {
+    if (steps > 0) tell_(0.8 * step / steps);
+  }
+
+ private:
+  const std::function<void(double)>& tell_;
+};
+
+// Only the importer of this kind: assimp guesses at others by what a file contains.
+void keep_importer(Assimp::Importer& importer, const std::string& kind) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* const each = importer.GetImporter(i);
+    if (importer.GetImporter(("." + kind).c_str()) != each) importer.UnregisterLoader(each);
+  }
+}
+
+// What assimp says about a file of points or lines only means nothing to its owner.
+std::string in_words(const std::string& why) {
+  for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
+    if (why.find(said) != why.npos) return kNoTriangles;
+  return why.empty() ? "is not valid" : why;
+}
+
+Eigen::Affine3d transform(const aiMatrix4x4& m) {
+  Eigen::Affine3d out;
+  out.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0,
+      1;
+  return out;
+}
+
+[[noreturn]] void refuse(const std::string& why) { throw std::runtime_error(one_line(why)); }
+
+Eigen::Vector3f vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+class Builder {
+ public:
+  Builder(const aiScene& scene, const std::string& kind, AssimpFiles& files)
+      : scene_(scene),
+        // Those of STL say how each facet lies, not how a surface is meant to look.
+        use_normals_(kind != "stl"),
+        materials_(scene, kind, files) {}
+
+  AssimpModel build();
+
+ private:
+  void add_node(const aiNode& node, const Eigen::Affine3d& parent, int depth);
+  void add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model);
+  std::size_t weld(const aiMesh& mesh, bool normals, std::vector<unsigned>& place) const;
+  void add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine3d& to_model,
+                    std::span<const unsigned> place, std::size_t count);
+
+  const aiScene& scene_;
+  bool use_normals_;
+  Model model_;
+  AssimpMaterials materials_;
+  std::size_t triangles_ = 0, nodes_ = 0;
+  IndicesByFinish indices_;
+};
+
+// Formats that list corners, not vertices, have each vertex many times.
+std::size_t Builder::weld(const aiMesh& mesh, bool normals, std::vector<unsigned>& place) const {
+  std::vector<meshopt_Stream> streams{{mesh.mVertices, sizeof(aiVector3D), sizeof(aiVector3D)}};
+  const auto also = [&](const auto* values) {
+    if (values != nullptr) streams.push_back({values, sizeof *values, sizeof *values});
+  };
+  if (normals) also(mesh.mNormals);
+  also(mesh.mTextureCoords[0]);
+  also(mesh.mColors[0]);
+  place.resize(mesh.mNumVertices);
+  // Whole triangles are wanted, of which the vertices here may be no multiple.
+  std::vector<unsigned> all((std::size_t{mesh.mNumVertices} + 2) / 3 * 3, mesh.mNumVertices - 1);
+  std::iota(all.begin(), all.begin() + mesh.mNumVertices, 0u);
+  return meshopt_generateVertexRemapMulti(place.data(), all.data(), all.size(), mesh.mNumVertices,
+                                          streams.data(), streams.size());
+}
+
+void Builder::add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine3d& to_model,
+                           std::span<const unsigned> place, std::size_t count) {
+  const AssimpMaterial& material = materials_.at(mesh.mMaterialIndex);
+  const Eigen::Matrix3f turn = to_model.linear().cast<float>().inverse().transpose();
+  const std::size_t first = model_.vertices.size();
+  model_.vertices.resize(first + count);
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    Vertex& v = model_.vertices[first + place[i]];
+    v.position = (to_model * vec(mesh.mVertices[i]).cast<double>()).cast<float>();
+    if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
+      refuse("a vertex is farther than a million from the origin");
+    v.normal.setZero();
+    if (normals) {
+      const Eigen::Vector3f n = turn * vec(mesh.mNormals[i]);
+      if (n.norm() > 1e-12f && std::isfinite(n.norm())) v.normal = n.normalized();
+    }
+    if (mesh.HasTextureCoords(0)) {
+      const aiVector3D& uv = mesh.mTextureCoords[0][i];  // counted from below
+      const Eigen::Vector2f own(uv.x, 1 - uv.y);
+      v.uv = own.allFinite() ? own.cwiseMax(-kFarthest).cwiseMin(kFarthest).eval() : v.uv;
+    }
+    v.color = material.color;
+    v.opacity = material.opacity;
+    if (mesh.HasVertexColors(0)) {
+      const aiColor4D& c = mesh.mColors[0][i];
+      const Eigen::Vector3f own = linear({c.r, c.g, c.b});
+      v.color = material.plain ? own : v.color.cwiseProduct(own).eval();
+    }
+  }
+}
+
+void Builder::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model) {
+  if (!to_model.matrix().allFinite()) refuse("has a transform that is not finite");
+  if (mesh.mNumFaces == 0 || !mesh.HasPositions()) return;
+  if ((triangles_ += mesh.mNumFaces) > kMostTriangles)
+    refuse("has more than 6 million triangles over all nodes");
+  const bool normals = use_normals_ && mesh.HasNormals();
+  std::vector<unsigned> place;
+  const std::size_t count = weld(mesh, normals, place);
+  const std::size_t first = model_.vertices.size();
+  if (first + count > kMostVertices) refuse("has more than 8 million vertices over all nodes");
+  add_vertices(mesh, normals, to_model, place, count);
+
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * std::size_t{mesh.mNumFaces});
+  const bool mirrored = to_model.linear().determinant() < 0;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    std::array<std::uint32_t, 3> at{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) refuse("names a vertex that does not exist");
+      at[k] = place[face.mIndices[k]];
+    }
+    if (mirrored) std::swap(at[0], at[1]);
+    if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0])
+      corners.insert(corners.end(), at.begin(), at.end());
+  }
+  fill_normals(std::span(model_.vertices).subspan(first), corners);
+  Finish finish = materials_.at(mesh.mMaterialIndex).finish;
+  finish.flat = !normals;
+  auto& list = indices_[finish];
+  list.reserve(list.size() + corners.size());
+  for (const std::uint32_t corner : corners)
+    list.push_back(static_cast<std::uint32_t>(first) + corner);
+}
+
+void Builder::add_node(const aiNode& node, const Eigen::Affine3d& parent, int depth) {
+  if (depth > kDeepestNode) refuse("has nodes nested deeper than 256");
+  if (++nodes_ > kMostNodes) refuse("has more than 1 million nodes");
+  const Eigen::Affine3d here = parent * transform(node.mTransformation);
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(*scene_.mMeshes[node.mMeshes[i]], here);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], here, depth + 1);
+}
+
+AssimpModel Builder::build() {
+  add_node(*scene_.mRootNode, Eigen::Affine3d::Identity(), 0);
+  join_parts(model_, indices_);
+  if (model_.indices.empty()) refuse(kNoTriangles);
+  return {std::move(model_), materials_.pictures(), false};
+}
+
+}  // namespace
+
+AssimpModel read_with_assimp(AssimpFiles* files, const std::string& kind,
+                             const std::function<void(double)>& progress) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(files);  // owns it from now on, as the next
+  importer.SetProgressHandler(new Progress(progress));
+  keep_importer(importer, kind);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* const scene =
+      importer.ReadFile(files->main(), aiProcess_Triangulate | aiProcess_SortByPType);
+  if (scene == nullptr || scene->mRootNode == nullptr) refuse(in_words(importer.GetErrorString()));
+  AssimpModel out = Builder(*scene, kind, *files).build();
+  out.model.warnings = files->warnings();
+  out.outside = files->any_read();
+  return out;
+}
+
+}  // namespace limpid

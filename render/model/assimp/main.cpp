@@ -1,0 +1,86 @@
+// limpid-model: reads a model of another kind than glTF and writes it as glTF. What a broken or
+// hostile file does to the library that reads it ends this program, not the one at a device.
+//
+//   limpid-model KIND FOLDER NUMBER <model >model.glb
+//
+// KIND is a suffix as "stl"; FOLDER may have files that the model refers to, if it is not empty. To
+// the file of descriptor NUMBER go lines: "part 0.5", "warning ...", "error ..." (and it leaves
+// with 1), "outside" if other files were read.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "render/model/assimp/assimp_model.h"
+#include "render/model/assimp/glb_writer.h"
+
+namespace {
+
+// Much more than any model within what is read needs.
+void limit_self() {
+  const auto set = [](auto what, rlim_t most) {
+    const rlimit limit{most, most};
+    setrlimit(what, &limit);
+  };
+  set(RLIMIT_CORE, 0);
+  set(RLIMIT_CPU, 600);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  set(RLIMIT_AS, rlim_t{8} << 30);
+#endif
+}
+
+std::span<const unsigned char> standard_input() {
+  struct stat about {};
+  if (fstat(STDIN_FILENO, &about) != 0 || about.st_size <= 0) throw std::runtime_error("is empty");
+  const auto size = static_cast<std::size_t>(about.st_size);
+  void* const bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
+  if (bytes == MAP_FAILED) throw std::runtime_error("cannot be read");
+  return {static_cast<const unsigned char*>(bytes), size};
+}
+
+void put(std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (written <= 0) throw std::runtime_error("is too large for the memory");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 4) {
+    std::fputs("limpid-model belongs to limpid, which calls it.\n", stderr);
+    return 2;
+  }
+  limit_self();
+  std::FILE* const lines = fdopen(std::atoi(words[3]), "w");
+  if (lines == nullptr) return 2;
+  setlinebuf(lines);
+  try {
+    const std::string name = "model", kind = words[1];
+    const auto bytes = standard_input();
+    limpid::Companions companions(name, words[2],
+                                  std::min(bytes.size(), limpid::kLargestModelFiles));
+    auto* const files = new limpid::AssimpFiles(bytes, kind, companions);
+    const auto read = limpid::read_with_assimp(
+        files, kind, [&](double part) { std::fprintf(lines, "part %.3f\n", part); });
+    for (const std::string& warning : read.model.warnings)
+      std::fprintf(lines, "warning %s\n", warning.c_str());
+    if (read.outside) std::fputs("outside\n", lines);
+    put(limpid::glb_of(read.model, read.pictures));
+    return std::fclose(lines) == 0 ? 0 : 1;
+  } catch (const std::bad_alloc&) {
+    std::fputs("error is too large for the memory\n", lines);
+  } catch (const std::exception& e) {
+    std::fprintf(lines, "error %s\n", e.what());
+  }
+  std::fflush(lines);
+  return 1;
+}

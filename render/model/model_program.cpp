@@ -1,0 +1,174 @@
+#include "render/model/model_program.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <stdexcept>
+
+#include "render/model/companions.h"
+
+extern char** environ;
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<unsigned char>;
+
+constexpr int kLines = 3;  // the descriptor on which the program says how it goes on
+constexpr std::chrono::milliseconds kBetweenLooks{50};
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int operator*() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(number_);
+    number_ = -1;
+  }
+
+ private:
+  int number_;
+};
+
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw std::runtime_error(name + ": " + one_line(why));
+}
+
+// Beside this program, or where it was built.
+fs::path program() {
+  std::error_code none;
+  const fs::path here = fs::read_symlink("/proc/self/exe", none).replace_filename("limpid-model");
+  return fs::exists(here, none) ? here : fs::path(LIMPID_MODEL_PROGRAM);
+}
+
+void write_all(int file, std::span<const unsigned char> bytes, const std::string& name) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) refuse(name, "is too large for the memory");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+Bytes read_all(int file, const std::string& name) {
+  struct stat about {};
+  if (::fstat(file, &about) != 0) refuse(name, "cannot be read");
+  Bytes bytes(static_cast<std::size_t>(about.st_size));
+  for (std::size_t at = 0; at < bytes.size();) {
+    const ssize_t read =
+        ::pread(file, bytes.data() + at, bytes.size() - at, static_cast<off_t>(at));
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) refuse(name, "cannot be read");
+    at += static_cast<std::size_t>(read);
+  }
+  return bytes;
+}
+
+// The program at work; it ends at the latest with this.
+class Child {
+ public:
+  Child(std::array<const char*, 5> words, int in, int out, int lines) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    // A copy first: descriptor 3 may be one of the others here.
+    const Descriptor kept(::fcntl(lines, F_DUPFD, 10));
+    posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, *kept, kLines);
+    if (*kept < 0 || ::posix_spawn(&id_, words[0], &actions, nullptr,
+                                   const_cast<char**>(words.data()), environ) != 0)
+      id_ = -1;
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  ~Child() {
+    if (id_ < 0) return;
+    ::kill(id_, SIGKILL);
+    wait();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  bool started() const { return id_ > 0; }
+  // 0: all is well.
+  int wait() {
+    int status = 0;
+    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    }
+    id_ = -1;
+    return status;
+  }
+
+ private:
+  pid_t id_ = -1;
+};
+
+void take_line(const std::string& line, ConvertedModel& out, std::string& error,
+               const LoadProgress& progress) {
+  const auto at = line.find(' ');
+  const std::string word = line.substr(0, at), rest = at == line.npos ? "" : line.substr(at + 1);
+  if (word == "part" && progress.part) *progress.part = 0.1 + 0.5 * std::atof(rest.c_str());
+  if (word == "warning" && out.warnings.size() < 20) out.warnings.push_back(one_line(rest));
+  if (word == "outside") out.outside = true;
+  if (word == "error") error = rest;
+}
+
+// What the program says until it ends; returns its error.
+std::string follow(int lines, ConvertedModel& out, const LoadProgress& progress) {
+  std::string error, text;
+  std::array<char, 4096> piece{};
+  for (;;) {
+    check_wanted(progress);
+    pollfd waiting{lines, POLLIN, 0};
+    if (::poll(&waiting, 1, static_cast<int>(kBetweenLooks.count())) == 0) continue;
+    const ssize_t read = ::read(lines, piece.data(), piece.size());
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) return error;
+    text.append(piece.data(), static_cast<std::size_t>(read));
+    for (auto end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+      take_line(text.substr(0, end), out, error, progress);
+      text.erase(0, end + 1);
+    }
+    if (text.size() > piece.size()) text.clear();
+  }
+}
+
+}  // namespace
+
+ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::string& kind,
+                             const std::string& name, const fs::path& folder,
+                             const LoadProgress& progress) {
+  const Descriptor in(::memfd_create("model", MFD_CLOEXEC)),
+      out(::memfd_create("glb", MFD_CLOEXEC));
+  std::array<int, 2> ends{-1, -1};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0 || *in < 0 || *out < 0)
+    refuse(name, "cannot be read, there are too many open files");
+  const Descriptor lines(ends[0]);
+  Descriptor other_end(ends[1]);
+  write_all(*in, bytes, name);
+  const std::string at = program().string(), place = folder.string();
+  Child child({at.c_str(), kind.c_str(), place.c_str(), "3", nullptr}, *in, *out, *other_end);
+  if (!child.started())
+    refuse(name, "cannot be read: the program " + at + ", which reads it, cannot be started");
+  other_end.close();
+  ConvertedModel made;
+  const std::string error = follow(*lines, made, progress);
+  const int status = child.wait();
+  if (!error.empty()) refuse(name, error);
+  if (status != 0) refuse(name, "is broken: what reads it has given up");
+  made.glb = read_all(*out, name);
+  return made;
+}
+
+}  // namespace limpid

@@ -1,0 +1,26 @@
+// Models of other kinds than glTF are made glTF by a program of their own, limpid-model: what a
+// broken file does to the library that reads it stays there.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/model/load_progress.h"
+
+namespace limpid {
+
+struct ConvertedModel {
+  std::vector<unsigned char> glb;
+  std::vector<std::string> warnings;
+  bool outside = false;  // files of the folder are in it
+};
+
+// `kind`: the suffix, as "stl". Throws std::runtime_error naming the file; LoadCancelled. `part`
+// gets up to 0.6.
+ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::string& kind,
+                             const std::string& name, const std::filesystem::path& folder,
+                             const LoadProgress& progress);
+
+}  // namespace limpid
