@@ -30,20 +30,26 @@ struct Report {
   std::vector<std::string> facts, warnings;
 };
 
-std::string range_of(const Joint& joint) {
-  if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper)) return "no limits";
-  return fmt::format("{:.3g} to {:.3g} rad", joint.lower, joint.upper);
+// Of slides in m, N, N s/m and kg.
+std::string joint_line(const Joint& joint, const Link& link, double inertia) {
+  const bool slides = joint.kind == Joint::Kind::prismatic;
+  const double unit = slides ? kSlideUnit : 1;
+  const std::string range = std::isfinite(joint.upper - joint.lower)
+                                ? fmt::format("{:.3g} to {:.3g} {}", unit * joint.lower,
+                                              unit * joint.upper, slides ? "m" : "rad")
+                                : "no limits";
+  return fmt::format("  {:<26} {:>18} {:>7.3g} {:<4} {:>7.2g} {:<6} {:>7.3g} kg {:>8.2g} {}",
+                     joint.name, range, joint.effort / unit, slides ? "N" : "N m",
+                     joint.damping / (unit * unit), slides ? "N s/m" : "N m s", link.mass,
+                     inertia / (unit * unit), slides ? "kg" : "kg m^2");
 }
 
 void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, Report& report) {
-  report.facts.push_back(fmt::format("  {:<28} {:>18} {:>10} {:>11} {:>10} {:>12}", "joint", "range",
-                                     "torque", "damping", "mass", "inertia"));
+  report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint", "range",
+                                     "effort", "damping", "its link", "moves at rest"));
   for (int i = 0; i < arm.dof(); ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    report.facts.push_back(
-        fmt::format("  {:<28} {:>18} {:>6.3g} N m {:>5.2g} N m s {:>7.3g} kg {:>6.2g} kg m^2",
-                    joint.name, range_of(joint), joint.effort, joint.damping,
-                    arm.links[static_cast<std::size_t>(i)].mass, M(i, i)));
+    const auto k = static_cast<std::size_t>(i);
+    report.facts.push_back(joint_line(arm.joints[k], arm.links[k], M(i, i)));
   }
 }
 

@@ -15,9 +15,19 @@ constexpr double kGuess = 1e-3;       // where it is less
 constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kLeastEffort = 0.01;  // [N m]
 
-// What resists joint i: inertia about it [kg m^2].
+bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
+
+// What resists a joint: inertia about it, or of a slide mass along it [kg m^2].
 double resistance(const Joint& joint, const Link& link) {
+  if (slides(joint)) return link.mass * kSlideUnit * kSlideUnit;
   return joint.axis.dot(about_origin(link) * joint.axis);
+}
+
+// The most that such a joint could be resisted with by a body, whichever way it turned.
+double most_resistance(const Joint& joint, const Link& body) {
+  if (slides(joint)) return resistance(joint, body);
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(about_origin(body), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().maxCoeff();
 }
 
 void check_body(const Link& link, const UrdfPlaces& places) {
@@ -56,9 +66,8 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   for (std::size_t i = arm.links.size(); i-- > 0;) {
     Link& link = arm.links[i];
     const Joint& joint = arm.joints[i];
-    const Mat3 hanging = about_origin(outer(arm, i));
-    const double most =
-        Eigen::SelfAdjointEigenSolver<Mat3>(hanging, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    const Link all = outer(arm, i);
+    const double most = most_resistance(joint, all);
     if (resistance(joint, link) > kLeastShare * most) continue;
     if (!(most > 0 && std::isfinite(most))) {
       places.refuse_link(
@@ -69,7 +78,11 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
                       resistance(joint, link), joint.name));
     }
     const double least = kGuess * most;
-    link.inertia += least * Mat3::Identity();
+    if (slides(joint)) {
+      link.mass += kGuess * all.mass;
+    } else {
+      link.inertia += least * Mat3::Identity();
+    }
     guessed.push_back(fmt::format("'{}' ({:.2g})", link.name, least));
   }
   if (guessed.empty()) return;
@@ -91,8 +104,10 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
     moment += kGravity * link.mass * link.com.norm();
     weight += kGravity * link.mass;
     if (joint.effort != 0) continue;
-    joint.effort = std::max(kLeastEffort, 2 * moment);
-    guessed.push_back(fmt::format("'{}' ({:.2g} N m)", joint.name, joint.effort));
+    joint.effort = std::max(kLeastEffort, 2 * (slides(joint) ? weight * kSlideUnit : moment));
+    guessed.push_back(slides(joint)
+                          ? fmt::format("'{}' ({:.2g} N)", joint.name, joint.effort / kSlideUnit)
+                          : fmt::format("'{}' ({:.2g} N m)", joint.name, joint.effort));
   }
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);

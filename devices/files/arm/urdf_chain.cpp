@@ -138,9 +138,11 @@ class Chain {
     }
     if (!moves(joint)) return held(joint, here);
     const Pose origin = origin_of(joint, here);
-    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS) {
-      places_.refuse_joint(joint.name,
-                           fmt::format("{}; allowed: revolute, continuous, fixed", kind_of(joint)));
+    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
+        joint.type != urdf::Joint::PRISMATIC) {
+      places_.refuse_joint(
+          joint.name,
+          fmt::format("{}; allowed: revolute, continuous, prismatic, fixed", kind_of(joint)));
     }
     if (arm_.dof() == kMaxDof) {
       places_.refuse_joint(joint.name, fmt::format("one too many; at most {}", kMaxDof));
@@ -161,14 +163,15 @@ class Chain {
       places_.refuse_joint(joint.name, "axis is zero or not finite; needed: a direction");
     }
     out.axis = axis.normalized();
-    if (joint.type == urdf::Joint::REVOLUTE) {
+    const bool slides = joint.type == urdf::Joint::PRISMATIC;
+    if (slides || joint.type == urdf::Joint::REVOLUTE) {
       out.lower = limit_of(joint, &urdf::JointLimits::lower, 0);
       out.upper = limit_of(joint, &urdf::JointLimits::upper, 0);
       if (!(out.lower < out.upper) || !std::isfinite(out.upper - out.lower)) {
         places_.refuse_joint(joint.name,
-                             fmt::format("limits from {} to {} rad; needed: finite, lower below "
+                             fmt::format("limits from {} to {} {}; needed: finite, lower below "
                                          "upper",
-                                         out.lower, out.upper));
+                                         out.lower, out.upper, slides ? "m" : "rad"));
       }
     }
     out.effort = at_least_zero(joint.name, "effort", limit_of(joint, &urdf::JointLimits::effort, 0));
@@ -176,7 +179,18 @@ class Chain {
       out.damping = at_least_zero(joint.name, "damping", joint.dynamics->damping);
       out.friction = at_least_zero(joint.name, "friction", joint.dynamics->friction);
     }
+    if (slides) in_units_of_travel(out);
     return out;
+  }
+
+  // From m, N and N s/m.
+  static void in_units_of_travel(Joint& joint) {
+    joint.kind = Joint::Kind::prismatic;
+    joint.lower /= kSlideUnit;
+    joint.upper /= kSlideUnit;
+    joint.effort *= kSlideUnit;
+    joint.friction *= kSlideUnit;
+    joint.damping *= kSlideUnit * kSlideUnit;
   }
 
   double at_least_zero(const std::string& joint, const char* what, double x) const {

@@ -8,7 +8,7 @@
 
 namespace limpid {
 
-// A chain of 1 to 32 joints that turn, from the root to the link `tip`, or where none is named to
+// A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is named to
 // the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest chain
 // (way_to_tip in urdf_path.h). Everything else is held still at zero or the limit next to it; links
 // behind joints that do not move are merged into the one that moves them (those before the first
