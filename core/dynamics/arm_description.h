@@ -1,4 +1,9 @@
-// An arm as its file gives it: a chain of revolute joints. Fixed joints are already merged.
+// An arm as its file gives it: a chain of revolute and prismatic joints. Fixed joints are already
+// merged.
+//
+// All that is said of joints in rad is said of slides in units of travel, so that coordinates,
+// velocities, torques and gains mean the same for both: where a joint has 1 rad, a slide has 10 cm,
+// and its "torque" of 1 N m is a force of 10 N.
 #pragma once
 
 #include <limits>
@@ -13,8 +18,12 @@ namespace limpid {
 
 struct Model;  // a picture, of no interest here
 
+inline constexpr double kSlideUnit = 0.1;  // travel of a slide per unit of its coordinate [m]
+
 struct Joint {
+  enum class Kind { revolute, prismatic };
   std::string name;
+  Kind kind = Kind::revolute;
   Pose origin = Pose::Identity();  // joint frame in the frame of the previous link [m, rad]
   Vec3 axis = Vec3::UnitZ();       // unit, in the joint frame
   double lower = -std::numeric_limits<double>::infinity();  // [rad]
@@ -64,6 +73,7 @@ struct ArmDescription {
   std::vector<std::string> warnings;  // what the text lacks, and what took its place, for people
 
   int dof() const { return static_cast<int>(joints.size()); }
+  bool slides(std::size_t joint) const { return joints[joint].kind == Joint::Kind::prismatic; }
 };
 
 }  // namespace limpid
