@@ -34,8 +34,9 @@ void set(Parameters& p, const char* key, double value) {
   set_parameter_number(p, *find_parameter(key), written);
 }
 
-// What the file says nothing of.
-double wanted_damping(const ArmDescription& arm) {
+// What the file says nothing of. A joint that comes to rest within a tick would ring in laws that
+// model it by the midpoint rule: so its lightest mode bounds it.
+double wanted_damping(const ArmDescription& arm, double tick) {
   double said = 0;
   for (const Joint& joint : arm.joints) {
     if (joint.damping > 0) said = said > 0 ? std::min(said, joint.damping) : joint.damping;
@@ -43,7 +44,8 @@ double wanted_damping(const ArmDescription& arm) {
   if (said > 0) return said;
   const Eigen::VectorXd modes = symmetric_eigen(arm_at(arm, rest_pose(arm)).M).values;
   const double mean = std::exp(modes.array().max(1e-300).log().mean());
-  return up(kRate * std::max(mean, modes.maxCoeff() / kSpread));
+  const double wanted = kRate * std::max(mean, modes.maxCoeff() / kSpread);
+  return up(std::min(wanted, 2 * modes[0] / tick));
 }
 
 bool same(const Parameters& a, const Parameters& b, const char* key) {
@@ -62,7 +64,7 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen) {
   if (chosen.damping > 0) {
     p.damping = b_d = chosen.damping;
   } else if (!(b_d > 0)) {
-    set(p, "device.damping", wanted_damping(arm));
+    set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
   set(p, "coupling.b_vc", down(b_d / 12));

@@ -3,7 +3,8 @@
 // All of them hang on the device's damping b_d: with k_vc = 10/12 b_d/T, b_vc = b_d/12 and b_v = b_d
 // condition (3) holds with an equals sign, as it does for the paper's, and with alpha = 35/12 b_d
 // eta_min of (25) is the paper's 0.59. An arm whose file does not say how it is damped gets a
-// damping that takes its motion off as fast as the built-in arm's does.
+// damping that takes its motion off as fast as the built-in arm's does, or less where that would stop
+// its lightest joint within a tick.
 #pragma once
 
 #include <array>

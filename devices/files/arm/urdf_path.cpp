@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/math/sizes.h"
+#include "core/dynamics/arm_description.h"
 
 namespace limpid {
 namespace {
