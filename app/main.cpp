@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   commands["run"] = declare_run(app);
   commands["experiment"] = declare_experiment(app);
   commands["analyze"] = declare_analyze(app);
+  commands["check"] = declare_check(app);
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);

@@ -23,10 +23,15 @@ class Part:
         self.triangles, self.colors, self.uv = triangles, colors, uv
 
 
-def write_glb(path, parts, materials, generator):
+# Column by column: z up becomes y up.
+Y_UP = [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1]
+
+
+def write_glb(path, parts, materials, generator, y_up=False):
     """materials: name -> (r, g, b linear, metallic, roughness), or a dictionary with `color`,
-    `metallic`, `roughness` and optionally `picture` (a PNG's bytes) and `two_sided`. Returns the
-    number of triangles."""
+    `metallic`, `roughness` and optionally `picture` (a PNG's bytes) and `two_sided`. y_up: turned
+    as the format has it, which is what arms expect of their pictures. Returns the number of
+    triangles."""
     blob = bytearray()
     views, accessors, primitives, used, pictures = [], [], [], [], []
 
@@ -70,7 +75,8 @@ def write_glb(path, parts, materials, generator):
                      **({"doubleSided": True} if material.get("two_sided") else {})})
 
     gltf = {"asset": {"version": "2.0", "generator": generator}, "scene": 0,
-            "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0, **({"matrix": Y_UP} if y_up else {})}],
             "meshes": [{"primitives": primitives}], "materials": used, "accessors": accessors,
             "bufferViews": views, "buffers": [{"byteLength": len(blob)}]}
     if pictures:

@@ -87,7 +87,7 @@ class Shape:
             points[k, :, w] = along
         self.grid(points, material)
 
-    def write(self, path, materials):
+    def write(self, path, materials, y_up=False):
         """materials: name -> (r, g, b linear, metallic, roughness)."""
         parts = []
         for name, pieces in self.parts.items():
@@ -95,4 +95,4 @@ class Shape:
             parts.append(Part(name, np.concatenate([p[0] for p in pieces]),
                               np.concatenate([p[1] for p in pieces]),
                               np.concatenate([p[2] + k for p, k in zip(pieces, first)])))
-        return write_glb(path, parts, materials, "glb_shapes.py")
+        return write_glb(path, parts, materials, "glb_shapes.py", y_up)

@@ -84,13 +84,13 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   Vec<N> x_model = x_;
   Vec<N> dv = Vec<N>::Zero(x_.size());
   Vec3 tip_model = Vec3::Zero(), drift = Vec3::Zero();
-  const typename Arm<N>::Angles start = Arm<N>::angles(x_start);
+  const typename Arm<N>::Angles start = arm_.angles(x_start);
   hand_torque_.setZero();
   for (int s = 0; s < p.substeps; ++s) {
     if (s % kShare == 0) {
       const int ahead = std::min(kShare, p.substeps - s);
       x_model = x_ + ahead * h / 2 * v_;
-      arm_.frames(Arm<N>::turned(start, x_model - x_start), frames_);
+      arm_.frames(arm_.turned(start, x_model - x_start), frames_);
       arm_.inertia_bias(frames_, v_ + 0.5 * ahead * dv, M_, Cv_);
       tip_model = arm_.tip(frames_);
       arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "render/arm_look.h"
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
 
@@ -10,7 +11,6 @@ namespace limpid {
 namespace {
 
 const Paint kObject{{0.85f, 0.84f, 0.82f}, 0, 0.5f};
-const Paint kPlainArm{{0.75f, 0.76f, 0.78f}, 0, 0.4f};
 
 // Link frames at q = 0.
 std::vector<Pose> zero_poses(const ArmDescription& arm) {
@@ -24,54 +24,10 @@ Pose pose_of(const std::vector<Pose>& links, int link) {
   return link < 0 ? Pose::Identity() : links[static_cast<std::size_t>(link)];
 }
 
-// Where link i ends, in its own frame: at the next joint, the last one at the tip.
-Vec3 end_of(const ArmDescription& arm, std::size_t i) {
-  return i + 1 < arm.joints.size() ? Vec3(arm.joints[i + 1].origin.translation())
-                                   : Vec3(arm.tip.translation());
-}
-
 double reach_of(const ArmDescription& arm) {
   double reach = 0;
   for (std::size_t i = 0; i < arm.joints.size(); ++i) reach += end_of(arm, i).norm();
   return std::max(reach, 0.05);
-}
-
-Model model_of(const Visual& visual) {
-  switch (visual.shape) {
-    case Visual::Shape::box: return make_box(visual.size, 0.1 * visual.size.minCoeff(), kPlainArm);
-    case Visual::Shape::cylinder: return make_cylinder(visual.size.x(), visual.size.y(), kPlainArm);
-    case Visual::Shape::sphere: return make_sphere(visual.size.x(), kPlainArm);
-    case Visual::Shape::mesh: break;
-  }
-  Model model = load_model_file(visual.mesh);
-  for (Vertex& v : model.vertices) {
-    const Eigen::Vector3f scale = visual.size.cast<float>();
-    v.position = v.position.cwiseProduct(scale);
-    v.normal = v.normal.cwiseQuotient(scale).normalized();
-  }
-  return model;
-}
-
-void add_arm(const ArmDescription& arm, SceneItems& items) {
-  for (const Visual& visual : arm.visuals)
-    (visual.link < 0 ? items.base : items.moving)
-        .push_back({model_of(visual), visual.origin, visual.link});
-  if (!arm.visuals.empty()) return;
-
-  const double n = static_cast<double>(std::max(1, arm.dof()));
-  const double radius = std::clamp(0.16 * reach_of(arm) / n, 0.003, 0.03);
-  items.base.push_back({make_sphere(1.5 * radius, kPlainArm), Pose::Identity(), -1});
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const bool last = i + 1 == arm.joints.size();
-    Model link =
-        make_capsule(Vec3::Zero(), end_of(arm, i), last ? 0.7 * radius : radius, kPlainArm);
-    if (last) {
-      Model tip = make_sphere(radius, kPlainArm);
-      transform(tip, Eigen::Affine3d(Eigen::Translation3d(end_of(arm, i))));
-      append(link, tip);
-    }
-    items.moving.push_back({std::move(link), Pose::Identity(), static_cast<int>(i)});
-  }
 }
 
 // A touchable shape that a model of the scene already shows is not drawn twice.
@@ -242,7 +198,9 @@ SceneItems collect_items(const ArmDescription& arm, const Scene& scene,
                          std::span<const VisualPicture> visuals) {
   SceneItems items;
   items.reach = reach_of(arm);
-  add_arm(arm, items);
+  ArmDescription seen = arm;
+  load_visuals(seen);
+  add_arm(seen, items);
   items.arm_bounds = bounds_of_arm(arm, items);
   collect_scene_items(arm, scene, visuals, items);
   return items;

@@ -29,7 +29,7 @@ struct SceneItems {
   std::vector<double> level_planes;  // heights of what can be touched from above [m]
 };
 
-// Throws std::runtime_error naming the file that cannot be loaded.
+// Throws std::runtime_error naming the scene's file that cannot be loaded.
 SceneItems collect_items(const ArmDescription& arm, const Scene& scene,
                          std::span<const VisualPicture> visuals);
 // The same where only the scene is another one; `items` came from this arm.

@@ -81,10 +81,10 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
 }
 
 int analyze_command(const AnalyzeOptions& options) {
-  const Parameters p = make_parameters(options.input);
   ArmDescription arm;
   SceneDocument document;
   read_world(options.input, arm, document);
+  const Parameters p = make_parameters(options.input, arm);
   const std::optional<double> w_b =
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =

@@ -17,6 +17,7 @@ using Command = std::function<int()>;
 Command declare_run(CLI::App& app);
 Command declare_experiment(CLI::App& app);
 Command declare_analyze(CLI::App& app);
+Command declare_check(CLI::App& app);
 Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);

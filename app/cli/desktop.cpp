@@ -45,10 +45,11 @@ int open_window(const WindowOptions& options) {
   SceneDocument document;
   read_world(input, arm, document);
   desktop.device = input.device;
+  desktop.tip = input.tip;
   desktop.scene = input.scene;
   const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
                    input.eta || input.alpha;
-  if (own) desktop.parameters = make_parameters(input);
+  if (own) desktop.parameters = make_parameters(input, arm);
   if (!options.session.empty()) {
     if (read_session(options.session).size() == 0) {
       throw FileError(options.session + ": holds no rows");

@@ -10,7 +10,7 @@ namespace {
 
 int devices() {
   fmt::print(
-      "virtual arm\n  built in; any URDF chain of 1 to 32 revolute joints (--device), driven by "
+      "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
       "the mouse or a recorded hand\n");
   DeviceHub hub(device_book_file(), {});
   hub.take(DeviceHub::look());

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "app/base/assets.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/own_world.h"
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
 #include "core/dynamics/inverse_kinematics.h"
@@ -102,7 +104,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     plan.parameters.tick = chosen.tick;
   }
   if (!options.device.empty()) {
-    plan.arm = read_urdf(options.device);
+    plan.arm = read_urdf(options.device, options.tip);
     if (options.scene.empty()) {  // its joints and links may have other names here
       plan.document = parse_scene(session.info.scene, options.hand + " (scene)",
                                   data_dir() / "assets/scenes", plan.arm, session.info.models);
@@ -144,6 +146,10 @@ void InputOptions::add_parameters(CLI::App& command) {
 void InputOptions::add_world(CLI::App& command) {
   command.add_option("--device", device, "the arm; default: the built-in Omni-like one")
       ->type_name("FILE.urdf");
+  command
+      .add_option("--tip", tip,
+                  "the link of the arm that the hand holds; default: the end of the longest chain")
+      ->type_name("LINK");
   command.add_option("--scene", scene, "what can be touched; default: a table")
       ->type_name("FILE.toml");
 }
@@ -167,6 +173,7 @@ InputOptions both(const InputOptions& first, InputOptions second) {
     if (said == std::decay_t<decltype(said)>{}) said = before;
   };
   unless_said(second.device, first.device);
+  unless_said(second.tip, first.tip);
   unless_said(second.scene, first.scene);
   unless_said(second.hand, first.hand);
   unless_said(second.coupling, first.coupling);
@@ -188,9 +195,20 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
   return base;
 }
 
+Parameters make_parameters(const InputOptions& options, const ArmDescription& arm) {
+  return make_parameters(options, fitted(arm, make_parameters(options)));
+}
+
+ArmDescription arm_of(const InputOptions& options) {
+  return read_urdf(options.device.empty() ? default_device().string() : options.device,
+                   options.tip);
+}
+
 MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {
-  arm = read_urdf(options.device.empty() ? default_device().string() : options.device);
-  document = read_scene(options.scene.empty() ? default_scene().string() : options.scene, arm);
+  arm = arm_of(options);
+  const bool own = options.hand.empty() && !options.device.empty();
+  const std::filesystem::path otherwise = own ? default_scene(arm) : default_scene();
+  document = read_scene(options.scene.empty() ? otherwise : options.scene, arm);
   return build_meshes(document);
 }
 
@@ -200,8 +218,14 @@ RunPlan make_plan(const InputOptions& options) {
     plan = plan_from_session(options);
   } else {
     plan.models = read_world(options, plan.arm, plan.document);
-    plan.parameters = make_parameters(options);
-    plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
+    plan.parameters = make_parameters(options, plan.arm);
+    if (options.hand.empty() && !options.device.empty() && !suits_default_world(plan.arm)) {
+      SmallPath path = small_path(plan.arm);
+      plan.hand = std::move(path.hand);
+      plan.start = std::move(path.start);
+    } else {
+      plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
+    }
   }
   check_reach(plan);
   const double duration = options.duration.value_or(plan.hand.duration());

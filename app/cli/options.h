@@ -22,6 +22,7 @@ struct UsageError : std::runtime_error {
 
 struct InputOptions {
   std::string device, scene, hand;  // files; empty: the default
+  std::string tip;                  // of the device's links; empty: as its file has it
   std::vector<std::string> configs;
   std::vector<std::string> settings;                // key=value
   std::optional<std::string> coupling, eta, alpha;  // short for three settings
@@ -30,7 +31,7 @@ struct InputOptions {
 
   // Declares --config, --set, --coupling, --eta, --alpha.
   void add_parameters(CLI::App& command);
-  // Declares --device and --scene.
+  // Declares --device, --tip and --scene.
   void add_world(CLI::App& command);
   // Declares --hand, --duration, --seed.
   void add_hand(CLI::App& command);
@@ -45,7 +46,11 @@ InputOptions both(const InputOptions& first, InputOptions second);
 RunPlan make_plan(const InputOptions& options);
 // Parameters alone, over `base`.
 Parameters make_parameters(const InputOptions& options, Parameters base = {});
-// Device and scene alone.
+// The same over those that suit the arm.
+Parameters make_parameters(const InputOptions& options, const ArmDescription& arm);
+// The device alone.
+ArmDescription arm_of(const InputOptions& options);
+// Device and scene alone; by default a scene that the device can reach.
 MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
 
 // For the help text: every key with its default and what is allowed.

@@ -13,6 +13,7 @@
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/cli/progress.h"
+#include "app/run/fitted_gains.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/summary.h"
@@ -150,8 +151,21 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
   return 0;
 }
 
+// What was guessed about an arm, or fitted to it.
+void say_about(const RunPlan& plan) {
+  for (const std::string& warning : plan.arm.warnings) {
+    fmt::print(stderr, "limpid: warning: {}\n", warning);
+  }
+  const bool again = plan.hand.tick > 0;  // a recording has its own settings
+  const std::string fit = again ? "" : fit_text(fitted(plan.arm, plan.parameters));
+  if (!fit.empty()) {
+    fmt::print(stderr, "limpid: gains fitted to the arm, but for those that are set: {}\n", fit);
+  }
+}
+
 int run(const RunOptions& options) {
   RunPlan plan = make_plan(options.input);
+  say_about(plan);
   if (options.twin) plan.twin = make_twin(plan.parameters, *options.twin);
   if (!options.picture.empty()) check_picture(options.picture);
   catch_interrupts();

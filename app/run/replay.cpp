@@ -81,9 +81,7 @@ Parameters with_changed(Parameters twin, const Parameters& began, const Paramete
 RunPlan replay(const Session& session, const std::string& where, const Parameters& chosen) {
   const std::filesystem::path assets = data_dir() / "assets";
   RunPlan plan;
-  plan.arm = with_pictures(assets / "devices", [&](const std::filesystem::path& folder) {
-    return parse_urdf(session.info.device_urdf, where + " (device_urdf)", folder);
-  });
+  plan.arm = parse_urdf(session.info.device_urdf, where + " (device_urdf)", assets / "devices");
   plan.document = with_pictures(assets / "scenes", [&](const std::filesystem::path& folder) {
     return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm,
                        session.info.models);

@@ -26,6 +26,7 @@ template <int N>
 Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
   for (std::size_t i = 0; i < size(); ++i) {
     joints_[i] = model(description.joints[i]);
+    slides_ = slides_ || joints_[i].slides;
     const Link& link = description.links[i];
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(link.inertia);
     const Vec3& moments = principal.eigenvalues();  // smallest first
@@ -55,16 +56,24 @@ typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
     m.back = Q.transpose();
   }
   m.shifted = !m.R0.isIdentity(0);
+  m.slides = joint.kind == Joint::Kind::prismatic;
   return m;
 }
 
 template <int N>
-typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) {
-  return {x.array().sin(), x.array().cos()};
+typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) const {
+  Angles a{x.array().sin(), x.array().cos()};
+  if (slides_) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (joints_[i].slides) a.sin[k] = x[k];
+    }
+  }
+  return a;
 }
 
 template <int N>
-typename Arm<N>::Angles Arm<N>::turned(const Angles& a, const Vec<N>& dx) {
+typename Arm<N>::Angles Arm<N>::turned(const Angles& a, const Vec<N>& dx) const {
   constexpr double kSmall = 0.03;  // [rad]; the series below are exact to round-off there
   Angles b = a;
   for (Eigen::Index i = 0; i < dx.size(); ++i) {
@@ -75,6 +84,7 @@ typename Arm<N>::Angles Arm<N>::turned(const Angles& a, const Vec<N>& dx) {
         small ? 1 - d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30 * (1 - d2 / 56))) : std::cos(d);
     b.sin[i] = a.sin[i] * c + a.cos[i] * s;
     b.cos[i] = a.cos[i] * c - a.sin[i] * s;
+    if (joints_[static_cast<std::size_t>(i)].slides) b.sin[i] = a.sin[i] + d;
   }
   return b;
 }
@@ -102,13 +112,20 @@ void Arm<N>::frames(const Angles& angles, Frames& f) const {
     const JointModel& joint = joints_[i];
     const Mat3& before = i == 0 ? base : f.R[i - 1];
     const auto k = static_cast<Eigen::Index>(i);
-    turn(joint, angles.sin[k], angles.cos[k], before, f.R[i], f.a[i]);
+    const double sin = joint.slides ? 0 : angles.sin[k], cos = joint.slides ? 1 : angles.cos[k];
+    turn(joint, sin, cos, before, f.R[i], f.a[i]);
     if (i == 0) {
       f.p[0] = joint.offset;
     } else {
       f.p[i] = f.p[i - 1] + before * joint.offset;
     }
-    f.o[i] = f.p[i].cross(f.a[i]);
+    if (joint.slides) {
+      f.o[i] = kSlideUnit * f.a[i];
+      f.p[i] += angles.sin[k] * f.o[i];
+      f.a[i].setZero();
+    } else {
+      f.o[i] = f.p[i].cross(f.a[i]);
+    }
   }
 }
 
@@ -286,15 +303,5 @@ Vec3 Arm<N>::point_drift(const Frames& f, int link, const Vec3& world, const Vec
 
 template class Arm<3>;
 template class Arm<kAnyDof>;
-
-Eigen::VectorXd rest_pose(const ArmDescription& arm) {
-  Eigen::VectorXd x(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const bool limited = std::isfinite(joint.lower) && std::isfinite(joint.upper);
-    x[i] = limited ? (joint.lower + joint.upper) / 2 : 0;
-  }
-  return x;
-}
 
 }  // namespace limpid

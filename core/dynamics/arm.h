@@ -1,8 +1,8 @@
-// Kinematics and dynamics of a chain of n revolute joints.
+// Kinematics and dynamics of a chain of n revolute and prismatic joints.
 //
 // Everything is expressed in the base frame about its origin O. A joint's motion is the spatial
 // axis S_j = (a_j, o_j): turning at rate 1 gives the body angular velocity a_j and gives the point
-// of the body that is at O the velocity o_j = p_j x a_j.
+// of the body that is at O the velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its axis.
 //
 // M and C are sums over the links of J_k^T I_k J_k and J_k^T (I_k Jdot_k + B_k J_k), with
 //     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],
@@ -31,8 +31,8 @@ class Arm {
   struct Frames {
     std::array<Mat3, kCapacity<N>> R;  // link axes in the base frame
     std::array<Vec3, kCapacity<N>> p;  // link origins [m]
-    std::array<Vec3, kCapacity<N>> a;  // joint axes, unit
-    std::array<Vec3, kCapacity<N>> o;  // velocity of O for unit rate, p x a [m]
+    std::array<Vec3, kCapacity<N>> a;  // joint axes, unit; 0 of slides
+    std::array<Vec3, kCapacity<N>> o;  // velocity of O for unit rate [m]
   };
 
   // A rigid body about O: mass, first moment, inertia.
@@ -59,12 +59,12 @@ class Arm {
   }
 
   // Sines and cosines of a configuration, and of one further on by dx: to round-off, and for small
-  // steps without asking for sines again.
+  // steps without asking for sines again. Of a slide: its coordinate in the place of the sine.
   struct Angles {
     Vec<N> sin, cos;
   };
-  static Angles angles(const Vec<N>& x);
-  static Angles turned(const Angles& angles, const Vec<N>& dx);
+  Angles angles(const Vec<N>& x) const;
+  Angles turned(const Angles& angles, const Vec<N>& dx) const;
 
   void frames(const Angles& angles, Frames& f) const;
   void frames(const Vec<N>& x, Frames& f) const { frames(angles(x), f); }
@@ -106,6 +106,7 @@ class Arm {
     Mat3 back = Mat3::Identity();          // Q^T where oblique
     int first = 0, second = 1, third = 2;  // columns: first turns towards second, third the axis
     double sign = 1;                       // -1 where the axis points against the third column
+    bool slides = false;
     Vec3 offset = Vec3::Zero();            // origin in the previous link's frame [m]
   };
   struct LinkModel {
@@ -122,6 +123,7 @@ class Arm {
   void place_link(const Frames& f, std::size_t i, Bodies& bodies) const;
 
   int dof_;
+  bool slides_ = false;  // some joint does
   std::array<JointModel, kCapacity<N>> joints_;
   std::array<LinkModel, kCapacity<N>> links_;
   Vec3 tip_;
@@ -130,7 +132,8 @@ class Arm {
 extern template class Arm<3>;
 extern template class Arm<kAnyDof>;
 
-// The middle of each joint's limits, 0 where there are none [rad].
+// The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
+// tip a direction in which it cannot move, as an arm stretched out has [rad].
 Eigen::VectorXd rest_pose(const ArmDescription& arm);
 
 }  // namespace limpid

@@ -73,6 +73,10 @@ std::optional<Eigen::VectorXd> inverse_kinematics(const ArmDescription& descript
 
 double reach(const ArmDescription& arm) {
   double length = arm.tip.translation().norm();
+  for (const Joint& joint : arm.joints) {
+    const double most = std::max(std::abs(joint.lower), std::abs(joint.upper));
+    if (joint.kind == Joint::Kind::prismatic && std::isfinite(most)) length += kSlideUnit * most;
+  }
   for (std::size_t i = 1; i < arm.joints.size(); ++i) {
     length += arm.joints[i].origin.translation().norm();
   }

@@ -49,9 +49,12 @@ class Random {
   std::mt19937 engine_;
 };
 
+// Which joints of a random arm are slides: none, every third from the second on, or all.
+enum class Slides { none, some, all };
+
 // Links of about 0.1 m and 0.05 kg each, as of a desktop device. Inertias are those of real
 // bodies: of four point masses.
-inline ArmDescription random_arm(int dof, unsigned seed) {
+inline ArmDescription random_arm(int dof, unsigned seed, Slides slides = Slides::none) {
   Random random(seed);
   ArmDescription arm;
   arm.name = "random";
@@ -64,6 +67,9 @@ inline ArmDescription random_arm(int dof, unsigned seed) {
     joint.axis = random.direction();
     joint.effort = random.between(0.4, 0.8);
     joint.damping = 0.012;
+    if (slides == Slides::all || (slides == Slides::some && i % 3 == 1)) {
+      joint.kind = Joint::Kind::prismatic;
+    }
     arm.joints.push_back(joint);
 
     Link link;

@@ -54,6 +54,7 @@ enum class Action : std::uint8_t {
   quit,
   gallery,
   add_model,
+  open_arm,
   save_scene,
   save_scene_as,
   select_next,

@@ -47,6 +47,7 @@ void each(S& s, Visit&& visit) {
   visit("plot_length", s.plot_length);
   visit("band", s.band);
   visit("device", s.device);
+  visit("device_tip", s.device_tip);
   visit("scene", s.scene);
 }
 

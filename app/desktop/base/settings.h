@@ -35,6 +35,7 @@ struct Settings {
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
+  std::string device_tip;                     // a link of the device; empty: as its file has it
   std::vector<std::string> recent;            // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {

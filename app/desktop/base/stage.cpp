@@ -4,6 +4,7 @@
 
 #include "app/base/assets.h"
 #include "app/view/mesh_pictures.h"
+#include "render/arm_look.h"
 
 namespace limpid {
 namespace {
@@ -34,11 +35,17 @@ bool same_items(const SceneDocument& first, const SceneDocument& second) {
               [](const SceneVisual& p, const SceneVisual& q) { return p.file == q.file; });
 }
 
+// The pictures are read once: whatever else is made of the stage's arm has them.
+const ArmDescription& with_look(ArmDescription& arm) {
+  load_visuals(arm);
+  return arm;
+}
+
 }  // namespace
 
 Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, History past,
              double shown)
-    : picture(data_dir() / "shaders", arm, document.scene, visual_pictures(document)),
+    : picture(data_dir() / "shaders", with_look(arm), document.scene, visual_pictures(document)),
       history(std::move(past)),
       group(shown),
       arm_(std::move(arm)),

@@ -7,10 +7,12 @@
 #include <algorithm>
 
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
+#include "render/arm_look.h"
 
 namespace limpid {
 namespace {
@@ -52,6 +54,12 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   return {std::move(mesh), std::move(model), models.front(), axes, std::move(warnings)};
 }
 
+LoadedArm load_arm(const fs::path& file, const std::string& tip, const LoadProgress& progress) {
+  LoadedArm loaded{file, tip, read_urdf(file, tip)};
+  load_visuals(loaded.arm, progress);
+  return loaded;
+}
+
 void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {
   const std::string what = fmt::format("opening {}", file.filename().string());
   waiting_.push_back(
@@ -68,6 +76,16 @@ void SceneLoader::add_model(fs::path file) {
       {what, false, [file = std::move(file)](BackgroundProgress& progress) -> Loaded {
          step_back();
          return load_model(file, progress_of(progress));
+       }});
+  start_next();
+}
+
+void SceneLoader::open_arm(fs::path file, const std::string& tip) {
+  const std::string what = fmt::format("opening {}", file.filename().string());
+  waiting_.push_back(
+      {what, true, [file = std::move(file), tip](BackgroundProgress& progress) -> Loaded {
+         step_back();
+         return load_arm(file, tip, progress_of(progress));
        }});
   start_next();
 }

@@ -28,18 +28,26 @@ struct LoadedModel {
   ModelAxes axes;  // as the mesh has them
   std::vector<std::string> warnings;
 };
-using Loaded = std::variant<LoadedScene, LoadedModel>;
+struct LoadedArm {
+  std::filesystem::path file;
+  std::string tip;     // the link that was asked for; empty: none
+  ArmDescription arm;  // with its pictures
+};
+using Loaded = std::variant<LoadedScene, LoadedModel, LoadedArm>;
 
 // Errors of all of these: FileError; LoadCancelled. Not for the window's thread where files may be
 // large.
 LoadedScene load_scene(const std::filesystem::path& file, const ArmDescription& arm,
                        const LoadProgress& progress = {});
 LoadedModel load_model(const std::filesystem::path& file, const LoadProgress& progress = {});
+LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip,
+                   const LoadProgress& progress = {});
 
 class SceneLoader {
  public:
   void open_scene(std::filesystem::path file, const ArmDescription& arm);
   void add_model(std::filesystem::path file);
+  void open_arm(std::filesystem::path file, const std::string& tip);
 
   bool busy() const { return work_.busy() || !waiting_.empty(); }
   bool opening_scene() const;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/desktop/widgets/widgets.h"
+#include "app/run/fitted_gains.h"
 #include "app/style/palette.h"
 #include "app/style/parameter_slider.h"
 #include "app/style/theme.h"
@@ -81,7 +82,27 @@ bool advanced(std::string_view key) {
          key == "coupling.band" || key == "ledger.energy";
 }
 
-void draw_sliders(Parameters& p, const Analysis& a) {
+// Whether the gains are those that suit the arm, and a way back to them.
+void draw_fit(Parameters& p, const ArmDescription& arm) {
+  Parameters fit = p;
+  const Parameters own = fitted(arm, fit);
+  for (const char* key : kFittedKeys) {
+    const ParameterInfo& info = *find_parameter(key);
+    set_parameter_number(fit, info, parameter_number(own, info));
+  }
+  const std::string text = fit_text(own);
+  const char* const help =
+      "From the arm's damping b_d: k_vc, b_vc, b_v so that condition (3) just holds, alpha so that "
+      "eta_min is the paper's. An arm whose file says no damping gets one that suits its inertia.";
+  if (fit == p) {
+    read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
+    return;
+  }
+  if (ImGui::Button("Fit gains to this arm", {ImGui::GetContentRegionAvail().x, 0})) p = fit;
+  tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
+}
+
+void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription* arm) {
   const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(a);
   const std::string proxy = proxy_broken(a);
@@ -101,6 +122,7 @@ void draw_sliders(Parameters& p, const Analysis& a) {
   if (section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
               false)) {
     draw(true);
+    if (arm != nullptr) draw_fit(p, *arm);
   }
 }
 
@@ -218,7 +240,7 @@ void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const Coupling
                          const ArmDescription* arm) {
   kind_buttons(p);
   ImGui::Spacing();
-  draw_sliders(p, analysis);
+  draw_sliders(p, analysis, arm);
   if (arm != nullptr) draw_break(p, *arm);
   if (info(p.kind).keeps_ledger) {
     draw_ledger(now);

@@ -146,6 +146,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::open_session: d.open_dialog(Dialog::open_session); break;
     case Action::gallery: d.open_dialog(Dialog::gallery); break;
     case Action::add_model: d.open_dialog(Dialog::add_model); break;
+    case Action::open_arm: d.open_dialog(Dialog::open_arm); break;
     case Action::save_scene_as: d.open_dialog(Dialog::save_scene); break;
     default: break;
   }

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "app/base/assets.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/own_world.h"
 #include "app/run/twin_settings.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
@@ -28,10 +32,13 @@ Desktop::Desktop(Settings settings, const AskForPriority& ask)
   desk_.controls().parameters = settings_.parameters;
 }
 
-void Desktop::open_world(const std::string& device, const std::string& scene) {
+void Desktop::open_world(const std::string& device, const std::string& tip,
+                         const std::string& scene) {
   device_file_ = device.empty() ? default_device().string() : device;
-  document_.set_file(scene.empty() ? default_scene().string() : fs::absolute(scene).string());
-  ArmDescription arm = read_urdf(device_file_);
+  device_tip_ = tip;
+  ArmDescription arm = read_urdf(device_file_, tip);
+  const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
+  document_.set_file(file.string());
   SceneDocument whole = read_scene(document_.file(), arm);
   if (whole.scene.meshes.empty()) return open(std::move(arm), std::move(whole), {});
   // Models may be large: they come in while the window is there already.
@@ -42,20 +49,26 @@ void Desktop::open_world(const std::string& device, const std::string& scene) {
   document_.loader().open_scene(document_.file(), desk_.stage().arm());
 }
 
-void Desktop::open_last_world(const std::string& device, const std::string& scene) {
-  const std::string& arm = device.empty() ? settings_.device : device;
-  if (!scene.empty()) return open_world(arm, scene);
+void Desktop::open_last_world(const std::string& device, const std::string& tip,
+                              const std::string& scene, bool fixed) {
+  std::string arm = device, end = tip, world = scene;
+  if (device.empty()) std::tie(arm, end) = last_arm();
+  const ArmDescription first = read_urdf(arm.empty() ? default_device().string() : arm, end);
+  if (fixed) fitted_for_ = first;
+  if (scene.empty() && (device.empty() || suits_default_world(first))) world = settings_.scene;
   try {
-    open_world(arm, settings_.scene);
+    open_world(arm, end, world);
   } catch (const std::exception& e) {
-    if (settings_.scene.empty()) throw;
-    open_world(arm, "");
+    if (!scene.empty() || world.empty()) throw;
+    open_world(arm, end, "");
     notices_.say(e.what(), true);
   }
+  if (!arm.empty()) say_about_arm();
 }
 
 void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models,
                    std::unique_ptr<Device> device, bool saved) {
+  fit_to(arm);
   desk_.open(std::move(arm), std::move(document), models, settings_.parameters,
              settings_.plot_length, std::move(device));
   take_stage(std::move(models), saved);
@@ -220,8 +233,10 @@ void Desktop::cut_force() {
 }
 
 void Desktop::reset_parameters() {
-  settings_.parameters = Parameters{};
-  notices_.say("All settings are the paper's again.");
+  settings_.parameters = fitted(desk_.stage().arm());
+  const bool paper = settings_.parameters == Parameters{};
+  notices_.say(paper ? "All settings are the paper's again."
+                     : "All settings are the paper's again, with gains fitted to this arm.");
 }
 
 void Desktop::toggle_recording() {

@@ -21,6 +21,7 @@ class Desktop {
   Desktop(Settings settings, const AskForPriority& ask);
 
   Settings& settings() { return settings_; }
+  Settings settings_to_keep() const;  // for the next start, with whichever arm
   Notices& notices() { return notices_; }
   Document& document() { return document_; }
   Desk& desk() { return desk_; }
@@ -35,9 +36,11 @@ class Desktop {
   AutoQuality& automatic_quality() { return automatic_quality_; }
 
   // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
-  void open_world(const std::string& device, const std::string& scene);
+  void open_world(const std::string& device, const std::string& tip, const std::string& scene);
   // The same, empty for what was open last time; a scene that is gone by now only says so.
-  void open_last_world(const std::string& device, const std::string& scene);
+  // `fixed`: settings that were given by hand stay as they are, whatever the arm.
+  void open_last_world(const std::string& device, const std::string& tip, const std::string& scene,
+                       bool fixed);
   // Before the OpenGL context goes.
   void drop_pictures();
   // Once a frame, before anything is drawn.
@@ -73,8 +76,11 @@ class Desktop {
   void open_scene(const std::filesystem::path& file);
   void add_model(const std::filesystem::path& file);
   void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
-  void open_arm(const std::filesystem::path& file);  // a virtual one; errors: FileError
   void run_hand(const std::filesystem::path& file);
+  // Another arm in place of the virtual one, with its pictures and the gains that suit it.
+  void open_arm(const std::filesystem::path& file, const std::string& tip = {});
+  void use_built_in_arm();
+  bool built_in_arm() const { return settings_.device.empty(); }
   void add_object(SceneObject object);
   void frame_selected();
   // Where the scene has no file of the user's own, its name is asked for.
@@ -87,6 +93,12 @@ class Desktop {
   void close_device();
 
  private:
+  void accept(LoadedArm& loaded);
+  void take_arm(const LoadedArm& loaded);
+  void say_about_arm();
+  std::pair<std::string, std::string> last_arm();  // file and tip
+  void fit_to(const ArmDescription& arm);
+  std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
   // A world, and its loop.
   void open(ArmDescription arm, SceneDocument document, MeshModels models,
             std::unique_ptr<Device> device = nullptr, bool saved = true);
@@ -117,7 +129,8 @@ class Desktop {
   const StoryStep* step_ = nullptr;  // of the story, that the camera knows
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
-  std::string device_file_;
+  std::string device_file_, device_tip_;
+  std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "app/base/assets.h"
 #include "app/desktop/shell/desktop.h"
-#include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/model_units.h"
 #include "render/model/model_file.h"
 
@@ -22,7 +20,7 @@ DropKind drop_kind(const fs::path& file) {
   std::error_code none;
   const std::string suffix = small_suffix(file);
   if (fs::is_directory(file, none)) return DropKind::unknown;
-  if (suffix == ".urdf") return DropKind::arm;
+  if (suffix == ".urdf" || suffix == ".xacro") return DropKind::arm;
   if (suffix == ".toml") return DropKind::scene;
   if (is_model_file(file)) return DropKind::model;
   if (suffix == ".h5") return DropKind::session;
@@ -65,20 +63,6 @@ void Desktop::open_files(const std::vector<fs::path>& files) {
     }
   }
   if (!unknown.empty()) notices_.say(why_not_opened(unknown), true);
-}
-
-void Desktop::open_arm(const fs::path& file) {
-  if (desk_.recording() || desk_.loop().device_in_place()) {
-    notices_.say(desk_.recording() ? "Stop the recording (R) before taking another arm."
-                                   : "Take the device out (Device) before taking another arm.",
-                 true);
-    return;
-  }
-  const ArmDescription arm = read_urdf(file);
-  playback_.close();
-  device_file_ = fs::absolute(file).lexically_normal().string();
-  change_arm(arm, nullptr);
-  notices_.say(fmt::format("Arm: {}, {} joints.", arm.name, arm.dof()));
 }
 
 // Along the path as fast as it goes, in the present world; the window plays what came of it.

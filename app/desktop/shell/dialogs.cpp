@@ -57,6 +57,12 @@ void Dialogs::draw_paths() {
     last_folder_ = model.parent_path();
     desktop_.add_model(model);
   }
+  const fs::path arm =
+      draw(Dialog::open_arm, [this](bool& open) { return arm_.draw(open, last_folder_ / ""); });
+  if (!arm.empty()) {
+    last_folder_ = arm.parent_path();
+    desktop_.open_arm(arm);
+  }
   Document& document = desktop_.document();
   fs::path first = document.own_file();
   if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();

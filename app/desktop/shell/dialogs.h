@@ -34,9 +34,10 @@ class Dialogs {
   SessionDialog session_;
   ExperimentsPanel experiments_;
   PathDialog add_{{.title = "Add model", .action = "Add", .extensions = {".glb", ".gltf"}}};
+  PathDialog arm_{{.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}}};
   PathDialog save_{
       {.title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true}};
-  std::filesystem::path last_folder_;  // that a model came from
+  std::filesystem::path last_folder_;  // that a model or an arm came from
 };
 
 }  // namespace limpid

@@ -21,6 +21,7 @@ const char* name(Dialog dialog) {
     case Dialog::open_session: return "open session";
     case Dialog::gallery: return "gallery";
     case Dialog::add_model: return "add model";
+    case Dialog::open_arm: return "open arm";
     case Dialog::save_scene: return "save scene";
   }
   return "";

@@ -16,6 +16,7 @@ enum class Dialog : std::uint8_t {
   open_session,
   gallery,
   add_model,
+  open_arm,
   save_scene,
 };
 const char* name(Dialog dialog);

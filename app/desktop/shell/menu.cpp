@@ -135,6 +135,9 @@ void device_menu(Desktop& d, const Act& act) {
   if (!ImGui::BeginMenu("Device")) return;
   const ArmDescription& arm = d.desk().stage().arm();
   ImGui::TextDisabled("%s, virtual, %d joints", arm.name.c_str(), arm.dof());
+  item("Open arm (URDF)...", nullptr, Action::open_arm, act, !d.desk().loop().device_in_place());
+  if (ImGui::MenuItem("Built-in arm", nullptr, d.built_in_arm())) d.use_built_in_arm();
+  ImGui::Separator();
   const bool armed = d.desk().force_armed();
   item(armed ? "Force off" : "Force on", armed ? "Esc" : "F", Action::toggle_force, act);
   item("Start over", "Backspace", Action::start_over, act, !d.playback().on());

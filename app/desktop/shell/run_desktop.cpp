@@ -79,7 +79,8 @@ Window::Options Application::prepare_window() {
 
 void Application::open() {
   desktop_.automatic_quality() = AutoQuality(Quality::automatic_level(window_.renderer()));
-  desktop_.open_last_world(options_.device, options_.scene);
+  desktop_.open_last_world(options_.device, options_.tip, options_.scene,
+                           options_.parameters.has_value());
 }
 
 void Application::run(const std::string& complaint) {
@@ -165,7 +166,7 @@ void Application::keep() {
   }
   Settings& settings = desktop_.settings();
   if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
-  if (const std::string error = save_settings(settings); !error.empty()) {
+  if (const std::string error = save_settings(desktop_.settings_to_keep()); !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);
   }
 }

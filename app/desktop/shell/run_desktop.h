@@ -11,6 +11,7 @@ namespace limpid {
 
 struct DesktopOptions {
   std::string device, scene;             // files; empty: as last time
+  std::string tip;                       // a link of the device; empty: as its file has it
   std::optional<Parameters> parameters;  // default: as last time
   std::filesystem::path session;         // to play at once
   bool print_state = false;              // one line of JSON ten times a second

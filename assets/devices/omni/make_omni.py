@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the four models of the desktop arm (base, turret, upper_arm, forearm) beside this file.
 
-Metres, x forward along the link, y left, z up; every model sits in the frame of its link. The
-joints' common origin is 40 mm above the table. Run: python3 assets/devices/omni/make_omni.py
+Metres, x forward along the link, y left, z up; every model sits in the frame of its link, and is
+written with y up, as arms expect of glTF. The joints' common origin is 40 mm above the table. Run: python3 assets/devices/omni/make_omni.py
 """
 
 import sys
@@ -108,4 +108,4 @@ def forearm():
 if __name__ == "__main__":
     for make in (base, turret, upper_arm, forearm):
         path = HERE / (make.__name__ + ".glb")
-        print(path.name, make().write(path, MATERIALS), "triangles")
+        print(path.name, make().write(path, MATERIALS, y_up=True), "triangles")

@@ -2,23 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "devices/files/file_error.h"
+#include "devices/files/arm/body.h"
+#include "devices/files/arm/missing_numbers.h"
+#include "devices/files/arm/urdf_path.h"
 
 namespace limpid {
 namespace {
-
-namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const std::string& where, const std::map<std::string, int>& lines,
-                         const char* kind, const std::string& name, const std::string& why) {
-  const auto line = lines.find(name);
-  throw FileError(fmt::format("{}{}: {} '{}': {}", where,
-                              line == lines.end() ? "" : fmt::format(":{}", line->second), kind,
-                              name, why));
-}
 
 Vec3 vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -28,27 +19,6 @@ Pose pose(const urdf::Pose& p) {
   const auto& q = p.rotation;
   out.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
   return out;
-}
-
-Mat3 point_inertia(double mass, const Vec3& r) {
-  return mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-}
-
-// Adds a body to `link`; `at` is its frame in the link's.
-void merge(Link& link, const urdf::Inertial& body, const Pose& at) {
-  const Pose in_link = at * pose(body.origin);
-  Mat3 inertia;
-  inertia << body.ixx, body.ixy, body.ixz,  //
-      body.ixy, body.iyy, body.iyz,         //
-      body.ixz, body.iyz, body.izz;
-  const double mass = link.mass + body.mass;
-  const Vec3 com =
-      mass > 0 ? Vec3((link.mass * link.com + body.mass * in_link.translation()) / mass) : link.com;
-  link.inertia += point_inertia(link.mass, link.com - com) +
-                  in_link.linear() * inertia * in_link.linear().transpose() +
-                  point_inertia(body.mass, in_link.translation() - com);
-  link.mass = mass;
-  link.com = com;
 }
 
 const char* kind_of(const urdf::Joint& joint) {
@@ -66,42 +36,57 @@ double limit_of(const urdf::Joint& joint, double urdf::JointLimits::*field, doub
 
 class Chain {
  public:
-  Chain(const UrdfPlaces& places, const fs::path& base_dir)
-      : places_(places), base_dir_(base_dir) {}
+  Chain(const urdf::ModelInterface& model, const std::vector<urdf::JointConstSharedPtr>& way,
+        const LinkVisuals& visuals, UrdfPlaces& places)
+      : model_(model), way_(way), visuals_(visuals), places_(places) {}
 
-  ArmDescription follow(const urdf::ModelInterface& model) {
-    arm_.name = model.getName();
-    urdf::LinkConstSharedPtr link = model.getRoot();
-    for (;;) {
-      add_link(*link);
-      if (link->child_joints.empty()) break;
-      if (link->child_joints.size() > 1) {
-        places_.refuse_link(link->name, fmt::format("{} joints hang on it; needed: one, a chain",
-                                                    link->child_joints.size()));
-      }
-      const urdf::Joint& joint = *link->child_joints.front();
-      pass_joint(joint);
-      link = model.getLink(joint.child_link_name);
+  ArmDescription build() {
+    arm_.name = model_.getName();
+    for (std::size_t i = 0; i < way_.size(); ++i) {
+      if (moves(*way_[i])) last_moving_ = i;
+    }
+    urdf::LinkConstSharedPtr link = model_.getRoot();
+    Pose here = Pose::Identity();
+    for (std::size_t i = 0; i <= way_.size(); ++i) {
+      const urdf::Joint* on = i < way_.size() ? way_[i].get() : nullptr;
+      add_tree(*link, here, on);
+      if (on == nullptr) break;
+      here = pass(*on, here, i);
+      link = model_.getLink(on->child_link_name);
     }
     if (arm_.joints.empty()) {
-      throw FileError(
-          fmt::format("{}: no joint that moves; needed: 1 to {}", places_.where, kMaxDof));
+      places_.refuse(fmt::format("no joint that moves; needed: 1 to {}", kMaxDof));
     }
-    arm_.tip = here_;
-    for (std::size_t i = 0; i < arm_.links.size(); ++i) check_inertia(i);
+    arm_.tip = here;
+    arm_.tip_link = way_.back()->child_link_name;
+    say_held();
+    complete_inertias(arm_, places_);
+    complete_efforts(arm_, places_);
     return std::move(arm_);
   }
 
  private:
   int moving() const { return arm_.dof() - 1; }
 
-  void add_link(const urdf::Link& link) {
-    arm_.frames.push_back({link.name, moving(), here_});
-    if (link.inertial) add_inertial(link);
-    for (const auto& visual : link.visual_array) add_visual(link, *visual);
+  // A link and what it carries besides joint `on`.
+  void add_tree(const urdf::Link& link, const Pose& here, const urdf::Joint* on) {
+    arm_.frames.push_back({link.name, moving(), here});
+    if (link.inertial) add_inertial(link, here);
+    const auto visuals = visuals_.find(link.name);
+    if (visuals != visuals_.end()) {
+      for (Visual visual : visuals->second) {
+        visual.link = moving();
+        visual.origin = here * visual.origin;
+        arm_.visuals.push_back(visual);
+      }
+    }
+    for (const auto& joint : link.child_joints) {
+      if (joint.get() == on) continue;
+      add_tree(*model_.getLink(joint->child_link_name), held(*joint, here), nullptr);
+    }
   }
 
-  void add_inertial(const urdf::Link& link) {
+  void add_inertial(const urdf::Link& link, const Pose& here) {
     const urdf::Inertial& body = *link.inertial;
     for (const double x :
          {body.mass, body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz,
@@ -111,29 +96,62 @@ class Chain {
     if (body.mass < 0) {
       places_.refuse_link(link.name, fmt::format("mass {} kg; needed: 0 or more", body.mass));
     }
-    if (moving() >= 0) merge(arm_.links.back(), body, here_);
+    if (moving() < 0) return;
+    Link own;
+    own.mass = body.mass;
+    own.inertia << body.ixx, body.ixy, body.ixz,  //
+        body.ixy, body.iyy, body.iyz,             //
+        body.ixz, body.iyz, body.izz;
+    merge(arm_.links.back(), own, here * pose(body.origin));
   }
 
-  void pass_joint(const urdf::Joint& joint) {
-    const Pose origin = here_ * pose(joint.parent_to_joint_origin_transform);
+  Pose origin_of(const urdf::Joint& joint, const Pose& here) const {
+    const Pose origin = here * pose(joint.parent_to_joint_origin_transform);
     if (!origin.matrix().allFinite()) {
       places_.refuse_joint(joint.name, "origin: a number is not finite");
     }
-    if (joint.type == urdf::Joint::FIXED) {
-      here_ = origin;
-      return;
+    return origin;
+  }
+
+  // Where the child of a joint that is not moved stands.
+  Pose held(const urdf::Joint& joint, const Pose& here) {
+    Pose there = origin_of(joint, here);
+    if (joint.type == urdf::Joint::FIXED) return there;
+    held_.push_back(joint.name);
+    const Vec3 axis = vector(joint.axis);
+    const double at = held_at(joint);
+    if (!axis.allFinite() || !(axis.norm() > 1e-9) || at == 0) return there;
+    if (joint.type == urdf::Joint::PRISMATIC) {
+      there.translate(Vec3(at * axis.normalized()));
+    } else {
+      there.rotate(Eigen::AngleAxisd(at, axis.normalized()));
     }
-    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS) {
+    return there;
+  }
+
+  // Over joint i of the way; returns the frame of its child in that of the link that moves.
+  Pose pass(const urdf::Joint& joint, const Pose& here, std::size_t i) {
+    if (joint.mimic && i < last_moving_) {
       places_.refuse_joint(joint.name,
-                           fmt::format("{}; allowed: revolute, continuous, fixed", kind_of(joint)));
+                           "mimics another joint inside the chain; not supported: name a tip before "
+                           "it (--tip LINK)");
     }
-    if (joint.mimic) places_.refuse_joint(joint.name, "mimics another joint; not supported");
+    if (!moves(joint)) return held(joint, here);
+    const Pose origin = origin_of(joint, here);
+    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
+        joint.type != urdf::Joint::PRISMATIC) {
+      places_.refuse_joint(
+          joint.name,
+          fmt::format("{}; allowed: revolute, continuous, prismatic, fixed", kind_of(joint)));
+    }
     if (arm_.dof() == kMaxDof) {
       places_.refuse_joint(joint.name, fmt::format("one too many; at most {}", kMaxDof));
     }
     arm_.joints.push_back(moving_joint(joint, origin));
-    arm_.links.push_back({joint.child_link_name});
-    here_ = Pose::Identity();
+    Link link;
+    link.name = joint.child_link_name;
+    arm_.links.push_back(link);
+    return Pose::Identity();
   }
 
   Joint moving_joint(const urdf::Joint& joint, const Pose& origin) const {
@@ -145,26 +163,34 @@ class Chain {
       places_.refuse_joint(joint.name, "axis is zero or not finite; needed: a direction");
     }
     out.axis = axis.normalized();
-    if (joint.type == urdf::Joint::REVOLUTE) {
+    const bool slides = joint.type == urdf::Joint::PRISMATIC;
+    if (slides || joint.type == urdf::Joint::REVOLUTE) {
       out.lower = limit_of(joint, &urdf::JointLimits::lower, 0);
       out.upper = limit_of(joint, &urdf::JointLimits::upper, 0);
       if (!(out.lower < out.upper) || !std::isfinite(out.upper - out.lower)) {
         places_.refuse_joint(joint.name,
-                             fmt::format("limits from {} to {} rad; needed: finite, lower below "
+                             fmt::format("limits from {} to {} {}; needed: finite, lower below "
                                          "upper",
-                                         out.lower, out.upper));
+                                         out.lower, out.upper, slides ? "m" : "rad"));
       }
     }
-    out.effort = limit_of(joint, &urdf::JointLimits::effort, 0);
-    if (!(out.effort > 0 && std::isfinite(out.effort))) {
-      places_.refuse_joint(
-          joint.name, fmt::format("effort {} N m in <limit>; needed: more than 0", out.effort));
-    }
+    out.effort = at_least_zero(joint.name, "effort", limit_of(joint, &urdf::JointLimits::effort, 0));
     if (joint.dynamics) {
       out.damping = at_least_zero(joint.name, "damping", joint.dynamics->damping);
       out.friction = at_least_zero(joint.name, "friction", joint.dynamics->friction);
     }
+    if (slides) in_units_of_travel(out);
     return out;
+  }
+
+  // From m, N and N s/m.
+  static void in_units_of_travel(Joint& joint) {
+    joint.kind = Joint::Kind::prismatic;
+    joint.lower /= kSlideUnit;
+    joint.upper /= kSlideUnit;
+    joint.effort *= kSlideUnit;
+    joint.friction *= kSlideUnit;
+    joint.damping *= kSlideUnit * kSlideUnit;
   }
 
   double at_least_zero(const std::string& joint, const char* what, double x) const {
@@ -172,94 +198,32 @@ class Chain {
     places_.refuse_joint(joint, fmt::format("{} {}; needed: 0 or more", what, x));
   }
 
-  // With a positive semidefinite inertia, and some of it about the link's own joint, every link
-  // stores energy as soon as its joint turns; so M is positive definite in every pose.
-  void check_inertia(std::size_t i) const {
-    const Link& link = arm_.links[i];
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
-    const double largest = link.inertia.cwiseAbs().maxCoeff();
-    if (solver.eigenvalues().minCoeff() < -1e-9 * largest) {
-      places_.refuse_link(link.name, "inertia is not that of any body (a negative moment)");
-    }
-    const Vec3& axis = arm_.joints[i].axis;
-    const double about_joint = axis.dot((link.inertia + point_inertia(link.mass, link.com)) * axis);
-    if (!(about_joint > 0 && std::isfinite(about_joint))) {
-      places_.refuse_link(link.name,
-                          fmt::format("inertia {} kg m^2 about joint '{}'; needed: more than 0 "
-                                      "(its <inertial> or that of links fixed to it)",
-                                      about_joint, arm_.joints[i].name));
-    }
+  void say_held() {
+    if (held_.empty()) return;
+    constexpr std::size_t kNamed = 6;
+    const std::size_t named = std::min(held_.size(), kNamed);
+    places_.warn(fmt::format(
+        "held still, beside the chain to '{}': {}{}",
+        arm_.tip_link,
+        fmt::join(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+        held_.size() > named ? fmt::format(" and {} more joints", held_.size() - named) : ""));
   }
 
-  void add_visual(const urdf::Link& link, const urdf::Visual& visual) {
-    if (!visual.geometry) return;
-    Visual out;
-    out.link = moving();
-    out.origin = here_ * pose(visual.origin);
-    const urdf::Geometry& shape = *visual.geometry;
-    if (shape.type == urdf::Geometry::BOX) {
-      out.shape = Visual::Shape::box;
-      out.size = vector(static_cast<const urdf::Box&>(shape).dim);
-    } else if (shape.type == urdf::Geometry::CYLINDER) {
-      const auto& cylinder = static_cast<const urdf::Cylinder&>(shape);
-      out.shape = Visual::Shape::cylinder;
-      out.size = Vec3(cylinder.radius, cylinder.length, 1);
-    } else if (shape.type == urdf::Geometry::SPHERE) {
-      out.shape = Visual::Shape::sphere;
-      out.size = Vec3(static_cast<const urdf::Sphere&>(shape).radius, 1, 1);
-    } else {
-      const auto& mesh = static_cast<const urdf::Mesh&>(shape);
-      out.size = vector(mesh.scale);
-      out.mesh = mesh_path(link, mesh.filename);
-      if (out.mesh.empty()) return;
-    }
-    if (!out.origin.matrix().allFinite() || !out.size.allFinite() || out.size.minCoeff() <= 0) {
-      places_.refuse_link(link.name, "visual: sizes and origin must be finite, sizes above 0");
-    }
-    arm_.visuals.push_back(out);
-  }
-
-  // Empty for a mesh that is left out.
-  std::string mesh_path(const urdf::Link& link, const std::string& name) const {
-    if (name.find("://") != std::string::npos) {
-      places_.refuse_link(link.name, fmt::format("mesh '{}': package and other addresses are not "
-                                                 "resolved; needed: a path from the URDF's folder",
-                                                 name));
-    }
-    const fs::path file = name;
-    if (file.extension() != ".glb" && file.extension() != ".gltf") {
-      places_.refuse_link(link.name,
-                          fmt::format("mesh '{}': not glTF; needed: .glb or .gltf", name));
-    }
-    const fs::path absolute = fs::absolute(base_dir_ / file).lexically_normal();
-    std::error_code error;
-    const bool there = fs::is_regular_file(absolute, error);
-    if (base_dir_.empty() && (file.is_relative() || !there)) return {};
-    if (!there) {
-      places_.refuse_link(link.name, fmt::format("mesh '{}': no such file", absolute.string()));
-    }
-    return absolute.string();
-  }
-
-  const UrdfPlaces& places_;
-  const fs::path& base_dir_;
+  const urdf::ModelInterface& model_;
+  const std::vector<urdf::JointConstSharedPtr>& way_;
+  const LinkVisuals& visuals_;
+  UrdfPlaces& places_;
   ArmDescription arm_;
-  Pose here_ = Pose::Identity();  // the link being looked at, in the frame of the moving one
+  std::size_t last_moving_ = 0;
+  std::vector<std::string> held_;
 };
 
 }  // namespace
 
-void UrdfPlaces::refuse_joint(const std::string& name, const std::string& why) const {
-  refuse(where, joint_lines, "joint", name, why);
-}
-
-void UrdfPlaces::refuse_link(const std::string& name, const std::string& why) const {
-  refuse(where, link_lines, "link", name, why);
-}
-
-ArmDescription chain_of(const urdf::ModelInterface& model, const UrdfPlaces& places,
-                        const fs::path& base_dir) {
-  return Chain(places, base_dir).follow(model);
+ArmDescription chain_of(const urdf::ModelInterface& model,
+                        const std::vector<urdf::JointConstSharedPtr>& way,
+                        const LinkVisuals& visuals, UrdfPlaces& places) {
+  return Chain(model, way, visuals, places).build();
 }
 
 }  // namespace limpid

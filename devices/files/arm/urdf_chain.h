@@ -3,26 +3,22 @@
 
 #include <urdf_model/model.h>
 
-#include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/dynamics/arm_description.h"
+#include "devices/files/arm/urdf_places.h"
 
 namespace limpid {
 
-// Where joints and links stand in the file, for messages.
-struct UrdfPlaces {
-  std::string where;
-  std::map<std::string, int> joint_lines;
-  std::map<std::string, int> link_lines;
+using LinkVisuals = std::map<std::string, std::vector<Visual>>;
 
-  [[noreturn]] void refuse_joint(const std::string& name, const std::string& why) const;
-  [[noreturn]] void refuse_link(const std::string& name, const std::string& why) const;
-};
-
+// The joints of `way` that move, and everything else held still and merged into the links that they
+// move. What is missing and can be guessed is, with a warning.
 // Errors: FileError, as read_urdf.
-ArmDescription chain_of(const urdf::ModelInterface& model, const UrdfPlaces& places,
-                        const std::filesystem::path& base_dir);
+ArmDescription chain_of(const urdf::ModelInterface& model,
+                        const std::vector<urdf::JointConstSharedPtr>& way,
+                        const LinkVisuals& visuals, UrdfPlaces& places);
 
 }  // namespace limpid

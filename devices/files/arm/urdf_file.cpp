@@ -8,13 +8,15 @@
 #include <algorithm>
 
 #include "devices/files/arm/urdf_chain.h"
+#include "devices/files/arm/urdf_dynamics.h"
+#include "devices/files/arm/urdf_path.h"
+#include "devices/files/arm/urdf_visuals.h"
+#include "devices/files/arm/xacro.h"
 #include "devices/files/file_error.h"
-#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {
 
-constexpr std::size_t kLongestUrdf = 16 << 20;  // [bytes]
 constexpr int kDeepestXml = 100;
 
 // While it lives, urdfdom's complaints come here and not to the terminal.
@@ -67,17 +69,16 @@ void check_depth(const std::string& text, const std::string& where) {
   }
 }
 
-UrdfPlaces places_of(const std::string& text, const std::string& where) {
-  UrdfPlaces places{where, {}, {}};
-  TiXmlDocument document;
+// Of the whole document, and what is in it.
+void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& places) {
   document.Parse(text.c_str());
   if (document.Error()) {
-    throw FileError(fmt::format("{}:{}: not XML: {}", where, std::max(document.ErrorRow(), 1),
+    throw FileError(fmt::format("{}:{}: not XML: {}", places.where, std::max(document.ErrorRow(), 1),
                                 document.ErrorDesc()));
   }
   const TiXmlElement* robot = document.RootElement();
   if (robot == nullptr || robot->ValueStr() != "robot") {
-    throw FileError(fmt::format("{}: not URDF: the outermost element is not <robot>", where));
+    places.refuse("not URDF: the outermost element is not <robot>");
   }
   for (auto* each = robot->FirstChildElement(); each; each = each->NextSiblingElement()) {
     const char* name = each->Attribute("name");
@@ -85,7 +86,6 @@ UrdfPlaces places_of(const std::string& text, const std::string& where) {
     if (each->ValueStr() == "joint") places.joint_lines[name] = each->Row();
     if (each->ValueStr() == "link") places.link_lines[name] = each->Row();
   }
-  return places;
 }
 
 // "FILE:LINE" of the element that a complaint names, "FILE" if it names none.
@@ -102,26 +102,60 @@ std::string place_named_in(const std::string& complaint, const UrdfPlaces& place
   return places.where;
 }
 
-}  // namespace
-
-ArmDescription read_urdf(const std::filesystem::path& file) {
-  return parse_urdf(read_text(file, kLongestUrdf), file.string(),
-                    std::filesystem::absolute(file).parent_path());
+// The tip that the text itself names: <limpid tip="LINK"/> in the robot.
+std::string named_tip(const TiXmlElement& robot) {
+  std::string tip;  // the last one holds
+  for (auto* own = robot.FirstChildElement("limpid"); own;
+       own = own->NextSiblingElement("limpid")) {
+    if (const char* link = own->Attribute("tip")) tip = link;
+  }
+  return tip;
 }
 
-ArmDescription parse_urdf(const std::string& text, const std::string& where,
-                          const std::filesystem::path& base_dir) {
-  check_depth(text, where);
-  const UrdfPlaces places = places_of(text, where);
+// So that a recording, which has the text alone, has the same arm.
+std::string with_tip(const std::string& text, const std::string& tip) {
+  TiXmlElement own("limpid");
+  own.SetAttribute("tip", tip);
+  TiXmlPrinter printer;
+  printer.SetStreamPrinting();
+  own.Accept(&printer);
+  const std::size_t end = text.rfind("</robot");
+  return end == std::string::npos ? text : text.substr(0, end) + printer.Str() + text.substr(end);
+}
+
+urdf::ModelInterfaceSharedPtr parse_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
   const Complaints complaints;
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf_dynamics(robot, places));
   // It drops an inertia that it cannot read and goes on; so whatever it complains of is refused.
   if (!model || !model->getRoot() || !complaints.none()) {
     const std::string what = complaints.one_line();
     throw FileError(fmt::format("{}: {}", place_named_in(what, places), what));
   }
-  ArmDescription arm = chain_of(*model, places, base_dir);
-  arm.urdf = text;
+  return model;
+}
+
+}  // namespace
+
+ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip) {
+  return parse_urdf(urdf_text(file), file.string(), std::filesystem::absolute(file).parent_path(),
+                    tip);
+}
+
+ArmDescription parse_urdf(const std::string& text, const std::string& where,
+                          const std::filesystem::path& base_dir, const std::string& tip) {
+  check_depth(text, where);
+  UrdfPlaces places{where, {}, {}, {}};
+  TiXmlDocument document;
+  parse_xml(document, text, places);
+  const TiXmlElement& robot = *document.RootElement();
+  const urdf::ModelInterfaceSharedPtr model = parse_dynamics(robot, places);
+  MeshFinder meshes(base_dir);
+  const LinkVisuals visuals = urdf_visuals(robot, meshes, places);
+  const std::string own = named_tip(robot);
+  ArmDescription arm =
+      chain_of(*model, way_to_tip(*model, tip.empty() ? own : tip, places), visuals, places);
+  arm.urdf = tip.empty() || tip == own ? text : with_tip(text, tip);
+  arm.warnings = places.warnings;
   return arm;
 }
 

@@ -8,18 +8,23 @@
 
 namespace limpid {
 
-// A chain of 1 to 32 revolute or continuous joints with fixed joints anywhere. Links behind fixed
-// joints are merged into the one that moves them (those before the first joint weigh nothing); the
-// tip is the origin of the last link.
-// Errors: FileError "FILE:LINE: ..." for what is not URDF, branches, other kinds of joints, a zero
-// axis, numbers that are not finite, negative damping, friction or mass, an effort that is not
-// positive, limits without room, links that no torque could hold back (no inertia about their
-// joint), and meshes that are missing or not glTF.
-ArmDescription read_urdf(const std::filesystem::path& file);
+// A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is named to
+// the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest chain
+// (way_to_tip in urdf_path.h). Everything else is held still at zero or the limit next to it; links
+// behind joints that do not move are merged into the one that moves them (those before the first
+// joint weigh nothing); the tip is the origin of the last link.
+//
+// What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
+// MeshFinder) or read, efforts of 0, links without inertia between others that have some.
+// Errors: FileError "FILE:LINE: ..." for what is not URDF or xacro that cannot be expanded, two tips
+// to choose from, floating and planar joints in the chain, a zero axis, numbers that are not finite,
+// negative damping, friction, effort or mass, crossed limits, and ends that no torque could hold
+// back, because they have no inertia.
+ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {});
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
-// one inside a session) meshes with relative names are left out.
+// one inside a session) meshes with relative names are not found.
 ArmDescription parse_urdf(const std::string& text, const std::string& where,
-                          const std::filesystem::path& base_dir);
+                          const std::filesystem::path& base_dir, const std::string& tip = {});
 
 }  // namespace limpid

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/dynamics/inverse_kinematics.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -13,6 +14,7 @@ namespace {
 
 using test::Random;
 using test::random_arm;
+using test::Slides;
 using Any = Arm<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 using Matrix = Mat<kAnyDof>;
@@ -22,7 +24,12 @@ Pose link_pose(const ArmDescription& arm, const Vector& x, int link) {
   Pose pose = Pose::Identity();
   for (int i = 0; i <= link; ++i) {
     const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    pose = pose * joint.origin * Pose(Eigen::AngleAxisd(x[i], joint.axis));
+    pose = pose * joint.origin;
+    if (joint.kind == Joint::Kind::prismatic) {
+      pose.translate(kSlideUnit * x[i] * joint.axis);
+    } else {
+      pose.rotate(Eigen::AngleAxisd(x[i], joint.axis));
+    }
   }
   return pose;
 }
@@ -54,17 +61,20 @@ Matrix inertia_slope(const Any& arm, const Vector& x, int k) {
   return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
 }
 
-class ArmOfJoints : public testing::TestWithParam<int> {
+class ArmOfJoints : public testing::TestWithParam<std::tuple<int, Slides>> {
  protected:
-  int n() const { return GetParam(); }
+  int n() const { return std::get<0>(GetParam()); }
   unsigned seed() const { return 7 + static_cast<unsigned>(n()); }
-  ArmDescription description_ = random_arm(n(), seed());
+  ArmDescription description_ = random_arm(n(), seed(), std::get<1>(GetParam()));
   Any arm_{description_};
   Random random_{seed() + 100};
   Vector x_ = random_.vector(n(), 3);
   Vector v_ = random_.vector(n(), 4);
 };
-INSTANTIATE_TEST_SUITE_P(Joints, ArmOfJoints, testing::Values(1, 2, 3, 7, 32));
+INSTANTIATE_TEST_SUITE_P(Joints, ArmOfJoints,
+                         testing::Combine(testing::Values(1, 2, 3, 7, 32),
+                                          testing::Values(Slides::none, Slides::some,
+                                                          Slides::all)));
 
 TEST_P(ArmOfJoints, PutsLinksWhereTheTransformsOfTheJointsDo) {
   Any::Frames f;
@@ -252,6 +262,35 @@ TEST(Arm, OfTwoLinksInAPlaneIsTheTextbooks) {
   EXPECT_NEAR(Cv[1], k * v[0] * v[0], 1e-15);
 }
 
+TEST(Arm, ThatTurnsASlideIsTheTextbooks) {
+  // A mass m at the distance r on a slide that turns: m (r^2 w^2 + rdot^2) / 2, Coriolis' torque
+  // 2 m r rdot w and the centrifugal force m r w^2. A unit of the slide is 10 cm.
+  constexpr double m = 0.4, start = 0.25;
+  ArmDescription description;
+  description.joints.resize(2);
+  description.links.resize(2);
+  description.joints[1].kind = Joint::Kind::prismatic;
+  description.joints[1].axis = Vec3::UnitX();
+  description.joints[1].origin.translation() = Vec3(start, 0, 0);
+  description.links[1].mass = m;
+  const Any arm(description);
+  Vector x(2), v(2);
+  x << 0.4, 1.1;
+  v << 1.7, -2.3;
+  const double r = start + 0.1 * x[1];
+  const Matrix M = inertia_at(arm, x);
+  EXPECT_NEAR(M(0, 0), m * r * r, 1e-16);
+  EXPECT_NEAR(M(0, 1), 0, 1e-16);
+  EXPECT_NEAR(M(1, 1), m * 0.01, 1e-17);
+  const Vector Cv = coriolis_at(arm, x, v) * v;
+  EXPECT_NEAR(Cv[0], 2 * m * r * (0.1 * v[1]) * v[0], 1e-15);
+  EXPECT_NEAR(Cv[1], -0.1 * m * r * v[0] * v[0], 1e-15);
+  EXPECT_NEAR(reach(description), 0.25, 1e-15);  // a travel without limits counts for nothing
+  description.joints[1].lower = -0.5;
+  description.joints[1].upper = 2;
+  EXPECT_NEAR(reach(description), 0.45, 1e-15);
+}
+
 TEST(RestPose, IsTheMiddleOfTheLimits) {
   ArmDescription arm = random_arm(2, 1);
   arm.joints[1].lower = -0.4;
@@ -263,12 +302,13 @@ TEST(RestPose, IsTheMiddleOfTheLimits) {
 
 TEST(Arm, TurnsItsAnglesOnToRoundOff) {
   Random random(141);
+  const Any arm(random_arm(5, 140));
   for (const double size : {1e-9, 1e-4, 0.01, 0.02, 0.0299, 0.0301, 0.5, 3.0}) {
     for (int round = 0; round < 200; ++round) {
       const Vector x = random.vector(5, 3);
       Vector dx = random.vector(5, size);
       dx[0] = size;
-      const auto turned = Any::turned(Any::angles(x), dx);
+      const auto turned = arm.turned(arm.angles(x), dx);
       for (int i = 0; i < 5; ++i) {
         // One rounding of each of the sines, products and the sum; the sum x + dx rounds, too.
         ASSERT_NEAR(turned.sin[i], std::sin(x[i] + dx[i]), 1e-15) << size;
@@ -280,8 +320,9 @@ TEST(Arm, TurnsItsAnglesOnToRoundOff) {
 
 TEST(Arm, TurnsExactlyByTheSineOfASmallStep) {
   // From zero the series stands alone: a last digit of what is small.
+  const Any arm(random_arm(1, 142));
   for (double d = -0.03; d <= 0.03; d += 1.7e-4) {
-    const auto turned = Any::turned(Any::angles(Vector::Zero(1)), Vector::Constant(1, d));
+    const auto turned = arm.turned(arm.angles(Vector::Zero(1)), Vector::Constant(1, d));
     ASSERT_NEAR(turned.sin[0], std::sin(d), 4e-16 * std::abs(d));
     ASSERT_NEAR(turned.cos[0], std::cos(d), 2.3e-16);
   }

@@ -1,4 +1,4 @@
-"""Arms that are no chains of rotary joints with masses."""
+"""Arms that have no chain of joints with masses."""
 
 from __future__ import annotations
 
@@ -44,9 +44,11 @@ URDF: list[Case] = [
           + _joint_text("weld", "base", "tip") + "</robot>"),
     *(_urdf_edit(f"{kind} joint", 'name="joint2" type="continuous"', f'name="joint2" type="{kind}"',
                  "joint2")
-      for kind in ("prismatic", "floating", "planar", "elastic")),
-    _urdf_edit("a tree", "</robot>", '<link name="twig"/>' + _joint_text("fork", "link1", "twig")
-               + "</robot>", "link1"),
+      for kind in ("floating", "planar", "elastic")),
+    _urdf_edit("two tips", "</robot>", '<link name="twig"><inertial><mass value="1"/>'
+               '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+               + _joint_text("fork", "link1", "twig").replace("fixed", "continuous")
+               + "</robot>", "link1", "twig", "--tip"),
     _urdf_edit("a loop", "</robot>", _joint_text("back", "tip", "base") + "</robot>"),
     _urdf_edit("two arms", "</robot>", '<link name="other"/></robot>'),
     _urdf_edit("an unknown parent", '<parent link="link1"/>', '<parent link="nobody"/>', "nobody"),

@@ -1,0 +1,159 @@
+// What a file is, and what there is to know of it before it is used.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "app/cli/commands.h"
+#include "app/cli/options.h"
+#include "app/desktop/document/scene_loader.h"
+#include "app/run/analysis.h"
+#include "app/run/fitted_gains.h"
+#include "core/dynamics/arm.h"
+#include "core/dynamics/inverse_kinematics.h"
+#include "devices/files/arm/urdf_file.h"
+#include "render/arm_look.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CheckOptions {
+  std::string file;
+  InputOptions input;
+};
+
+// Lines for people.
+struct Report {
+  std::vector<std::string> facts, warnings;
+};
+
+// Of slides in m, N, N s/m and kg.
+std::string joint_line(const Joint& joint, const Link& link, double inertia) {
+  const bool slides = joint.kind == Joint::Kind::prismatic;
+  const double unit = slides ? kSlideUnit : 1;
+  const std::string range = std::isfinite(joint.upper - joint.lower)
+                                ? fmt::format("{:.3g} to {:.3g} {}", unit * joint.lower,
+                                              unit * joint.upper, slides ? "m" : "rad")
+                                : "no limits";
+  return fmt::format("  {:<26} {:>18} {:>7.3g} {:<4} {:>7.2g} {:<6} {:>7.3g} kg {:>8.2g} {}",
+                     joint.name, range, joint.effort / unit, slides ? "N" : "N m",
+                     joint.damping / (unit * unit), slides ? "N s/m" : "N m s", link.mass,
+                     inertia / (unit * unit), slides ? "kg" : "kg m^2");
+}
+
+void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, Report& report) {
+  report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint", "range",
+                                     "effort", "damping", "its link", "moves at rest"));
+  for (int i = 0; i < arm.dof(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    report.facts.push_back(joint_line(arm.joints[k], arm.links[k], M(i, i)));
+  }
+}
+
+void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Parameters& p,
+                Report& report) {
+  const std::string fit = fit_text(p);
+  report.facts.push_back(fit.empty() ? "gains        the paper's suit it"
+                                     : "gains        fitted: " + fit);
+  const Analysis a = analyze(arm, rest, p, std::nullopt);
+  report.facts.push_back(fmt::format(
+      "             condition (3) {}; eta from {:.2f} on is passive (25)",
+      a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
+  if (!a.condition3.holds) {
+    report.warnings.push_back(
+        "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
+        "leave them to be fitted");
+  }
+}
+
+Report on_arm(const std::string& file, const InputOptions& input) {
+  ArmDescription arm = read_urdf(file, input.tip);
+  load_visuals(arm);
+  Report report{{}, arm.warnings};
+  double mass = 0;
+  for (const Link& link : arm.links) mass += link.mass;
+  const std::size_t pictures = static_cast<std::size_t>(std::ranges::count_if(
+      arm.visuals, [](const Visual& v) { return v.shape != Visual::Shape::stand_in; }));
+  report.facts.push_back(fmt::format("arm          {}, {} joints to '{}'", arm.name, arm.dof(),
+                                     arm.tip_link));
+  report.facts.push_back(
+      fmt::format("reach        {:.3g} m, {:.3g} kg in motion", reach(arm), mass));
+  report.facts.push_back(pictures == 0 ? "picture      capsules from joint to joint"
+                                       : fmt::format("picture      {} shapes", pictures));
+  const Eigen::VectorXd rest = rest_pose(arm);
+  const Eigen::MatrixXd M = arm_at(arm, rest).M;
+  list_joints(arm, M, report);
+  list_gains(arm, rest, make_parameters(input, arm), report);
+  return report;
+}
+
+void list_mesh(const MeshObstacle& mesh, const Model& model, double scale, Report& report) {
+  const Vec3 size = scale * model.bounds().sizes();
+  report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g}",
+                                     mesh.name, model.indices.size() / 3, size.x(), size.y(),
+                                     size.z()));
+}
+
+Report on_scene(const std::string& file, const InputOptions& input) {
+  const LoadedScene loaded = load_scene(file, arm_of(input));
+  const Scene& scene = loaded.document.scene;
+  Report report{{}, loaded.warnings};
+  report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
+  report.facts.push_back(fmt::format(
+      "to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
+      scene.planes.size(), scene.spheres.size(), scene.boxes.size(), scene.meshes.size(),
+      scene.joint_contacts.size()));
+  for (std::size_t i = 0; i < loaded.models.size(); ++i) {
+    list_mesh(scene.meshes[i], *loaded.models[i], scene.meshes[i].scale, report);
+  }
+  return report;
+}
+
+Report on_model(const std::string& file) {
+  const LoadedModel loaded = load_model(file);
+  Report report{{}, loaded.warnings};
+  list_mesh(loaded.mesh, *loaded.model, 1, report);
+  return report;
+}
+
+Report on(const CheckOptions& options) {
+  std::string suffix = fs::path(options.file).extension().string();
+  std::ranges::transform(suffix, suffix.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix == ".urdf" || suffix == ".xacro") return on_arm(options.file, options.input);
+  if (suffix == ".toml") return on_scene(options.file, options.input);
+  return on_model(options.file);
+}
+
+int check(const CheckOptions& options) {
+  const Report report = on(options);
+  for (const std::string& fact : report.facts) fmt::print("{}\n", fact);
+  for (const std::string& warning : report.warnings) fmt::print("warning      {}\n", warning);
+  const std::size_t n = report.warnings.size();
+  fmt::print("{}\n", n == 0   ? "fine"
+                     : n == 1 ? "works, with a warning"
+                              : fmt::format("works, with {} warnings", n));
+  return n == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+Command declare_check(CLI::App& app) {
+  auto* command = app.add_subcommand("check", "what an arm, a scene or a model is, and its flaws");
+  auto options = std::make_shared<CheckOptions>();
+  command->add_option("FILE", options->file, "an arm, a scene or a model")
+      ->type_name("ARM.urdf|SCENE.toml|MODEL")
+      ->required();
+  options->input.add_world(*command);
+  options->input.add_parameters(*command);
+  command->footer(
+      "Of an arm: its chain, masses, reach and the gains that suit it. --tip LINK says where the "
+      "chain\nends; --device is the arm that a scene is for. Exit status: 0 fine, 1 works but for "
+      "the warnings,\n2 does not work, and why.");
+  return [options] { return check(*options); };
+}
+
+}  // namespace limpid

@@ -1,0 +1,101 @@
+#include "app/run/fitted_gains.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/run/analysis.h"
+#include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kPaperDamping = 0.012;  // b_d [N m s/rad]
+constexpr double kAmple = 5;             // times the paper's: stiffer gains are worth it then
+// The built-in arm's b_d over the geometric mean of its inertia's modes at rest [1/s].
+constexpr double kRate = 50;
+constexpr double kSpread = 100;  // heaviest mode over the one that the damping is for, at most
+
+// Rounded to two digits, downwards or upwards.
+double down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::floor(x / unit * (1 + 1e-12)) * unit;
+}
+double up(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit * (1 - 1e-12)) * unit;
+}
+
+void set(Parameters& p, const char* key, double value) {
+  // Through its text, so that it is the number that people see.
+  const double written = std::stod(fmt::format("{:.6g}", value));
+  set_parameter_number(p, *find_parameter(key), written);
+}
+
+// What the file says nothing of. A joint that comes to rest within a tick would ring in laws that
+// model it by the midpoint rule: so its lightest mode bounds it.
+double wanted_damping(const ArmDescription& arm, double tick) {
+  double said = 0;
+  for (const Joint& joint : arm.joints) {
+    if (joint.damping > 0) said = said > 0 ? std::min(said, joint.damping) : joint.damping;
+  }
+  if (said > 0) return said;
+  const Eigen::VectorXd modes = symmetric_eigen(arm_at(arm, rest_pose(arm)).M).values;
+  const double mean = std::exp(modes.array().max(1e-300).log().mean());
+  const double wanted = kRate * std::max(mean, modes.maxCoeff() / kSpread);
+  return up(std::min(wanted, 2 * modes[0] / tick));
+}
+
+bool same(const Parameters& a, const Parameters& b, const char* key) {
+  const ParameterInfo& info = *find_parameter(key);
+  return parameter_text(a, info) == parameter_text(b, info);
+}
+
+}  // namespace
+
+Parameters fitted(const ArmDescription& arm, const Parameters& chosen) {
+  Parameters p;
+  double b_d = device_damping(arm, p).minCoeff();
+  const bool suits =
+      condition3(p, p.tick, std::span(&b_d, 1)).holds && b_d <= kAmple * kPaperDamping;
+  if (suits) return p;
+  if (chosen.damping > 0) {
+    p.damping = b_d = chosen.damping;
+  } else if (!(b_d > 0)) {
+    set(p, "device.damping", wanted_damping(arm, chosen.tick));
+    b_d = p.damping;
+  }
+  set(p, "coupling.b_vc", down(b_d / 12));
+  set(p, "coupling.k_vc", down((b_d - 2 * p.b_vc) / chosen.tick));
+  set(p, "coupling.b_v", up(std::max(b_d, p.k_vc * chosen.tick / 2)));
+  set(p, "observer.alpha", down(35.0 / 12 * b_d));
+  return p;
+}
+
+std::string fit_text(const Parameters& own) {
+  const Parameters paper;
+  std::string text;
+  for (const char* key : kFittedKeys) {
+    if (same(own, paper, key)) continue;
+    const ParameterInfo& info = *find_parameter(key);
+    text += fmt::format("{}{} {:.3g} {}", text.empty() ? "" : ", ", key,
+                        parameter_number(own, info), info.unit);
+  }
+  return text;
+}
+
+void refit(Parameters& p, const ArmDescription* before, const ArmDescription* now) {
+  Parameters paper;
+  paper.tick = p.tick;
+  const Parameters own = now != nullptr ? fitted(*now, paper) : paper;
+  const Parameters old = before != nullptr ? fitted(*before, paper) : paper;
+  for (const char* key : kFittedKeys) {
+    if (!same(p, paper, key) && !same(p, old, key)) continue;
+    const ParameterInfo& info = *find_parameter(key);
+    set_parameter_number(p, info, parameter_number(own, info));
+  }
+}
+
+}  // namespace limpid

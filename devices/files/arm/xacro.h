@@ -1,0 +1,15 @@
+// URDF files as they lie on the disk: plain ones, and xacro's, which have to be expanded.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace limpid {
+
+// The URDF text of a file. One that is written in xacro (FILE.xacro, or macros inside) goes through
+// the program `xacro`, if that is installed.
+// Errors: FileError for files that cannot be read or are longer than 16 MiB; for xacro without the
+// program, saying how to expand it, or with what the program complains of.
+std::string urdf_text(const std::filesystem::path& file);
+
+}  // namespace limpid

@@ -1,0 +1,115 @@
+#include "render/arm_look.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/built_in.h"
+#include "tests/support/random_arm.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+// A triangle with its corners on the axes, at 1, 2 and 3.
+Model triangle() {
+  Model model;
+  for (int i = 0; i < 3; ++i) {
+    model.vertices.push_back({(i + 1.0f) * Eigen::Vector3f::Unit(i), Eigen::Vector3f::UnitX()});
+    model.indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  model.parts = {{0, 3}};
+  return model;
+}
+
+Visual mesh(const Vec3& scale) {
+  Visual visual;
+  visual.link = 0;
+  visual.size = scale;
+  visual.model = std::make_shared<const Model>(triangle());
+  return visual;
+}
+
+Model drawn(const Visual& visual) {
+  ArmDescription arm = test::random_arm(1, 1);
+  arm.visuals = {visual};
+  SceneItems items;
+  add_arm(arm, items);
+  return items.moving.at(0).model;
+}
+
+// Which way the triangle faces, by the order of its corners.
+Eigen::Vector3f facing(const Model& m) {
+  const auto at = [&](std::size_t i) { return m.vertices[m.indices[i]].position; };
+  return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+}
+
+TEST(ArmLook, MirrorsWithoutTurningInsideOut) {
+  const Model model = drawn(mesh({1, -2, 1}));
+  EXPECT_EQ(model.bounds().min().y(), -4);
+  const Eigen::Vector3f out = facing(triangle()), mirrored = facing(model);
+  EXPECT_LT((mirrored - out.cwiseProduct(Eigen::Vector3f(2, -1, 2)).normalized()).norm(), 1e-6f);
+}
+
+TEST(ArmLook, PaintsWhatHasNoColourOfItsOwn) {
+  Visual visual = mesh(Vec3::Ones());
+  visual.color = Eigen::Vector4f(1, 0, 0.5f, 1);
+  const Eigen::Vector3f linear(1, 0, 0.2140f);  // as IEC 61966-2-1 has it
+  EXPECT_LT((drawn(visual).vertices[0].color - linear).norm(), 1e-3f);
+  Model own = triangle();
+  for (Vertex& v : own.vertices) v.color = {0, 1, 0};
+  visual.model = std::make_shared<const Model>(own);
+  EXPECT_EQ(drawn(visual).vertices[0].color, Eigen::Vector3f(0, 1, 0));
+}
+
+// glTF has y up, URDF z: the built-in arm's pictures stand as its links do.
+TEST(ArmLook, TurnsGltfUpright) {
+  ArmDescription arm = test::omni();
+  load_visuals(arm);
+  ASSERT_EQ(arm.warnings, std::vector<std::string>());
+  const auto bounds = [&](std::size_t i) { return arm.visuals[i].model->bounds(); };
+  EXPECT_NEAR(bounds(0).min().z(), -0.04, 1e-4) << "the foot stands on the table";
+  EXPECT_NEAR(bounds(2).max().x(), 0.135 + 0.0124, 1e-3) << "the upper arm reaches to the elbow";
+  EXPECT_NEAR(bounds(2).min().y(), -bounds(2).max().y(), 1e-4) << "and is as wide to both sides";
+}
+
+TEST(ArmLook, PutsACapsuleInThePlaceOfALinkThatCannotBeShown) {
+  ArmDescription arm = test::random_arm(3, 1);
+  const test::TempDir dir;
+  std::ofstream(dir / "spoilt.glb") << "not a model";
+  Visual spoilt;
+  spoilt.link = 1;
+  spoilt.mesh = (dir / "spoilt.glb").string();
+  Visual stand_in;
+  stand_in.link = 0;
+  stand_in.shape = Visual::Shape::stand_in;
+  arm.visuals = {mesh(Vec3::Ones()), stand_in, spoilt, spoilt};
+  load_visuals(arm);
+  ASSERT_EQ(arm.warnings.size(), 1u) << "one for a file that is named twice";
+  EXPECT_THAT(arm.warnings[0], HasSubstr("spoilt.glb"));
+  SceneItems items;
+  items.reach = 0.3;
+  add_arm(arm, items);
+  ASSERT_EQ(items.moving.size(), 2u) << "the triangle of link 0, a capsule for link 1";
+  EXPECT_EQ(items.moving[1].link, 1);
+  const Bounds capsule = items.moving[1].model.bounds();
+  const Vec3 end = arm.joints[2].origin.translation();
+  EXPECT_TRUE(capsule.contains(Vec3::Zero()) && capsule.contains(end));
+  EXPECT_LT(capsule.diagonal().norm(), end.norm() + 0.2);
+  EXPECT_TRUE(items.base.empty());
+}
+
+TEST(ArmLook, DrawsAnArmWithoutPicturesAsCapsules) {
+  ArmDescription arm = test::random_arm(3, 1);
+  SceneItems items;
+  items.reach = 0.3;
+  add_arm(arm, items);
+  EXPECT_EQ(items.moving.size(), 3u);
+  EXPECT_EQ(items.base.size(), 1u);
+}
+
+}  // namespace
+}  // namespace limpid

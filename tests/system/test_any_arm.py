@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""Arms as their makers describe them: `limpid check`, and a run without a hand of their own."""
+
+from __future__ import annotations
+
+import re
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+from support import SystemTest, limpid
+
+_LAWS = ("standard", "proposed", "predictive")
+
+
+def _link(name: str, mass: float = 0, inside: str = "", at: str = "0 0 0") -> str:
+    inertia = mass * 0.01
+    inertial = (
+        f'<inertial><origin xyz="{at}"/><mass value="{mass}"/><inertia ixx="{inertia}" ixy="0" '
+        f'ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/></inertial>'
+    )
+    return f'<link name="{name}">{inertial if mass else ""}{inside}</link>\n'
+
+
+def _joint(kind: str, parent: str, child: str, inside: str) -> str:
+    return (
+        f'<joint name="{parent}_{child}" type="{kind}"><parent link="{parent}"/>'
+        f'<child link="{child}"/>{inside}</joint>\n'
+    )
+
+
+def _limit(low: float, high: float, effort: float) -> str:
+    return f'<limit lower="{low}" upper="{high}" effort="{effort}" velocity="3"/>'
+
+
+_MESH = (
+    '<visual><geometry><mesh filename="package://nobody/meshes/arm.stl"/></geometry></visual>'
+)
+
+# Two joints that turn, a spindle that slides and turns, a flange without mass; no damping.
+SCARA = (
+    '<robot name="scara">'
+    + _link("base")
+    + _joint("revolute", "base", "inner", '<axis xyz="0 0 1"/>' + _limit(-2, 2, 100))
+    + _link("inner", 8, at="0.15 0 0")
+    + _joint("revolute", "inner", "outer",
+             '<origin xyz="0.3 0 0"/><axis xyz="0 0 1"/>' + _limit(-2.4, 2.4, 60))
+    + _link("outer", 4, at="0.1 0 0")
+    + _joint("prismatic", "outer", "spindle",
+             '<origin xyz="0.25 0 0"/><axis xyz="0 0 -1"/>' + _limit(0, 0.2, 200))
+    + _link("spindle", 1)
+    + _joint("continuous", "spindle", "flange",
+             '<axis xyz="0 0 1"/><limit effort="5" velocity="9"/>')
+    + _link("flange", 0.2)
+    + _joint("fixed", "flange", "tool0", '<origin xyz="0.02 0 -0.05"/>')
+    + _link("tool0")
+    + "</robot>"
+)  # fmt: skip
+
+# Six joints of a metre's reach, efforts left out, pictures that are not there, a gripper.
+INDUSTRIAL = (
+    '<robot name="industrial">'
+    + _link("base", 0, _MESH)
+    + _joint("revolute", "base", "l1", '<origin xyz="0 0 0.3"/><axis xyz="0 0 1"/>' + _limit(-3, 3, 0))
+    + _link("l1", 12, _MESH, "0 0 0.05")
+    + _joint("revolute", "l1", "l2", '<axis xyz="0 1 0"/>' + _limit(-3, 3, 0))
+    + _link("l2", 8, _MESH, "0.2 0 0")
+    + _joint("revolute", "l2", "l3", '<origin xyz="0.4 0 0"/><axis xyz="0 1 0"/>' + _limit(-3, 3, 0))
+    + _link("l3", 5, _MESH, "0.2 0 0")
+    + _joint("continuous", "l3", "l4", '<origin xyz="0.4 0 0"/><axis xyz="1 0 0"/>')
+    + _link("l4", 1)
+    + _joint("revolute", "l4", "l5", '<axis xyz="0 1 0"/>' + _limit(-2, 2, 0))
+    + _link("l5", 0.5)
+    + _joint("continuous", "l5", "l6", '<origin xyz="0.1 0 0"/><axis xyz="1 0 0"/>')
+    + _link("l6", 0.3)
+    + _joint("prismatic", "l6", "left", '<axis xyz="0 1 0"/>' + _limit(0.01, 0.05, 20))
+    + _link("left", 0.05)
+    + _joint("prismatic", "l6", "right", '<axis xyz="0 -1 0"/>' + _limit(0.01, 0.05, 20))
+    + _link("right", 0.05)
+    + "</robot>"
+)  # fmt: skip
+
+
+class AnyArm(SystemTest):
+    def write(self, name: str, text: str) -> Path:
+        file = self.directory / name
+        file.write_text(text)
+        return file
+
+    def test_check_ends_with_what_it_found(self) -> None:
+        fine = limpid("check", self.write("scara.urdf", SCARA))
+        self.assertEqual(fine.status, 0, fine.err + fine.out)
+        for words in ("4 joints to 'tool0'", "0 to 0.2 m", "condition (3) holds", "fine"):
+            self.assertIn(words, fine.out)
+        warned = limpid("check", self.write("industrial.urdf", INDUSTRIAL))
+        self.assertEqual(warned.status, 1, warned.err)
+        for words in ("6 joints to 'l6'", "nobody/meshes/arm.stl", "no effort", "held still"):
+            self.assertIn(words, warned.out)
+        refused = limpid("check", self.write("none.urdf", re.sub("<inertial>.*?</inertial>", "", SCARA)))
+        self.assertEqual(refused.status, 2)
+        self.assertEqual(len(refused.error_lines), 1)
+        self.assertIn("<inertial>", refused.err)
+
+    def test_check_knows_scenes_and_models(self) -> None:
+        for file, words in (("assets/scenes/gears.toml", "triangles"), ("assets/scenes/gear.glb", "triangles")):
+            found = limpid("check", Path(__file__).resolve().parents[2] / file)
+            self.assertIn(found.status, (0, 1), found.err)
+            self.assertIn(words, found.out)
+
+    def test_an_arm_without_a_hand_moves_and_gives_no_energy_under_every_law(self) -> None:
+        for name, text in (("scara.urdf", SCARA), ("industrial.urdf", INDUSTRIAL)):
+            arm = self.write(name, text)
+            for law in _LAWS:
+                with self.subTest(arm=name, law=law):
+                    out = self.directory / f"{name}-{law}.h5"
+                    run = limpid("run", "--device", arm, "--coupling", law, "--record", out)
+                    self.assertEqual(run.status, 0, run.err)
+                    self.assertIn("gains fitted", run.err)
+                    with h5py.File(out) as session:
+                        x = session["/device/position"][:]
+                        energy = session["/energy/controller_total"][:]
+                    self.assertTrue(np.all(np.isfinite(x)))
+                    self.assertGreater(np.ptp(x, axis=0).max(), 1e-3)
+                    self.assertLess(energy.max(), 1e-6 + 1e-3 * abs(energy.min()))
+
+    def test_a_recording_has_its_arm_without_any_file(self) -> None:
+        arm = self.write("gone.urdf", INDUSTRIAL)
+        first, again = self.directory / "first.h5", self.directory / "again.h5"
+        short = ("--duration", "0.5")
+        made = limpid("run", "--device", arm, "--tip", "l4", *short, "--record", first)
+        self.assertEqual(made.status, 0, made.err)
+        arm.unlink()
+        replayed = limpid("run", "--hand", first, "--record", again)
+        self.assertEqual(replayed.status, 0, replayed.err)
+        with h5py.File(first) as a, h5py.File(again) as b:
+            self.assertEqual(a["/device/position"].shape[1], 4)
+            np.testing.assert_array_equal(a["/device/position"], b["/device/position"])
+
+    def test_what_is_set_by_hand_is_not_fitted(self) -> None:
+        arm = self.write("scara.urdf", SCARA)
+        out = self.directory / "set.h5"
+        run = limpid("run", "--device", arm, "--set", "coupling.k_vc=7", "--duration", "0.1",
+                     "--record", out)  # fmt: skip
+        self.assertEqual(run.status, 0, run.err)
+        with h5py.File(out) as session:
+            self.assertIn("k_vc = 7.0", str(session.attrs["config"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
