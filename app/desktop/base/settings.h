@@ -29,12 +29,15 @@ struct Settings {
   bool show_left = true, show_right = true, show_plots = true;
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool show_lens = true;  // while gap or contact is small
+  bool show_joints = true;
+  bool twin_overlaid = false;  // both runs in one picture, else one beside the other
   bool hold_on_release = false;
   bool hint_seen = false;
   std::string picture_quality = "automatic";  // or high, medium, low
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
+  std::string gamepad;                        // that leads the hand, as GLFW identifies it; or none
   std::vector<std::string> recent;            // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/thumbnails.h"
 #include "app/run/twin_settings.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
@@ -98,9 +99,16 @@ void Desktop::update(double dt) {
   desk_.update(settings_.parameters, settings_.twin.on ? &settings_.twin.parameters : nullptr);
   if (const auto recorded = desk_.take_recorded()) {
     playback_.set_last(*recorded);
+    make_thumbnail(*recorded, desk_.stage(), desk_.row(), desk_.twin_row(), settings_.theme);
     remember_recent(settings_, recorded->string());
   }
   if (playback_.update(dt)) {
+    const PlayedSession& opened = *playback_.shown();
+    const std::size_t k = opened.row_to_show();
+    const Session& session = opened.player().session();
+    make_thumbnail(opened.file(), shown(), session.row(k),
+                   session.twin ? session.twin->row(k) : std::span<const double>(),
+                   settings_.theme);
     camera_.frame(shown().picture.bounds());
     remember_recent(settings_, playback_.last().string());
     step_ = nullptr;
@@ -221,7 +229,7 @@ void Desktop::cut_force() {
 
 void Desktop::reset_parameters() {
   settings_.parameters = Parameters{};
-  notices_.say("All settings are the paper's again.");
+  notices_.say("All settings have their usual values again, the paper's where it gives them.");
 }
 
 void Desktop::toggle_recording() {

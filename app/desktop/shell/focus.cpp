@@ -22,6 +22,7 @@ const char* name(Dialog dialog) {
     case Dialog::gallery: return "gallery";
     case Dialog::add_model: return "add model";
     case Dialog::save_scene: return "save scene";
+    case Dialog::video: return "video";
   }
   return "";
 }

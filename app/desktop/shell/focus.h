@@ -17,6 +17,7 @@ enum class Dialog : std::uint8_t {
   gallery,
   add_model,
   save_scene,
+  video,
 };
 const char* name(Dialog dialog);
 // One that asks something: nothing behind it acts meanwhile.

@@ -79,7 +79,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
 void Frame::draw() {
   const auto part = [this](auto&& work) { guard(desktop_.notices(), work); };
   Settings& settings = desktop_.settings();
-  part([&] { draw_menu_bar(desktop_, window_.full_screen(), act_); });
+  part([&] { draw_menu_bar(desktop_, recent_, window_.full_screen(), act_); });
   const Layout at = lay_out();
   part([&] { draw_view(at.view); });
   if (at.show_left) part([&] { draw_coupling(at.left); });
@@ -135,14 +135,16 @@ ViewScene Frame::view_scene() {
   }
   if (!scene.recorded) scene.twin = desktop_.desk().twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown().names();
+  scene.pad = desktop_.leading_pad();
+  scene.overlaid = desktop_.settings().twin_overlaid;
   return scene;
 }
 
 void Frame::draw_view(ScreenRect rect) {
-  if (story_taken_over(desktop_.playback(), rect)) act_(Action::back_to_live);
+  if (story_taken_over(desktop_.playback(), rect)) desktop_.playback().take_over();
   Camera& camera = desktop_.camera();
   const ViewScene scene = view_scene();
-  const float width = scene.twin.empty() ? rect.width() : rect.width() / 2;
+  const float width = scene.split() ? rect.width() / 2 : rect.width();
   constexpr double kApart = 2;  // between the halves of a twin, and rounding [px]
   const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
                        std::abs(camera.height() - static_cast<double>(rect.height())) > kApart;
@@ -186,7 +188,8 @@ void Frame::draw_coupling(ScreenRect rect) {
   begin_panel("coupling", rect);
   if (!twin.empty()) {
     TwinSettings& settings = desktop_.settings().twin;
-    draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited);
+    draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited,
+              desktop_.settings().twin_overlaid);
   }
   coupling_.draw(desktop_.edited(), desktop_.analysis(), now, real ? nullptr : &shown.arm());
   ImGui::End();
@@ -213,7 +216,7 @@ void Frame::draw_side(ScreenRect rect) {
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
-    draw_device_panel(desktop_.devices(), desk);
+    draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad});
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
@@ -224,7 +227,7 @@ void Frame::draw_side(ScreenRect rect) {
     const auto pose = shown.channels().layout().in(desktop_.row(), Column::device_position);
     const PlayedSession* session = desktop_.playback().shown();
     const Scene& scene = session ? session->document().scene : desktop_.document().scene();
-    analysis_.draw(parameters, shown.arm(), scene, pose, settings.band);
+    analysis_.draw(desktop_.edited(), shown.arm(), scene, pose, settings.band);
   }
   if (section("Timing", true)) draw_timing(desk.loop(), quality_text(), window_.frame_time());
   ImGui::End();
