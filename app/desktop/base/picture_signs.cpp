@@ -37,7 +37,8 @@ void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
   const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
                              picture.min.y + static_cast<float>(pixel->y()));
-  const float left = std::min(tips.x + 1.6f * em, picture.max.x - size.x - 2 * pad);
+  const float edge = picture.max.x - 1.6f * em;  // where a panel's tab may be
+  const float left = std::min(tips.x + 1.6f * em, edge - size.x - pad);
   const ImVec2 place(left, tips.y + (below ? 1.2f : -2.2f) * em);
   const Palette& colours = current_palette();
   list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},

@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 
 fs::path thumbnails_dir() { return user_cache_dir() / "thumbnails"; }
 
+// The arms alone: arrows and flashes would hide them in so small a picture.
 ViewState view_of(const Stage& stage, std::span<const double> row) {
-  const RowLayout& layout = stage.channels().layout();
-  ViewState view = stage.rows().view(layout, row);
-  ViewMemory().update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
+  ViewState view = stage.rows().view(stage.channels().layout(), row);
+  view.show_hand = view.show_forces = false;
   return view;
 }
 
@@ -27,7 +27,6 @@ std::vector<unsigned char> small_picture(Stage& stage, std::span<const double> r
   ViewState view = view_of(stage, row);
   if (!twin.empty()) lay_over(view, view_of(stage, twin));
   view.theme = theme;
-  view.show_hand = false;
   Camera camera;
   camera.resize(kThumbnailWidth, kThumbnailHeight);
   camera.reset(stage.picture.bounds());
@@ -43,6 +42,15 @@ std::vector<unsigned char> small_picture(Stage& stage, std::span<const double> r
 fs::path thumbnail_of(const fs::path& session) {
   const std::string name = fs::absolute(session).lexically_normal().string();
   return thumbnails_dir() / fmt::format("{:016x}.png", hash_of(std::as_bytes(std::span(name))));
+}
+
+fs::path picture_of(const fs::path& file) {
+  const std::string name = file.stem().string() + ".png";
+  if (file.extension() == ".toml") return file.parent_path() / "thumbnails" / name;
+  std::error_code none;
+  const fs::path shipped = file.parent_path().parent_path() / "scenes/thumbnails" / name;
+  const fs::path made = thumbnail_of(file);
+  return fs::exists(made, none) || !fs::exists(shipped, none) ? made : shipped;
 }
 
 void make_thumbnail(const fs::path& session, Stage& stage, std::span<const double> row,

@@ -35,7 +35,7 @@ fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   fs::path chosen;
   for (const fs::path& file : files) {
     const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
-    if (picture_item({.picture = pictures_.get(thumbnail_of(file)),
+    if (picture_item({.picture = pictures_.get(picture_of(file)),
                       .name = file.filename().string(),
                       .about = fmt::format("{:.1f} MiB", mib)})) {
       chosen = file;

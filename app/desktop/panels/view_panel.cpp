@@ -63,7 +63,6 @@ PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
 void draw_hint(const std::string& pad, ScreenRect rect, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
-  const float size = face->FontSize * 1.15f;
   const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
   const char* lines[] = {
       pad.empty() ? "Drag with the left button: your hand pulls the arm onto the table."
@@ -71,6 +70,11 @@ void draw_hint(const std::string& pad, ScreenRect rect, ImDrawList& list) {
       pad.empty() ? "Wheel while dragging: nearer and farther."
                   : "Its triggers: nearer and farther. A lets go, B cuts the force.",
       "C switches the coupling: the standard one lets hand and world drift apart."};
+  float size = face->FontSize * 1.15f;
+  for (const char* line : lines) {  // as large as the widest one may be
+    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
+    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
+  }
   float line_y = rect.max.y - 5.2f * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);

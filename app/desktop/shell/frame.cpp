@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,63 +17,11 @@
 #include "app/desktop/panels/twin_panel.h"
 #include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
+#include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
-namespace {
-
-// A border between panels that can be dragged: changes `size` by the mouse's motion along one axis.
-void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,
-              double least, double most) {
-  ImGui::SetNextWindowPos(rect.min);
-  ImGui::SetNextWindowSize(rect.size());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::Begin(name, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
-  ImGui::InvisibleButton("grip", rect.size());
-  if (ImGui::IsItemActive() || ImGui::IsItemHovered()) {
-    ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-  }
-  if (ImGui::IsItemActive()) {
-    const ImVec2 delta = ImGui::GetIO().MouseDelta;
-    size += direction * static_cast<double>((vertical ? delta.x : delta.y) / current_scale());
-  }
-  size = std::clamp(size, least, most);
-  ImGui::End();
-  ImGui::PopStyleVar(2);
-}
-
-// A small tab at the view's edge that folds a panel away, or brings it back.
-void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted) {
-  ImGui::SetNextWindowPos(rect.min);
-  ImGui::SetNextWindowSize(rect.size());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-  ImGui::Begin(name, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoFocusOnAppearing);
-  if (ImGui::InvisibleButton("fold", rect.size())) wanted = !wanted;
-  const bool over = ImGui::IsItemHovered();
-  const Palette& colours = current_palette();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
-                     3 * current_scale());
-  const float size = 0.6f * ImGui::GetFontSize();
-  ImGui::RenderArrow(
-      &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
-      colour(over ? colours.text : colours.muted), arrow, size / ImGui::GetFontSize());
-  tooltip(help);
-  ImGui::End();
-  ImGui::PopStyleVar(3);
-}
-
-}  // namespace
 
 void Frame::draw() {
   const auto part = [this](auto&& work) { guard(desktop_.notices(), work); };
@@ -101,7 +48,15 @@ void Frame::draw() {
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
-  draw_notices(desktop_.notices(), at.view, legend_box(at.view));
+  draw_notices(desktop_.notices(), at.view, signs_box(at.view));
+}
+
+// What notices leave free: the legend's corner, or all that is at the top of the view.
+ScreenRect Frame::signs_box(ScreenRect view) {
+  const float em = ImGui::GetFontSize();
+  if (desktop_.playback().video().busy()) return {view.min, {view.max.x, view.min.y + 7 * em}};
+  if (view_scene().split()) return {view.min, {view.max.x, view.min.y + 4 * em}};
+  return legend_box(view);
 }
 
 Layout Frame::lay_out() {

@@ -38,6 +38,7 @@ class Frame {
  private:
   Layout lay_out();
   ViewScene view_scene();
+  ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
   void draw_coupling(ScreenRect rect);
   void draw_side(ScreenRect rect);

@@ -7,17 +7,8 @@
 #include "app/desktop/base/thumbnails.h"
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
-
-// A scene has its picture beside it, if it came with Limpid.
-fs::path picture_of(const fs::path& file) {
-  if (file.extension() != ".toml") return thumbnail_of(file);
-  return file.parent_path() / "thumbnails" / (file.stem().string() + ".png");
-}
-
-}  // namespace
 
 void RecentMenu::look(const std::vector<std::string>& recent) {
   pictures_.clear();
