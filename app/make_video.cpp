@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 // "1280x720"
 FilmLook look(const VideoOptions& options, double text_scale) {
-  FilmLook look{.plots = options.plots, .text_scale = text_scale};
+  FilmLook look{.plots = options.plots, .overlaid = options.overlaid, .text_scale = text_scale};
   if (options.size.empty()) return look;
   int width = 0, height = 0, read = 0;
   if (std::sscanf(options.size.c_str(), "%5dx%5d%n", &width, &height, &read) != 2 ||
@@ -92,6 +92,9 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   FilmOrder order = order_of(options, text_scale);
   order.title = fs::path(file).stem().string();
   const Session session = read_session(file);
+  ToldSteps told = told_in(file);
+  order.steps = std::move(told.steps);
+  if (!told.title.empty()) order.title = told.title;
   cut(order, session, file);
   catch_interrupts();
   return make(order, session, file, options.print_progress);

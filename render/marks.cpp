@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/gl/glm_door.h"
+#include "render/joint_colours.h"
 
 namespace limpid {
 namespace {
@@ -16,9 +17,7 @@ constexpr double kFlashTime = 0.25;     // [s]
 
 glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
 
-palette::Rgb lighter(const palette::Rgb& c, float by) {
-  return {c[0] + by * (1 - c[0]), c[1] + by * (1 - c[1]), c[2] + by * (1 - c[2])};
-}
+palette::Rgb lighter(const palette::Rgb& c, float by) { return palette::mix(c, {1, 1, 1}, by); }
 
 // A unit shape along z, scaled across and along, with its z turned to `direction`.
 glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double along) {
@@ -74,6 +73,47 @@ void add_shade(const ContactShade& shade, double size, std::vector<glm::mat4>& o
   out.push_back(place(shade.position, shade.normal, radius, std::min(1.0, near)));
 }
 
+void add_contacts(const ViewState& state, const std::vector<ContactMark>& contacts,
+                  const palette::Rgb& color, double size, Marks& marks) {
+  for (const ContactMark& contact : contacts) {
+    if (!contact.position.allFinite() || !(contact.force.norm() > 0)) continue;
+    if (state.show_forces) {
+      add_arrow(contact.position, contact.force, color, size, marks.solids);
+      add_cone(contact, marks.glass);
+    }
+    const double age = std::clamp(contact.age / kFlashTime, 0.0, 1.0);
+    const double radius = patch_radius(contact.force.norm()) * size;
+    const Vec3 out = contact.normal.norm() > 0.5 ? contact.normal : contact.force;
+    if (!out.allFinite()) continue;
+    marks.flashes.push_back({place(contact.position, out.normalized(), radius, radius),
+                             glm::vec2(1 - age, 0.30 + 0.65 * age)});
+  }
+}
+
+struct TipColors {
+  palette::Rgb device, proxy;
+};
+
+// The two tips, each in the colour of its arm, and the line between them.
+void add_error(const ArmPose& device, const ArmPose& proxy, const TipColors& colors, bool dark,
+               LineBatch& lines) {
+  const glm::vec4 core = dark ? glm::vec4(1, 1, 1, 1) : glm::vec4(0.05, 0.05, 0.06, 1);
+  const glm::vec4 edge = dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
+  const glm::vec3 from = to_glm(device.tip), to = to_glm(proxy.tip);
+  const bool both = !device.links.empty() && !proxy.links.empty();
+  if (both && (device.tip - proxy.tip).norm() > kLeastError) {
+    lines.add(from, to, 6.5f, edge, edge);
+    lines.add(from, to, 3.5f, core, core);
+  }
+  // Where they agree the device's is a ring.
+  const auto dot = [&](const glm::vec3& at, const palette::Rgb& color, float width) {
+    lines.add(at, at, width + 3, edge, edge);
+    lines.add(at, at, width, with_alpha(color, 1), with_alpha(color, 1));
+  };
+  if (!device.links.empty()) dot(from, colors.device, 10);
+  if (!proxy.links.empty()) dot(to, colors.proxy, 6);
+}
+
 }  // namespace
 
 Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale) {
@@ -83,18 +123,14 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
     marks.solids.push_back({SolidMark::Shape::ball,
                             place(state.hand_target, Vec3::UnitZ(), 0.0085 * size, 0.0085 * size),
                             palette::kHand});
-  for (const ContactMark& contact : state.contacts) {
-    if (!contact.position.allFinite() || !(contact.force.norm() > 0)) continue;
+  add_contacts(state, state.contacts, palette::kContact, size, marks);
+  if (state.twin) {
+    const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
+    add_contacts(state, state.twin->contacts, tint(palette::kContact), size, marks);
     if (state.show_forces) {
-      add_arrow(contact.position, contact.force, palette::kContact, size, marks.solids);
-      add_cone(contact, marks.glass);
+      add_arrow(state.twin->device.tip, state.twin->hand_force, tint(palette::kHand), size,
+                marks.solids);
     }
-    const double age = std::clamp(contact.age / kFlashTime, 0.0, 1.0);
-    const double radius = patch_radius(contact.force.norm()) * size;
-    const Vec3 out = contact.normal.norm() > 0.5 ? contact.normal : contact.force;
-    if (!out.allFinite()) continue;
-    marks.flashes.push_back({place(contact.position, out.normalized(), radius, radius),
-                             glm::vec2(1 - age, 0.30 + 0.65 * age)});
   }
   if (state.shade) add_shade(*state.shade, size, marks.shades);
   if (state.show_forces)
@@ -107,6 +143,10 @@ void add_trails(const ViewState& state, LineBatch& lines) {
   if (state.show_ghost) add_trail(state.device.trail, palette::kDevice, lines);
   add_trail(state.proxy.trail, lighter(palette::kProxy, lift), lines);
   if (state.rerun) add_trail(state.rerun->trail, palette::kRerun, lines);
+  if (!state.twin) return;
+  const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
+  if (state.show_ghost) add_trail(state.twin->device.trail, tint(palette::kDevice), lines);
+  add_trail(state.twin->proxy.trail, tint(palette::kProxy), lines);
 }
 
 void add_lines_on_top(const ViewState& state, LineBatch& lines) {
@@ -114,23 +154,30 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
     lines.add(to_glm(state.hand_target), to_glm(state.device.tip), 2.5f,
               with_alpha(palette::kHand, 1), with_alpha(palette::kHand, 1));
   if (!state.show_error) return;
-  const Vec3 error = state.device.tip - state.proxy.tip;
   const bool dark = state.theme == Theme::dark;
-  const glm::vec4 core = dark ? glm::vec4(1, 1, 1, 1) : glm::vec4(0.05, 0.05, 0.06, 1);
-  const glm::vec4 edge = dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
-  const glm::vec3 from = to_glm(state.device.tip), to = to_glm(state.proxy.tip);
-  const bool both = !state.device.links.empty() && !state.proxy.links.empty();
-  if (both && error.norm() > kLeastError) {
-    lines.add(from, to, 6.5f, edge, edge);
-    lines.add(from, to, 3.5f, core, core);
+  const TipColors first{palette::kDevice, lighter(palette::kProxy, dark ? 0.25f : 0.0f)};
+  if (state.twin) {
+    const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
+    add_error(state.twin->device, state.twin->proxy, {tint(first.device), tint(first.proxy)}, dark,
+              lines);
   }
-  // Each end carries the colour of its arm; where they agree the device's is a ring.
-  const auto dot = [&](const glm::vec3& at, const palette::Rgb& color, float width) {
-    lines.add(at, at, width + 3, edge, edge);
-    lines.add(at, at, width, with_alpha(color, 1), with_alpha(color, 1));
-  };
-  if (!state.device.links.empty()) dot(from, palette::kDevice, 10);
-  if (!state.proxy.links.empty()) dot(to, lighter(palette::kProxy, dark ? 0.25f : 0.0f), 6);
+  add_error(state.device, state.proxy, first, dark, lines);
+}
+
+void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines) {
+  constexpr double kHalf = 0.022;  // of what is drawn of an axis [m]
+  const auto colors = joint_colours(theme);
+  const glm::vec4 edge = theme == Theme::dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
+  for (std::size_t i = 0; i < std::min({arm.joints.size(), pose.links.size(), colors.size()});
+       ++i) {
+    const Vec3 at = pose.links[i].translation();
+    const Vec3 along = kHalf * (pose.links[i].linear() * arm.joints[i].axis).normalized();
+    if (!at.allFinite() || !along.allFinite()) continue;
+    const glm::vec3 from = to_glm(Vec3(at - along)), to = to_glm(Vec3(at + along));
+    const glm::vec4 color = with_alpha(palette::from_hex(colors[i]), 1);
+    lines.add(from, to, 6.0f, edge, edge);
+    lines.add(from, to, 3.5f, color, color);
+  }
 }
 
 void add_grid(const Bounds& area, Theme theme, LineBatch& lines) {

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "core/dynamics/arm_description.h"
 #include "render/camera.h"
 #include "render/gl/line_batch.h"
 #include "render/palette.h"
@@ -36,6 +37,8 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
 // Lines that others can hide, and lines on top of everything.
 void add_trails(const ViewState& state, LineBatch& lines);
 void add_lines_on_top(const ViewState& state, LineBatch& lines);
+// The axis of each joint, in its colour.
+void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines);
 // Lines at multiples of 5 cm in a flat box, fading towards its edges.
 void add_grid(const Bounds& area, Theme theme, LineBatch& lines);
 

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "render/theme.h"
+
 namespace limpid::palette {
 
 using Rgb = std::array<float, 3>;
@@ -13,6 +15,11 @@ constexpr Rgb from_hex(unsigned hex) {
           static_cast<float>((hex >> 8) & 255u) / 255.0f, static_cast<float>(hex & 255u) / 255.0f};
 }
 
+// `part` 0 gives a, 1 gives b.
+constexpr Rgb mix(const Rgb& a, const Rgb& b, float part) {
+  return {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])};
+}
+
 inline constexpr Rgb kDevice = from_hex(0xE69F00);   // orange
 inline constexpr Rgb kProxy = from_hex(0x0072B2);    // blue
 inline constexpr Rgb kHand = from_hex(0x009E73);     // green
@@ -20,5 +27,10 @@ inline constexpr Rgb kContact = from_hex(0xD55E00);  // vermilion
 inline constexpr Rgb kSticks = from_hex(0xCC79A7);   // purple
 inline constexpr Rgb kSlips = from_hex(0xF0E442);    // yellow
 inline constexpr Rgb kRerun = from_hex(0xF0E442);    // yellow, as in the plots
+
+// Of a second run that is there at the same time: towards the text's colour, as its curves are.
+constexpr Rgb of_twin(const Rgb& color, Theme theme) {
+  return mix(color, from_hex(theme == Theme::dark ? 0xDFE4EA : 0x1D2329), 0.55f);
+}
 
 }  // namespace limpid::palette

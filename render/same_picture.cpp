@@ -30,6 +30,10 @@ struct Near {
   bool operator()(const ContactShade& a, const ContactShade& b) const {
     return (*this)(a.position, b.position) && std::abs(a.height - b.height) <= tolerance;
   }
+  bool operator()(const SecondRun& a, const SecondRun& b) const {
+    return (*this)(a.device, b.device) && (*this)(a.proxy, b.proxy) &&
+           forces(a.hand_force, b.hand_force) && (*this)(a.contacts, b.contacts);
+  }
   template <class T>
   bool operator()(const std::vector<T>& a, const std::vector<T>& b) const {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), *this);
@@ -56,12 +60,13 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
   const Near near{tolerance};
   const auto switches = [](const ViewState& s) {
     return std::tuple(s.show_hand, s.hand_grips, s.show_ghost, s.show_error, s.show_trail,
-                      s.show_forces, s.show_grid, s.theme);
+                      s.show_forces, s.show_grid, s.show_joints, s.theme);
   };
   const bool hands = !(a.show_hand && b.show_hand) || near(a.hand_target, b.hand_target);
   return switches(a) == switches(b) && near(a.device, b.device) && near(a.proxy, b.proxy) &&
-         near(a.rerun, b.rerun) && hands && near.forces(a.hand_force, b.hand_force) &&
-         near(a.contacts, b.contacts) && near(a.shade, b.shade);
+         near(a.rerun, b.rerun) && near(a.twin, b.twin) && hands &&
+         near.forces(a.hand_force, b.hand_force) && near(a.contacts, b.contacts) &&
+         near(a.shade, b.shade);
 }
 
 }  // namespace limpid

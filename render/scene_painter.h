@@ -9,6 +9,7 @@
 
 #include "render/camera.h"
 #include "render/damage.h"
+#include "render/ghosts.h"
 #include "render/gl/gpu_model.h"
 #include "render/gl/line_batch.h"
 #include "render/gl/shader_program.h"
@@ -44,8 +45,7 @@ class ScenePainter {
   void begin_frame(const Mood& mood, const Camera& camera);
   // What of the arm may look different from frame to frame; `casts`: with its shadow.
   void note(const Links& links, bool casts, Damage& damage) const;
-  void note_ghost(const Links& links, const palette::Rgb& color, std::span<const float> outline,
-                  Damage& damage) const;
+  void note(const Ghost& ghost, Damage& damage) const;
   void note(const Marks& marks, Damage& damage) const;
   void note(const LineBatch& lines, Damage& damage) const;
   // Nothing beside `area` is drawn from now on; what lies there is left out as far as it is cheap.
@@ -56,9 +56,8 @@ class ScenePainter {
   void draw_shadows(const Links& proxy);
   // Proxy, base, scene, ground and backdrop.
   void draw_solid(const Mood& mood, const Links& proxy);
-  // A translucent arm of which only the outermost surface shows, with an outline this strong, 0
-  // to 1.
-  void draw_ghost(const Links& links, const palette::Rgb& color, std::span<const float> outline);
+  // Only its outermost surface shows; `number` tells the ghosts of a picture apart, from 0 on.
+  void draw_ghost(const Ghost& ghost, std::size_t number);
   // Before any ghost.
   void draw_shades(const Marks& marks) const;
   // Stops of joints and the arm's touching parts.
@@ -78,8 +77,7 @@ class ScenePainter {
   void draw_outlines(const Mood& mood) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
-  void draw_ghost_outline(const Links& links, const palette::Rgb& color,
-                          std::span<const float> outline) const;
+  void draw_ghost_outline(const Ghost& ghost, int mark) const;
   void draw_ground() const;
   void draw_solid_marks(const std::vector<SolidMark>& marks, glm::vec2 alpha) const;
 

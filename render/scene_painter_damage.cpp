@@ -57,8 +57,8 @@ void ScenePainter::note(const Links& links, bool casts, Damage& damage) const {
   each(probes_, links, add);
 }
 
-void ScenePainter::note_ghost(const Links& links, const palette::Rgb& color,
-                              std::span<const float> outline, Damage& damage) const {
+void ScenePainter::note(const Ghost& ghost, Damage& damage) const {
+  const auto& [links, color, outline] = ghost;
   struct Look {
     glm::mat4 pose;
     palette::Rgb color;

@@ -22,8 +22,8 @@ void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vec
 }
 
 // Around what of the ghost can be seen, and around what the scene hides of it.
-void ScenePainter::draw_ghost_outline(const Links& links, const palette::Rgb& color,
-                                      std::span<const float> outline) const {
+void ScenePainter::draw_ghost_outline(const Ghost& ghost, int mark) const {
+  const auto& [links, color, outline] = ghost;
   glCullFace(GL_FRONT);
   outline_.use();
   outline_.set("width", 1.6f);
@@ -38,7 +38,7 @@ void ScenePainter::draw_ghost_outline(const Links& links, const palette::Rgb& co
   };
   glDepthMask(GL_FALSE);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  glStencilFunc(GL_NOTEQUAL, 1, 0xff);
+  glStencilFunc(GL_NOTEQUAL, mark, 0xff);
   draw(1.0f);
   glDepthFunc(GL_GREATER);
   glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
@@ -49,14 +49,17 @@ void ScenePainter::draw_ghost_outline(const Links& links, const palette::Rgb& co
   glCullFace(GL_BACK);
 }
 
-void ScenePainter::draw_ghost(const Links& links, const palette::Rgb& color,
-                              std::span<const float> outline) {
+void ScenePainter::draw_ghost(const Ghost& ghost, std::size_t number) {
+  const Links& links = ghost.links;
+  const palette::Rgb& color = ghost.color;
+  const int mark = 3 + static_cast<int>(number);
   // A little behind its place, so that a proxy at the same place wins without flicker.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.0f, 8.0f);
-  // First its depth alone, so that only the outermost surface shows; stencil 1 marks it.
+  // First its depth alone, so that only the outermost surface shows; a number in the stencil marks
+  // it.
   glEnable(GL_STENCIL_TEST);
-  glStencilFunc(GL_ALWAYS, 1, 0xff);
+  glStencilFunc(GL_ALWAYS, mark, 0xff);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   draw_translucent(ghost_depth_, moving_, links, color, {});
@@ -72,7 +75,7 @@ void ScenePainter::draw_ghost(const Links& links, const palette::Rgb& color,
   draw_translucent(ghost_, moving_, links, color, {0.20f, 0.50f});
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_TRUE);
-  draw_ghost_outline(links, color, outline);
+  draw_ghost_outline(ghost, mark);
   for (const GLenum off : {GL_BLEND, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL}) glDisable(off);
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "render/ghosts.h"
 #include "render/gl/frame_target.h"
 #include "render/gl/glm_door.h"
 #include "render/same_picture.h"
@@ -14,15 +15,6 @@
 
 namespace limpid {
 namespace {
-
-Links links_of(const ArmPose& arm) {
-  Links out;
-  for (const Pose& pose : arm.links) {
-    if (!pose.matrix().allFinite()) return {};
-    out.push_back(to_glm(pose));
-  }
-  return out;
-}
 
 // Where the caller was drawing, put back at the end of the scope with a plain state.
 class CallersState {
@@ -97,24 +89,6 @@ struct DrawnSheet {
   static Eigen::Matrix4d matrix_of(const Camera& eye) { return eye.projection() * eye.view(); }
 };
 
-// How far each link of the ghost is from the proxy's, as the strength of its outline: at the same
-// place there is none, or it would surround the proxy.
-std::vector<float> outlines_of(const ArmPose& ghost, const ArmPose& proxy,
-                               double meters_per_pixel) {
-  std::vector<float> strengths(ghost.links.size(), 1.0f);
-  if (ghost.links.size() != proxy.links.size()) return strengths;
-  for (std::size_t i = 0; i < strengths.size(); ++i) {
-    const bool last = i + 1 == strengths.size();
-    const auto end = [&](const ArmPose& arm) {
-      return last ? arm.tip : Vec3(arm.links[i + 1].translation());
-    };
-    const Vec3 off = ghost.links[i].translation() - proxy.links[i].translation();
-    const double apart = std::max(off.norm(), (end(ghost) - end(proxy)).norm());
-    strengths[i] = static_cast<float>(std::clamp((apart / meters_per_pixel - 1) / 3, 0.0, 1.0));
-  }
-  return strengths;
-}
-
 FrameTarget::Area area_of(const PixelArea& area) {
   if (area.isEmpty()) return {0, 0, 0, 0};
   const Eigen::Vector2i size = area.sizes();
@@ -130,7 +104,8 @@ struct SceneView::Impl {
         items(collect_items(arm, scene, visuals)),
         surroundings(surroundings_of(items, {})),
         painter(shaders, items, surroundings),
-        sheets{DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders)} {}
+        sheets{DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders)} {
+  }
 
   void use_surroundings() {
     std::vector<Bounds> boxes;
@@ -156,7 +131,7 @@ struct SceneView::Impl {
   std::vector<MeshPicture> meshes;
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
-  std::array<DrawnSheet, 3> sheets;  // by SceneView::Sheet
+  std::array<DrawnSheet, 4> sheets;  // by SceneView::Sheet
   std::uint64_t version = 1;         // of all that stands still
 };
 
@@ -234,16 +209,15 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
                                  double scale) {
   const auto columns = static_cast<int>(eye.width()), rows = static_cast<int>(eye.height());
   const Mood mood = mood_of(state.theme);
-  const Links device = links_of(state.device), proxy = links_of(state.proxy);
-  const Links rerun = state.rerun ? links_of(*state.rerun) : Links{};
+  const Links proxy = links_of(state.proxy);
   for (LineBatch* lines : {&sheet.floor_lines, &sheet.trails, &sheet.lines_on_top}) lines->clear();
   if (state.show_grid) add_grid(surroundings.grid, state.theme, sheet.floor_lines);
   if (state.show_trail) add_trails(state, sheet.trails);
   add_lines_on_top(state, sheet.lines_on_top);
+  if (state.show_joints) add_joints(arm, state.proxy, state.theme, sheet.lines_on_top);
   const Marks marks = collect_marks(state, eye, painter.pixel_scale() * scale);
   const double mpp = eye.meters_per_pixel(state.proxy.tip) / painter.pixel_scale();
-  const std::vector<float> outline = outlines_of(state.device, state.proxy, mpp);
-  const std::vector<float> clear(rerun.size(), 1.0f);
+  const std::vector<Ghost> ghosts = ghosts_of(state, mpp);
 
   painter.begin_frame(mood, eye);
   painter.draw_shadows(proxy);
@@ -253,8 +227,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   sheet.still = {state.theme, state.show_grid};
   sheet.damage.begin(to_glm(DrawnSheet::matrix_of(eye)), columns, rows);
   painter.note(proxy, true, sheet.damage);
-  painter.note_ghost(rerun, palette::kRerun, clear, sheet.damage);
-  if (state.show_ghost) painter.note_ghost(device, palette::kDevice, outline, sheet.damage);
+  for (const Ghost& ghost : ghosts) painter.note(ghost, sheet.damage);
   painter.note(sheet.trails, sheet.damage);
   painter.note(sheet.lines_on_top, sheet.damage);
   painter.note(marks, sheet.damage);
@@ -267,8 +240,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   painter.draw_shades(marks);
   painter.draw_lines(sheet.floor_lines, false);
   painter.draw_glass(proxy);
-  if (!rerun.empty()) painter.draw_ghost(rerun, palette::kRerun, clear);
-  if (state.show_ghost) painter.draw_ghost(device, palette::kDevice, outline);
+  for (std::size_t i = 0; i < ghosts.size(); ++i) painter.draw_ghost(ghosts[i], i);
   painter.draw_marks(marks);
   painter.draw_lines(sheet.trails, false);
   painter.draw_lines(sheet.lines_on_top, true);

@@ -34,8 +34,9 @@ struct MeshPicture {
 class SceneView {
  public:
   // Which of several pictures of one frame: each remembers how it was drawn the last time. A lens
-  // is what Camera::magnified() sees; beside is a second arm in the same scene.
-  enum class Sheet { main, lens, beside };
+  // is what Camera::magnified() sees; beside is a second arm in the same scene; small is one that
+  // is kept as a file.
+  enum class Sheet { main, lens, beside, small };
 
   // Loads the shaders, every visual of the arm and these of the scene. An arm without visuals is
   // drawn as capsules from joint to joint. Throws std::runtime_error naming the file (and line of a

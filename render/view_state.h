@@ -31,10 +31,18 @@ struct ContactShade {
   double height = 0;             // of the tip above it [m]
 };
 
+// A second run on the same hand in the same picture: in tints of the first one's colours.
+struct SecondRun {
+  ArmPose device, proxy;           // both drawn as translucent ghosts
+  Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
+  std::vector<ContactMark> contacts;
+};
+
 struct ViewState {
-  ArmPose device;                   // drawn as a translucent ghost
-  ArmPose proxy;                    // drawn solid
-  std::optional<ArmPose> rerun;     // a second proxy in another tint
+  ArmPose device;                // drawn as a translucent ghost
+  ArmPose proxy;                 // drawn solid
+  std::optional<ArmPose> rerun;  // a second proxy in a colour of its own
+  std::optional<SecondRun> twin;
   Vec3 hand_target = Vec3::Zero();  // [m]
   bool show_hand = false;
   bool hand_grips = false;         // draws the line from the target to the device tip
@@ -45,6 +53,7 @@ struct ViewState {
   bool show_ghost = true;
   bool show_error = true;  // the two tips and the line between them
   bool show_trail = true;
+  bool show_joints = false;  // the proxy's axes, each in its joint's colour
   bool show_forces = true;
   bool show_grid = true;
   Theme theme = Theme::dark;

@@ -19,5 +19,6 @@ std::filesystem::path user_config_dir() {
 std::filesystem::path user_data_dir() {
   return home_dir("XDG_DATA_HOME", ".local/share") / "limpid";
 }
+std::filesystem::path user_cache_dir() { return home_dir("XDG_CACHE_HOME", ".cache") / "limpid"; }
 
 }  // namespace limpid

@@ -7,5 +7,6 @@ namespace limpid {
 
 std::filesystem::path user_config_dir();  // $XDG_CONFIG_HOME/limpid, or ~/.config/limpid
 std::filesystem::path user_data_dir();    // $XDG_DATA_HOME/limpid, or ~/.local/share/limpid
+std::filesystem::path user_cache_dir();   // $XDG_CACHE_HOME/limpid, or ~/.cache/limpid
 
 }  // namespace limpid

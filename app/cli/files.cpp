@@ -8,6 +8,7 @@
 
 #include "app/cli/commands.h"
 #include "app/run/summary.h"
+#include "app/story/told_steps.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
 
@@ -49,6 +50,9 @@ int info(const InfoOptions& options) {
     fmt::print("{}", summary.text());
   }
   fmt::print("contacts                 {}\n", contacts(session));
+  if (const ToldSteps told = told_in(options.session); !told.steps.empty()) {
+    fmt::print("story                    {}, {} steps\n", told.title, told.steps.size());
+  }
   for (const SettingChange& change : session.changes) {
     fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,
                change.setting);

@@ -62,7 +62,7 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
   const Told told = tell_with_progress(story);
   print_numbers(story, told.session);
   if (!options.record.empty()) {
-    write_session(told.session, options.record, options.video.force);
+    write_session(told.session, {story.title, story.steps}, options.record, options.video.force);
     fmt::print("recorded {} ticks of both runs in {}\n", told.session.size(), options.record);
   }
   if (told.end.diverged) {

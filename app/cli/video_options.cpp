@@ -24,6 +24,8 @@ void VideoOptions::add(CLI::App& command) {
   rate->check(CLI::Range(0.01, 100.0).description(""));
   of_video(rate);
   of_video(command.add_flag("--plots,!--no-plots", plots, "with the plots, or without"));
+  of_video(command.add_flag("--overlaid", overlaid,
+                            "two runs in one picture; default: one beside the other"));
   of_video(command.add_flag("--force", force, "replace OUT if it exists"));
   of_video(command.add_flag("--print-progress", print_progress,
                             "print the part that is done, 0 to 1, line by line"));

@@ -20,6 +20,7 @@ struct VideoOptions {
   std::optional<double> to;
   double speed = 1;
   bool plots = true;
+  bool overlaid = false;
   bool force = false;
   bool print_progress = false;
 

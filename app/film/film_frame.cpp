@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
@@ -40,9 +41,9 @@ FilmFrame::Places FilmFrame::lay_out() const {
           .plots = {{0, height - plots}, {width, height}}};
 }
 
-ImVec2 FilmFrame::viewport(bool halves) const {
+ImVec2 FilmFrame::viewport(bool twin) const {
   const ScreenRect picture = lay_out().picture;
-  return halves ? half_of(picture, false).size() : picture.size();
+  return twin && !look_.overlaid ? half_of(picture, false).size() : picture.size();
 }
 
 std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const Camera& camera,
@@ -54,14 +55,13 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   const Places at = lay_out();
   view.theme = look_.theme;
   if (beside) beside->theme = look_.theme;
+  const bool overlaid = beside && look_.overlaid;
+  if (overlaid) lay_over(view, *std::exchange(beside, std::nullopt));
   stage.draw_at(0);  // there is time
   stage.picture.set_pixel_scale(scale_);
   draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float em = font(Face::small)->FontSize;
-  if (at.picture.height() > 10 * em) {
-    draw_picture_legend(list, {0.9f * em, at.picture.min.y + 0.8f * em});
-  }
+  draw_legend(at.picture, overlaid ? stage.names() : RunNames());
   draw_caption(at.caption, caption);
   draw_told(caption.told, at.picture, list);
   if (at.plots.height() > 0) draw_plots(at.plots, stage);
@@ -77,7 +77,15 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
                        look_.height - static_cast<int>(part.max.y), static_cast<int>(part.width()),
                        static_cast<int>(part.height()), sheet);
   };
-  if (beside == nullptr) return paint(view, rect, SceneView::Sheet::main);
+  if (beside == nullptr) {
+    paint(view, rect, SceneView::Sheet::main);
+    if (!view.twin) return;
+    Camera shown = camera;
+    shown.resize(rect.width(), rect.height());
+    list.PushClipRect(rect.min, rect.max);
+    draw_gap(view, shown, rect, list, stage.names());
+    return list.PopClipRect();
+  }
   const auto half = [&](const ViewState& state, bool right, const std::string& name) {
     const ScreenRect part = half_of(rect, right);
     paint(state, part, right ? SceneView::Sheet::beside : SceneView::Sheet::main);
@@ -90,6 +98,13 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
   };
   half(view, false, stage.names().first);
   half(*beside, true, stage.names().second);
+}
+
+void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid) const {
+  const float em = font(Face::small)->FontSize;
+  if (rect.height() < 10 * em) return;
+  draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max,
+                      {.first = overlaid.first, .second = overlaid.second});
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {

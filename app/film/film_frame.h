@@ -16,6 +16,7 @@ namespace limpid {
 struct FilmLook {
   int width = 1280, height = 720;  // [px]
   bool plots = true;               // left out where there is no room for them
+  bool overlaid = false;           // a twin's two runs in one picture
   double text_scale = 0;           // 1 is the window's on an ordinary screen; 0: by the size
   Theme theme = Theme::dark;
 };
@@ -36,12 +37,13 @@ class FilmFrame {
 
   // `view` in the stage's picture, and of its plots what its history holds by now, with a line at
   // the newest row; `elapsed` since the last picture [s]. With a second run `beside` it, each has
-  // half of the picture and the name that the stage gives it. Four bytes a pixel, top row first.
+  // half of the picture and the name that the stage gives it, unless they are overlaid. Four bytes
+  // a pixel, top row first.
   std::vector<unsigned char> draw(Stage& stage, ViewState view, const Camera& camera,
                                   const FilmCaption& caption, double elapsed,
                                   std::optional<ViewState> beside = {});
-  // The viewport that the camera should expect [px].
-  ImVec2 viewport(bool halves) const;
+  // The viewport that the camera should expect [px], of one run or of a twin's two.
+  ImVec2 viewport(bool twin) const;
 
  private:
   struct Places {
@@ -50,6 +52,7 @@ class FilmFrame {
   Places lay_out() const;
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
                     const Camera& camera, const ViewState* beside) const;
+  void draw_legend(const ScreenRect& rect, const RunNames& overlaid) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 

@@ -95,9 +95,12 @@ void take_lines(std::string& text, std::atomic<double>& part, std::string& said)
 }  // namespace
 
 bool film_beside(const std::filesystem::path& session, const std::filesystem::path& out,
-                 const std::atomic<bool>& stop, std::atomic<double>& part) {
-  const Process process(
-      {"limpid", "play", session.string(), "--video", out.string(), "--print-progress"});
+                 const std::vector<std::string>& options, const std::atomic<bool>& stop,
+                 std::atomic<double>& part) {
+  std::vector<std::string> words{"limpid",  "play",       session.string(),
+                                 "--video", out.string(), "--print-progress"};
+  words.insert(words.end(), options.begin(), options.end());
+  const Process process(std::move(words));
   std::string text, said;
   bool asked = false;
   while (process.read(text)) {

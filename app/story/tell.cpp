@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/run/replay.h"
+#include "devices/files/session/session_story.h"
 
 namespace limpid {
 namespace {
@@ -76,7 +77,8 @@ std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& st
   return all;
 }
 
-void write_session(const Session& session, const std::filesystem::path& out, bool force) {
+void write_session(const Session& session, const ToldSteps& told, const std::filesystem::path& out,
+                   bool force) {
   SessionWriter writer(out, session.info, force);
   const Session* runs[] = {&session, session.twin.get()};
   for (std::size_t lane = 0; lane < 2 && runs[lane] != nullptr; ++lane) {
@@ -86,6 +88,7 @@ void write_session(const Session& session, const std::filesystem::path& out, boo
     }
   }
   writer.close();
+  attach_story(out, told_text(told));
 }
 
 }  // namespace limpid

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/story/story.h"
+#include "app/story/told_steps.h"
 
 namespace limpid {
 
@@ -29,7 +30,8 @@ Told tell(const Story& story, const std::atomic<bool>& stop, const std::function
 std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
                                                 const Session& session);
 
-// Errors: as SessionWriter.
-void write_session(const Session& session, const std::filesystem::path& out, bool force);
+// With what it tells, so that it is told again when it is opened. Errors: as SessionWriter.
+void write_session(const Session& session, const ToldSteps& told, const std::filesystem::path& out,
+                   bool force);
 
 }  // namespace limpid

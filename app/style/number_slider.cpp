@@ -26,7 +26,7 @@ double slider_low(const ParameterInfo& info) {
   return 1e-6 * info.slider_maximum;
 }
 
-void draw_track(const ImRect& track, const ParameterInfo& info, double value, double paper_value,
+void draw_track(const ImRect& track, const ParameterInfo& info, double value, double usual,
                 bool broken, bool hovered, bool held) {
   const Palette& p = current_palette();
   const float scale = current_scale();
@@ -38,8 +38,8 @@ void draw_track(const ImRect& track, const ParameterInfo& info, double value, do
   };
   list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
                      colour(hovered ? p.frame_active : p.frame_hovered), r);
-  if (!std::isnan(paper_value)) {
-    const float x = std::round(x_of(paper_value));
+  if (!std::isnan(usual)) {
+    const float x = std::round(x_of(usual));
     list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
                        {x + 0.75f * scale, middle + 6 * scale}, colour(p.muted));
   }

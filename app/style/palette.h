@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "render/joint_colours.h"
 #include "render/theme.h"
 
 namespace limpid {
@@ -48,6 +49,18 @@ enum class Ink : std::uint8_t {
   count_
 };
 
+using Inks = std::array<Rgb, static_cast<std::size_t>(Ink::count_)>;
+
+// Those of the things up to the joints, and of the joints as the 3D view has them.
+constexpr Inks with_joints(const std::array<Rgb, static_cast<std::size_t>(Ink::joint_1)>& things,
+                           Theme theme) {
+  Inks inks{};
+  std::size_t i = 0;
+  for (const Rgb thing : things) inks[i++] = thing;
+  for (const unsigned joint : joint_colours(theme)) inks[i++] = rgb(joint);
+  return inks;
+}
+
 struct Palette {
   Rgb backdrop;  // behind the panels
   Rgb panel;
@@ -62,7 +75,7 @@ struct Palette {
   Rgb muted;
   Rgb accent;  // what is switched on; no thing's own colour
   Rgb broken;
-  std::array<Rgb, static_cast<std::size_t>(Ink::count_)> inks;
+  Inks inks;
 };
 
 inline constexpr Palette kDarkPalette{
@@ -79,9 +92,9 @@ inline constexpr Palette kDarkPalette{
     .muted = rgb(0x8f99a4),
     .accent = rgb(0xc3ccd6),
     .broken = rgb(0xff5263),
-    .inks = {rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
-             rgb(0xb4bcc6), rgb(0xf0e442), rgb(0xb5d95b), rgb(0xc792ea), rgb(0xe8b27a),
-             rgb(0x5fd4c4), rgb(0x9fa8ff), rgb(0xff9aa2), rgb(0xa0aab4)},
+    .inks = with_joints({rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
+                         rgb(0xb4bcc6), rgb(0xf0e442)},
+                        Theme::dark),
 };
 
 inline constexpr Palette kLightPalette{
@@ -98,9 +111,9 @@ inline constexpr Palette kLightPalette{
     .muted = rgb(0x5f6973),
     .accent = rgb(0x39424c),
     .broken = rgb(0xc8102e),
-    .inks = {rgb(0xc98600), rgb(0x0072b2), rgb(0x00855f), rgb(0xd55e00), rgb(0xb8619a),
-             rgb(0x59636e), rgb(0x8a7d00), rgb(0x3f6b1f), rgb(0x7b3fb5), rgb(0x8f5a1c),
-             rgb(0x00796b), rgb(0x3949ab), rgb(0xa0527a), rgb(0x6b7580)},
+    .inks = with_joints({rgb(0xc98600), rgb(0x0072b2), rgb(0x00855f), rgb(0xd55e00), rgb(0xb8619a),
+                         rgb(0x59636e), rgb(0x8a7d00)},
+                        Theme::light),
 };
 
 constexpr const Palette& palette(Theme theme) {

@@ -16,7 +16,7 @@
 namespace limpid {
 namespace {
 
-void show_tooltip(const ParameterInfo& info, double paper_value, const char* broken) {
+void show_tooltip(const ParameterInfo& info, double usual, const char* broken) {
   begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (broken != nullptr) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
@@ -31,10 +31,10 @@ void show_tooltip(const ParameterInfo& info, double paper_value, const char* bro
   if (number) {
     const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
     ImGui::Text("%s, %s", info.key, range.c_str());
-    ImGui::Text("Paper: %s (right click). Double click to type.",
-                with_unit(info, paper_value).c_str());
+    ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
+                with_unit(info, usual).c_str());
   } else {
-    ImGui::Text("%s. Right click: as in the paper.", info.key);
+    ImGui::Text("%s. Right click: the usual choice.", info.key);
   }
   if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
   ImGui::PopStyleColor();
@@ -93,7 +93,7 @@ bool value_slider(const ParameterInfo& info, double& value, double usual) {
   return changed;
 }
 
-bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double paper_value,
+bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double usual,
                       const char* broken) {
   ImGui::PushID(info.key);
   ImGui::BeginGroup();
@@ -106,7 +106,7 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
     changed = choices(info, *choice, parameters);
   } else {
     double value = parameter_number(parameters, info);
-    changed = number_slider(info, value, paper_value, broken != nullptr);
+    changed = number_slider(info, value, usual, broken != nullptr);
     if (changed) set_parameter_number(parameters, info, value);
   }
   ImGui::EndGroup();
@@ -116,12 +116,12 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
   }
   if (ImGui::IsItemHovered()) {
     if (is_choice && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-      changed = parameter_number(parameters, info) != paper_value;
-      set_parameter_number(parameters, info, paper_value);
+      changed = parameter_number(parameters, info) != usual;
+      set_parameter_number(parameters, info, usual);
     }
     const bool busy = ImGui::IsAnyItemActive();
     if (!busy && ImGui::GetCurrentContext()->HoveredIdTimer > 0.5f) {
-      show_tooltip(info, paper_value, broken);
+      show_tooltip(info, usual, broken);
     }
   }
   ImGui::PopID();

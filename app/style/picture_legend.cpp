@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -10,39 +11,93 @@ namespace limpid {
 namespace {
 
 struct Entry {
-  const char* text;
-  Ink ink;
+  std::string text;
+  std::vector<Rgb> dots;
 };
-constexpr std::array kEntries{Entry{"device (ghost)", Ink::device}, Entry{"proxy", Ink::proxy},
-                              Entry{"hand", Ink::hand},
-                              Entry{"contact force, 1 N = 2 cm", Ink::contact}};
-constexpr float kLine = 1.35f;  // of the small face's size
+
+constexpr float kLine = 1.35f;  // of the small face's size, as all below
+constexpr float kLeft = 0.9f, kTop = 0.8f;
+constexpr float kDot = 0.7f;             // from one dot to the next
+constexpr float kBetween = 1.1f;         // entries side by side
+constexpr float kTall = 20, kWide = 30;  // a picture with room for lines
+constexpr float kTwinShade = 0.55f;      // as a second run's curves
+
+bool in_lines(ImVec2 from, ImVec2 to) {
+  const float em = font(Face::small)->FontSize;
+  return to.y - from.y >= kTall * em && to.x - from.x >= kWide * em;
+}
+
+std::vector<Entry> entries_of(const PictureLegend& legend, bool lines) {
+  const Palette& colours = current_palette();
+  const auto of = [&](Ink which) { return std::vector{ink(colours, which)}; };
+  std::vector<Entry> entries{{lines ? "device (ghost)" : "device", of(Ink::device)},
+                             {"proxy", of(Ink::proxy)},
+                             {"hand", of(Ink::hand)},
+                             {lines ? "contact force, 1 N = 2 cm" : "contact", of(Ink::contact)}};
+  const auto run = [&](const std::string& name, float shade) {
+    entries.push_back({name, {ink(colours, Ink::device, shade), ink(colours, Ink::proxy, shade)}});
+  };
+  if (!legend.second.empty()) {
+    run(legend.first, 0);
+    run(legend.second, kTwinShade);
+  }
+  if (legend.beside != nullptr) entries.push_back({legend.beside, of(Ink::rerun)});
+  if (legend.cone != nullptr) {  // in colours of the picture
+    entries.push_back({legend.cone, {legend.slips ? rgb(0xf0e442) : rgb(0xcc79a7)}});
+  }
+  return entries;
+}
+
+float width_of(const Entry& entry) {
+  const ImFont* small = font(Face::small);
+  const float em = small->FontSize;
+  return (0.3f + kDot * static_cast<float>(entry.dots.size())) * em +
+         small->CalcTextSizeA(em, 1e9f, 0, entry.text.c_str()).x;
+}
+
+// Where each entry goes; returns the place behind the last line.
+template <class Draw>
+float lay_out(const std::vector<Entry>& entries, ImVec2 from, ImVec2 to, const Draw& draw) {
+  const float em = font(Face::small)->FontSize;
+  const bool lines = in_lines(from, to);
+  ImVec2 at(from.x + kLeft * em, from.y + kTop * em);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const float width = width_of(entries[i]);
+    if (i > 0 && (lines || at.x + width > to.x - kLeft * em)) {
+      at = {from.x + kLeft * em, at.y + kLine * em};
+    }
+    draw(entries[i], at);
+    at.x += width + kBetween * em;
+  }
+  return at.y + kLine * em;
+}
 
 }  // namespace
 
-void draw_picture_legend(ImDrawList& list, ImVec2 at, const PictureLegend& legend) {
+void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to, const PictureLegend& legend) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
-  const auto entry = [&](const char* text, Rgb rgb) {
-    list.AddCircleFilled({at.x + em * 0.3f, at.y + em * 0.55f}, em * 0.3f, colour(rgb));
-    list.AddText(small, em, {at.x + em, at.y}, colour(colours.text, 0.85f), text);
-    at.y += kLine * em;
-  };
-  for (const Entry& e : kEntries) entry(e.text, ink(colours, e.ink));
-  if (legend.beside != nullptr) entry(legend.beside, ink(colours, Ink::rerun));
-  if (legend.cone == nullptr) return;
-  entry(legend.cone, legend.slips ? rgb(0xf0e442) : rgb(0xcc79a7));  // as in the picture
+  lay_out(entries_of(legend, in_lines(from, to)), from, to, [&](const Entry& entry, ImVec2 at) {
+    for (const Rgb rgb : entry.dots) {
+      list.AddCircleFilled({at.x + em * 0.3f, at.y + em * 0.55f}, em * 0.3f, colour(rgb));
+      at.x += kDot * em;
+    }
+    list.AddText(small, em, {at.x + 0.3f * em, at.y}, colour(colours.text, 0.85f),
+                 entry.text.c_str());
+  });
 }
 
-ImVec2 picture_legend_size() {
-  const ImFont* small = font(Face::small);
-  const float em = small->FontSize;
+ImVec2 picture_legend_size(ImVec2 from, ImVec2 to) {
+  const bool lines = in_lines(from, to);
+  const float em = font(Face::small)->FontSize;
+  // The lines that come and go have their room, too.
+  std::vector<Entry> entries = entries_of({}, lines);
   float widest = 0;
-  for (const Entry& e : kEntries) {
-    widest = std::max(widest, small->CalcTextSizeA(em, 1e9f, 0, e.text).x);
-  }
-  return {em + widest, kLine * em * static_cast<float>(kEntries.size() + 2)};
+  for (const Entry& entry : entries) widest = std::max(widest, width_of(entry));
+  const float spare = lines ? 2 * kLine * em : 0;
+  const float bottom = lay_out(entries, from, to, [](const Entry&, ImVec2) {});
+  return {lines ? kLeft * em + widest : to.x - from.x, bottom + spare - from.y};
 }
 
 }  // namespace limpid

@@ -3,17 +3,23 @@
 
 #include <imgui.h>
 
+#include <string>
+
 namespace limpid {
 
 struct PictureLegend {
   const char* beside = nullptr;  // who a second proxy is, if there is one
   const char* cone = nullptr;    // what the friction cone says, if there is one
   bool slips = false;            // and its colour
+  // Two runs in one picture, by name; or none.
+  std::string first = {}, second = {};
 };
 
-// With its left upper corner at `at` [px].
-void draw_picture_legend(ImDrawList& list, ImVec2 at, const PictureLegend& legend = {});
-// What it takes at most [px].
-ImVec2 picture_legend_size();
+// In the upper left corner of a picture, line by line, or, where that would hide half of it, in
+// short words side by side.
+void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to,
+                         const PictureLegend& legend = {});
+// What it takes at most, with its margin, from that corner on [px].
+ImVec2 picture_legend_size(ImVec2 from, ImVec2 to);
 
 }  // namespace limpid

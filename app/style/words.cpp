@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -54,6 +55,11 @@ std::string with_unit(const ParameterInfo& info, double value) {
   std::string text = whole ? std::to_string(std::lround(value)) : three_digits(value);
   if (std::string_view(info.unit) != "-") text += std::string(" ") + info.unit;
   return text;
+}
+
+bool of_paper(const ParameterInfo& info) {
+  constexpr std::array kOfPaper{"coupling.k_vc", "coupling.b_vc", "coupling.b_v", "observer.alpha"};
+  return std::ranges::find(kOfPaper, std::string_view(info.key)) != kOfPaper.end();
 }
 
 std::string mark_text(const ParameterInfo& info, const Parameters& p) {

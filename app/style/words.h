@@ -13,6 +13,9 @@ const char* caption(const ParameterInfo& info);
 // The number with its unit, as a slider shows it; what is not a number is the arm's own.
 std::string with_unit(const ParameterInfo& info, double value);
 
+// Whether its usual value is the one that the paper gives, in section 4.
+bool of_paper(const ParameterInfo& info);
+
 // Where a plot marks that it has changed: "η 0.909".
 std::string mark_text(const ParameterInfo& info, const Parameters& p);
 

@@ -73,6 +73,10 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
   return view;
 }
 
+void lay_over(ViewState& view, const ViewState& twin) {
+  view.twin = {twin.device, twin.proxy, twin.hand_force, twin.contacts};
+}
+
 void ViewMemory::clear() {
   touches_.clear();
   tips_.clear();

@@ -29,6 +29,9 @@ class RowView {
   Arm<kAnyDof> arm_;
 };
 
+// A second run's view in the first one's picture.
+void lay_over(ViewState& view, const ViewState& twin);
+
 // Remembers when each contact began and where the tips were in the last second.
 class ViewMemory {
  public:

@@ -8,11 +8,14 @@
 
 namespace limpid {
 
-unsigned load_texture(const std::filesystem::path& file, int& width, int& height) {
+unsigned load_texture(const std::filesystem::path& file, int& width, int& height,
+                      const std::function<void(std::span<unsigned char>)>& repaint) {
   int channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load(file.c_str(), &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) throw std::runtime_error(file.string() + ": cannot be read as a picture");
+  const auto count = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (repaint) repaint({pixels.get(), count});
   GLuint texture = 0;
   glGenTextures(1, &texture);
   glBindTexture(GL_TEXTURE_2D, texture);

@@ -29,6 +29,20 @@ EGLDisplay surfaceless_display() {
 struct Frame {
   GlFramebuffer framebuffer;
   GlRenderbuffer color, depth;
+
+  void bind(int width, int height) const {
+    glBindRenderbuffer(GL_RENDERBUFFER, color);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+    glBindRenderbuffer(GL_RENDERBUFFER, depth);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      throw std::runtime_error("no offscreen picture: OpenGL refuses " + std::to_string(width) +
+                               " x " + std::to_string(height) + " pixels");
+    glViewport(0, 0, width, height);
+  }
 };
 
 }  // namespace
@@ -70,19 +84,7 @@ OffscreenContext::OffscreenContext(int width, int height) : impl_(std::make_uniq
       !eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context))
     throw std::runtime_error("no offscreen picture: EGL gives no OpenGL 3.3 core context");
 
-  Frame& frame = impl_->frame.emplace();
-  glBindRenderbuffer(GL_RENDERBUFFER, frame.color);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-  glBindRenderbuffer(GL_RENDERBUFFER, frame.depth);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, frame.color);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
-                            frame.depth);
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error("no offscreen picture: OpenGL refuses " + std::to_string(width) +
-                             " x " + std::to_string(height) + " pixels");
-  glViewport(0, 0, width, height);
+  impl_->frame.emplace().bind(width, height);
 }
 
 OffscreenContext::~OffscreenContext() = default;
@@ -100,6 +102,22 @@ std::vector<unsigned char> read_rgba(int width, int height) {
     std::swap_ranges(top, top + step, bottom);
   }
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
+  return rgba;
+}
+
+std::vector<unsigned char> drawn_rgba(int width, int height, const std::function<void()>& draw) {
+  GLint before = 0, viewport[4] = {};
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
+  glGetIntegerv(GL_VIEWPORT, viewport);
+  std::vector<unsigned char> rgba;
+  {
+    const Frame frame;
+    frame.bind(width, height);
+    draw();
+    rgba = read_rgba(width, height);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
   return rgba;
 }
 

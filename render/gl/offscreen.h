@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,10 @@ class OffscreenContext {
 // The rectangle (0, 0, width, height) of the bound framebuffer, four bytes a pixel, top row
 // first, opaque.
 std::vector<unsigned char> read_rgba(int width, int height);
+
+// The same of what `draw` draws into a framebuffer of its own, of the current context, whose
+// framebuffer and viewport stay as they were. Throws std::runtime_error if OpenGL refuses the size.
+std::vector<unsigned char> drawn_rgba(int width, int height, const std::function<void()>& draw);
 
 // Throws std::runtime_error naming the file when it cannot be written, std::invalid_argument when
 // the sizes do not agree.

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "render/gl/offscreen.h"
+#include "render/joint_colours.h"
 #include "render/mesh_shapes.h"
 
 namespace limpid {
@@ -92,6 +93,39 @@ TEST_F(Picture, ShowsTheProxyInBlueInBothThemes) {
 TEST_F(Picture, LetsTheProxyHideAGhostAtTheSamePlace) {
   state_.device = state_.proxy = pose_of(arm_, 0, 0);
   EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));
+}
+
+TEST_F(Picture, ShowsASecondRunInPalerColoursOverTheFirst) {
+  const ArmPose elsewhere = pose_of(arm_, -0.7, 0);
+  const Vec3 middle = elsewhere.links[1] * Vec3(0.1, 0, 0);
+  state_.device = pose_of(arm_, 0, 0);
+  state_.twin.emplace().device = elsewhere;
+  const Eigen::Vector3i first = seen_at(kMiddleOfSecondLink), second = seen_at(middle);
+  EXPECT_TRUE(orange(first));
+  EXPECT_TRUE(orange(second));
+  EXPECT_LT(second[0] - second[2], first[0] - first[2]);
+  state_.twin.emplace().proxy = elsewhere;
+  const Eigen::Vector3i proxy = seen_at(middle);
+  EXPECT_GT(proxy[2], proxy[0]) << "as blue as a proxy is";
+  EXPECT_FALSE(view_->differs(state_, camera_));
+  state_.twin->proxy = pose_of(arm_, -0.8, 0);
+  EXPECT_TRUE(view_->differs(state_, camera_)) << "it has moved";
+}
+
+TEST_F(Picture, ShowsEachJointsAxisInItsColour) {
+  camera_.look(Camera::View::top);
+  camera_.finish();
+  state_.proxy = pose_of(arm_, 0, 0);
+  state_.show_joints = true;
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    state_.theme = theme;
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const Eigen::Vector3i seen = seen_at(Vec3(0.2 * static_cast<double>(joint), 0.014, 0));
+      const unsigned wanted = joint_colours(theme)[joint];
+      const Eigen::Vector3i colour(wanted >> 16, wanted >> 8 & 255, wanted & 255);
+      EXPECT_LT((seen - colour).cwiseAbs().maxCoeff(), 12) << joint << ": " << seen.transpose();
+    }
+  }
 }
 
 TEST_F(Picture, ShowsAGhostInsideOfWhatItTouches) {

@@ -39,7 +39,8 @@ class WindowTest(unittest.TestCase):
             display = f":{pipe.readline().strip()}"
         self.environment = {**os.environ, "DISPLAY": display,
                             "XDG_CONFIG_HOME": str(self.home / "config"),
-                            "XDG_DATA_HOME": str(self.home / "data")}
+                            "XDG_DATA_HOME": str(self.home / "data"),
+                            "XDG_CACHE_HOME": str(self.home / "cache")}
         self.states = (self.home / "states").open("w")
         self.addCleanup(self.states.close)
         self.prepare()

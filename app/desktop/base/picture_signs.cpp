@@ -23,23 +23,39 @@ std::string gap_text(double meters) {
   return mm < 9.95 ? fmt::format("gap {:.2f} mm", mm) : fmt::format("gap {:.1f} mm", mm);
 }
 
-void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
-  if (view.device.links.empty() || view.proxy.links.empty()) return;
-  const std::string text = gap_text((view.device.tip - view.proxy.tip).norm());
-  const auto pixel = camera.project(0.5 * (view.device.tip + view.proxy.tip));
+namespace {
+
+// Beside the middle of the tips, above them or below.
+void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool below,
+                      const Camera& camera, ScreenRect picture, ImDrawList& list) {
+  const auto pixel = camera.project(0.5 * (a + b));
+  std::string text = gap_text((a - b).norm());
   if (text.empty() || !pixel) return;
+  if (!run.empty()) text = run + ": " + text;
   ImFont* face = font(Face::small);
   const float em = face->FontSize, pad = 0.35f * em;
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
   const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
                              picture.min.y + static_cast<float>(pixel->y()));
-  const float left = std::min(tips.x + 1.6f * em, picture.max.x - size.x - 2 * pad);
-  const ImVec2 place(left, tips.y - 2.2f * em);
+  const float edge = picture.max.x - 1.6f * em;  // where a panel's tab may be
+  const float left = std::min(tips.x + 1.6f * em, edge - size.x - pad);
+  const ImVec2 place(left, tips.y + (below ? 1.2f : -2.2f) * em);
   const Palette& colours = current_palette();
   list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
                      {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
                      colour(colours.backdrop, 0.75f), 3);
   list.AddText(face, em, place, colour(colours.text), text.c_str());
+}
+
+}  // namespace
+
+void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list,
+              const RunNames& names) {
+  if (view.device.links.empty() || view.proxy.links.empty()) return;
+  draw_gap_between(view.device.tip, view.proxy.tip, names.first, false, camera, picture, list);
+  if (!view.twin) return;
+  draw_gap_between(view.twin->device.tip, view.twin->proxy.tip, names.second, true, camera, picture,
+                   list);
 }
 
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/plot/plot_frame.h"
+#include "app/session/trace_channels.h"
 #include "render/camera.h"
 #include "render/view_state.h"
 
@@ -13,8 +14,10 @@ namespace limpid {
 
 // "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
 std::string gap_text(double meters);
-// At the two tips: how far apart they are. `picture` is where the camera's picture is.
-void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
+// At the two tips: how far apart they are. `picture` is where the camera's picture is. Of two runs
+// in one picture each has its number, with its name.
+void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list,
+              const RunNames& names = {});
 // What a run of a twin is called, at the top of its half.
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
 

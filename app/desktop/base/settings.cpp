@@ -41,6 +41,8 @@ void each(S& s, Visit&& visit) {
   visit("show_forces", s.show_forces);
   visit("show_grid", s.show_grid);
   visit("show_lens", s.show_lens);
+  visit("show_joints", s.show_joints);
+  visit("twin_overlaid", s.twin_overlaid);
   visit("hold_on_release", s.hold_on_release);
   visit("hint_seen", s.hint_seen);
   visit("picture_quality", s.picture_quality);
@@ -49,6 +51,7 @@ void each(S& s, Visit&& visit) {
   visit("device", s.device);
   visit("device_tip", s.device_tip);
   visit("scene", s.scene);
+  visit("gamepad", s.gamepad);
 }
 
 }  // namespace

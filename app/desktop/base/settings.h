@@ -29,6 +29,8 @@ struct Settings {
   bool show_left = true, show_right = true, show_plots = true;
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool show_lens = true;  // while gap or contact is small
+  bool show_joints = true;
+  bool twin_overlaid = false;  // both runs in one picture, else one beside the other
   bool hold_on_release = false;
   bool hint_seen = false;
   std::string picture_quality = "automatic";  // or high, medium, low
@@ -36,6 +38,7 @@ struct Settings {
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
   std::string device_tip;                     // a link of the device; empty: as its file has it
+  std::string gamepad;                        // that leads the hand, as GLFW identifies it; or none
   std::vector<std::string> recent;            // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {

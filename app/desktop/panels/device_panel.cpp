@@ -18,8 +18,36 @@ void choice(DeviceDesk& devices, const char* label, const std::string& id, const
   tooltip(help);
 }
 
-void choices(DeviceDesk& devices) {
-  choice(devices, "virtual arm, by the mouse", "", "A simulated arm; the mouse is the hand on it.");
+// Who leads the hand on the virtual arm: the mouse can at any time.
+void hand_choice(DeviceDesk& devices, const PadChoice& pads, const std::string& label,
+                 const std::string& id, const char* help) {
+  ImGui::PushID(id.c_str());
+  if (ImGui::RadioButton(label.c_str(), devices.hub().in_use().empty() && pads.chosen == id)) {
+    pads.chosen = id;
+    if (!devices.hub().in_use().empty()) devices.use("");
+  }
+  tooltip(help);
+  ImGui::PopID();
+}
+
+void hand_choices(DeviceDesk& devices, const PadChoice& pads) {
+  hand_choice(devices, pads, "virtual arm, by the mouse", "",
+              "A simulated arm; the mouse is the hand on it.");
+  bool known = pads.chosen.empty();
+  for (const Pad& pad : pads.pads) {
+    hand_choice(
+        devices, pads, "virtual arm, by " + pad.name, pad.id,
+        "Left stick: the hand, in the plane of the picture. Triggers or right stick: nearer "
+        "and farther. A takes hold and lets go, B cuts the force, Y is the next coupling.");
+    known = known || pad.id == pads.chosen;
+  }
+  if (known) return;
+  hand_choice(devices, pads, "virtual arm, by the gamepad of before", pads.chosen,
+              "Not plugged in; the mouse leads the hand until it is.");
+}
+
+void choices(DeviceDesk& devices, const PadChoice& pads) {
+  hand_choices(devices, pads);
   bool known = devices.hub().in_use().empty();
   for (const FoundDevice& found : devices.hub().found()) {
     const std::string help = found.missing.empty()
@@ -178,8 +206,8 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
 
 }  // namespace
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk) {
-  choices(devices);
+void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads) {
+  choices(devices, pads);
   status(devices, desk.loop());
   if (!devices.hub().in_use().empty()) adjustments(devices, desk);
   ImGui::Separator();

@@ -2,9 +2,15 @@
 #pragma once
 
 #include "app/desktop/desk/device_desk.h"
+#include "app/desktop/desk/pad_hand.h"
 
 namespace limpid {
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk);
+struct PadChoice {
+  const std::vector<Pad>& pads;  // that are plugged in
+  std::string& chosen;           // the one that leads the hand; empty: the mouse alone
+};
+
+void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads);
 
 }  // namespace limpid

@@ -46,8 +46,9 @@ void ExperimentsPanel::start(const Experiment& experiment) {
 void ExperimentsPanel::take() {
   try {
     if (auto outcome = running_.take()) {
-      Verdict verdict{std::move(*outcome), std::nullopt, sessions_of(*current_)};
-      verdict.figure.emplace(experiments_dir() / (std::string(current_->name) + ".png"));
+      Verdict verdict{.outcome = std::move(*outcome),
+                      .file = experiments_dir() / (std::string(current_->name) + ".png"),
+                      .trials = sessions_of(*current_)};
       notices_.say(fmt::format("{}: {}", current_->name,
                                verdict.outcome.passed() ? "passed" : "a check failed"),
                    !verdict.outcome.passed());
@@ -63,6 +64,10 @@ void ExperimentsPanel::take() {
     queue_.erase(queue_.begin());
     start(next);
   }
+}
+
+void ExperimentsPanel::drop_pictures() {
+  for (auto& [name, verdict] : verdicts_) verdict.figure.reset();
 }
 
 fs::path ExperimentsPanel::draw(bool& open) {
@@ -155,8 +160,23 @@ void ExperimentsPanel::draw_list() {
   }
 }
 
-fs::path ExperimentsPanel::draw_verdict(const Verdict& verdict) {
+// The files are for print, on white; in the window they are as dark as everything else.
+void ExperimentsPanel::show_figure(Verdict& verdict) {
+  const Theme theme = current_theme();
+  if (verdict.shown_in == theme) return;
+  verdict.shown_in = theme;
+  try {
+    verdict.figure.emplace(
+        verdict.file, theme == Theme::dark ? std::optional(current_palette().panel) : std::nullopt);
+  } catch (const std::exception& e) {
+    verdict.figure.reset();
+    notices_.say(e.what(), true);
+  }
+}
+
+fs::path ExperimentsPanel::draw_verdict(Verdict& verdict) {
   const Palette& colours = palette(current_theme());
+  show_figure(verdict);
   if (verdict.figure) {
     const float width = std::min(ImGui::GetContentRegionAvail().x, verdict.figure->width());
     ImGui::Image(verdict.figure->id(),

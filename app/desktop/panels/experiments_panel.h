@@ -21,19 +21,23 @@ class ExperimentsPanel {
   // Experiments go on while it is closed. A window over the others while `open`, which closing it
   // clears. The trial that is to be played, if one was chosen.
   std::filesystem::path draw(bool& open);
+  void drop_pictures();  // before the OpenGL context goes
 
  private:
   struct Verdict {
     Outcome outcome;
-    std::optional<PictureTexture> figure;
-    std::vector<std::filesystem::path> trials;
+    std::filesystem::path file = {};  // of the figure
+    std::optional<PictureTexture> figure = {};
+    std::optional<Theme> shown_in = {};  // that it was tried for
+    std::vector<std::filesystem::path> trials = {};
   };
 
   void start(const Experiment& experiment);
   void take();
   void draw_list();
   void draw_state(const Experiment& experiment);
-  static std::filesystem::path draw_verdict(const Verdict& verdict);
+  void show_figure(Verdict& verdict);
+  std::filesystem::path draw_verdict(Verdict& verdict);
 
   Notices& notices_;
   Background<Outcome> running_;

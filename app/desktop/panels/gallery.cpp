@@ -67,19 +67,6 @@ void Gallery::read() {
 
 void Gallery::drop_pictures() { pictures_.clear(); }
 
-const PictureTexture* Gallery::picture(const fs::path& file) {
-  if (file.empty()) return nullptr;
-  const auto [known, is_new] = pictures_.try_emplace(file);
-  if (is_new) {
-    try {
-      known->second.emplace(file);
-    } catch (const std::exception&) {
-      // The card has its placeholder then.
-    }
-  }
-  return known->second ? &*known->second : nullptr;
-}
-
 fs::path Gallery::draw(bool& open) {
   const ImGuiViewport* screen = ImGui::GetMainViewport();
   const float em = ImGui::GetFontSize();
@@ -121,7 +108,7 @@ fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width) {
   ImGui::BeginChild("card", size, true,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  if (const PictureTexture* texture = picture(card.picture)) {
+  if (const PictureTexture* texture = pictures_.get(card.picture)) {
     ImGui::Image(texture->id(), shot);
   } else {
     draw_placeholder(at, shot);

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/desktop/widgets/picture_texture.h"
+#include "app/desktop/widgets/picture_shelf.h"
 
 namespace limpid {
 
@@ -31,11 +29,10 @@ class Gallery {
  private:
   void read();
   std::filesystem::path draw_card(const GalleryCard& card, bool own, float width);
-  const PictureTexture* picture(const std::filesystem::path& file);
 
   bool was_shown_ = false;
   std::vector<GalleryCard> shipped_, own_;
-  std::map<std::filesystem::path, std::optional<PictureTexture>> pictures_;
+  PictureShelf pictures_;
 };
 
 }  // namespace limpid

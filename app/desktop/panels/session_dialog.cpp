@@ -8,6 +8,7 @@
 
 #include "app/base/assets.h"
 #include "app/desktop/base/settings.h"
+#include "app/desktop/base/thumbnails.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/path_dialog.h"
 #include "app/desktop/widgets/widgets.h"
@@ -19,12 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+}  // namespace
+
 // The recordings of a folder, newest names first; the one that was clicked.
-fs::path list_sessions(const char* name, const fs::path& dir) {
+fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   heading(name);
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(dir, none)) {
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
     if (entry.path().extension() == ".h5") files.push_back(entry.path());
   }
   std::ranges::sort(files, std::greater{});
@@ -32,13 +35,14 @@ fs::path list_sessions(const char* name, const fs::path& dir) {
   fs::path chosen;
   for (const fs::path& file : files) {
     const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
-    const std::string text = fmt::format("{}   {:.1f} MiB", file.filename().string(), mib);
-    if (ImGui::Selectable(text.c_str())) chosen = file;
+    if (picture_item({.picture = pictures_.get(picture_of(file)),
+                      .name = file.filename().string(),
+                      .about = fmt::format("{:.1f} MiB", mib)})) {
+      chosen = file;
+    }
   }
   return chosen;
 }
-
-}  // namespace
 
 fs::path SessionDialog::draw(bool& open) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
@@ -48,7 +52,10 @@ fs::path SessionDialog::draw(bool& open) {
     was_shown_ = false;
     return {};
   }
-  if (!was_shown_) typed_ = complaint_ = "";
+  if (!was_shown_) {
+    typed_ = complaint_ = "";
+    pictures_.clear();
+  }
   ImGui::SetNextItemWidth(-1);
   if (!was_shown_) ImGui::SetKeyboardFocusHere();
   was_shown_ = true;
@@ -66,7 +73,7 @@ fs::path SessionDialog::draw(bool& open) {
   ImGui::BeginChild("sessions", {0, std::min(20 * em, 0.55f * room.y)});
   for (const auto& [name, dir] : {std::pair{"Yours", sessions_dir()},
                                   {"Shipped with Limpid", data_dir() / "assets/sessions"}}) {
-    if (const fs::path clicked = list_sessions(name, dir); !clicked.empty()) chosen = clicked;
+    if (const fs::path clicked = list(name, dir); !clicked.empty()) chosen = clicked;
   }
   ImGui::EndChild();
   ImGui::EndPopup();

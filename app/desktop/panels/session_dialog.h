@@ -4,14 +4,20 @@
 #include <filesystem>
 #include <string>
 
+#include "app/desktop/widgets/picture_shelf.h"
+
 namespace limpid {
 
 class SessionDialog {
  public:
   // While `open`. Returns the file once it is chosen, and clears `open`.
   std::filesystem::path draw(bool& open);
+  void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
  private:
+  std::filesystem::path list(const char* name, const std::filesystem::path& folder);
+
+  PictureShelf pictures_;
   bool was_shown_ = false;
   std::string typed_, complaint_;
 };

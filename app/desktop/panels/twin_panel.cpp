@@ -49,7 +49,7 @@ std::string ratio(double a, double b, double least) {
 }  // namespace
 
 void draw_twin(const Stage& stage, std::span<const double> first, std::span<const double> second,
-               bool* edited) {
+               bool* edited, bool& overlaid) {
   const TraceChannels& channels = stage.channels();
   const auto count = static_cast<std::size_t>(channels.count());
   std::vector<double> a(count), b(count);
@@ -76,6 +76,10 @@ void draw_twin(const Stage& stage, std::span<const double> first, std::span<cons
     }
     ImGui::EndTable();
   }
+  ImGui::Checkbox("both in one picture", &overlaid);
+  tooltip(
+      "The second run in lighter colours over the first one, instead of a picture beside it "
+      "(Shift+B).");
   ImGui::Separator();
 }
 

@@ -8,8 +8,8 @@
 namespace limpid {
 
 // Draws into the ImGui window that is open. `edited`: whether the sliders are the second one's, to
-// be chosen; null: there is nothing to choose.
+// be chosen; null: there is nothing to choose. `overlaid`: both in one picture, to be chosen, too.
 void draw_twin(const Stage& stage, std::span<const double> first, std::span<const double> second,
-               bool* edited);
+               bool* edited, bool& overlaid);
 
 }  // namespace limpid

@@ -9,7 +9,8 @@ namespace limpid {
 void draw_video_bar(Playback& playback, ScreenRect view) {
   if (!playback.video().busy()) return;
   const float em = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({view.max.x - em, view.min.y + em}, ImGuiCond_Always, {1, 0});
+  const float below_names = 2.6f * em;  // of a twin's runs
+  ImGui::SetNextWindowPos({view.max.x - em, view.min.y + below_names}, ImGuiCond_Always, {1, 0});
   ImGui::Begin("video", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |

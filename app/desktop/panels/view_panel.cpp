@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "app/desktop/base/picture_signs.h"
+#include "app/desktop/desk/hand_goal.h"
 #include "app/desktop/panels/selection_outline.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
 #include "app/style/theme.h"
-#include "core/dynamics/inverse_kinematics.h"
 #include "render/near_surface.h"
 
 namespace limpid {
@@ -21,14 +21,6 @@ constexpr double kDepthStep = 0.004;  // of one wheel notch while dragging [m]
 
 ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
   return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
-}
-
-// Held where the arm can follow.
-Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
-  const Vec3 base = arm.joints.front().origin.translation();
-  const double limit = 0.985 * reach(arm);
-  const Vec3 out = point - base;
-  return out.norm() > limit ? Vec3(base + out.normalized() * limit) : point;
 }
 
 void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
@@ -52,8 +44,12 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
 }
 
 // The friction cone at a contact; one that slips first.
-PictureLegend legend_of(const ViewState& view, bool rerun) {
-  PictureLegend legend{.beside = rerun ? "proxy of the re-run (ghost)" : nullptr};
+PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
+  PictureLegend legend{.beside = scene.rerun.empty() ? nullptr : "proxy of the re-run (ghost)"};
+  if (view.twin) {
+    legend.first = scene.names.first;
+    legend.second = scene.names.second;
+  }
   if (!view.show_forces) return legend;
   for (const ContactMark& contact : view.contacts) {
     if (!(contact.friction > 0) || legend.slips) continue;
@@ -63,20 +59,22 @@ PictureLegend legend_of(const ViewState& view, bool rerun) {
   return legend;
 }
 
-ImVec2 legend_place(ScreenRect view) {
-  const float em = font(Face::small)->FontSize;
-  return {view.min.x + 0.9f * em, view.min.y + 0.8f * em};
-}
-
 // Of a first start: what to do.
-void draw_hint(ScreenRect rect, ImDrawList& list) {
+void draw_hint(const std::string& pad, ScreenRect rect, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
-  const float size = face->FontSize * 1.15f;
+  const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
   const char* lines[] = {
-      "Drag with the left button: your hand pulls the arm onto the table.",
-      "Wheel while dragging: nearer and farther.",
+      pad.empty() ? "Drag with the left button: your hand pulls the arm onto the table."
+                  : of_pad.c_str(),
+      pad.empty() ? "Wheel while dragging: nearer and farther."
+                  : "Its triggers: nearer and farther. A lets go, B cuts the force.",
       "C switches the coupling: the standard one lets hand and world drift apart."};
+  float size = face->FontSize * 1.15f;
+  for (const char* line : lines) {  // as large as the widest one may be
+    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
+    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
+  }
   float line_y = rect.max.y - 5.2f * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
@@ -91,8 +89,8 @@ void draw_hint(ScreenRect rect, ImDrawList& list) {
 }  // namespace
 
 ScreenRect legend_box(ScreenRect view) {
-  const ImVec2 place = legend_place(view), size = picture_legend_size();
-  return {view.min, {place.x + size.x, place.y + size.y}};
+  const ImVec2 size = picture_legend_size(view.min, view.max);
+  return {view.min, {view.min.x + size.x, view.min.y + size.y}};
 }
 
 namespace {
@@ -110,6 +108,7 @@ ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
   view.show_trail = settings.show_trail;
   view.show_forces = settings.show_forces;
   view.show_grid = settings.show_grid;
+  view.show_joints = settings.show_joints;
   view.theme = settings.theme;
   return view;
 }
@@ -123,6 +122,7 @@ ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) 
     const RowLayout& layout = stage.channels().layout();
     view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
   }
+  if (scene.overlaid && !scene.twin.empty()) lay_over(view, twin_of(scene, settings));
   return view;
 }
 
@@ -132,7 +132,7 @@ ViewState ViewPanel::twin_of(const ViewScene& scene, const Settings& settings) {
 
 bool ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                      ScreenRect rect) {
-  const bool split = !scene.twin.empty();
+  const bool split = scene.split();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsAnyMouseDown()) on_right_ = split && half_of(rect, true).contains(mouse);
   const ScreenRect under = split ? half_of(rect, on_right_) : rect;
@@ -161,13 +161,13 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   };
   const ViewState view = state_of(scene, settings);
   paint(view, *drawn_, SceneView::Sheet::main);
-  if (settings.show_lens && scene.twin.empty()) {
+  if (settings.show_lens && !scene.split()) {
     magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height});
   } else {
     magnifier_.hide();
   }
   draw_signs(scene, view, camera, settings, *drawn_);
-  if (scene.twin.empty()) {
+  if (!scene.split()) {
     draw_told(scene.told, rect, *ImGui::GetBackgroundDrawList());
     return;
   }
@@ -196,10 +196,13 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (settings.show_grid) {
     draw_grid_labels(scene.stage.picture.grid(), camera, rect, magnifier_.rect(), list);
   }
-  draw_gap(view, camera, rect, list);
+  draw_gap(view, camera, rect, list, scene.split() ? RunNames() : scene.names);
   magnifier_.draw_frame(view, camera, list);
-  draw_picture_legend(list, legend_place(rect), legend_of(view, !scene.rerun.empty()));
-  if (!settings.hint_seen && !scene.recorded && scene.twin.empty()) draw_hint(rect, list);
+  const float below_name = scene.split() ? 2.2f * font(Face::semibold)->FontSize : 0;
+  draw_picture_legend(list, {rect.min.x, rect.min.y + below_name}, rect.max,
+                      legend_of(view, scene));
+  if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
+    draw_hint(scene.pad, rect, list);
   list.PopClipRect();
 }
 
@@ -212,7 +215,7 @@ bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Sett
   shown.resize(pixels(drawn_->size().x), pixels(drawn_->size().y));
   const SceneView& picture = scene.stage.picture;
   return picture.differs(state_of(scene, settings), shown) ||
-         (!scene.twin.empty() &&
+         (scene.split() &&
           picture.differs(twin_of(scene, settings), shown, SceneView::Sheet::beside));
 }
 

@@ -24,11 +24,15 @@ struct ViewScene {
   std::span<const double> rerun = {};  // the row of its second run; or none
   std::span<const double> twin = {};   // of a second run at the same time; or none
   RunNames names = {};                 // of the two
+  bool overlaid = false;               // both in one picture
   std::string told = {};               // a story's sentence
+  std::string pad = {};                // the gamepad that leads the hand; or none
   std::optional<SceneObject> selected = {};
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point
   int pixel_height = 0;    // of the window [px]
+
+  bool split() const { return !twin.empty() && !overlaid; }
 };
 
 // What its legend takes of a view's upper left corner.

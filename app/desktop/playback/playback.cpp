@@ -1,7 +1,8 @@
 #include "app/desktop/playback/playback.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include <utility>
 
 #include "app/desktop/base/settings.h"
 #include "app/session/film_process.h"
@@ -18,6 +19,7 @@ void Playback::open(const fs::path& file) {
 }
 
 void Playback::open_story() {
+  left_.clear();
   loading_.start("running the story",
                  [out = sessions_dir() / "story.h5"](BackgroundProgress& progress) {
                    return load_story(out, progress);
@@ -35,6 +37,13 @@ void Playback::run_hand(const fs::path& file, RunPlan world) {
 void Playback::close() {
   rerunning_.cancel();
   shown_.reset();
+}
+
+void Playback::take_over() {
+  left_ = shown_->file();
+  left_at_ = shown_->player().time();
+  notices_.say("The arm is yours. P gives it back to the story.");
+  close();
 }
 
 void Playback::toggle_playing() {
@@ -61,26 +70,13 @@ void Playback::export_csv() {
                    });
 }
 
-namespace {
-
-// A name that is free, in a folder that can be written.
-fs::path video_of(const fs::path& session) {
-  const bool writable = ::access(fs::absolute(session).parent_path().c_str(), W_OK) == 0;
-  fs::path out = writable ? session : sessions_dir() / session.filename();
-  const std::string stem = out.stem().string();
-  out.replace_extension(".mp4");
-  for (int i = 2; fs::exists(out); ++i) out.replace_filename(fmt::format("{}-{}.mp4", stem, i));
-  return out;
-}
-
-}  // namespace
-
-void Playback::export_video() {
+void Playback::export_video(const VideoOrder& order) {
   if (!shown_ || filming_.busy()) return;
-  const fs::path session = shown_->file(), out = video_of(session);
+  const fs::path session = shown_->file();
+  const fs::path out = video_of(session, order.kind, sessions_dir());
   filming_.start(fmt::format("making {}", out.filename().string()),
-                 [session, out](BackgroundProgress& progress) {
-                   return film_beside(session, out, progress.cancel, progress.part)
+                 [session, out, order](BackgroundProgress& progress) {
+                   return film_beside(session, out, words_of(order), progress.cancel, progress.part)
                               ? fmt::format("Wrote {}", out.string())
                               : fmt::format("{} was not written.", out.filename().string());
                  });
@@ -123,6 +119,7 @@ bool Playback::take_results() {
     PlayedSession fresh(std::move(**loaded));
     shown_.emplace(std::move(fresh));
     last_ = shown_->file();
+    if (last_ == std::exchange(left_, {})) shown_->player().seek(left_at_);
     shown_->player().play();
     opened = true;
   }

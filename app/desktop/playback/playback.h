@@ -5,6 +5,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/playback/played_session.h"
+#include "app/session/video_order.h"
 
 namespace limpid {
 
@@ -21,6 +22,8 @@ class Playback {
   bool loading() const { return loading_.busy(); }
   const std::string& what() const { return loading_.what(); }  // for people, while loading
   void close();
+  // The same of a story that somebody takes over: it goes on here when it is opened again.
+  void take_over();
 
   // The session that is shown; null: none is, the loop is.
   PlayedSession* shown() { return shown_ ? &*shown_ : nullptr; }
@@ -37,9 +40,9 @@ class Playback {
   void export_csv();
   bool exporting() const { return exporting_.busy(); }
 
-  // The video goes beside the session's file, or, where nothing can be written, to the user's own
-  // sessions; made as `limpid play --video` does.
-  void export_video();
+  // Made as `limpid play --video` does, beside the session's file, or, where nothing can be
+  // written, among the user's own sessions.
+  void export_video(const VideoOrder& order);
   const Background<std::string>& video() const { return filming_; }  // while it is made
   void cancel_video() { filming_.ask_to_stop(); }
 
@@ -59,7 +62,8 @@ class Playback {
 
   Notices& notices_;
   std::optional<PlayedSession> shown_;
-  std::filesystem::path last_;
+  std::filesystem::path last_, left_;  // left_: a story, at
+  double left_at_ = 0;                 // [s]
   Background<std::optional<LoadedSession>> loading_;
   Background<Rerun> rerunning_;
   Background<std::string> exporting_, filming_;

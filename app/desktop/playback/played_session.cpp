@@ -20,9 +20,10 @@ namespace fs = std::filesystem;
 
 constexpr double kOfStory = 12;  // that the plots show at once: about a step [s]
 
-// The plots hold the whole recording, and the re-run if there is one.
+// The plots hold the whole recording, and the re-run if there is one; a story marks its steps
+// there, else every setting that changes is marked.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
-                   std::span<const double> again) {
+                   std::span<const double> again, const std::vector<StoryStep>& steps) {
   TraceChannels channels(session.layout);
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
@@ -37,8 +38,12 @@ History history_of(const Session& session, const std::string& where, const ArmDe
       apply_change(p, *change);
       channels.set_limits(motor_limits(arm, p));
       const ParameterInfo* info = find_parameter(change->key());
-      if (info == nullptr) continue;
+      if (info == nullptr || !steps.empty()) continue;
       history.mark(static_cast<double>(k) * session.info.tick, mark_text(*info, p), info->key);
+    }
+    for (const StoryStep& step : steps) {
+      const double at = std::round(step.begins / session.info.tick);
+      if (at == static_cast<double>(k) && !step.mark.empty()) history.mark(step.begins, step.mark);
     }
     const auto second = again.empty() ? again : again.subspan(k * stride, stride);
     channels.append(history, session.row(k), second);
@@ -54,13 +59,15 @@ LoadedSession load_session(const fs::path& file) {
   RunPlan world = replay(*session, file.string(), {});
   const std::span<const double> twin =
       session->twin ? std::span<const double>(session->twin->rows) : std::span<const double>();
-  History history = history_of(*session, file.string(), world.arm, twin);
+  std::vector<StoryStep> steps = told_in(file).steps;
+  History history = history_of(*session, file.string(), world.arm, twin, steps);
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
           .document = std::move(world.document),
           .models = std::move(world.models),
-          .history = std::move(history)};
+          .history = std::move(history),
+          .steps = std::move(steps)};
 }
 
 std::optional<LoadedSession> load_story(const fs::path& out, BackgroundProgress& progress) {
@@ -69,10 +76,8 @@ std::optional<LoadedSession> load_story(const fs::path& out, BackgroundProgress&
                          [&](double seconds) { progress.part = seconds / story.seconds(); });
   if (told.end.stopped) return std::nullopt;
   fs::create_directories(out.parent_path());
-  write_session(told.session, out, true);
-  LoadedSession loaded = load_session(out);
-  loaded.steps = story.steps;
-  return loaded;
+  write_session(told.session, {story.title, story.steps}, out, true);
+  return load_session(out);
 }
 
 std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, const fs::path& out,
@@ -110,10 +115,10 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);
                                 return true;
                               });
-  if (end.stopped || rows.empty()) return {{}, end, history_of(session, where, plan.arm, {})};
+  if (end.stopped || rows.empty()) return {{}, end, history_of(session, where, plan.arm, {}, {})};
   const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
   while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
-  History history = history_of(session, where, plan.arm, rows);
+  History history = history_of(session, where, plan.arm, rows, {});
   return {std::move(rows), end, std::move(history)};
 }
 
@@ -143,6 +148,20 @@ void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
   stage_->name_runs({"", "re-run", false});
   rerun_ = std::move(again.rows);
+}
+
+std::size_t PlayedSession::row_to_show() const {
+  const Session& session = player_.session();
+  std::size_t hardest = 0;
+  double most = 0;
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    double torque = 0;
+    for (const double f : session.at(k, Column::contact_torque)) torque += f * f;
+    if (torque <= most) continue;
+    most = torque;
+    hardest = k;
+  }
+  return hardest;
 }
 
 const StoryStep* PlayedSession::step() const {

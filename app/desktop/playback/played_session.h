@@ -64,6 +64,9 @@ class PlayedSession {
   const StoryStep* step() const;
   const std::vector<StoryStep>& steps() const { return steps_; }
 
+  // Where it is pressed hardest: what its small picture shows.
+  std::size_t row_to_show() const;
+
   // From now on beside the recording. Errors: as Stage.
   void show(Rerun again);
   bool has_rerun() const { return !rerun_.empty(); }

@@ -67,6 +67,11 @@ void save_picture(Window& window) {
   window.save_picture(sessions_dir() / name);
 }
 
+void write_video(Desktop& desktop) {
+  const Playback& playback = desktop.playback();
+  if (playback.on() && !playback.video().busy()) desktop.open_dialog(Dialog::video);
+}
+
 void freeze_plots(PlotGroup& group) { group.set_following(!group.following()); }
 
 // Each carries out its own actions and knows no others.
@@ -106,6 +111,7 @@ bool act_on_view(Action action, Desktop& desktop) {
     case Action::side_view: desktop.look(Camera::View::side); return true;
     case Action::top_view: desktop.look(Camera::View::top); return true;
     case Action::toggle_ghost: s.show_ghost = !s.show_ghost; return true;
+    case Action::toggle_overlay: s.twin_overlaid = !s.twin_overlaid; return true;
     case Action::toggle_lens: s.show_lens = !s.show_lens; return true;
     case Action::toggle_left: s.show_left = !s.show_left; return true;
     case Action::toggle_right: s.show_right = !s.show_right; return true;
@@ -144,6 +150,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::toggle_help: toggle(d, Dialog::help); break;
     case Action::toggle_experiments: toggle(d, Dialog::experiments); break;
     case Action::open_session: d.open_dialog(Dialog::open_session); break;
+    case Action::write_video: write_video(d); break;
     case Action::gallery: d.open_dialog(Dialog::gallery); break;
     case Action::add_model: d.open_dialog(Dialog::add_model); break;
     case Action::open_arm: d.open_dialog(Dialog::open_arm); break;

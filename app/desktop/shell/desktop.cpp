@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/thumbnails.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "app/run/twin_settings.h"
@@ -111,9 +112,16 @@ void Desktop::update(double dt) {
   desk_.update(settings_.parameters, settings_.twin.on ? &settings_.twin.parameters : nullptr);
   if (const auto recorded = desk_.take_recorded()) {
     playback_.set_last(*recorded);
+    make_thumbnail(*recorded, desk_.stage(), desk_.row(), desk_.twin_row(), settings_.theme);
     remember_recent(settings_, recorded->string());
   }
   if (playback_.update(dt)) {
+    const PlayedSession& opened = *playback_.shown();
+    const std::size_t k = opened.row_to_show();
+    const Session& session = opened.player().session();
+    make_thumbnail(opened.file(), shown(), session.row(k),
+                   session.twin ? session.twin->row(k) : std::span<const double>(),
+                   settings_.theme);
     camera_.frame(shown().picture.bounds());
     remember_recent(settings_, playback_.last().string());
     step_ = nullptr;
@@ -234,9 +242,9 @@ void Desktop::cut_force() {
 
 void Desktop::reset_parameters() {
   settings_.parameters = fitted(desk_.stage().arm());
-  const bool paper = settings_.parameters == Parameters{};
-  notices_.say(paper ? "All settings are the paper's again."
-                     : "All settings are the paper's again, with gains fitted to this arm.");
+  const bool usual = settings_.parameters == Parameters{};
+  notices_.say(usual ? "All settings have their usual values again, the paper's where it gives them."
+                     : "All settings have their usual values again, with gains fitted to this arm.");
 }
 
 void Desktop::toggle_recording() {

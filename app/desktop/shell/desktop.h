@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/desktop/desk/device_desk.h"
+#include "app/desktop/desk/pad_hand.h"
 #include "app/desktop/document/document.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/focus.h"
@@ -63,6 +64,12 @@ class Desktop {
   void close_dialog() { dialog_ = Dialog::none; }
   // Who has the keys at this moment.
   Focus focus() const;
+
+  // The gamepads that are there now, `dt` [s] after the last call: the chosen one leads the hand,
+  // where the window has the focus and nothing is open over it.
+  void follow_pads(std::vector<Pad> pads, bool focused, double dt);
+  const std::vector<Pad>& pads() const { return pads_; }
+  const std::string& leading_pad() const { return leading_pad_; }  // its name; or none
 
   void toggle_coupling();
   void toggle_twin();
@@ -127,6 +134,10 @@ class Desktop {
   Camera camera_;
   bool automatic_view_ = true;
   const StoryStep* step_ = nullptr;  // of the story, that the camera knows
+  std::vector<Pad> pads_;
+  PadHand pad_hand_;
+  std::string leading_pad_;
+  bool pads_known_ = false;  // asked for once
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
   std::string device_file_, device_tip_;

@@ -75,6 +75,11 @@ void Dialogs::draw_sessions() {
   const fs::path session =
       draw(Dialog::open_session, [this](bool& open) { return session_.draw(open); });
   if (!session.empty()) desktop_.playback().open(session);
+  Playback& playback = desktop_.playback();
+  const auto video = draw(Dialog::video, [&](bool& open) {
+    return video_.draw(open, playback, desktop_.settings().twin_overlaid);
+  });
+  if (video) playback.export_video(*video);
 }
 
 }  // namespace limpid

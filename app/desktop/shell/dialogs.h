@@ -7,6 +7,7 @@
 #include "app/desktop/panels/experiments_panel.h"
 #include "app/desktop/panels/gallery.h"
 #include "app/desktop/panels/session_dialog.h"
+#include "app/desktop/panels/video_dialog.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/path_dialog.h"
 
@@ -21,7 +22,11 @@ class Dialogs {
   // Those about scenes and files, which are modal.
   void draw_scenes(const Act& act);
   void draw_sessions();
-  void drop_pictures() { gallery_.drop_pictures(); }  // before the OpenGL context goes
+  void drop_pictures() {  // before the OpenGL context goes
+    gallery_.drop_pictures();
+    session_.drop_pictures();
+    experiments_.drop_pictures();
+  }
 
  private:
   // Draws one, which closes itself by clearing what says that it is open.
@@ -32,6 +37,7 @@ class Dialogs {
   Desktop& desktop_;
   Gallery gallery_;
   SessionDialog session_;
+  VideoDialog video_;
   ExperimentsPanel experiments_;
   PathDialog add_{{.title = "Add model", .action = "Add", .extensions = {".glb", ".gltf"}}};
   PathDialog arm_{{.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}}};

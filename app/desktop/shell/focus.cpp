@@ -23,6 +23,7 @@ const char* name(Dialog dialog) {
     case Dialog::add_model: return "add model";
     case Dialog::open_arm: return "open arm";
     case Dialog::save_scene: return "save scene";
+    case Dialog::video: return "video";
   }
   return "";
 }

@@ -18,6 +18,7 @@ enum class Dialog : std::uint8_t {
   add_model,
   open_arm,
   save_scene,
+  video,
 };
 const char* name(Dialog dialog);
 // One that asks something: nothing behind it acts meanwhile.

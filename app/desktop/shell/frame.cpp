@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,68 +17,16 @@
 #include "app/desktop/panels/twin_panel.h"
 #include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
+#include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
-namespace {
-
-// A border between panels that can be dragged: changes `size` by the mouse's motion along one axis.
-void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,
-              double least, double most) {
-  ImGui::SetNextWindowPos(rect.min);
-  ImGui::SetNextWindowSize(rect.size());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::Begin(name, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings);
-  ImGui::InvisibleButton("grip", rect.size());
-  if (ImGui::IsItemActive() || ImGui::IsItemHovered()) {
-    ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-  }
-  if (ImGui::IsItemActive()) {
-    const ImVec2 delta = ImGui::GetIO().MouseDelta;
-    size += direction * static_cast<double>((vertical ? delta.x : delta.y) / current_scale());
-  }
-  size = std::clamp(size, least, most);
-  ImGui::End();
-  ImGui::PopStyleVar(2);
-}
-
-// A small tab at the view's edge that folds a panel away, or brings it back.
-void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted) {
-  ImGui::SetNextWindowPos(rect.min);
-  ImGui::SetNextWindowSize(rect.size());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-  ImGui::Begin(name, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoFocusOnAppearing);
-  if (ImGui::InvisibleButton("fold", rect.size())) wanted = !wanted;
-  const bool over = ImGui::IsItemHovered();
-  const Palette& colours = current_palette();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
-                     3 * current_scale());
-  const float size = 0.6f * ImGui::GetFontSize();
-  ImGui::RenderArrow(
-      &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
-      colour(over ? colours.text : colours.muted), arrow, size / ImGui::GetFontSize());
-  tooltip(help);
-  ImGui::End();
-  ImGui::PopStyleVar(3);
-}
-
-}  // namespace
 
 void Frame::draw() {
   const auto part = [this](auto&& work) { guard(desktop_.notices(), work); };
   Settings& settings = desktop_.settings();
-  part([&] { draw_menu_bar(desktop_, window_.full_screen(), act_); });
+  part([&] { draw_menu_bar(desktop_, recent_, window_.full_screen(), act_); });
   const Layout at = lay_out();
   part([&] { draw_view(at.view); });
   if (at.show_left) part([&] { draw_coupling(at.left); });
@@ -101,7 +48,15 @@ void Frame::draw() {
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
-  draw_notices(desktop_.notices(), at.view, legend_box(at.view));
+  draw_notices(desktop_.notices(), at.view, signs_box(at.view));
+}
+
+// What notices leave free: the legend's corner, or all that is at the top of the view.
+ScreenRect Frame::signs_box(ScreenRect view) {
+  const float em = ImGui::GetFontSize();
+  if (desktop_.playback().video().busy()) return {view.min, {view.max.x, view.min.y + 7 * em}};
+  if (view_scene().split()) return {view.min, {view.max.x, view.min.y + 4 * em}};
+  return legend_box(view);
 }
 
 Layout Frame::lay_out() {
@@ -135,14 +90,16 @@ ViewScene Frame::view_scene() {
   }
   if (!scene.recorded) scene.twin = desktop_.desk().twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown().names();
+  scene.pad = desktop_.leading_pad();
+  scene.overlaid = desktop_.settings().twin_overlaid;
   return scene;
 }
 
 void Frame::draw_view(ScreenRect rect) {
-  if (story_taken_over(desktop_.playback(), rect)) act_(Action::back_to_live);
+  if (story_taken_over(desktop_.playback(), rect)) desktop_.playback().take_over();
   Camera& camera = desktop_.camera();
   const ViewScene scene = view_scene();
-  const float width = scene.twin.empty() ? rect.width() : rect.width() / 2;
+  const float width = scene.split() ? rect.width() / 2 : rect.width();
   constexpr double kApart = 2;  // between the halves of a twin, and rounding [px]
   const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
                        std::abs(camera.height() - static_cast<double>(rect.height())) > kApart;
@@ -186,7 +143,8 @@ void Frame::draw_coupling(ScreenRect rect) {
   begin_panel("coupling", rect);
   if (!twin.empty()) {
     TwinSettings& settings = desktop_.settings().twin;
-    draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited);
+    draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited,
+              desktop_.settings().twin_overlaid);
   }
   coupling_.draw(desktop_.edited(), desktop_.analysis(), now, real ? nullptr : &shown.arm());
   ImGui::End();
@@ -213,7 +171,7 @@ void Frame::draw_side(ScreenRect rect) {
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
-    draw_device_panel(desktop_.devices(), desk);
+    draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad});
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
@@ -224,7 +182,7 @@ void Frame::draw_side(ScreenRect rect) {
     const auto pose = shown.channels().layout().in(desktop_.row(), Column::device_position);
     const PlayedSession* session = desktop_.playback().shown();
     const Scene& scene = session ? session->document().scene : desktop_.document().scene();
-    analysis_.draw(parameters, shown.arm(), scene, pose, settings.band);
+    analysis_.draw(desktop_.edited(), shown.arm(), scene, pose, settings.band);
   }
   if (section("Timing", true)) draw_timing(desk.loop(), quality_text(), window_.frame_time());
   ImGui::End();

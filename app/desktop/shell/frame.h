@@ -9,6 +9,7 @@
 #include "app/desktop/panels/view_panel.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"
+#include "app/desktop/shell/recent_menu.h"
 #include "app/desktop/shell/window.h"
 #include "app/desktop/widgets/guard.h"
 
@@ -29,11 +30,15 @@ class Frame {
   void draw();
   // Whether the picture has changed since then, without anybody having touched the window.
   bool differs();
-  void drop_pictures() { dialogs_.drop_pictures(); }  // before the OpenGL context goes
+  void drop_pictures() {  // before the OpenGL context goes
+    dialogs_.drop_pictures();
+    recent_.drop_pictures();
+  }
 
  private:
   Layout lay_out();
   ViewScene view_scene();
+  ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
   void draw_coupling(ScreenRect rect);
   void draw_side(ScreenRect rect);
@@ -47,6 +52,7 @@ class Frame {
   Window& window_;
   Act act_;
   WindowLayout layout_;
+  RecentMenu recent_;
   ViewPanel view_;
   ScenePanel scene_;
   CouplingPanel coupling_;

@@ -30,22 +30,10 @@ void item(const char* label, const char* keys, Action action, const Act& act, bo
   if (ImGui::MenuItem(label, keys, false, enabled)) act(action);
 }
 
-void recent_menu(Desktop& d) {
-  const std::vector<std::string>& recent = d.settings().recent;
-  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
-  fs::path chosen;
-  for (const std::string& file : recent) {
-    const fs::path path = file;
-    if (ImGui::MenuItem(path.filename().c_str(), path.parent_path().c_str())) chosen = path;
-  }
-  ImGui::EndMenu();
-  if (!chosen.empty()) d.open_files({chosen});
-}
-
-void file_menu(Desktop& d, const Act& act) {
+void file_menu(Desktop& d, RecentMenu& recent, const Act& act) {
   if (!ImGui::BeginMenu("File")) return;
   item("Open session...", "Ctrl+O", Action::open_session, act);
-  recent_menu(d);
+  const fs::path chosen = recent.draw(d.settings().recent);
   item("Add model...", "Ctrl+M", Action::add_model, act);
   item("Save scene", "Ctrl+S", Action::save_scene, act);
   item("Save scene as...", "Ctrl+Shift+S", Action::save_scene_as, act);
@@ -53,10 +41,11 @@ void file_menu(Desktop& d, const Act& act) {
   ImGui::Separator();
   item("Undo", "Ctrl+Z", Action::undo, act);
   item("Redo", "Ctrl+Y", Action::redo, act);
-  if (ImGui::MenuItem("All settings as in the paper")) d.reset_parameters();
+  if (ImGui::MenuItem("All settings to their usual values")) d.reset_parameters();
   ImGui::Separator();
   item("Quit", "Ctrl+Q", Action::quit, act);
   ImGui::EndMenu();
+  if (!chosen.empty()) d.open_files({chosen});
 }
 
 void view_menu(Settings& s, bool full_screen, const Act& act) {
@@ -70,6 +59,8 @@ void view_menu(Settings& s, bool full_screen, const Act& act) {
   ImGui::MenuItem("Trail", nullptr, &s.show_trail);
   ImGui::MenuItem("Forces", nullptr, &s.show_forces);
   ImGui::MenuItem("Floor grid", nullptr, &s.show_grid);
+  ImGui::MenuItem("Axes of the joints", nullptr, &s.show_joints);
+  ImGui::MenuItem("Twin in one picture", "Shift+B", &s.twin_overlaid);
   ImGui::Separator();
   item("Front", "1", Action::front_view, act);
   item("Side", "2", Action::side_view, act);
@@ -104,10 +95,8 @@ void session_menu(Desktop& d, const Act& act) {
                       playback.on() && !playback.exporting())) {
     playback.export_csv();
   }
-  if (ImGui::MenuItem("Write as video (MP4)", nullptr, false,
-                      playback.on() && !playback.video().busy())) {
-    playback.export_video();
-  }
+  item("Write as video...", "V", Action::write_video, act,
+       playback.on() && !playback.video().busy());
   item("Back to live", "Backspace", Action::back_to_live, act, playback.on());
   ImGui::Separator();
   if (ImGui::MenuItem("Experiments of the paper...", "F5")) d.open_dialog(Dialog::experiments);
@@ -152,8 +141,8 @@ void help_menu(Desktop& d) {
   ImGui::EndMenu();
 }
 
-void menus(Desktop& d, bool full_screen, const Act& act) {
-  file_menu(d, act);
+void menus(Desktop& d, RecentMenu& recent, bool full_screen, const Act& act) {
+  file_menu(d, recent, act);
   view_menu(d.settings(), full_screen, act);
   session_menu(d, act);
   scene_menu(d, act);
@@ -172,13 +161,13 @@ float menus_width() {
 
 }  // namespace
 
-void draw_menu_bar(Desktop& desktop, bool full_screen, const Act& act) {
+void draw_menu_bar(Desktop& desktop, RecentMenu& recent, bool full_screen, const Act& act) {
   if (!ImGui::BeginMainMenuBar()) return;
   const LiveLoop& loop = desktop.desk().loop();
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
-    menus(desktop, full_screen, act);
+    menus(desktop, recent, full_screen, act);
   } else if (ImGui::BeginMenu("Menu")) {
-    menus(desktop, full_screen, act);
+    menus(desktop, recent, full_screen, act);
     ImGui::EndMenu();
   }
   const Parameters& p = desktop.settings().parameters;

@@ -3,9 +3,10 @@
 
 #include "app/desktop/base/action.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/desktop/shell/recent_menu.h"
 
 namespace limpid {
 
-void draw_menu_bar(Desktop& desktop, bool full_screen, const Act& act);
+void draw_menu_bar(Desktop& desktop, RecentMenu& recent, bool full_screen, const Act& act);
 
 }  // namespace limpid

@@ -17,6 +17,11 @@ double twin_error(const Desktop& d) {
   return values[static_cast<std::size_t>(Channel::error)];
 }
 
+std::string told(Desktop& d) {
+  const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
+  return step != nullptr ? step->caption : "";
+}
+
 }  // namespace
 
 void print_state(Desktop& d, int width, int height) {
@@ -43,8 +48,8 @@ void print_state(Desktop& d, int width, int height) {
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
-      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": {:.6f}, \"size\": [{}, "
-      "{}]}}\n",
+      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": "
+      "{:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, \"filming\": {}, \"pads\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -55,7 +60,9 @@ void print_state(Desktop& d, int width, int height) {
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(), !d.twin_row().empty(), twin_error(d), width, height);
+      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(), !d.twin_row().empty(),
+      twin_error(d), width, height, d.settings().twin_overlaid, nlohmann::json(told(d)).dump(),
+      d.playback().video().busy(), d.pads().size());
   std::fflush(stdout);
 }
 

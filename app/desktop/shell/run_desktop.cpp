@@ -8,6 +8,7 @@
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/shell/actions.h"
 #include "app/desktop/shell/frame.h"
+#include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
 #include "app/live/rtkit.h"
 
@@ -130,6 +131,7 @@ void Application::turn() {
     guard(notices, [&] { handle_keys(desktop_, window_); });
     guard(notices, [&] { desktop_.open_files(window_.dropped()); });
   }
+  guard(notices, [&] { desktop_.follow_pads(plugged_pads(), window_.focused(), now - last_); });
   guard(notices, [&] { desktop_.update(now - last_); });
   last_ = now;
   const bool moved = frame_.differs();

@@ -248,6 +248,7 @@ void Window::close() { glfwSetWindowShouldClose(impl_->glfw, GLFW_TRUE); }
 
 void Window::keep_open() { glfwSetWindowShouldClose(impl_->glfw, GLFW_FALSE); }
 
+bool Window::focused() const { return glfwGetWindowAttrib(impl_->glfw, GLFW_FOCUSED) == GLFW_TRUE; }
 bool Window::full_screen() const { return glfwGetWindowMonitor(impl_->glfw) != nullptr; }
 
 void Window::toggle_full_screen() {

@@ -48,6 +48,7 @@ class Window {
   void keep_open();  // after begin_frame() returned false
   void toggle_full_screen();
   bool full_screen() const;
+  bool focused() const;
   // Keys pressed in this frame, without those held since somebody else had the focus.
   const std::vector<KeyPress>& keys() const;
   // Files dropped on the window in this frame.

@@ -4,14 +4,23 @@
 #include <imgui.h>
 
 #include <filesystem>
+#include <optional>
+#include <span>
+
+#include "app/style/palette.h"
 
 namespace limpid {
+
+// Pixels of four bytes: what was white becomes `sheet`, a dark colour, what was black white; hues
+// and saturation stay.
+void onto_dark(std::span<unsigned char> rgba, Rgb sheet);
 
 // Needs a current OpenGL context from construction to destruction.
 class PictureTexture {
  public:
-  // Errors: std::runtime_error naming a file that is missing or no picture.
-  explicit PictureTexture(const std::filesystem::path& file);
+  // On `sheet` a figure that was drawn on white paper lies on paper of that colour. Errors:
+  // std::runtime_error naming a file that is missing or no picture.
+  explicit PictureTexture(const std::filesystem::path& file, std::optional<Rgb> sheet = {});
   ~PictureTexture();
   PictureTexture(PictureTexture&& other) noexcept;
   PictureTexture& operator=(PictureTexture&& other) noexcept;

@@ -160,6 +160,19 @@ TEST_F(FilmFrames, ShowTwoRunsInHalvesThroughOneCamera) {
   EXPECT_GT(differing(draw_beside(row, turned)), 2000);
 }
 
+TEST_F(FilmFrames, ShowTwoRunsInOnePictureWhereThatIsAskedFor) {
+  ASSERT_NO_FATAL_FAILURE(begin({.plots = false, .overlaid = true}));
+  if (!frame_) return;
+  EXPECT_EQ(frame_->viewport(true).x, frame_->viewport(false).x);
+  const std::vector<double> row = row_at(layout_, 0);
+  std::vector<double> turned = row;
+  layout_.in(std::span<double>(turned), Column::proxy_position)[0] = 0.6;
+  const Picture same = draw_beside(row, row), apart = draw_beside(row, turned);
+  EXPECT_NE(same.rgba, apart.rgba);
+  const int border = look_.width / 2, high = look_.height / 4;
+  EXPECT_EQ(apart.at(border, high), apart.at(border + 4, high)) << "nothing between halves";
+}
+
 TEST_F(FilmFrames, TellTheirSentenceAtTheBottomOfThePicture) {
   ASSERT_NO_FATAL_FAILURE(begin({.plots = false}));
   if (!frame_) return;

@@ -1,0 +1,29 @@
+// The menu of files that were open last, with their pictures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/desktop/widgets/picture_shelf.h"
+
+namespace limpid {
+
+class RecentMenu {
+ public:
+  // Inside of a menu. The file that is chosen.
+  std::filesystem::path draw(const std::vector<std::string>& recent);
+  void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
+
+ private:
+  struct Entry {
+    std::filesystem::path file, picture;
+    bool there;
+  };
+  void look(const std::vector<std::string>& recent);
+
+  std::vector<Entry> entries_;  // as they were when the menu opened
+  PictureShelf pictures_;
+};
+
+}  // namespace limpid

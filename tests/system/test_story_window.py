@@ -1,0 +1,102 @@
+"""The story in the window: it plays, somebody takes over, gives back, and ends it."""
+
+import time
+import unittest
+
+from window import WindowTest
+
+SHOW_ME = (645, 333)  # the button that a first start has over the picture
+IN_VIEW = (500, 200)
+
+
+class Story(WindowTest):
+    LAW = None  # a first start's
+
+    def play(self) -> dict:
+        time.sleep(1)  # the button comes with the second frame
+        self.click(*SHOW_ME)
+        return self.wait("the story", lambda s: s["playing"] and s["told"], 120)
+
+    def test_it_plays_is_taken_over_given_back_and_ended(self) -> None:
+        first = self.play()
+        self.assertIn("One hand", first["told"])
+        self.assertTrue(first["twin"], "two runs beside each other")
+        self.wait("its next sentence", lambda s: s["told"] != first["told"], 60)
+
+        taken = self.state()
+        self.move(*IN_VIEW)
+        self.xdotool("mousedown", "1")
+        self.wait("the arm to be the user's", lambda s: not s["playing"] and s["grip"] == 1)
+        self.xdotool("mouseup", "1")
+        self.wait_for_notice("P gives it back")
+
+        self.key("p")
+        again = self.wait("the story again", lambda s: s["playing"] and s["told"])
+        self.assertGreaterEqual(again["time"], taken["time"] - 0.2, "where it was left")
+        self.assertNotEqual(again["told"], first["told"])
+
+        self.key("BackSpace")
+        self.wait("the end", lambda s: not s["playing"])
+        time.sleep(0.5)
+        self.assertFalse(self.state()["playing"])
+
+    def test_its_session_has_its_captions_when_it_is_opened_again(self) -> None:
+        self.play()
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        self.start()
+        self.assertFalse(self.state()["told"])
+        self.key("ctrl+o")
+        self.wait("the dialog", lambda s: s["typing"])
+        self.type(str(self.home / "data/limpid/sessions/story.h5"))
+        self.key("Return")
+        self.wait("its first sentence", lambda s: s["playing"] and "One hand" in s["told"])
+        pictures = list((self.home / "cache/limpid/thumbnails").glob("*.png"))
+        self.assertEqual(len(pictures), 1, "one small picture of one session")
+
+
+class Overlay(WindowTest):
+    LAW = "predictive"
+
+    def test_both_runs_in_one_picture_and_remembered(self) -> None:
+        self.key("b")
+        self.wait("the twin", lambda s: s["twin"] and not s["overlaid"])
+        self.key("shift+b")
+        self.wait("one picture", lambda s: s["overlaid"])
+        self.press_onto_table()
+        self.wait("standard to drift", lambda s: s["twin_error"] > 0.01 and s["error"] < 1e-3)
+        self.xdotool("mouseup", "1")
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        self.start()
+        self.assertTrue(self.state()["overlaid"])
+
+
+class Video(WindowTest):
+    def test_a_video_is_ordered_in_a_dialog_and_can_be_cancelled(self) -> None:
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        time.sleep(3)
+        self.key("r")
+        self.wait_for_notice("Recorded")
+        self.key("p")
+        self.wait("playback", lambda s: s["playing"])
+        sessions = self.home / "data/limpid/sessions"
+
+        self.key("v")
+        self.wait("the dialog", lambda s: s["dialog"] == "video")
+        self.key("Escape")
+        self.wait("none", lambda s: s["dialog"] == "")
+        self.assertEqual(list(sessions.glob("*.mp4*")), [])
+
+        self.key("v")
+        self.wait("the dialog", lambda s: s["dialog"] == "video")
+        self.key("Return")
+        self.wait("the work", lambda s: s["filming"] and s["dialog"] == "")
+        self.wait("its end", lambda s: not s["filming"], 240)
+        self.wait_for_notice("Wrote")
+        self.assertEqual(len(list(sessions.glob("*.mp4"))), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
