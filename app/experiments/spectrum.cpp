@@ -6,7 +6,7 @@
 
 #include "app/experiments/passivity_trials.h"
 #include "app/experiments/series.h"
-#include "app/experiments/welch.h"
+#include "app/signal/welch.h"
 
 namespace limpid {
 namespace {

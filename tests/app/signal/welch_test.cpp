@@ -1,4 +1,4 @@
-#include "app/experiments/welch.h"
+#include "app/signal/welch.h"
 
 #include <gmock/gmock.h>
 
@@ -74,6 +74,39 @@ TEST(Welch, RefusesASignalShorterThanASegmentAndAnOddOne) {
   EXPECT_THROW(welch(std::vector<double>(99), kRate, 100), std::invalid_argument);
   EXPECT_THROW(welch(std::vector<double>(100), kRate, 99), std::invalid_argument);
   EXPECT_THROW(welch(std::vector<double>(100), kRate, 0), std::invalid_argument);
+}
+
+// The closed form: a sine of amplitude A is a peak of A at its frequency, where that is a whole
+// number of steps, and of half of A beside it; nothing further away.
+TEST(AmplitudeSpectrum, OfASineIsItsAmplitudeAtItsFrequency) {
+  for (const double offset : {0.0, 17.0}) {
+    std::vector<double> x = sine(0.3, 40, 4000);
+    for (double& value : x) value += offset;
+    const AmplitudeSpectrum s = amplitude_spectrum(x, kRate);
+    ASSERT_DOUBLE_EQ(s.step, 0.5) << "three half-overlapping stretches of four seconds";
+    ASSERT_EQ(s.amplitude.size(), 1001u);
+    EXPECT_NEAR(s.amplitude[80], 0.3, 1e-9);
+    EXPECT_NEAR(s.amplitude[79], 0.15, 1e-9);
+    EXPECT_NEAR(s.amplitude[81], 0.15, 1e-9);
+    EXPECT_NEAR(s.amplitude[100], 0, 1e-9);
+    EXPECT_NEAR(s.amplitude[0], 0, 1e-9) << "the mean is taken away";
+  }
+}
+
+TEST(AmplitudeSpectrum, DoesNotDependOnTheLength) {
+  for (const std::size_t length : {400u, 10000u, 100000u}) {
+    const AmplitudeSpectrum s = amplitude_spectrum(sine(2, 125, length), kRate);
+    // Between two steps a Hann window loses 15 % at most.
+    const double peak = *std::ranges::max_element(s.amplitude);
+    EXPECT_GT(peak, 2 * 0.84) << length;
+    EXPECT_LT(peak, 2 * 1.01) << length;
+    EXPECT_GE(s.step, kRate / kLongestSegment) << length;
+  }
+}
+
+TEST(AmplitudeSpectrum, NeedsAFewSamples) {
+  EXPECT_TRUE(amplitude_spectrum(sine(1, 40, kFewestSamples - 1), kRate).empty());
+  EXPECT_FALSE(amplitude_spectrum(sine(1, 40, kFewestSamples), kRate).empty());
 }
 
 }  // namespace

@@ -1,28 +1,41 @@
-#include "app/experiments/welch.h"
+#include "app/signal/welch.h"
 
 #include <fftw3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 namespace limpid {
 namespace {
 
+// FFTW makes and forgets plans for one thread at a time.
+std::mutex& planner() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 struct Free {
   void operator()(void* memory) const { fftw_free(memory); }
-  void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
+  void operator()(fftw_plan plan) const {
+    const std::lock_guard lock(planner());
+    fftw_destroy_plan(plan);
+  }
 };
 
 // Real transform of a fixed length, with its own storage.
 class Transform {
  public:
   explicit Transform(std::size_t length)
-      : in_(fftw_alloc_real(length)),
-        out_(fftw_alloc_complex(length / 2 + 1)),
-        plan_(
-            fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE)) {}
+      : in_(fftw_alloc_real(length)), out_(fftw_alloc_complex(length / 2 + 1)) {
+    const std::lock_guard lock(planner());
+    plan_.reset(
+        fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE));
+  }
 
   double* in() { return in_.get(); }
   void run() { fftw_execute(plan_.get()); }
@@ -80,6 +93,23 @@ Spectrum welch(std::span<const double> signal, double rate, std::size_t segment)
     const double sides = i == 0 || i + 1 == bins ? 1 : 2;
     spectrum.density[i] *= sides / (rate * window_power * static_cast<double>(count));
   }
+  return spectrum;
+}
+
+AmplitudeSpectrum amplitude_spectrum(std::span<const double> signal, double rate) {
+  if (signal.size() < kFewestSamples) return {};
+  // Three halves overlapping fill the stretch; longer ones take more of them, up to its newest end.
+  const std::size_t segment = std::min(kLongestSegment, signal.size() / 4 * 2);
+  const std::size_t half = segment / 2;
+  std::vector<double> swing(signal.end() - static_cast<std::ptrdiff_t>(signal.size() / half * half),
+                            signal.end());
+  const double mean =
+      std::accumulate(swing.begin(), swing.end(), 0.0) / static_cast<double>(swing.size());
+  for (double& x : swing) x -= mean;
+  const Spectrum power = welch(swing, rate, segment);
+  // A sine of power A^2 / 2 is spread over the window's noise bandwidth, 3/2 bins of Hann's.
+  AmplitudeSpectrum spectrum{power.step, power.density};
+  for (double& x : spectrum.amplitude) x = std::sqrt(2 * 1.5 * x * power.step);
   return spectrum;
 }
 

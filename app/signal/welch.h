@@ -19,7 +19,21 @@ struct Spectrum {
 
 // Mean over the half-overlapping stretches of `segment` samples (an even number) that fit, each
 // under a Hann window; nothing is detrended. `rate` [Hz]. Errors: std::invalid_argument if the
-// signal is shorter than a segment. Only from one thread at a time (FFTW's planner).
+// signal is shorter than a segment.
 Spectrum welch(std::span<const double> signal, double rate, std::size_t segment);
+
+// The same by amplitude: a sine of amplitude A stands as A at its frequency, whatever the length,
+// or with up to 15 % less between two steps; amplitude[i] in the signal's unit at i * step.
+struct AmplitudeSpectrum {
+  double step = 0;  // [Hz]
+  std::vector<double> amplitude;
+
+  bool empty() const { return amplitude.empty(); }
+};
+
+// Root mean square over three or more half-overlapping stretches of the signal, less its mean, each
+// of kLongestSegment samples at most. Empty for fewer than kFewestSamples. `rate` [Hz].
+inline constexpr std::size_t kFewestSamples = 64, kLongestSegment = 16384;
+AmplitudeSpectrum amplitude_spectrum(std::span<const double> signal, double rate);
 
 }  // namespace limpid
