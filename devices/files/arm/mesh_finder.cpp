@@ -1,10 +1,9 @@
 #include "devices/files/arm/mesh_finder.h"
 
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
-#include <iterator>
-#include <ranges>
-#include <string_view>
+
+#include "devices/files/arm/search_path.h"
 
 namespace limpid {
 namespace {
@@ -53,16 +52,6 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
   return all;
 }
 
-std::vector<fs::path> paths_of(const char* variable) {
-  std::vector<fs::path> all;
-  const char* value = std::getenv(variable);
-  if (value == nullptr) return all;
-  for (const auto part : std::views::split(std::string_view(value), ':')) {
-    if (std::string_view each(part.begin(), part.end()); !each.empty()) all.emplace_back(each);
-  }
-  return all;
-}
-
 // As ROS crawls: a package has no packages inside.
 void crawl(const fs::path& folder, const std::string& name, int depth, int& left,
            std::vector<fs::path>& found) {
@@ -91,12 +80,12 @@ const std::vector<fs::path>& MeshFinder::packages(const std::string& name) {
       }
     }
   }
-  for (const fs::path& path : paths_of("ROS_PACKAGE_PATH")) {
+  for (const fs::path& path : search_path("ROS_PACKAGE_PATH")) {
     if (is_folder(path / name)) found.push_back(path / name);
     int left = kMostFolders;
     crawl(path, name, 0, left, found);
   }
-  for (const fs::path& path : paths_of("AMENT_PREFIX_PATH")) {
+  for (const fs::path& path : search_path("AMENT_PREFIX_PATH")) {
     found.push_back(path / "share" / name);
   }
   return found;

@@ -9,10 +9,9 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdlib>
-#include <string_view>
 #include <utility>
 
+#include "devices/files/arm/search_path.h"
 #include "devices/files/file_error.h"
 #include "devices/files/text_file.h"
 
@@ -38,13 +37,9 @@ bool has_macros(const std::string& text) {
 }
 
 fs::path find_program(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::string_view left = path == nullptr ? "" : path;
-  while (!left.empty()) {
-    const std::size_t colon = std::min(left.find(':'), left.size());
-    const fs::path file = fs::path(left.substr(0, colon)) / name;
+  for (const fs::path& folder : search_path("PATH")) {
+    const fs::path file = folder / name;
     if (file.is_absolute() && access(file.c_str(), X_OK) == 0) return file;
-    left.remove_prefix(std::min(colon + 1, left.size()));
   }
   return {};
 }

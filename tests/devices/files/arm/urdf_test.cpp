@@ -159,9 +159,9 @@ TEST(Urdf, RefusesWhatIsNoArm) {
        {"x.urdf:4", "a_b", "friction -1"}},
       {link("a") + joint("a", "b") + link("b", ""), {"x.urdf", "<inertial>"}},
       {two + joint("a", "b") + joint("b", "c") + link("c", ""),
-       {"x.urdf:5", "'c'", "inertia 0", "--tip"}},
+       {"x.urdf:6", "'c'", "inertia 0", "--tip"}},
       {two + joint("a", "b") + joint("b", "c", "prismatic") + link("c", ""),
-       {"x.urdf:5", "'c'", "inertia 0"}},
+       {"x.urdf:6", "'c'", "inertia 0"}},
       {two + link("c") +
            joint("a", "b", "revolute", std::string(kLimit) + "<mimic joint='b_c'/>") +
            joint("b", "c"),
