@@ -171,7 +171,8 @@ class Shown {
     if (step == nullptr) return;
     if (step->anew) stage_.history.clear();
     if (step->beside) name_runs(step->names);
-    if (!step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
+    const bool begins = time_at(k) < step->begins + session_.info.tick;  // and not the video in it
+    if (begins && !step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
   }
 
   const Session& session_;

@@ -15,11 +15,19 @@ class Story(WindowTest):
     def play(self) -> dict:
         time.sleep(1)  # the button comes with the second frame
         self.click(*SHOW_ME)
-        return self.wait("the story", lambda s: s["playing"] and s["told"], 120)
+        self.wait("the story", lambda s: s["playing"] and s["told"], 120)
+        return self.first_sentence()
+
+    def first_sentence(self) -> dict:
+        """Again, however late this computer is."""
+        self.key("p")
+        self.key("Home")
+        state = self.wait("the first sentence", lambda s: "One hand" in s["told"])
+        self.key("p")
+        return state
 
     def test_it_plays_is_taken_over_given_back_and_ended(self) -> None:
         first = self.play()
-        self.assertIn("One hand", first["told"])
         self.assertTrue(first["twin"], "two runs beside each other")
         self.wait("its next sentence", lambda s: s["told"] != first["told"], 60)
 
@@ -50,7 +58,8 @@ class Story(WindowTest):
         self.wait("the dialog", lambda s: s["typing"])
         self.type(str(self.home / "data/limpid/sessions/story.h5"))
         self.key("Return")
-        self.wait("its first sentence", lambda s: s["playing"] and "One hand" in s["told"])
+        self.wait("a sentence", lambda s: s["playing"] and s["told"])
+        self.first_sentence()
         pictures = list((self.home / "cache/limpid/thumbnails").glob("*.png"))
         self.assertEqual(len(pictures), 1, "one small picture of one session")
 

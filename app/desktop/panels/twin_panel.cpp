@@ -65,7 +65,17 @@ void draw_twin(const Stage& stage, std::span<const double> first, std::span<cons
                               Line{"|f1| N m", Channel::human, 1, 1e-3},
                               Line{"|f2| N m", Channel::contact, 1, 1e-3},
                               Line{"E_c mJ", Channel::energy_total, 1e3, 0.01}};
-  if (ImGui::BeginTable("twin", 4, ImGuiTableFlags_SizingStretchProp)) {
+  if (ImGui::BeginTable("twin", 4)) {
+    ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch);
+    for (const char* widest : {"\xE2\x88\x92"
+                               "8888.8",
+                               "\xE2\x88\x92"
+                               "8888.8 ",
+                               "\xC3\x97"
+                               "0.888"}) {
+      ImGui::TableSetupColumn(widest, ImGuiTableColumnFlags_WidthFixed,
+                              ImGui::CalcTextSize(widest).x);
+    }
     for (const Line& line : kLines) {
       const auto i = static_cast<std::size_t>(line.channel);
       const double x = line.factor * a[i], y = line.factor * b[i];

@@ -167,23 +167,23 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     magnifier_.hide();
   }
   draw_signs(scene, view, camera, settings, *drawn_);
-  if (!scene.split()) {
-    draw_told(scene.told, rect, *ImGui::GetBackgroundDrawList());
-    return;
-  }
-  const ScreenRect right = half_of(rect, true);
-  const ViewState twin = twin_of(scene, settings);
-  paint(twin, right, SceneView::Sheet::beside);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
-                     colour(current_palette().backdrop));
-  list.PushClipRect(right.min, right.max);
-  draw_gap(twin, camera, right, list);
-  list.PopClipRect();
-  list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
-                     colour(current_palette().border));
-  draw_run_name(scene.names.first, *drawn_, list);
-  draw_run_name(scene.names.second, right, list);
+  float below_names = 0;
+  if (scene.split()) {
+    const ScreenRect right = half_of(rect, true);
+    const ViewState twin = twin_of(scene, settings);
+    paint(twin, right, SceneView::Sheet::beside);
+    list.PushClipRect(right.min, right.max);
+    draw_gap(twin, camera, right, list);
+    list.PopClipRect();
+    list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+                       colour(current_palette().border));
+    draw_run_name(scene.names.first, *drawn_, list);
+    draw_run_name(scene.names.second, right, list);
+    below_names = 2.2f * font(Face::semibold)->FontSize;
+  }
+  draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max,
+                      legend_of(view, scene));
   draw_told(scene.told, rect, list);
 }
 
@@ -198,9 +198,6 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   }
   draw_gap(view, camera, rect, list, scene.split() ? RunNames() : scene.names);
   magnifier_.draw_frame(view, camera, list);
-  const float below_name = scene.split() ? 2.2f * font(Face::semibold)->FontSize : 0;
-  draw_picture_legend(list, {rect.min.x, rect.min.y + below_name}, rect.max,
-                      legend_of(view, scene));
   if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
     draw_hint(scene.pad, rect, list);
   list.PopClipRect();

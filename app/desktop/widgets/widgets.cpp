@@ -11,6 +11,9 @@
 namespace limpid {
 
 void begin_panel(const char* name, ScreenRect rect) {
+  // Behind its round corners.
+  ImGui::GetBackgroundDrawList()->AddRectFilled(rect.min, rect.max,
+                                                colour(current_palette().backdrop));
   ImGui::SetNextWindowPos(rect.min);
   ImGui::SetNextWindowSize(rect.size());
   ImGui::Begin(name, nullptr,
