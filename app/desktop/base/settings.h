@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/plot_choice.h"
 #include "core/tick/parameters.h"
 #include "render/theme.h"
 
@@ -35,7 +36,8 @@ struct Settings {
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]
   std::string device, scene;                  // files; empty: the default
-  std::vector<std::string> recent;            // recordings and scenes, the newest first
+  std::vector<PlotChoice> plot_choices = default_plots();
+  std::vector<std::string> recent;  // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {
     Parameters p;

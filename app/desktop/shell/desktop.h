@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/desktop/base/named_texts.h"
 #include "app/desktop/desk/device_desk.h"
 #include "app/desktop/document/document.h"
 #include "app/desktop/playback/playback.h"
@@ -61,6 +62,18 @@ class Desktop {
   // Who has the keys at this moment.
   Focus focus() const;
 
+  // Plots of the settings: a new one, or what one shows, is chosen in a dialog.
+  void add_plot();
+  void choose_plot(std::size_t plot);
+  std::size_t chosen_plot() const { return chosen_plot_; }
+  void remove_plot(std::size_t plot);
+
+  // Layouts of plots and panels, presets of the settings that edited() has.
+  NamedTexts& layouts() { return layouts_; }
+  NamedTexts& presets() { return presets_; }
+  void use_layout(const std::string& name);
+  void use_preset(const std::string& name);
+
   void toggle_coupling();
   void toggle_twin();
   void cut_force();
@@ -115,6 +128,8 @@ class Desktop {
   const StoryStep* step_ = nullptr;  // of the story, that the camera knows
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
+  NamedTexts layouts_, presets_;
+  std::size_t chosen_plot_ = 0;
   std::string device_file_;
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know

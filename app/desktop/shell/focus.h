@@ -13,10 +13,13 @@ enum class Dialog : std::uint8_t {
   help,
   about,
   experiments,
+  plot,
   open_session,
   gallery,
   add_model,
   save_scene,
+  layouts,
+  presets,
 };
 const char* name(Dialog dialog);
 // One that asks something: nothing behind it acts meanwhile.

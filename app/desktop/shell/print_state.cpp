@@ -9,6 +9,17 @@ namespace limpid {
 
 namespace {
 
+nlohmann::json plots_of(const Stage& stage) {
+  nlohmann::json plots = nlohmann::json::array();
+  for (const Plot& plot : stage.plots) {
+    nlohmann::json curves = nlohmann::json::array();
+    for (const Curve& curve : plot.spec().curves) curves.push_back(curve.label);
+    plots.push_back(
+        {{"title", plot.spec().title}, {"kind", name(plot.spec().kind)}, {"curves", curves}});
+  }
+  return plots;
+}
+
 // |x_E| of the twin, 0 without one [rad].
 double twin_error(const Desktop& d) {
   const TraceChannels& channels = d.shown().channels();
@@ -43,7 +54,8 @@ void print_state(Desktop& d, int width, int height) {
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
-      "\"typing\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": {:.6f}, \"size\": [{}, "
+      "\"typing\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, \"twin_error\": {:.6f}, "
+      "\"size\": [{}, "
       "{}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
@@ -55,7 +67,8 @@ void print_state(Desktop& d, int width, int height) {
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      notices.dump(), !d.twin_row().empty(), twin_error(d), width, height);
+      notices.dump(), plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), width,
+      height);
   std::fflush(stdout);
 }
 
