@@ -8,6 +8,7 @@
 
 #include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
+#include "app/plot/plot_row.h"
 #include "app/style/picture_legend.h"
 
 namespace limpid {
@@ -131,16 +132,17 @@ void FilmFrame::draw_plots(const ScreenRect& rect, Stage& stage) const {
   stage.group.begin_frame(stage.history, stage.history.end_time());
   const auto fitting =
       static_cast<std::size_t>(std::max(1.0f, rect.width() / (kPlotWidth * scale_)));
-  const std::size_t shown = std::min(stage.plots.size(), fitting);
-  const auto count = static_cast<float>(shown);
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 room = ImGui::GetContentRegionAvail();
-  const ImVec2 size((room.x - gap * (count - 1)) / count, room.y);
-  for (std::size_t i = 0; i < shown; ++i) {
-    if (i > 0) ImGui::SameLine();
+  std::vector<PlotKind> kinds;
+  for (const Plot& plot : stage.plots) kinds.push_back(plot.spec().kind);
+  kinds.resize(std::min(kinds.size(), fitting));
+  const ImVec2 origin = ImGui::GetCursorPos(), room = ImGui::GetContentRegionAvail();
+  const PlotPlaces at = place_plots(kinds, room, ImGui::GetStyle().ItemSpacing.x, scale_);
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const ScreenRect& place = at.places[i];
+    ImGui::SetCursorPos({origin.x + place.min.x, origin.y + place.min.y});
     // Nobody can click on the legend to have them back.
     std::erase_if(stage.plots[i].spec().curves, [](const Curve& c) { return !c.visible; });
-    stage.plots[i].draw(stage.history, stage.group, size);
+    stage.plots[i].draw(stage.history, stage.group, place.size());
   }
   ImGui::End();
 }

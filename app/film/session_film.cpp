@@ -143,18 +143,9 @@ class Shown {
     if (!session_.twin || !order_.steps.empty()) return;
     name_runs(twin_names(runs_[0].parameters, runs_[1].parameters));
   }
-  // Of two runs the plots show what a sentence can say: no estimate, no second energy.
+  // Of two runs the plots show what a sentence can say.
   void name_runs(const std::array<std::string, 2>& names) {
     stage_.name_runs({names[0], names[1], true});
-    const int one = stage_.channels().count();
-    for (Plot& plot : stage_.plots) {
-      for (Curve& curve : plot.spec().curves) {
-        const auto channel = static_cast<Channel>(curve.channel % one);
-        if (channel == Channel::energy_commanded || channel == Channel::human_estimate) {
-          curve.visible = false;
-        }
-      }
-    }
   }
   double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
 

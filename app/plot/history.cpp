@@ -20,7 +20,7 @@ History::History(const Options& options) : tick_(options.tick) {
     throw std::invalid_argument("history: channels, seconds and tick must be positive");
   }
   const auto rows = static_cast<std::size_t>(std::ceil(options.seconds / options.tick)) + 1;
-  rings_.assign(static_cast<std::size_t>(options.channels), MinMaxRing(rows));
+  for (int i = 0; i < options.channels; ++i) rings_.emplace_back(rows);
   times_.resize(rings_.front().capacity());
 }
 

@@ -1,19 +1,32 @@
 #include "app/plot/min_max_ring.h"
 
 namespace limpid {
+namespace {
+
+template <class T>
+void put(std::vector<T>& ring, std::size_t at, const T& value) {
+  if (at < ring.size()) {
+    ring[at] = value;
+  } else {
+    ring.push_back(value);
+  }
+}
+
+}  // namespace
 
 MinMaxRing::MinMaxRing(std::size_t at_least) {
   const std::size_t blocks =
       std::max<std::size_t>((at_least + kLargestBlock - 1) / kLargestBlock, 1);
-  samples_.resize(blocks * kLargestBlock);
+  capacity_ = blocks * kLargestBlock;
+  samples_.reserve(capacity_);
   for (int level = 1; level <= kLevels; ++level) {
-    blocks_[static_cast<std::size_t>(level - 1)].resize(capacity() >> (kFanBits * level));
+    blocks_[static_cast<std::size_t>(level - 1)].reserve(capacity() >> (kFanBits * level));
   }
 }
 
 void MinMaxRing::append(float sample) {
   std::size_t at = static_cast<std::size_t>(end_ - lap_);
-  samples_[at] = sample;
+  put(samples_, at, sample);
   for (std::size_t level = 0; level < kLevels && at % kFan == kFan - 1; ++level) {
     const std::size_t child = at - (kFan - 1);
     Extent extent;
@@ -25,7 +38,7 @@ void MinMaxRing::append(float sample) {
       }
     }
     at /= kFan;
-    blocks_[level][at] = extent;
+    put(blocks_[level], at, extent);
   }
   ++end_;
   if (end_ - lap_ == capacity()) lap_ = end_;

@@ -29,7 +29,7 @@ class MinMaxRing {
   void append(float sample);
   void clear() { end_ = lap_ = 0; }
 
-  std::size_t capacity() const { return samples_.size(); }
+  std::size_t capacity() const { return capacity_; }
   SampleIndex first() const { return end_ > capacity() ? end_ - capacity() : 0; }
   SampleIndex end() const { return end_; }
 
@@ -49,6 +49,8 @@ class MinMaxRing {
   }
   void include(Extent& extent, SampleIndex index, int level) const;
 
+  std::size_t capacity_;
+  // Their memory is taken at once, and touched only as samples come.
   std::vector<float> samples_;
   std::array<std::vector<Extent>, kLevels> blocks_;
   SampleIndex end_ = 0;

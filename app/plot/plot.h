@@ -1,4 +1,4 @@
-// One quantity over time, drawn with ImGui: curves, axes, legend, read-out and what the mouse does.
+// Channels of a history, drawn with ImGui: curves, axes, legend, read-out and what the mouse does.
 #pragma once
 
 #include <optional>
@@ -15,16 +15,20 @@ namespace limpid {
 struct PlotEvents {
   std::optional<double> playback;    // dragged here [s on the history's axis]
   std::optional<PlotNotice> notice;  // also shown in the plot itself
+  PlotWish wish = PlotWish::none;    // one of those that only the plots' owner can fulfil
 };
 
-// Mouse: drag pans, wheel zooms time, Ctrl+wheel or the wheel over the value axis zooms values,
-// double click fits, right click opens the menu, a click on the legend hides or shows a curve.
+// Mouse: drag pans, wheel zooms along the horizontal axis, Ctrl+wheel or the wheel over the value
+// axis zooms values, double click fits, right click opens the menu, a click on the legend hides or
+// shows a curve. Over another channel the wheel zooms both axes.
 class Plot {
  public:
   explicit Plot(PlotSpec spec) : spec_(std::move(spec)) {}
 
   PlotSpec& spec() { return spec_; }
   const PlotSpec& spec() const { return spec_; }
+  // From now on, with the limits that there are where that makes sense.
+  void show(PlotSpec spec);
 
   // Draws at ImGui's cursor, `size` [px]; needs PlotGroup::begin_frame() once before.
   PlotEvents draw(const History& history, PlotGroup& group, ImVec2 size,
@@ -32,29 +36,50 @@ class Plot {
 
   // Back to limits that follow the data.
   void fit_values();
+  // As if its menu had been asked for it, with the next draw().
+  void ask(PlotWish wish) { asked_ = wish; }
 
  private:
   enum class Drag { none, pan, values, playback };
 
-  PlotFrame lay_out(const History& history, const PlotGroup& group, ImVec2 size);
+  // A value axis: where it is, and whether it moves with the data.
+  struct ValueAxis {
+    Limits limits;
+    Autoscale autoscale;
+    bool follows = true;
+
+    void fit();
+    // Scales by `factor` around a part of the axis.
+    void zoom(double factor, double part);
+    void pan(double parts);
+  };
+
+  PlotFrame lay_out(const History& history, const PlotGroup& group, ImVec2 size, bool menu);
   void follow_data(const History& history, const PlotGroup& group);
-  void choose_unit();
-  void handle_mouse(const PlotFrame& frame, PlotGroup& group, PlotEvents& events);
+  void follow_values(ValueAxis& axis, const PlotAxis& spec, Extent data);
+  void follow_spectra(const History& history, const PlotGroup& group);
+  void handle_mouse(const PlotFrame& frame, const History& history, PlotGroup& group,
+                    PlotEvents& events);
+  void point_at(const PlotFrame& frame, const History& history, PlotGroup& group, ImVec2 mouse);
   void handle_wheel(const PlotFrame& frame, PlotGroup& group);
   void handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& events);
-  void zoom_values(double factor, double around);
+  void pan(const PlotFrame& frame, PlotGroup& group, ImVec2 by);
   void draw_curves(const PlotFrame& frame, const History& history);
+  void draw_inside(const PlotFrame& frame, const History& history, const PlotGroup& group,
+                   ImVec2 mouse);
+  void draw_what_is_pointed_at(const PlotFrame& frame, const History& history,
+                               const PlotGroup& group, ImVec2 mouse);
   float draw_title(ImDrawList& list, const ScreenRect& outer, float scale) const;
+  PlotWish open_menu(const PlotSaving& saving);
   void handle_menu(const PlotFrame& frame, const History& history, PlotGroup& group,
                    const PlotSaving& saving, PlotEvents& events);
   void save_png_when_due(const PlotFrame& frame, const PlotSaving& saving);
   void tell(PlotNotice notice, PlotEvents& events);
   void draw_latest_notice(const PlotFrame& frame);
+  bool over_time() const { return spec_.kind == PlotKind::time; }
 
   PlotSpec spec_;
-  Limits y_;
-  Autoscale autoscale_;
-  bool values_follow_ = true;
+  ValueAxis x_, y_;       // x_: over another channel or frequencies
   double run_start_ = 0;  // of the run that the limits follow [s]
   Drag drag_ = Drag::none;
   PlotLegend legend_;
@@ -62,6 +87,10 @@ class Plot {
   bool hovered_ = false;
   std::vector<SampleIndex> rows_;
   std::vector<Trace> traces_;
+  std::vector<AmplitudeSpectrum> spectra_;  // one for each curve
+  double spectra_start_ = 0, spectra_stop_ = 0, spectra_due_ = 0;
+  ScreenRect menu_button_{};
+  PlotWish asked_ = PlotWish::none;
   int frames_until_png_ = 0;
   std::optional<PlotNotice> notice_;
   double notice_until_ = 0;  // ImGui's time [s]

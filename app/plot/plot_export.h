@@ -4,33 +4,32 @@
 #include <string>
 #include <vector>
 
-#include "app/plot/autoscale.h"
+#include "app/plot/axis_map.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
 
 namespace limpid {
 
-// Rows of a history, to be written whatever becomes of the history: visible curves only, in the
-// plot's unit, over start <= time <= stop, times without the history's offset.
+// What a plot shows, to be written whatever becomes of the history: visible curves only, in the
+// plot's unit, over start <= time <= stop, times without the history's offset. Of a spectrum the
+// frequencies stand in place of times.
 struct PlotTable {
+  std::string first = "time [s]";
   std::vector<std::string> columns;  // "label [unit]"
-  std::vector<double> times;         // [s]
+  std::vector<double> times;         // [s], or [Hz]
   std::vector<double> values;        // a row after the other
 };
 PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop);
-
-// How many rows it would have.
-std::size_t plot_table_rows(const History& history, double start, double stop);
 
 // Header "time [s],label [unit],..." and a line for each row. What is not a number is left empty.
 std::string csv_text(const PlotTable& table);
 
 // A complete SVG document, `width` x `height` [px], of the visible curves over [start, stop] and
-// `y` in the channels' unit; light colours, for paper.
+// `y` in the channels' unit; over other things than time on `x`. Light colours, for paper.
 struct PlotPicture {
   double start;
   double stop;
-  Limits y;
+  AxisMap x, y;
   int width = 720;
   int height = 360;
 };

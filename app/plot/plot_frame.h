@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,19 +33,22 @@ struct PlotFrame {
   ImDrawList& list;
   const Palette& palette;
   float scale;
-  ScreenRect outer;  // the whole plot
-  ScreenRect area;   // where the curves are
-  PixelWindow window;
-  Limits y;  // in the channels' unit
+  ScreenRect outer;    // the whole plot
+  ScreenRect area;     // where the curves are
+  PixelWindow window;  // the stretch of time
+  AxisMap x;           // over time, the window
+  AxisMap y;           // in the channels' unit
 
-  float x_of(double time) const { return area.min.x + static_cast<float>(window.pixel(time)); }
-  float y_of(double value) const {
-    const double up = (value - y.low) / y.span() * area.height();
-    return static_cast<float>(std::clamp(area.max.y - up, -1e5, 1e5));
+  float x_of(double value) const {
+    return area.min.x + static_cast<float>(std::clamp(x.part(value) * area.width(), -1e5, 1e5));
   }
-  double time_at(float x) const { return window.time(x - area.min.x); }
-  double value_at(float y_pixel) const {
-    return y.low + (area.max.y - y_pixel) / area.height() * y.span();
+  float y_of(double value) const {
+    return area.max.y - static_cast<float>(std::clamp(y.part(value) * area.height(), -1e5, 1e5));
+  }
+  double x_at(float pixel) const { return x.value((pixel - area.min.x) / area.width()); }
+  double y_at(float pixel) const { return y.value((area.max.y - pixel) / area.height()); }
+  TraceArea trace_area() const {
+    return {x, y, static_cast<int>(area.width()), static_cast<int>(area.height())};
   }
 };
 
@@ -57,7 +61,7 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
 
 // Grid, labels and unit scaling of both axes; `time_offset` is subtracted from the labels [s].
 void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset);
-// Tints the spec's band: once `rows` are those of the frame's pixels.
+// Tints the spec's bands: once `rows` are those of the frame's pixels.
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows);
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
@@ -66,12 +70,31 @@ void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse);
 // `emphasis` below 1 fades the curve, above 1 thickens it.
 void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis);
 
-// The line at `time` with a dot on every visible curve, and the values in a box beside it.
+// The values at the right end of the curves over time, in their colours, in the margin beside the
+// area; and how wide that margin has to be.
+float end_label_width();
+void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history);
+
+// Over time: the line at `time` with a dot on every visible curve, and the values in a box beside
+// it. Over another channel: the dots and the box.
 void draw_read_out(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                    double time, ImVec2 near_to);
+// The same of spectra, one for each curve, at a frequency [Hz].
+void draw_spectrum_read_out(const PlotFrame& frame, const PlotSpec& spec,
+                            const std::vector<AmplitudeSpectrum>& spectra, double frequency,
+                            ImVec2 near_to);
+// Over another channel: where the curves are at `time`.
+void draw_present(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                  double time);
+// Over another channel: the time of the row closest to the mouse, if one is near.
+std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
+                                const History& history, ImVec2 mouse);
 
 // A line that can be dragged, with a handle on top.
 void draw_playback(const PlotFrame& frame, double time, bool held);
+
+// Three dots that open the menu; nothing where the button has no height.
+void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at);
 
 // A short message at the bottom.
 void draw_notice(const PlotFrame& frame, const std::string& text, bool bad, float alpha);

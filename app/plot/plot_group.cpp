@@ -1,6 +1,7 @@
 #include "app/plot/plot_group.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace limpid {
 namespace {
@@ -15,8 +16,8 @@ void PlotGroup::begin_frame(const History& history, std::optional<double> playba
   data_stop_ = history.end_time();
   shortest_ = kShortestTicks * history.tick();
   playback_ = playback;
-  hovered_ = hovering_;
-  hovering_.reset();
+  hovered_ = std::exchange(hovering_, std::nullopt);
+  hovered_frequency_ = std::exchange(hovering_frequency_, std::nullopt);
   const double earliest_stop = data_start_ + length_;
   if (following_ && playback_) {
     const double wanted = *playback_ + (1 - kPlaybackPlace) * length_;

@@ -40,6 +40,9 @@ class PlotGroup {
   // Under the mouse, in any of the plots.
   std::optional<double> hovered() const { return hovered_; }
   void hover(double time) { hovered_ = hovering_ = time; }
+  // The same in spectra [Hz].
+  std::optional<double> hovered_frequency() const { return hovered_frequency_; }
+  void hover_frequency(double f) { hovered_frequency_ = hovering_frequency_ = f; }
 
  private:
   double fitted_length_;
@@ -52,6 +55,7 @@ class PlotGroup {
   std::optional<double> playback_;
   std::optional<double> hovered_;
   std::optional<double> hovering_;  // said during this frame, for plots drawn earlier in the next
+  std::optional<double> hovered_frequency_, hovering_frequency_;
 };
 
 }  // namespace limpid

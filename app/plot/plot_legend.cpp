@@ -13,10 +13,7 @@ void draw_swatch(const PlotFrame& frame, const ScreenRect& entry, const Curve& c
   const float s = frame.scale;
   const ImU32 rgba = colour(ink(frame.palette, curve.ink, curve.shade), alpha);
   const float y = std::round(0.5f * (entry.min.y + entry.max.y));
-  const float dash = curve.dashed ? 4 * s : kSwatch * s;
-  for (float x = 0; x < kSwatch * s; x += 1.25f * dash) {
-    frame.list.AddRectFilled({entry.min.x + x, y - s}, {entry.min.x + x + dash, y + s}, rgba, s);
-  }
+  frame.list.AddRectFilled({entry.min.x, y - s}, {entry.min.x + kSwatch * s, y + s}, rgba, s);
 }
 
 }  // namespace

@@ -26,11 +26,11 @@ std::filesystem::path save_text(const std::filesystem::path& file, const std::st
 }
 
 PlotNotice copy_csv(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
-  const std::size_t rows = plot_table_rows(history, picture.start, picture.stop);
+  const PlotTable table = plot_table(spec, history, picture.start, picture.stop);
+  const std::size_t rows = table.times.size();
   if (rows > kMostRowsToCopy) {
     return {fmt::format("{} rows are too many for the clipboard; save as CSV instead", rows), true};
   }
-  const PlotTable table = plot_table(spec, history, picture.start, picture.stop);
   ImGui::SetClipboardText(csv_text(table).c_str());
   return {fmt::format("Copied {} rows", rows)};
 }
@@ -48,8 +48,14 @@ PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
 
 }  // namespace
 
-PlotWish plot_menu_items(bool png_offered) {
+PlotWish plot_menu_items(bool png_offered, bool arranged) {
   PlotWish wish = PlotWish::none;
+  if (arranged) {
+    if (ImGui::MenuItem("Channels and name...")) wish = PlotWish::choose;
+    if (ImGui::MenuItem("Add a plot...", "N")) wish = PlotWish::add;
+    if (ImGui::MenuItem("Remove this plot")) wish = PlotWish::remove;
+    ImGui::Separator();
+  }
   if (ImGui::MenuItem("Copy as CSV")) wish = PlotWish::copy_csv;
   if (ImGui::MenuItem("Save as CSV")) wish = PlotWish::save_csv;
   if (png_offered && ImGui::MenuItem("Save as PNG")) wish = PlotWish::save_png;

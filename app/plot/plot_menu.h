@@ -27,12 +27,15 @@ struct PlotSaving {
   // Does work on a file that may take its time somewhere else, and says what became of it. Without
   // it that is done, and said, at once.
   std::function<void(std::function<PlotNotice()> work)> beside;
+
+  // Whoever draws the plots lets their channels be chosen, and plots be added and removed.
+  bool arranged = false;
 };
 
-enum class PlotWish { none, copy_csv, save_csv, save_svg, save_png, fit };
+enum class PlotWish { none, copy_csv, save_csv, save_svg, save_png, fit, choose, add, remove };
 
 // The items of the context menu inside an open pop-up; says what was chosen.
-PlotWish plot_menu_items(bool png_offered);
+PlotWish plot_menu_items(bool png_offered, bool arranged);
 
 // First free "folder/name-001.extension". Creates the folder. Throws std::runtime_error naming it
 // when that is not possible.

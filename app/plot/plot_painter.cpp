@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/plot/plot_frame.h"
 #include "app/style/ticks.h"
@@ -21,16 +22,6 @@ void dashed_line(const PlotFrame& frame, ImVec2 from, ImVec2 to, ImU32 rgba, flo
   }
 }
 
-void level_line(const PlotFrame& frame, float y, ImU32 rgba, float thickness = 1) {
-  const float at = std::round(y);
-  frame.list.AddRectFilled({frame.area.min.x, at}, {frame.area.max.x, at + thickness}, rgba);
-}
-
-void upright_line(const PlotFrame& frame, float x, ImU32 rgba, float thickness = 1) {
-  const float at = std::round(x);
-  frame.list.AddRectFilled({at, frame.area.min.y}, {at + thickness, frame.area.max.y}, rgba);
-}
-
 // Text over curves, readable through a veil of the background.
 void draw_backed_text(const PlotFrame& frame, ImVec2 at, Rgb rgb, const std::string& text,
                       float veil) {
@@ -39,48 +30,6 @@ void draw_backed_text(const PlotFrame& frame, ImVec2 at, Rgb rgb, const std::str
   frame.list.AddRectFilled({at.x - pad, at.y}, {at.x + size.x + pad, at.y + size.y},
                            colour(frame.palette.panel, veil), pad);
   draw_text(frame.list, Face::small, at, rgb, text);
-}
-
-void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
-  const float text_height = text_size(Face::small, "0").y;
-  const Limits shown{frame.y.low * spec.factor, frame.y.high * spec.factor};
-  const int most = std::max(2, static_cast<int>(frame.area.height() / (2.0f * text_height)));
-  const Ticks ticks = nice_ticks(shown.low, shown.high, most);
-  const int exponent = common_exponent(shown.low, shown.high);
-  for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-    const float y = frame.y_of(ticks.at(i) / spec.factor);
-    level_line(frame, y, colour(frame.palette.grid));
-    const std::string label = tick_text(ticks.at(i), ticks.step, exponent);
-    const ImVec2 size = text_size(Face::small, label);
-    // Pushed inwards at the ends rather than cut off or left out.
-    const float middle = y - 0.5f * size.y;
-    const float top = std::clamp(middle, frame.area.min.y - 3, frame.area.max.y + 3 - size.y);
-    if (std::abs(top - middle) > 0.6f * size.y) continue;
-    draw_text(frame.list, Face::small, {frame.area.min.x - size.x - 6 * frame.scale, top},
-              frame.palette.muted, label);
-  }
-}
-
-void draw_time_axis(const PlotFrame& frame, double time_offset) {
-  const double low = frame.window.start() - time_offset;
-  const double high = frame.window.stop() - time_offset;
-  const bool clock = std::max(std::abs(low), std::abs(high)) >= 60;
-  const double step_guess = nice_step(high - low, 8);
-  const ImVec2 widest = text_size(Face::small, time_text(-std::abs(high), step_guess, clock));
-  const int most = std::max(1, static_cast<int>(frame.area.width() / (1.9f * widest.x)));
-  const Ticks ticks = time_ticks(low, high, most);
-  for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-    const float x = frame.x_of(ticks.at(i) + time_offset);
-    upright_line(frame, x, colour(frame.palette.grid));
-    const std::string label = time_text(ticks.at(i), ticks.step, clock);
-    const ImVec2 size = text_size(Face::small, label);
-    // Pushed inwards at the ends rather than cut off or left out.
-    const float left =
-        std::clamp(x - 0.5f * size.x, frame.area.min.x - 0.3f * size.x, frame.outer.max.x - size.x);
-    if (std::abs(left + 0.5f * size.x - x) > 0.4f * size.x) continue;
-    draw_text(frame.list, Face::small, {left, frame.area.max.y + 4 * frame.scale},
-              frame.palette.muted, label);
-  }
 }
 
 }  // namespace
@@ -108,15 +57,6 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
   }
   draw_text(list, face, at, rgb, shown);
   return text_size(face, shown).x;
-}
-
-void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset) {
-  draw_time_axis(frame, time_offset);
-  draw_value_axis(frame, spec);
-  const float zero = frame.y_of(0);
-  if (spec.zero_line && zero >= frame.area.min.y && zero <= frame.area.max.y) {
-    level_line(frame, zero, colour(frame.palette.axis));
-  }
 }
 
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
@@ -167,26 +107,59 @@ void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse) {
   }
 }
 
+namespace {
+
+// One stretch after the other in which the band's channel says the same, as it does at its end.
+void draw_band(const PlotFrame& frame, const Band& band, const History& history,
+               const std::vector<SampleIndex>& rows) {
+  const auto most = static_cast<int>(band.names.size()) - 1;
+  const auto at = [&](std::size_t pixel) {
+    if (rows[pixel] >= rows[pixel + 1]) return -1;
+    const Extent said = history.extent(band.channel, rows[pixel], rows[pixel + 1]);
+    return said.empty() ? -1 : std::min(static_cast<int>(said.high + 0.5f), most);
+  };
+  float free_from = frame.area.min.x;
+  int before = -1;
+  for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
+    const int now = at(pixel);
+    if (now < 0) continue;
+    const float left = frame.area.min.x + static_cast<float>(pixel);
+    while (pixel + 2 < rows.size() && at(pixel + 1) == now) ++pixel;
+    const float right = frame.area.min.x + static_cast<float>(pixel) + 1;
+    const float tint = band.tint * static_cast<float>(now) / static_cast<float>(std::max(1, most));
+    frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                             colour(frame.palette.accent, tint));
+    const std::string& name = band.names[static_cast<std::size_t>(now)];
+    const ImVec2 label = text_size(Face::small, name);
+    const float x = std::min(left, frame.area.max.x - label.x) + 2 * frame.scale;
+    if (name.empty() || std::exchange(before, now) == now || x < free_from) continue;
+    draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.75f);
+    free_from = x + label.x + 12 * frame.scale;
+  }
+}
+
+}  // namespace
+
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows) {
-  if (spec.band_channel < 0 || history.empty()) return;
-  const auto inside = [&](std::size_t pixel) {
-    return rows[pixel] < rows[pixel + 1] &&
-           history.extent(spec.band_channel, rows[pixel], rows[pixel + 1]).high > 0.5f;
-  };
-  const ImVec2 label = text_size(Face::small, spec.band_label);
-  float free_from = frame.area.min.x;
-  for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
-    if (!inside(pixel)) continue;
-    const float left = frame.area.min.x + static_cast<float>(pixel);
-    while (pixel + 2 < rows.size() && inside(pixel + 1)) ++pixel;
-    const float right = frame.area.min.x + static_cast<float>(pixel) + 1;
-    frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
-                             colour(frame.palette.accent, 0.13f));
-    const float at = std::min(left, frame.area.max.x - label.x) + 2 * frame.scale;
-    if (at < free_from) continue;
-    draw_backed_text(frame, {at, frame.area.min.y}, frame.palette.muted, spec.band_label, 0.75f);
-    free_from = at + label.x + 12 * frame.scale;
+  if (history.empty()) return;
+  for (const Band& band : spec.bands) {
+    const Extent said = history.extent(band.channel, rows.front(), rows.back());
+    const bool changes = said.low < said.high;
+    if (changes || band.names.front().empty()) draw_band(frame, band, history, rows);
+  }
+}
+
+void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {
+  if (button.height() <= 0) return;
+  const float s = frame.scale;
+  if (pointed_at) {
+    frame.list.AddRectFilled(button.min, button.max, colour(frame.palette.frame_hovered), 4 * s);
+  }
+  const ImU32 rgba = colour(pointed_at ? frame.palette.text : frame.palette.muted);
+  const float x = 0.5f * (button.min.x + button.max.x), y = 0.5f * (button.min.y + button.max.y);
+  for (const float at : {-5.0f, 0.0f, 5.0f}) {
+    frame.list.AddCircleFilled({x + at * s, y}, 1.6f * s, rgba);
   }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "app/plot/plot_frame.h"
@@ -6,21 +7,31 @@
 namespace limpid {
 namespace {
 
+constexpr float kReach = 30;  // from the mouse to what it points at [px]
+
 struct Line {
   std::string label;
   std::string value;
   Rgb rgb;
-  float value_y;  // on the screen
+  ImVec2 at;  // on the screen
 };
 
 // As many digits as the screen can show, not as many as the number has.
-std::string value_text(const PlotFrame& frame, const PlotSpec& spec, double value) {
-  const double resolution = std::abs(spec.factor) * frame.y.span() / 1000;
-  const int exponent = common_exponent(frame.y.low * spec.factor, frame.y.high * spec.factor);
+std::string number_text(const PlotAxis& axis, const AxisMap& map, double value) {
+  if (map.log) return three_digits(value * axis.factor);
+  const double resolution = std::abs(axis.factor) * map.limits.span() / 1000;
+  const int exponent = common_exponent(map.limits.low * axis.factor, map.limits.high * axis.factor);
   const double unit = std::pow(10.0, exponent);
-  std::string text = fixed_text(value * spec.factor / unit, decimals_of(resolution / unit));
-  if (exponent != 0) text += exponent_text(exponent);
-  return text + " " + spec.unit;
+  const std::string text = fixed_text(value * axis.factor / unit, decimals_of(resolution / unit));
+  return exponent != 0 ? text + exponent_text(exponent) : text;
+}
+
+std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
+  return number_text(axis, map, value) + " " + axis.unit;
+}
+
+Rgb ink_of(const PlotFrame& frame, const Curve& curve) {
+  return ink(frame.palette, curve.ink, curve.shade);
 }
 
 std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
@@ -30,10 +41,31 @@ std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
     if (!curve.visible) continue;
     const double value = history.value(curve.channel, row);
     if (!std::isfinite(value)) continue;
-    lines.push_back({curve.label, value_text(frame, spec, value),
-                     ink(frame.palette, curve.ink, curve.shade), frame.y_of(value)});
+    std::string text = value_text(spec.y, frame.y, value);
+    float x = frame.x_of(history.time(row));
+    if (curve.across >= 0) {
+      const double across = history.value(curve.across, row);
+      if (!std::isfinite(across)) continue;
+      x = frame.x_of(across);
+      text += ", " + value_text(spec.x, frame.x, across);
+    }
+    lines.push_back({curve.label, std::move(text), ink_of(frame, curve), {x, frame.y_of(value)}});
   }
   return lines;
+}
+
+void draw_dots(const PlotFrame& frame, const std::vector<Line>& lines) {
+  for (const Line& line : lines) {
+    if (line.at.y < frame.area.min.y || line.at.y > frame.area.max.y) continue;
+    if (line.at.x < frame.area.min.x || line.at.x > frame.area.max.x) continue;
+    frame.list.AddCircleFilled(line.at, 4 * frame.scale, colour(frame.palette.panel));
+    frame.list.AddCircleFilled(line.at, 2.8f * frame.scale, colour(line.rgb));
+  }
+}
+
+void draw_line_at(const PlotFrame& frame, float x) {
+  frame.list.AddRectFilled({x, frame.area.min.y}, {x + 1, frame.area.max.y},
+                           colour(frame.palette.text, 0.45f));
 }
 
 void draw_box(const PlotFrame& frame, const std::string& title, const std::vector<Line>& lines,
@@ -76,27 +108,121 @@ void draw_box(const PlotFrame& frame, const std::string& title, const std::vecto
 
 void draw_read_out(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                    double time, ImVec2 near_to) {
-  const float x = frame.x_of(time);
-  if (x < frame.area.min.x || x > frame.area.max.x || history.empty()) return;
-  const float at = std::round(x);
-  frame.list.AddRectFilled({at, frame.area.min.y}, {at + 1, frame.area.max.y},
-                           colour(frame.palette.text, 0.45f));
+  const bool over_time = spec.kind == PlotKind::time;
+  const bool outside = time < frame.window.start() || time > frame.window.stop();
+  if (outside || history.empty()) return;
   const SampleIndex row = history.nearest(time);
   const double distance = std::abs(history.time(row) - time);
   const bool in_gap = distance > std::max(1.5 * history.tick(), frame.window.per_pixel);
-  const std::vector<Line> lines =
-      in_gap ? std::vector<Line>{} : visible_lines(frame, spec, history, row);
-  for (const Line& line : lines) {
-    if (line.value_y < frame.area.min.y || line.value_y > frame.area.max.y) continue;
-    frame.list.AddCircleFilled({at + 0.5f, line.value_y}, 4 * frame.scale,
-                               colour(frame.palette.panel));
-    frame.list.AddCircleFilled({at + 0.5f, line.value_y}, 2.8f * frame.scale, colour(line.rgb));
+  std::vector<Line> lines = in_gap ? std::vector<Line>{} : visible_lines(frame, spec, history, row);
+  float x = std::round(frame.x_of(time));
+  if (over_time) {
+    draw_line_at(frame, x);
+    for (Line& line : lines) line.at.x = x + 0.5f;
+  } else {
+    if (lines.empty()) return;
+    x = lines.front().at.x;
   }
+  draw_dots(frame, lines);
   const double shown = (in_gap ? time : history.time(row)) - history.offset();
   const double step = std::max(history.tick(), frame.window.per_pixel / 10);
   std::string title = time_text(shown, step, std::abs(shown) >= 60);
   if (lines.empty()) title += "   no data";
   draw_box(frame, title, lines, x, near_to);
+}
+
+void draw_spectrum_read_out(const PlotFrame& frame, const PlotSpec& spec,
+                            const std::vector<AmplitudeSpectrum>& spectra, double frequency,
+                            ImVec2 near_to) {
+  const float x = std::round(frame.x_of(frequency));
+  if (x < frame.area.min.x || x > frame.area.max.x) return;
+  // What the pixel shows: the highest of its frequencies, or the one that is nearest.
+  const double low = frame.x_at(x - 0.5f), high = frame.x_at(x + 0.5f);
+  std::vector<Line> lines;
+  double at = frequency;
+  for (std::size_t i = 0; i < spectra.size() && i < spec.curves.size(); ++i) {
+    const AmplitudeSpectrum& s = spectra[i];
+    if (!spec.curves[i].visible || s.amplitude.size() < 2) continue;
+    const auto bin = [&](double f) {
+      return std::clamp<std::size_t>(static_cast<std::size_t>(std::round(f / s.step)), 1,
+                                     s.amplitude.size() - 1);
+    };
+    std::size_t best = bin(frequency);
+    for (std::size_t k = bin(low); k <= bin(high); ++k) {
+      if (s.amplitude[k] > s.amplitude[best]) best = k;
+    }
+    at = static_cast<double>(best) * s.step;
+    lines.push_back({spec.curves[i].label,
+                     value_text(spec.y, frame.y, s.amplitude[best]),
+                     ink_of(frame, spec.curves[i]),
+                     {x + 0.5f, frame.y_of(s.amplitude[best])}});
+  }
+  if (lines.empty()) return;
+  draw_line_at(frame, x);
+  draw_dots(frame, lines);
+  draw_box(frame, three_digits(at) + " Hz", lines, x, near_to);
+}
+
+void draw_present(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                  double time) {
+  if (history.empty()) return;
+  draw_dots(frame, visible_lines(frame, spec, history, history.nearest(time)));
+}
+
+std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
+                                const History& history, ImVec2 mouse) {
+  double nearest = std::pow(static_cast<double>(kReach * frame.scale), 2);
+  std::optional<double> found;
+  for (const Curve& curve : spec.curves) {
+    if (!curve.visible) continue;
+    const SampleIndex to = history.lower_bound(frame.window.stop());
+    for (SampleIndex row = history.lower_bound(frame.window.start()); row < to; ++row) {
+      const double x = frame.x_of(static_cast<double>(history.value(curve.across, row)));
+      const double y = frame.y_of(static_cast<double>(history.value(curve.channel, row)));
+      const double apart = std::pow(x - static_cast<double>(mouse.x), 2) +
+                           std::pow(y - static_cast<double>(mouse.y), 2);
+      if (apart >= nearest) continue;  // nor where one is not a number
+      nearest = apart;
+      found = history.time(row);
+    }
+  }
+  return found;
+}
+
+float end_label_width() { return text_size(Face::small, "\u22120.000").x + 6 * current_scale(); }
+
+void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history) {
+  const float room = frame.outer.max.x - frame.area.max.x;
+  if (history.empty() || room < end_label_width()) return;
+  const SampleIndex row = history.nearest(frame.window.stop());
+  const int exponent =
+      common_exponent(frame.y.low() * spec.y.factor, frame.y.high() * spec.y.factor);
+  std::vector<Line> lines;
+  for (const Curve& curve : spec.curves) {
+    const auto value = static_cast<double>(history.value(curve.channel, row));
+    if (!curve.visible || !std::isfinite(value)) continue;
+    lines.push_back({"",
+                     three_digits(value * spec.y.factor / std::pow(10.0, exponent)),
+                     ink_of(frame, curve),
+                     {0, frame.y_of(value)}});
+  }
+  std::ranges::sort(lines, {}, [](const Line& line) { return line.at.y; });
+  // From the top each stands below the one before, then from the bottom each above the next.
+  const float height = text_size(Face::small, "0").y;
+  float free = frame.area.min.y;
+  for (Line& line : lines) {
+    line.at.y = std::max(line.at.y - 0.5f * height, free);
+    free = line.at.y + height;
+  }
+  free = frame.area.max.y;
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    line->at.y = std::min(line->at.y, free - height);
+    free = line->at.y;
+  }
+  for (const Line& line : lines) {
+    draw_text(frame.list, Face::small, {frame.area.max.x + 5 * frame.scale, line.at.y}, line.rgb,
+              line.value);
+  }
 }
 
 }  // namespace limpid

@@ -8,13 +8,19 @@
 
 namespace limpid {
 
+// What stands along its horizontal axis.
+enum class PlotKind : std::uint8_t {
+  time,
+  cross,     // another channel
+  spectrum,  // the frequency, of the stretch of time shown
+};
+
 struct Curve {
   int channel = 0;
+  int across = -1;  // of kind cross: the channel along the horizontal axis
   std::string label = {};
   Ink ink = Ink::neutral;
   float shade = 0;  // see ink()
-  bool dashed = false;
-  int dash_channel = -1;  // >= 0: dashed wherever this channel is below 0.5 (standard coupling)
   bool visible = true;
 };
 
@@ -25,6 +31,14 @@ struct Threshold {
   bool always_in_view = false;  // autoscale makes room for it
 };
 
+// Tinted behind the curves by what a channel says: one of the numbers from 0 that have a name here.
+// Where 0 has none it is the usual; where it has one, only changes are of interest.
+struct Band {
+  int channel = 0;
+  std::vector<std::string> names = {};
+  float tint = 0.13f;  // of the last one; those before have less
+};
+
 // How an axis is written while it shows no more than `most` [the channels' unit].
 struct PlotUnit {
   std::string name;
@@ -32,18 +46,33 @@ struct PlotUnit {
   double most;
 };
 
-struct PlotSpec {
-  std::string title = {};
+struct PlotAxis {
+  std::string label = {};            // of the horizontal one
   std::string unit = {};             // after multiplication by factor
   double factor = 1;                 // from the channels' unit, such as 1000 from rad to mrad
   std::vector<PlotUnit> units = {};  // smallest first, to choose unit and factor from; or none
+  bool zero_line = true;             // emphasised and always in view
+  double smallest_span = 1e-6;       // autoscale shows at least this much, in the channels' unit
+  bool log = false;
+
+  void choose_unit(double largest) {
+    for (const PlotUnit& each : units) {
+      unit = each.name;
+      factor = each.factor;
+      if (largest <= each.most) return;
+    }
+  }
+};
+
+struct PlotSpec {
+  std::string title = {};
   std::string file_name = {};  // for saving, without folder and extension: "coordination-error"
+  PlotKind kind = PlotKind::time;
+  PlotAxis x = {}, y = {};  // over time, x is the group's
   std::vector<Curve> curves = {};
   std::vector<Threshold> thresholds = {};
-  int band_channel = -1;  // >= 0: tinted behind the curves wherever this channel is above 0.5
-  std::string band_label = {};
-  bool zero_line = true;        // emphasised and always in view
-  double smallest_span = 1e-6;  // autoscale shows at least this much, in the channels' unit, > 0
+  std::vector<Band> bands = {};
+  bool end_labels = false;  // the value of each curve at the right end, over time
 };
 
 }  // namespace limpid

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/base/markup.h"
+#include "app/plot/axis_places.h"
 #include "app/plot/plot_export.h"
 #include "app/plot/trace.h"
 #include "app/style/ticks.h"
@@ -14,8 +15,7 @@ namespace limpid {
 namespace {
 
 constexpr double kFont = 12;         // [px]
-constexpr double kLine = 1.4;        // [px]
-constexpr double kDash = 6;          // [px]
+constexpr double kLine = 2;          // [px]
 constexpr int kColumnsPerPixel = 2;  // pictures are looked at closely
 
 std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
@@ -31,10 +31,10 @@ class SvgPlot {
 
   std::string write() {
     open();
-    time_axis();
+    spec_.kind == PlotKind::time ? time_axis() : across_axis();
     value_axis();
     add("<g clip-path=\"url(#area)\">\n");
-    marks();
+    if (spec_.kind == PlotKind::time) marks();
     curves();
     thresholds();
     add("</g>\n");
@@ -64,11 +64,11 @@ class SvgPlot {
   }
 
   double x_of(double time) const {
-    return left_ + (time - picture_.start) / (picture_.stop - picture_.start) * (right_ - left_);
+    return x_at((time - picture_.start) / (picture_.stop - picture_.start));
   }
+  double x_at(double part) const { return std::clamp(left_ + part * (right_ - left_), -1e4, 1e4); }
   double y_of(double value) const {
-    const double up = (value - picture_.y.low) / picture_.y.span() * (bottom_ - top_);
-    return std::clamp(bottom_ - up, -1e4, 1e4);
+    return std::clamp(bottom_ - picture_.y.part(value) * (bottom_ - top_), -1e4, 1e4);
   }
 
   void open() {
@@ -79,11 +79,8 @@ class SvgPlot {
         picture_.width, picture_.height, kFont);
     add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
         left_, top_, right_ - left_, bottom_ - top_);
-    std::string unit = spec_.unit;
-    const int exponent =
-        common_exponent(picture_.y.low * spec_.factor, picture_.y.high * spec_.factor);
-    if (exponent != 0) unit = exponent_text(exponent) + " " + unit;
-    label(left_, 20, "start", kLightPalette.text, spec_.title + "  [" + unit + "]", "600");
+    label(left_, 20, "start", kLightPalette.text,
+          spec_.title + "  [" + unit_text(spec_.y, picture_.y) + "]", "600");
   }
 
   void time_axis() {
@@ -100,17 +97,25 @@ class SvgPlot {
     }
   }
 
-  void value_axis() {
-    const double low = picture_.y.low * spec_.factor;
-    const double high = picture_.y.high * spec_.factor;
-    const Ticks ticks = nice_ticks(low, high, picture_.height / 45);
-    for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-      const double y = y_of(ticks.at(i) / spec_.factor);
-      line(left_, y, right_, y, kLightPalette.grid);
-      label(left_ - 6, y + 4, "end", kLightPalette.muted,
-            tick_text(ticks.at(i), ticks.step, common_exponent(low, high)));
+  void across_axis() {
+    for (const AxisPlace& place : axis_places(spec_.x, picture_.x, picture_.width / 90.0)) {
+      const double x = x_at(picture_.x.part(place.value));
+      line(x, top_, x, bottom_, kLightPalette.grid);
+      label(x, bottom_ + 16, "middle", kLightPalette.muted, place.label);
     }
-    if (spec_.zero_line) line(left_, y_of(0), right_, y_of(0), kLightPalette.axis);
+    label(right_, picture_.height - 10, "end", kLightPalette.text,
+          spec_.x.label + "  [" + unit_text(spec_.x, picture_.x) + "]");
+  }
+
+  void value_axis() {
+    for (const AxisPlace& place : axis_places(spec_.y, picture_.y, picture_.height / 45.0)) {
+      const double y = y_of(place.value);
+      line(left_, y, right_, y, kLightPalette.grid);
+      label(left_ - 6, y + 4, "end", kLightPalette.muted, place.label);
+    }
+    if (spec_.y.zero_line && !picture_.y.log) {
+      line(left_, y_of(0), right_, y_of(0), kLightPalette.axis);
+    }
   }
 
   void marks() {
@@ -130,45 +135,60 @@ class SvgPlot {
   }
 
   void curves() {
-    const int columns = kColumnsPerPixel * static_cast<int>(right_ - left_);
-    const double per_column = (picture_.stop - picture_.start) / columns;
+    columns_ = kColumnsPerPixel * static_cast<int>(right_ - left_);
+    const double per_column = (picture_.stop - picture_.start) / columns_;
     const PixelWindow window{per_column,
                              static_cast<std::int64_t>(std::floor(picture_.start / per_column)),
-                             columns + 1};
+                             columns_ + 1};
     std::vector<SampleIndex> rows;
     pixel_rows(history_, window, rows);
+    const TraceArea area{picture_.x, picture_.y, columns_,
+                         kColumnsPerPixel * static_cast<int>(bottom_ - top_)};
     Trace trace;
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
-      make_trace(history_, curve, window, rows, kDash * kColumnsPerPixel, trace);
+      switch (spec_.kind) {
+        case PlotKind::time: make_trace(history_, curve, window, rows, trace); break;
+        case PlotKind::cross:
+          make_cross_trace(history_, curve, rows.front(), rows.back(), area, trace);
+          break;
+        case PlotKind::spectrum:
+          make_spectrum_trace(
+              spectrum_between(history_, curve.channel, picture_.start, picture_.stop), area,
+              trace);
+          break;
+      }
+      first_column_ = spec_.kind == PlotKind::time
+                          ? picture_.start / per_column - static_cast<double>(window.first_pixel)
+                          : 0;
       for (const TraceRun& run : trace.runs) {
-        if (run.faint) continue;
         const auto points = std::span(trace.points).subspan(run.first, run.count);
         const Rgb rgb = ink(kLightPalette, curve.ink, curve.shade);
-        trace.band ? band(points, window, rgb) : polyline(points, window, rgb);
+        trace.band ? band(points, rgb) : polyline(points, rgb);
       }
     }
   }
 
-  void point(const TracePoint& p, const PixelWindow& window, float value) {
-    add("{:.2f},{:.2f} ", x_of(window.time(p.x)), y_of(value));
+  void point(const TracePoint& p, float value) {
+    add("{:.2f},{:.2f} ", x_at((static_cast<double>(p.x) - first_column_) / columns_),
+        y_of(static_cast<double>(value)));
   }
 
   // The outline of the band, filled; its stroke gives thin bands the width of a line.
-  void band(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
+  void band(std::span<const TracePoint> points, Rgb rgb) {
     add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" "
         "points=\"",
         hex(rgb), kLine);
-    for (const TracePoint& p : points) point(p, window, p.high);
-    for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, window, p->low);
+    for (const TracePoint& p : points) point(p, p.high);
+    for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, p->low);
     add("\"/>\n");
   }
 
-  void polyline(std::span<const TracePoint> points, const PixelWindow& window, Rgb rgb) {
+  void polyline(std::span<const TracePoint> points, Rgb rgb) {
     add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
         "points=\"",
         hex(rgb), kLine);
-    for (const TracePoint& p : points) point(p, window, p.low);
+    for (const TracePoint& p : points) point(p, p.low);
     add("\"/>\n");
   }
 
@@ -177,10 +197,9 @@ class SvgPlot {
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
       const double y = picture_.height - 10;
-      add("<line x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"2\" "
-          "stroke-dasharray=\"{}\"/>\n",
-          x, y - 4, x + 18, y - 4, hex(ink(kLightPalette, curve.ink, curve.shade)),
-          curve.dashed ? "5 3" : "none");
+      add("<line x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\" stroke=\"{}\" "
+          "stroke-width=\"2\"/>\n",
+          x, y - 4, x + 18, y - 4, hex(ink(kLightPalette, curve.ink, curve.shade)));
       label(x + 23, y, "start", kLightPalette.text, curve.label);
       x += 40 + 0.6 * kFont * static_cast<double>(curve.label.size());
     }
@@ -193,6 +212,8 @@ class SvgPlot {
   double top_ = 32;
   double right_;
   double bottom_;
+  int columns_ = 1;          // of the traces, over the area's width
+  double first_column_ = 0;  // that stands at its left end
   std::string text_;
 };
 

@@ -6,13 +6,13 @@
 namespace limpid {
 namespace {
 
-constexpr float kThickness = 1.6f;  // [px] at scale 1
-constexpr float kFaint = 0.22f;     // of a curve's opacity, between dashes
-constexpr float kDotsFrom = 7;      // samples further apart than this get dots [px]
-constexpr float kTolerance = 0.2f;  // by which points may be left out [px]
-constexpr float kTallFrom = 6;      // height that neighbouring columns share [px]
-constexpr std::size_t kGroup = 12;  // columns looked at together
-constexpr float kSoftUpTo = 2.5f;   // wider bands need no soft rim [px]
+constexpr float kThickness = 2;             // [px] at scale 1
+constexpr float kDotsFrom = 7;              // samples further apart than this get dots [px]
+constexpr float kTolerance = 0.2f;          // by which points may be left out [px]
+constexpr float kTallFrom = 6;              // height that neighbouring columns share [px]
+constexpr std::size_t kGroup = 12;          // columns looked at together
+constexpr std::size_t kLongestPath = 2000;  // what ImGui counts in 16 bits
+constexpr float kSoftUpTo = 2.5f;           // wider bands need no soft rim [px]
 
 // A point on the screen with the upper and lower edge of the curve there.
 struct ScreenPoint {
@@ -155,9 +155,12 @@ void draw_band(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 soli
 
 void draw_line(const PlotFrame& frame, std::span<const ScreenPoint> points, ImU32 solid,
                float thickness) {
-  for (const ScreenPoint& p : points) frame.list.PathLineTo({p.x, p.top});
-  // Whole pixels let ImGui draw a line with a third of the triangles.
-  frame.list.PathStroke(solid, 0, std::round(thickness));
+  for (std::size_t from = 0; from + 1 < points.size(); from += kLongestPath) {
+    const auto part = points.subspan(from, std::min(kLongestPath + 1, points.size() - from));
+    for (const ScreenPoint& p : part) frame.list.PathLineTo({p.x, p.top});
+    // Whole pixels let ImGui draw a line with a third of the triangles.
+    frame.list.PathStroke(solid, 0, std::round(thickness));
+  }
 }
 
 void draw_dots(const PlotFrame& frame, std::span<const TracePoint> points, ImU32 solid) {
@@ -187,13 +190,13 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
       on_screen.push_back(
           {frame.area.min.x + p.x, frame.y_of(p.high) - half, frame.y_of(p.low) + half});
     }
-    simplify(on_screen);
-    const ImU32 solid = colour(rgb, run.faint ? kFaint * alpha : alpha);
+    if (!trace.wanders) simplify(on_screen);
+    const ImU32 solid = colour(rgb, alpha);
     if (trace.band) {
       draw_band(frame.list, on_screen, solid);
     } else {
       draw_line(frame, on_screen, solid, thickness);
-      if (!run.faint && far_apart(frame, points)) draw_dots(frame, points, solid);
+      if (!trace.wanders && far_apart(frame, points)) draw_dots(frame, points, solid);
     }
   }
 }

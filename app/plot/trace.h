@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/plot/axis_map.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
+#include "app/signal/welch.h"
 
 namespace limpid {
 
@@ -41,20 +43,60 @@ struct TracePoint {
 struct TraceRun {
   std::size_t first;
   std::size_t count;
-  bool faint;  // the space between two dashes
 };
 
 struct Trace {
-  bool band = false;  // a point holds the extent of all samples of a pixel
+  bool band = false;     // a point holds the extent of all samples of a pixel
+  bool wanders = false;  // x does not only grow
   std::vector<TracePoint> points;
   std::vector<TraceRun> runs;
 
   void clear();
 };
 
+// Builds the runs of one trace, point by point.
+class TracePen {
+ public:
+  explicit TracePen(Trace& trace) : trace_(trace) { trace_.clear(); }
+
+  bool down() const { return down_; }
+  TracePoint& last() { return trace_.points.back(); }
+
+  void lift() { down_ = false; }
+
+  // Joins the point to the one before while the pen is down.
+  void put(const TracePoint& point) {
+    if (!down_) trace_.runs.push_back({trace_.points.size(), 0});
+    down_ = true;
+    trace_.points.push_back(point);
+    ++trace_.runs.back().count;
+  }
+
+ private:
+  Trace& trace_;
+  bool down_ = false;
+};
+
 // Fills `trace` (its memory is used again) with the curve inside the window. Gaps of the history
-// and values that are not numbers end a run. `dash` is the length of a dash [pixel].
+// and values that are not numbers end a run.
 void make_trace(const History& history, const Curve& curve, const PixelWindow& window,
-                const std::vector<SampleIndex>& rows, double dash, Trace& trace);
+                const std::vector<SampleIndex>& rows, Trace& trace);
+
+// The same over another channel, of the rows [from, to), on an area of `width` x `height` pixels.
+struct TraceArea {
+  AxisMap x, y;
+  int width, height;  // [pixel]
+};
+void make_cross_trace(const History& history, const Curve& curve, SampleIndex from, SampleIndex to,
+                      const TraceArea& area, Trace& trace);
+
+// Of frequencies that share a pixel the highest amplitude; 0 Hz, which a logarithmic axis has no
+// place for, is left out.
+void make_spectrum_trace(const AmplitudeSpectrum& spectrum, const TraceArea& area, Trace& trace);
+
+// What a spectrum of the stretch is made of: the longest part of it without gaps in rows or
+// channel, at most the newest kMostOfSpectrum rows.
+inline constexpr SampleIndex kMostOfSpectrum = 1 << 18;
+AmplitudeSpectrum spectrum_between(const History& history, int channel, double start, double stop);
 
 }  // namespace limpid

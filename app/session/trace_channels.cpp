@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace limpid {
 namespace {
@@ -14,7 +15,88 @@ double norm(std::span<const double> v) {
   return std::sqrt(sum);
 }
 
-constexpr int kMostJointCurves = 7;
+constexpr int kJointInks = static_cast<int>(Ink::joint_7) - static_cast<int>(Ink::joint_1) + 1;
+
+using enum Ink;
+
+// Worked out of the row; the joints' are those of x_E.
+std::vector<ChannelInfo> first_channels(int dof) {
+  std::vector<ChannelInfo> infos{
+      {"coupling/kind", "Coupling", "law", "law", "-", "0 standard, 1 proposed, 2 predictive",
+       neutral},
+      {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", "rad",
+       "distance of device and proxy, over all joints", proxy},
+      {"energy/controller_total", "Energy", "controller, E_c", "E_c", "J",
+       "E_c with the device's own damping", energy},
+      {"energy/controller_commanded", "Energy", "controller, commanded", "E_c commanded", "J",
+       "E_c of motors and proxy", energy, 0.5f, true, true},
+      {"hand/torque_norm", "Hand", "torque, |f1|", "|f1|", "N m",
+       "what the hand puts on the device; of a real device the observer's estimate", hand},
+      {"hand/torque_estimate_norm", "Hand", "torque as observed, |f1_hat|", "|f1| estimate", "N m",
+       "the observer's estimate of the hand's torque", hand, 0.55f, true, true},
+      {"proxy/contact_torque_norm", "Proxy", "contact torque, |f2|", "|f2|", "N m",
+       "what the scene puts on the proxy", contact},
+      {"device/limited", "Device", "a motor at its limit", "at limit", "-",
+       "1 while a motor gives all it can", device},
+  };
+  for (int j = 0; j < dof; ++j) {
+    const std::string joint = std::to_string(j + 1);
+    infos.push_back({"coordination/error." + joint, "Coordination error", "joint " + joint,
+                     "x_E " + joint, "rad", "position of the device less that of the proxy",
+                     static_cast<Ink>(static_cast<int>(joint_1) + j % kJointInks)});
+  }
+  return infos;
+}
+
+struct Group {
+  std::string_view path;
+  const char* name;
+  Ink ink;
+};
+constexpr std::array kGroups{
+    Group{"device", "Device", device}, Group{"proxy", "Proxy", proxy},
+    Group{"hand", "Hand", hand},       Group{"coupling", "Coupling", neutral},
+    Group{"energy", "Energy", energy}, Group{"contact", "Contacts", contact},
+    Group{"timing", "Timing", neutral}};
+
+// What the parts of a column are called; a single one has no name.
+std::string part_name(ColumnWidth width, int part) {
+  constexpr std::array kAxes{"x", "y", "z"};
+  const char* axis = kAxes[static_cast<std::size_t>(part % 3)];
+  switch (width) {
+    case ColumnWidth::one: return "";
+    case ColumnWidth::three: return axis;
+    case ColumnWidth::dof: return "joint " + std::to_string(part + 1);
+    case ColumnWidth::contacts: return "contact " + std::to_string(part / 3 + 1) + " " + axis;
+  }
+  return "";
+}
+
+ChannelInfo column_channel(const ColumnInfo& column, int part) {
+  const std::string path = column.path + 1;  // without the slash
+  const std::string start = path.substr(0, path.find('/'));
+  const auto* group = std::ranges::find(kGroups, start, &Group::path);
+  std::string what = path.substr(start.size() + 1);
+  std::ranges::replace(what, '_', ' ');
+  ChannelInfo info{.key = path,
+                   .group = group->name,
+                   .name = what,
+                   .label = start + " " + what,
+                   .unit = column.unit,
+                   .help = column.what,
+                   .ink = group->ink};
+  if (const std::string name = part_name(column.width, part); !name.empty()) {
+    info.key += "." + std::to_string(part + 1);
+    info.name += ", " + name;
+    info.label += " " + (name.starts_with("joint ") ? name.substr(6) : name);
+    if (column.width == ColumnWidth::dof) {
+      info.ink = static_cast<Ink>(static_cast<int>(joint_1) + part % kJointInks);
+    }
+  }
+  // Where something is has no zero worth looking at.
+  info.zero = info.unit != "m" && !(info.unit == "rad" && what.ends_with("position"));
+  return info;
+}
 
 }  // namespace
 
@@ -26,7 +108,22 @@ std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p)
   return limits;
 }
 
-TraceChannels::TraceChannels(const RowLayout& layout) : layout_(layout) {}
+TraceChannels::TraceChannels(const RowLayout& layout)
+    : layout_(layout), infos_(first_channels(layout.dof())) {
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (column.column == Column::time || find(column.path + 1)) continue;
+    for (int part = 0; part < layout.width(column.column); ++part) {
+      infos_.push_back(column_channel(column, part));
+      columns_.push_back(static_cast<std::size_t>(layout.offset(column.column) + part));
+    }
+  }
+}
+
+std::optional<int> TraceChannels::find(const std::string& key) const {
+  const auto found = std::ranges::find(infos_, key, &ChannelInfo::key);
+  if (found == infos_.end()) return std::nullopt;
+  return static_cast<int>(found - infos_.begin());
+}
 
 bool TraceChannels::limited(std::span<const double> row, int joint) const {
   const auto j = static_cast<std::size_t>(joint);
@@ -54,12 +151,15 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   bool any_limited = false;
   for (int j = 0; j < layout_.dof(); ++j) any_limited = any_limited || limited(row, j);
   put(Channel::limited, any_limited ? 1 : 0);
+  const auto rest = joints.subspan(x1.size());
+  for (std::size_t i = 0; i < columns_.size(); ++i) rest[i] = row[columns_[i]];
 }
 
 void TraceChannels::append(History& history, std::span<const double> row,
                            std::span<const double> again) const {
   const auto one = static_cast<std::size_t>(count());
-  std::array<double, 2 * (static_cast<std::size_t>(Channel::joints) + kMaxDof)> all{};
+  constexpr auto kMost = static_cast<std::size_t>(Channel::joints) + kMaxDof + kMaxStride;
+  std::array<double, 2 * kMost> all;
   const auto used = std::span(all).first(static_cast<std::size_t>(history.channels()));
   values(row, used.first(one));
   if (used.size() > one) {
@@ -70,63 +170,6 @@ void TraceChannels::append(History& history, std::span<const double> row,
     }
   }
   history.append(layout_.in(row, Column::time)[0], used);
-}
-
-std::vector<PlotSpec> TraceChannels::plots(const RunNames& names) const {
-  const auto curve = [&](Channel c, std::string label, Ink ink, float shade, bool again) {
-    Curve result;
-    result.channel = static_cast<int>(c) + (again ? count() : 0);
-    const std::string& run = again ? names.second : names.first;
-    result.label = run.empty() ? std::move(label) : run + " " + label;
-    result.ink = again && !names.twin ? Ink::rerun : ink;
-    result.shade = again && names.twin ? shade + 0.55f : shade;
-    // Two runs leave no room for what is seldom asked for; a click on the legend shows it.
-    result.visible =
-        !names.twin || (c != Channel::energy_commanded && c != Channel::human_estimate);
-    if (!names.twin) result.dash_channel = static_cast<int>(Channel::kind) + (again ? count() : 0);
-    return result;
-  };
-  PlotSpec error{.title = "coordination error |x_E|",
-                 .unit = "mrad",
-                 .factor = 1e3,
-                 .units = {{"mrad", 1e3, 1}, {"rad", 1, 1e9}},
-                 .file_name = "coordination-error",
-                 .smallest_span = 20e-3};
-  PlotSpec energy{.title = "controller energy E_c",
-                  .unit = "mJ",
-                  .factor = 1e3,
-                  .units = {{"mJ", 1e3, 1}, {"J", 1, 1e9}},
-                  .file_name = "controller-energy",
-                  .smallest_span = 1e-3};
-  PlotSpec torque{.title = "human and contact torque",
-                  .unit = "N m",
-                  .factor = 1,
-                  .file_name = "torque",
-                  .smallest_span = 0.05};
-  for (PlotSpec* plot : {&error, &energy, &torque}) {
-    plot->band_channel = static_cast<int>(Channel::limited);
-    plot->band_label = "motor at its limit";
-  }
-  for (const bool again : {false, true}) {
-    if (again && names.second.empty()) break;
-    error.curves.push_back(curve(Channel::error, "|x_E|", Ink::proxy, 0, again));
-    energy.curves.push_back(curve(Channel::energy_total, "total", Ink::energy, 0, again));
-    energy.curves.push_back(
-        curve(Channel::energy_commanded, "commanded", Ink::energy, 0.5f, again));
-    torque.curves.push_back(curve(Channel::human, "|f1|", Ink::hand, 0, again));
-    torque.curves.push_back(
-        curve(Channel::human_estimate, "|f1| estimate", Ink::hand, 0.55f, again));
-    torque.curves.push_back(
-        curve(Channel::contact, "|f2|", Ink::contact, again && !names.twin ? -0.5f : 0, again));
-  }
-  for (int j = 0; j < std::min(layout_.dof(), kMostJointCurves); ++j) {
-    const auto ink = static_cast<Ink>(static_cast<int>(Ink::joint_1) + j);
-    Curve joint = curve(Channel::joints, "joint " + std::to_string(j + 1), ink, 0, false);
-    joint.channel += j;
-    joint.visible = false;
-    error.curves.push_back(joint);
-  }
-  return {error, energy, torque};
 }
 
 }  // namespace limpid

@@ -1,6 +1,7 @@
-// The quantities the plots show, worked out from a row of the trace.
+// The quantities that plots can show: what a row of the trace holds, and what is worked out of it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,9 +14,10 @@
 
 namespace limpid {
 
-// Channels of one run, in this order; the joints' follow one by one.
+// The first channels of one run, in this order; the joints' follow one by one, and after these all
+// columns of the row.
 enum class Channel : std::uint8_t {
-  kind,          // 0 standard, 1 proposed
+  kind,          // 0 standard, 1 proposed, 2 predictive
   error,         // |x_E| [rad]
   energy_total,  // [J]
   energy_commanded,
@@ -26,17 +28,23 @@ enum class Channel : std::uint8_t {
   joints,          // x_E of each joint [rad]
 };
 
+// A channel as people and files know it.
+struct ChannelInfo {
+  std::string key;    // in files, the same for every arm that has it: "device/position.2"
+  std::string group;  // of the list to choose from: "Device"
+  std::string name;   // there: "position, joint 2"
+  std::string label;  // of its curve: "device position 2"
+  std::string unit;   // SI; "-": none
+  std::string help;
+  Ink ink = Ink::neutral;
+  float shade = 0;
+  bool zero = true;     // a plot keeps its zero in view
+  bool seldom = false;  // hidden at first where two runs share a plot
+};
+
 // Largest torque of each motor: the parameters', or the arm's own where they leave it to the arm
 // [N m].
 std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
-
-// What the curves of two runs are called, in front of what they show.
-struct RunNames {
-  std::string first, second;  // of one run both are empty
-  bool twin = false;          // the second is another one now, not one of before
-
-  friend bool operator==(const RunNames&, const RunNames&) = default;
-};
 
 class TraceChannels {
  public:
@@ -47,7 +55,10 @@ class TraceChannels {
   // Whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 
-  int count() const { return static_cast<int>(Channel::joints) + layout_.dof(); }
+  int count() const { return static_cast<int>(infos_.size()); }
+  std::span<const ChannelInfo> infos() const { return infos_; }
+  // By its key; nothing where this arm has no such channel.
+  std::optional<int> find(const std::string& key) const;
   // Fills count() values.
   void values(std::span<const double> row, std::span<double> into) const;
   // Adds a row; in a history with room for two runs, the same row of the second one too.
@@ -55,12 +66,10 @@ class TraceChannels {
               std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
 
-  // The three plots: coordination error, controller energy, torques. A second run's channels follow
-  // the first one's and are drawn beside them, if it has a name.
-  std::vector<PlotSpec> plots(const RunNames& names) const;
-
  private:
   RowLayout layout_;
+  std::vector<ChannelInfo> infos_;
+  std::vector<std::size_t> columns_;  // of the row, behind the first channels
   std::vector<double> limits_;
 };
 

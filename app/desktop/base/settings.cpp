@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/base/user_dirs.h"
+#include "app/desktop/base/plot_toml.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config/config_file.h"
 
@@ -79,18 +80,25 @@ Settings load_settings(std::string& complaint) {
       }
     }
     if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
-    if (const toml::table* parameters = table["parameters"].as_table()) {
+    const auto read = [&](const auto& part) {
+      try {
+        part();
+      } catch (const std::exception& e) {
+        complaint = fmt::format("settings not read: {}", e.what());
+      }
+    };
+    const auto parameters = [&](const char* key, Parameters& p) {
+      const toml::table* found = table[key].as_table();
+      if (found == nullptr) return;
       std::ostringstream text;
-      text << toml::toml_formatter(*parameters);
-      apply_config_text(s.parameters, text.str(), file.string());
-      s.parameters.tick = Parameters{}.tick;
-      s.parameters.substeps = Parameters{}.substeps;
-    }
-    if (const toml::table* twin = table["twin"].as_table()) {
-      std::ostringstream text;
-      text << toml::toml_formatter(*twin);
-      apply_config_text(s.twin.parameters, text.str(), file.string());
-    }
+      text << toml::toml_formatter(*found);
+      apply_config_text(p, text.str(), file.string());
+    };
+    read([&] { parameters("parameters", s.parameters); });
+    s.parameters.tick = Parameters{}.tick;
+    s.parameters.substeps = Parameters{}.substeps;
+    read([&] { parameters("twin", s.twin.parameters); });
+    read([&] { s.plot_choices = plots_of(table, file.string()); });
   } catch (const std::exception& e) {
     complaint = fmt::format("settings not read: {}", e.what());
   }
@@ -106,6 +114,7 @@ std::string save_settings(const Settings& settings) {
   window.insert("theme", settings.theme == Theme::light ? "light" : "dark");
   toml::table all;
   all.insert("window", window);
+  all.insert("plot", plots_toml(settings.plot_choices));
   all.insert("parameters", toml::parse(config_text(settings.parameters)));
   all.insert("twin", toml::parse(config_text(settings.twin.parameters)));
   std::ostringstream text;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/plot_choice.h"
 #include "core/tick/parameters.h"
 #include "render/theme.h"
 
@@ -39,7 +40,8 @@ struct Settings {
   std::string device, scene;                  // files; empty: the default
   std::string device_tip;                     // a link of the device; empty: as its file has it
   std::string gamepad;                        // that leads the hand, as GLFW identifies it; or none
-  std::vector<std::string> recent;            // recordings and scenes, the newest first
+  std::vector<PlotChoice> plot_choices = default_plots();
+  std::vector<std::string> recent;  // recordings and scenes, the newest first
   // A first start has the coupling that feels best and stays passive.
   Parameters parameters = [] {
     Parameters p;

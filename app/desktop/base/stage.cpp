@@ -52,15 +52,33 @@ Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, Hist
       document_(std::move(document)),
       rows_(arm_),
       channels_(RowLayout(arm_.dof())) {
-  for (PlotSpec& spec : channels_.plots(names_)) plots.emplace_back(std::move(spec));
+  choose_plots(default_plots());
   show_meshes(models, std::nullopt);
+}
+
+// Plots that stay keep where they are looked at.
+void Stage::choose_plots(const std::vector<PlotChoice>& choices) {
+  if (choices == choices_) return;
+  std::vector<Plot> chosen;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const PlotSpec spec = plot_spec(choices[i], channels_, names_);
+    const auto same = std::ranges::find(choices_, choices[i]);
+    const auto place = same != choices_.end() ? static_cast<std::size_t>(same - choices_.begin())
+                       : choices.size() == choices_.size() ? i
+                                                           : plots.size();
+    chosen.push_back(place < plots.size() ? plots[place] : Plot(spec));
+    if (same == choices_.end()) chosen.back().show(spec);
+  }
+  plots = std::move(chosen);
+  choices_ = choices;
 }
 
 void Stage::name_runs(const RunNames& names) {
   if (names == names_) return;
   names_ = names;
-  std::vector<PlotSpec> specs = channels_.plots(names_);
-  for (std::size_t i = 0; i < plots.size(); ++i) plots[i].spec() = std::move(specs[i]);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    plots[i].show(plot_spec(choices_[i], channels_, names_));
+  }
 }
 
 void Stage::show(const SceneDocument& document, const MeshModels& models,

@@ -9,6 +9,7 @@
 #include "app/plot/plot_group.h"
 #include "app/run/scene_meshes.h"
 #include "app/session/energy_account.h"
+#include "app/session/plot_choice.h"
 #include "app/session/trace_channels.h"
 #include "app/view/row_view.h"
 #include "render/camera.h"
@@ -28,6 +29,8 @@ class Stage {
   // picture stays as it was then.
   void show(const SceneDocument& document, const MeshModels& models,
             std::optional<std::size_t> highlighted);
+  // What there is a plot of.
+  void choose_plots(const std::vector<PlotChoice>& choices);
   // What the plots call their runs; a second one is drawn while it has a name.
   void name_runs(const RunNames& names);
   const RunNames& names() const { return names_; }
@@ -51,7 +54,7 @@ class Stage {
   ViewMemory memory, twin_memory;
   History history;
   PlotGroup group;
-  std::vector<Plot> plots;
+  std::vector<Plot> plots;  // one for each choice
   EnergyAccount energy;
 
  private:
@@ -61,6 +64,7 @@ class Stage {
   SceneDocument document_;
   int quality_ = -1;
   RunNames names_;
+  std::vector<PlotChoice> choices_;
   RowView rows_;
   TraceChannels channels_;
 };

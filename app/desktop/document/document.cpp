@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/base/assets.h"
+#include "app/run/twin_settings.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_writer.h"
@@ -36,9 +37,10 @@ void Document::open(const ArmDescription& arm, SceneDocument document, MeshModel
   editor_.open(std::move(document), std::move(models), saved);
   known_.scene = editor_.version();
   // Steps of other scenes cannot be undone in this one.
-  history_.rewrite(
-      [&](EditState& state) { state.scene = known_.scene; },
-      [](const EditState& a, const EditState& b) { return a.parameters == b.parameters; });
+  history_.rewrite([&](EditState& state) { state.scene = known_.scene; },
+                   [](const EditState& a, const EditState& b) {
+                     return a.parameters == b.parameters && a.twin == b.twin;
+                   });
 }
 
 bool Document::may_edit() {
@@ -110,15 +112,24 @@ Bounds Document::selected_bounds() const {
   return bounds_of(object_of(scene(), ref), model);
 }
 
+// The world that a twin shares with the first run is no setting of its own.
+Document::EditState Document::present() const {
+  EditState now{settings_.parameters, settings_.twin.parameters, editor_.version()};
+  share_world(now.parameters, now.twin);
+  return now;
+}
+
 void Document::note_changes() {
-  const Parameters& parameters = settings_.parameters;
-  const EditState now{parameters, editor_.version()};
+  const EditState now = present();
   const bool scene = now.scene.world != known_.scene.world;
-  const bool settings = !(parameters == known_.parameters);
+  const bool first = !(now.parameters == known_.parameters);
+  const bool settings = first || !(now.twin == known_.twin);
   std::string what = scene ? editor_.last_change() : "";
   if (settings) {
     for (const ParameterInfo& info : parameter_table()) {
-      const bool same = parameter_text(parameters, info) == parameter_text(known_.parameters, info);
+      const Parameters& a = first ? now.parameters : now.twin;
+      const Parameters& b = first ? known_.parameters : known_.twin;
+      const bool same = parameter_text(a, info) == parameter_text(b, info);
       if (!same) what = scene ? "" : info.key;
     }
   }
@@ -137,6 +148,7 @@ bool Document::may_go_to(const EditState* state, const char* otherwise) {
 void Document::go_to(const std::optional<EditState>& state) {
   if (!state) return;
   settings_.parameters = state->parameters;
+  settings_.twin.parameters = state->twin;
   editor_.restore(state->scene);
   known_ = *state;
 }

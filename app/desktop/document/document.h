@@ -32,7 +32,7 @@ class Document {
   // Works on the parameters of the settings, and keeps there which scene was opened last.
   Document(Settings& settings, Notices& notices, WhyFixed why_fixed)
       : settings_(settings), notices_(notices), why_fixed_(std::move(why_fixed)) {
-    known_.parameters = settings.parameters;
+    known_ = present();
   }
 
   // From now on this scene for this arm is edited, as its file has it; not `saved`: no file has it.
@@ -90,9 +90,10 @@ class Document {
  private:
   // What undo goes back to.
   struct EditState {
-    Parameters parameters;
+    Parameters parameters, twin;
     SceneEditor::Version scene;
   };
+  EditState present() const;
   bool may_go_to(const EditState* state, const char* otherwise);
   void go_to(const std::optional<EditState>& state);
 

@@ -1,13 +1,21 @@
 // The plots of what is on screen, side by side.
 #pragma once
 
+#include <optional>
+
 #include "app/desktop/base/stage.h"
 #include "app/plot/plot_menu.h"
 #include "app/session/player.h"
 
 namespace limpid {
 
+// What was asked for in the panel, beyond what plots do themselves.
+struct PlotsWish {
+  PlotWish wish = PlotWish::none;  // choose, add, remove
+  std::size_t plot = 0;
+};
+
 // `player` of the recording that is shown; null: the loop is.
-void draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
+PlotsWish draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
 
 }  // namespace limpid

@@ -56,7 +56,7 @@ void close_one(Desktop& desktop) {
     ImGui::ClosePopupToLevel(level, true);
   } else if (focus.question) {
     desktop.document().stay();
-  } else if (!focus.text || modal(focus.dialog)) {
+  } else if (!focus.text || modal(focus.dialog) || focus.dialog == Dialog::plot) {
     desktop.close_dialog();
   }
 }
@@ -149,6 +149,9 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::save_and_leave: d.save_and_leave(); break;
     case Action::toggle_help: toggle(d, Dialog::help); break;
     case Action::toggle_experiments: toggle(d, Dialog::experiments); break;
+    case Action::add_plot: d.add_plot(); break;
+    case Action::layouts: d.open_dialog(Dialog::layouts); break;
+    case Action::presets: d.open_dialog(Dialog::presets); break;
     case Action::open_session: d.open_dialog(Dialog::open_session); break;
     case Action::write_video: write_video(d); break;
     case Action::gallery: d.open_dialog(Dialog::gallery); break;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "app/base/assets.h"
+#include "app/base/user_dirs.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
@@ -28,6 +29,8 @@ Desktop::Desktop(Settings settings, const AskForPriority& ask)
                 .close = [this] { close_device(); },
                 .toggle_coupling = [this] { toggle_coupling(); }}),
       playback_(notices_),
+      layouts_(data_dir() / "assets/layouts.toml", user_config_dir() / "layouts.toml"),
+      presets_(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
       analysed_(settings_.parameters),
       analysed_twin_(settings_.twin.parameters) {
   desk_.controls().parameters = settings_.parameters;
@@ -107,6 +110,7 @@ void Desktop::update(double dt) {
   document_.note_changes();
   follow_twin();
   follow_parameters();
+  shown().choose_plots(settings_.plot_choices);
   show_scene();
   hand_scene_over(false);
   desk_.update(settings_.parameters, settings_.twin.on ? &settings_.twin.parameters : nullptr);

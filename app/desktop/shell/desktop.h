@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/desktop/base/named_texts.h"
 #include "app/desktop/desk/device_desk.h"
 #include "app/desktop/desk/pad_hand.h"
 #include "app/desktop/document/document.h"
@@ -70,6 +71,18 @@ class Desktop {
   void follow_pads(std::vector<Pad> pads, bool focused, double dt);
   const std::vector<Pad>& pads() const { return pads_; }
   const std::string& leading_pad() const { return leading_pad_; }  // its name; or none
+
+  // Plots of the settings: a new one, or what one shows, is chosen in a dialog.
+  void add_plot();
+  void choose_plot(std::size_t plot);
+  std::size_t chosen_plot() const { return chosen_plot_; }
+  void remove_plot(std::size_t plot);
+
+  // Layouts of plots and panels, presets of the settings that edited() has.
+  NamedTexts& layouts() { return layouts_; }
+  NamedTexts& presets() { return presets_; }
+  void use_layout(const std::string& name);
+  void use_preset(const std::string& name);
 
   void toggle_coupling();
   void toggle_twin();
@@ -140,6 +153,8 @@ class Desktop {
   bool pads_known_ = false;  // asked for once
   AutoQuality automatic_quality_;
   Dialog dialog_ = Dialog::none;
+  NamedTexts layouts_, presets_;
+  std::size_t chosen_plot_ = 0;
   std::string device_file_, device_tip_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   Analysis analysis_;

@@ -1,6 +1,7 @@
 #include "app/desktop/shell/dialogs.h"
 
 #include "app/base/assets.h"
+#include "app/desktop/base/window_layout.h"
 #include "app/desktop/panels/unsaved_question.h"
 #include "app/desktop/shell/reading.h"
 
@@ -80,6 +81,40 @@ void Dialogs::draw_sessions() {
     return video_.draw(open, playback, desktop_.settings().twin_overlaid);
   });
   if (video) playback.export_video(*video);
+}
+
+// A plot that shows nothing in the end is not kept.
+void Dialogs::draw_plot_chooser(ScreenRect room) {
+  std::vector<PlotChoice>& plots = desktop_.settings().plot_choices;
+  const std::size_t plot = desktop_.chosen_plot();
+  if (desktop_.dialog() == Dialog::plot && plot >= plots.size()) desktop_.close_dialog();
+  PlotChoice none;
+  PlotChoice& choice = plot < plots.size() ? plots[plot] : none;
+  const bool was_open = chooser_.is_open();
+  const bool remove = draw(Dialog::plot, [&](bool& open) {
+    return chooser_.draw(open, choice, desktop_.shown().channels(), room);
+  });
+  const bool closed = was_open && desktop_.dialog() != Dialog::plot;
+  if (remove || (closed && choice.channels.empty())) desktop_.remove_plot(plot);
+}
+
+void Dialogs::draw_list(Dialog which, NamedDialog& dialog, NamedTexts& texts) {
+  const NamedDialog::Asked asked =
+      draw(which, [&](bool& open) { return dialog.draw(open, texts); });
+  if (asked.wish == NamedDialog::Wish::none) return;
+  const bool layout = which == Dialog::layouts;
+  if (asked.wish == NamedDialog::Wish::use) {
+    layout ? desktop_.use_layout(asked.name) : desktop_.use_preset(asked.name);
+  } else {
+    const std::string now =
+        layout ? layout_text(desktop_.settings()) : preset_text(desktop_.edited());
+    dialog.complain(texts.keep(asked.name, now));
+  }
+}
+
+void Dialogs::draw_named() {
+  draw_list(Dialog::layouts, layouts_, desktop_.layouts());
+  draw_list(Dialog::presets, presets_, desktop_.presets());
 }
 
 }  // namespace limpid

@@ -18,12 +18,15 @@ const char* name(Dialog dialog) {
     case Dialog::help: return "help";
     case Dialog::about: return "about";
     case Dialog::experiments: return "experiments";
+    case Dialog::plot: return "plot";
     case Dialog::open_session: return "open session";
     case Dialog::gallery: return "gallery";
     case Dialog::add_model: return "add model";
     case Dialog::open_arm: return "open arm";
     case Dialog::save_scene: return "save scene";
     case Dialog::video: return "video";
+    case Dialog::layouts: return "layouts";
+    case Dialog::presets: return "presets";
   }
   return "";
 }

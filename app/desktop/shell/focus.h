@@ -13,12 +13,15 @@ enum class Dialog : std::uint8_t {
   help,
   about,
   experiments,
+  plot,
   open_session,
   gallery,
   add_model,
   open_arm,
   save_scene,
   video,
+  layouts,
+  presets,
 };
 const char* name(Dialog dialog);
 // One that asks something: nothing behind it acts meanwhile.

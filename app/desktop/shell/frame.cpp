@@ -10,7 +10,6 @@
 #include "app/desktop/panels/loading_bar.h"
 #include "app/desktop/panels/notice_list.h"
 #include "app/desktop/panels/parameter_rows.h"
-#include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/story_bar.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
@@ -40,6 +39,7 @@ void Frame::draw() {
   draw_fold_tabs(at);
   part([&] { dialogs_.draw_reading(); });
   part([&] { dialogs_.draw_experiments(); });
+  part([&] { dialogs_.draw_plot_chooser(at.view); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
   part([&] { draw_video_bar(desktop_.playback(), at.view); });
   part([&] {
@@ -48,6 +48,7 @@ void Frame::draw() {
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
+  part([&] { dialogs_.draw_named(); });
   draw_notices(desktop_.notices(), at.view, signs_box(at.view));
 }
 
@@ -195,21 +196,6 @@ std::string Frame::quality_text() const {
   if (level == 0) return "automatic: best";
   if (level == Quality::kLowest) return "automatic: lowest";
   return fmt::format("automatic: {} below best", level);
-}
-
-void Frame::draw_plot_row(ScreenRect rect) {
-  const PlotSaving saving{.folder = sessions_dir(),
-                          .save_png =
-                              [this](const ScreenRect& box, const std::filesystem::path& file) {
-                                window_.save_picture(file, box.min.x, box.min.y, box.max.x,
-                                                     box.max.y);
-                              },
-                          .beside =
-                              [this](std::function<PlotNotice()> work) {
-                                desktop_.desk().save_beside(std::move(work));
-                              }};
-  PlayedSession* session = desktop_.playback().shown();
-  draw_plots(desktop_.shown(), session != nullptr ? &session->player() : nullptr, saving, rect);
 }
 
 void Frame::draw_fold_tabs(const Layout& at) {

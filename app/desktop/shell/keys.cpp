@@ -41,9 +41,11 @@ constexpr std::array kShortcuts{
     Shortcut{"Ctrl+S, Ctrl+Shift+S", "save the scene; under another name"},
     Shortcut{"Tab, Shift+Tab", "select the next object of the scene, or the one before"},
     Shortcut{"Delete, Ctrl+D", "remove or copy the selected object"},
+    Shortcut{"N", "a new plot: of any channel, over time, against another one, or its spectrum"},
+    Shortcut{"Ctrl+L, Ctrl+P", "layouts of plots and panels; presets of settings"},
     Shortcut{"gamepad",
              "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law"},
-    Shortcut{"plots", "drag pans, wheel zooms, double click fits, right click saves"},
+    Shortcut{"plots", "drag pans, wheel zooms, double click fits, right click chooses and saves"},
     Shortcut{"sliders", "double click to type, right click for the usual value"},
 };
 
@@ -104,6 +106,9 @@ constexpr std::array kBindings{
     Binding{kView, 0, GLFW_KEY_F5, Action::toggle_experiments},
     Binding{kView, 0, GLFW_KEY_F11, Action::full_screen},
     Binding{kView, 0, GLFW_KEY_F12, Action::save_picture},
+    Binding{kView, 0, GLFW_KEY_N, Action::add_plot},
+    Binding{kView, kControl, GLFW_KEY_L, Action::layouts},
+    Binding{kView, kControl, GLFW_KEY_P, Action::presets},
     Binding{kView, kControl, GLFW_KEY_O, Action::open_session},
     Binding{kView, kControl, GLFW_KEY_Z, Action::undo, true},
     Binding{kView, kControl, GLFW_KEY_Y, Action::redo, true},

@@ -25,6 +25,16 @@ std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension
   return files;
 }
 
+// What is kept by name; the one that was clicked, empty for none.
+std::string named_items(const NamedTexts& texts) {
+  std::string chosen;
+  for (const NamedTexts::Entry& entry : texts.all()) {
+    if (ImGui::MenuItem(entry.name.c_str())) chosen = entry.name;
+  }
+  if (!texts.all().empty()) ImGui::Separator();
+  return chosen;
+}
+
 // An item that has an action carried out.
 void item(const char* label, const char* keys, Action action, const Act& act, bool enabled = true) {
   if (ImGui::MenuItem(label, keys, false, enabled)) act(action);
@@ -42,17 +52,57 @@ void file_menu(Desktop& d, RecentMenu& recent, const Act& act) {
   item("Undo", "Ctrl+Z", Action::undo, act);
   item("Redo", "Ctrl+Y", Action::redo, act);
   if (ImGui::MenuItem("All settings to their usual values")) d.reset_parameters();
+  if (ImGui::BeginMenu("Presets of settings")) {
+    if (const std::string name = named_items(d.presets()); !name.empty()) d.use_preset(name);
+    item("Save, rename...", "Ctrl+P", Action::presets, act);
+    ImGui::EndMenu();
+  }
   ImGui::Separator();
   item("Quit", "Ctrl+Q", Action::quit, act);
   ImGui::EndMenu();
   if (!chosen.empty()) d.open_files({chosen});
 }
 
-void view_menu(Settings& s, bool full_screen, const Act& act) {
+// One of the plots, with all that can be done with it.
+void plot_menus(Desktop& d) {
+  std::vector<Plot>& plots = d.shown().plots;
+  PlotWish wish = PlotWish::none;
+  std::size_t of = 0;
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::BeginMenu(plots[i].spec().title.c_str())) {
+      const PlotWish asked = plot_menu_items(true, true);
+      if (asked != PlotWish::none) wish = asked, of = i;
+      ImGui::EndMenu();
+    }
+    ImGui::PopID();
+  }
+  if (wish == PlotWish::none) return;
+  d.settings().show_plots = true;
+  plots[of].ask(wish);
+}
+
+void plots_menu(Desktop& d, const Act& act) {
+  if (ImGui::BeginMenu("Plots of")) {
+    plot_menus(d);
+    ImGui::Separator();
+    item("Add a plot...", "N", Action::add_plot, act);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Layouts")) {
+    if (const std::string name = named_items(d.layouts()); !name.empty()) d.use_layout(name);
+    item("Save, rename...", "Ctrl+L", Action::layouts, act);
+    ImGui::EndMenu();
+  }
+}
+
+void view_menu(Desktop& d, bool full_screen, const Act& act) {
   if (!ImGui::BeginMenu("View")) return;
+  Settings& s = d.settings();
   ImGui::MenuItem("Coupling panel", "F2", &s.show_left);
   ImGui::MenuItem("Device panel", "F3", &s.show_right);
   ImGui::MenuItem("Plots", "F4", &s.show_plots);
+  plots_menu(d, act);
   ImGui::Separator();
   ImGui::MenuItem("Ghost of the device", "G", &s.show_ghost);
   ImGui::MenuItem("Lens at the tip, x5", "M", &s.show_lens);
@@ -143,7 +193,7 @@ void help_menu(Desktop& d) {
 
 void menus(Desktop& d, RecentMenu& recent, bool full_screen, const Act& act) {
   file_menu(d, recent, act);
-  view_menu(d.settings(), full_screen, act);
+  view_menu(d, full_screen, act);
   session_menu(d, act);
   scene_menu(d, act);
   device_menu(d, act);

@@ -9,6 +9,17 @@ namespace limpid {
 
 namespace {
 
+nlohmann::json plots_of(const Stage& stage) {
+  nlohmann::json plots = nlohmann::json::array();
+  for (const Plot& plot : stage.plots) {
+    nlohmann::json curves = nlohmann::json::array();
+    for (const Curve& curve : plot.spec().curves) curves.push_back(curve.label);
+    plots.push_back(
+        {{"title", plot.spec().title}, {"kind", name(plot.spec().kind)}, {"curves", curves}});
+  }
+  return plots;
+}
+
 // |x_E| of the twin, 0 without one [rad].
 double twin_error(const Desktop& d) {
   const TraceChannels& channels = d.shown().channels();
@@ -48,8 +59,9 @@ void print_state(Desktop& d, int width, int height) {
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
-      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": "
-      "{:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, \"filming\": {}, \"pads\": {}}}\n",
+      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
+      "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
+      "\"filming\": {}, \"pads\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -60,9 +72,10 @@ void print_state(Desktop& d, int width, int height) {
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(), !d.twin_row().empty(),
-      twin_error(d), width, height, d.settings().twin_overlaid, nlohmann::json(told(d)).dump(),
-      d.playback().video().busy(), d.pads().size());
+      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(),
+      plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), width, height,
+      d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
+      d.pads().size());
   std::fflush(stdout);
 }
 

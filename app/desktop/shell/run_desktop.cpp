@@ -86,7 +86,10 @@ void Application::open() {
 
 void Application::run(const std::string& complaint) {
   Notices& notices = desktop_.notices();
-  if (!complaint.empty()) notices.say(complaint, true);
+  for (const std::string& each :
+       {complaint, desktop_.layouts().complaint(), desktop_.presets().complaint()}) {
+    if (!each.empty()) notices.say(each, true);
+  }
   desktop_.playback().recover_leftovers(sessions_dir());
   for (const std::filesystem::path& file : take_unsaved(scenes_dir())) {
     notices.say(

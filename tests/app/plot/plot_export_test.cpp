@@ -23,10 +23,9 @@ History two_channels() {
 
 PlotSpec spec() {
   return {.title = "Error <|x_E|>",
-          .unit = "mrad",
-          .factor = 1000,
+          .y = {.unit = "mrad", .factor = 1000},
           .curves = {{.channel = 0, .label = "joint 1"},
-                     {.channel = 1, .label = "joint 2, \"other\"", .dashed = true},
+                     {.channel = 1, .label = "joint 2, \"other\""},
                      {.channel = 1, .label = "hidden", .visible = false}},
           .thresholds = {{1.5, "limit"}}};
 }
@@ -78,34 +77,74 @@ TEST(PlotCsv, LeavesMissingValuesEmpty) {
   EXPECT_EQ(all[2], "0.001000,1,");
 }
 
-TEST(PlotCsv, KnowsItsLengthBeforehand) {
-  EXPECT_EQ(plot_table_rows(two_channels(), 0.5, 1.5), 1001u);
-  EXPECT_EQ(plot_table_rows(two_channels(), 100, 200), 0u);
+TEST(PlotCsv, HasWhatIsAlongTheOtherAxisBeforeTheCurve) {
+  PlotSpec cross = spec();
+  cross.kind = PlotKind::cross;
+  cross.x = {.label = "torque", .unit = "N m"};
+  cross.curves = {{.channel = 1, .across = 0, .label = "a"},
+                  {.channel = 0, .across = 0, .label = "b"},
+                  {.channel = 0, .across = 1, .label = "twin a"}};
+  const auto all = lines(csv_text(plot_table(cross, two_channels(), 2, 2.001)));
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0], "time [s],torque [N m],a [mrad],b [mrad],torque (twin a) [N m],twin a [mrad]");
+  EXPECT_EQ(all[2], "2.001000,2.001,-2000,2001,-2,2001");
+}
+
+// A ramp's amplitudes are known only roughly; the frequencies are those of a second of it.
+TEST(PlotCsv, OfASpectrumHasFrequencies) {
+  PlotSpec spectrum = spec();
+  spectrum.kind = PlotKind::spectrum;
+  const auto all = lines(csv_text(plot_table(spectrum, two_channels(), 1, 2)));
+  EXPECT_EQ(all[0], "frequency [Hz],joint 1 [mrad],\"joint 2, \"\"other\"\" [mrad]\"");
+  ASSERT_EQ(all.size(), 1 + 251u);
+  EXPECT_TRUE(all[2].starts_with("2.000000,")) << all[2];
+  EXPECT_TRUE(all.back().starts_with("500.000000,")) << all.back();
+  EXPECT_TRUE(all[10].ends_with(",0")) << "the second channel stands still: " << all[10];
 }
 
 TEST(PlotSvg, IsWellFormedWhateverTheLabelsSay) {
-  const PlotPicture whole{0, 3, {-3, 3}};
+  const PlotPicture whole{0, 3, {}, {{-3, 3}}};
   expect_well_formed(plot_svg(spec(), two_channels(), whole));
-  const PlotPicture close{1.0, 1.1, {-3, 3}};
+  const PlotPicture close{1.0, 1.1, {}, {{-3, 3}}};
   expect_well_formed(plot_svg(spec(), two_channels(), close));
 }
 
 TEST(PlotSvg, DrawsBandsFromAfarAndLinesFromClose) {
-  const std::string far = plot_svg(spec(), two_channels(), {0, 3, {-3, 3}});
+  const std::string far = plot_svg(spec(), two_channels(), {0, 3, {}, {{-3, 3}}});
   EXPECT_NE(far.find("<polygon"), std::string::npos);
   EXPECT_EQ(far.find("<polyline"), std::string::npos);
-  const std::string close = plot_svg(spec(), two_channels(), {1.0, 1.1, {-3, 3}});
+  const std::string close = plot_svg(spec(), two_channels(), {1.0, 1.1, {}, {{-3, 3}}});
   EXPECT_NE(close.find("<polyline"), std::string::npos);
 }
 
 TEST(PlotSvg, LeavesHiddenCurvesOut) {
-  const std::string svg = plot_svg(spec(), two_channels(), {0, 3, {-3, 3}});
+  const std::string svg = plot_svg(spec(), two_channels(), {0, 3, {}, {{-3, 3}}});
   EXPECT_EQ(svg.find("hidden"), std::string::npos);
   EXPECT_NE(svg.find("joint 1"), std::string::npos);
 }
 
+TEST(PlotSvg, OfOtherKindsIsWellFormedAndHasBothAxes) {
+  PlotSpec other = spec();
+  other.x = {.label = "torque <f2>", .unit = "N m"};
+  other.curves.front().across = 1;
+  other.curves.resize(1);
+  other.kind = PlotKind::cross;
+  const std::string cross = plot_svg(other, two_channels(), {0, 3, {{-3, 3}}, {{0, 3}}});
+  expect_well_formed(cross);
+  EXPECT_NE(cross.find("torque &lt;f2&gt;  [N m]"), std::string::npos);
+  EXPECT_NE(cross.find("<polyline"), std::string::npos);
+  other.kind = PlotKind::spectrum;
+  other.x = {.label = "frequency", .unit = "Hz", .log = true};
+  other.y.log = true;
+  const std::string spectrum =
+      plot_svg(other, two_channels(), {0, 3, {{-1, 2.7}, true}, {{-6, 0}, true}});
+  expect_well_formed(spectrum);
+  EXPECT_NE(spectrum.find(">100<"), std::string::npos) << "hertz";
+  EXPECT_NE(spectrum.find("<polyline"), std::string::npos);
+}
+
 TEST(PlotSvg, OfAnEmptyHistoryIsStillAPicture) {
-  expect_well_formed(plot_svg(spec(), History({.channels = 2}), {0, 10, {-1, 1}}));
+  expect_well_formed(plot_svg(spec(), History({.channels = 2}), {0, 10, {}, {{-1, 1}}}));
 }
 
 }  // namespace

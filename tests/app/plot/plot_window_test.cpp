@@ -12,11 +12,11 @@ class APlot : public ImGuiFrames {
  protected:
   static PlotSpec energy() {
     return {.title = "energy",
-            .unit = "mJ",
-            .factor = 1e3,
-            .units = {{"mJ", 1e3, 1}, {"J", 1, 1e9}},
-            .curves = {{.label = "total"}},
-            .smallest_span = 1e-3};
+            .y = {.unit = "mJ",
+                  .factor = 1e3,
+                  .units = {{"mJ", 1e3, 1}, {"J", 1, 1e9}},
+                  .smallest_span = 1e-3},
+            .curves = {{.label = "total"}}};
   }
   void draw(Plot& plot, const History& history, int frames) {
     for (int i = 0; i < frames; ++i) {
@@ -38,11 +38,11 @@ TEST_F(APlot, WritesLargeEnergiesInJoules) {
   Plot plot(energy());
   for (int i = 0; i < 1000; ++i) history.append(0.001 * i, std::array{0.0005 * i});
   draw(plot, history, 3);
-  EXPECT_EQ(plot.spec().unit, "mJ");
+  EXPECT_EQ(plot.spec().y.unit, "mJ");
   for (int i = 1000; i < 3000; ++i) history.append(0.001 * i, std::array{0.0005 * i});
   draw(plot, history, 200);
-  EXPECT_EQ(plot.spec().unit, "J");
-  EXPECT_EQ(plot.spec().factor, 1);
+  EXPECT_EQ(plot.spec().y.unit, "J");
+  EXPECT_EQ(plot.spec().y.factor, 1);
 }
 
 TEST_F(APlot, LeavesTheEnergyOfTheRunBeforeBehindAtOnce) {
@@ -50,10 +50,10 @@ TEST_F(APlot, LeavesTheEnergyOfTheRunBeforeBehindAtOnce) {
   Plot plot(energy());
   for (int i = 0; i < 1000; ++i) history.append(0.001 * i, std::array{5.761});
   draw(plot, history, 3);
-  EXPECT_EQ(plot.spec().unit, "J");
+  EXPECT_EQ(plot.spec().y.unit, "J");
   for (int i = 0; i < 10; ++i) history.append(0.001 * i, std::array{0.0});
   draw(plot, history, 1);
-  EXPECT_EQ(plot.spec().unit, "mJ") << "the new run's axis, with the old run still in the window";
+  EXPECT_EQ(plot.spec().y.unit, "mJ") << "the new run's axis, with the old run still in the window";
 }
 
 struct Found {

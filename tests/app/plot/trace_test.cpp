@@ -16,7 +16,7 @@ Trace trace_of(const History& history, const Curve& curve, const PixelWindow& wi
   std::vector<SampleIndex> rows;
   pixel_rows(history, window, rows);
   Trace trace;
-  make_trace(history, curve, window, rows, 6, trace);
+  make_trace(history, curve, window, rows, trace);
   return trace;
 }
 
@@ -85,29 +85,6 @@ TEST(Trace, MissingValuesAreAGapOfTheirCurveAlone) {
   }
   EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(10, 10, 500)).runs.size(), 2u);
   EXPECT_EQ(trace_of(history, {.channel = 1}, pixel_window(10, 10, 500)).runs.size(), 1u);
-}
-
-TEST(Trace, DashesFollowTheCouplingKind) {
-  History history({.channels = 2, .seconds = 20});
-  for (int i = 0; i < 10000; ++i) {
-    history.append(i * kTick, std::array{1.0, i < 5000 ? 0.0 : 1.0});
-  }
-  for (const int pixels : {500, 20000}) {
-    const PixelWindow window = pixel_window(10, 10, pixels);
-    const Trace trace = trace_of(history, {.channel = 0, .dash_channel = 1}, window);
-    const double switched = window.pixel(5);
-    for (const TraceRun& run : trace.runs) {
-      const float begin = trace.points[run.first].x;
-      if (begin > switched + 1) {
-        EXPECT_FALSE(run.faint);
-      }
-      if (begin < switched - 10) {
-        const float end = trace.points[run.first + run.count - 1].x;
-        EXPECT_LT(end - begin, 12) << "no dash is longer than that";
-      }
-    }
-    EXPECT_GT(trace.runs.size(), 10u);
-  }
 }
 
 TEST(Trace, AnEmptyHistoryLeavesNoTrace) {

@@ -82,6 +82,11 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   s.plot_length = 31;
   s.device = "/some/\"odd\" path/arm\xCE\xB7.urdf";
   s.scene = "C:\\scene.toml";
+  s.plot_choices = {{.title = "\"odd\" title \xCE\xB7",
+                     .kind = PlotKind::cross,
+                     .across = "hand/torque.1",
+                     .channels = {"device/position.2", "no such channel"}},
+                    {.kind = PlotKind::spectrum, .channels = {"coordination/error"}}};
   s.parameters.kind = CouplingKind::proposed;
   s.parameters.eta = 0.1 + 0.2;
   s.parameters.damping = 0.017;
@@ -103,6 +108,23 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   EXPECT_EQ(again.device, s.device);
   EXPECT_EQ(again.scene, s.scene);
   EXPECT_EQ(again.parameters, s.parameters);
+  EXPECT_EQ(again.plot_choices, s.plot_choices);
+}
+
+TEST_F(SettingsFile, RemembersThatNoPlotIsLeft) {
+  Settings s;
+  s.plot_choices.clear();
+  EXPECT_EQ(save_settings(s), "");
+  EXPECT_TRUE(load().plot_choices.empty());
+}
+
+TEST_F(SettingsFile, WithABadPlotNamesItAndKeepsEverythingElse) {
+  write("[parameters]\ncoupling.eta = 2.0\n[[plot]]\nkind = \"pie\"\n");
+  const Settings s = load();
+  EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:4: plot.kind: \"pie\""));
+  EXPECT_THAT(complaint_, testing::HasSubstr("allowed: \"time\", \"cross\", \"spectrum\""));
+  EXPECT_EQ(s.plot_choices, default_plots());
+  EXPECT_EQ(s.parameters.eta, 2);
 }
 
 TEST_F(SettingsFile, ThatIsNoTomlIsComplainedAboutAndLeftAlone) {

@@ -1,0 +1,196 @@
+#include "app/session/plot_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+
+namespace limpid {
+namespace {
+
+constexpr float kTwinTint = 0.55f;  // of the second run's curves
+
+struct Scale {
+  std::string_view unit;
+  double smallest_span;
+  std::vector<PlotUnit> units;
+};
+
+// How quantities of a unit are written, and how little of them is worth a whole axis.
+const Scale& scale_of(std::string_view unit) {
+  static const std::array scales{
+      Scale{"rad", 20e-3, {{"mrad", 1e3, 1}, {"rad", 1, 1e9}}},
+      Scale{"J", 1e-3, {{"mJ", 1e3, 1}, {"J", 1, 1e9}}},
+      Scale{"m", 1e-3, {{"mm", 1e3, 1}, {"m", 1, 1e9}}},
+      Scale{"s", 1e-4, {{"\xC2\xB5s", 1e6, 1e-3}, {"ms", 1e3, 1}, {"s", 1, 1e9}}},
+      Scale{"N m", 0.05, {}},
+      Scale{"N", 0.1, {}},
+      Scale{"rad/s", 0.05, {}},
+      Scale{"", 1e-2, {}},
+  };
+  const auto* found = std::ranges::find(scales, unit, &Scale::unit);
+  return found == scales.end() ? scales.back() : *found;
+}
+
+// The axis for these; different units stand beside one another, unscaled.
+PlotAxis axis_for(const std::vector<ChannelInfo>& shown, bool log) {
+  PlotAxis axis{.zero_line = false, .log = log};
+  if (shown.empty()) return axis;
+  std::set<std::string> units;
+  for (const ChannelInfo& info : shown) {
+    if (info.unit != "-" && units.insert(info.unit).second) {
+      axis.unit += (axis.unit.empty() ? "" : ", ") + info.unit;
+    }
+    axis.zero_line = axis.zero_line || info.zero;
+  }
+  if (units.size() > 1) {
+    axis.smallest_span = 1e-2;
+    return axis;
+  }
+  const Scale& scale = scale_of(axis.unit);
+  axis.units = scale.units;
+  axis.smallest_span = log ? 1 : scale.smallest_span;
+  return axis;
+}
+
+// A colour that no curve has yet.
+void tell_apart(Curve& curve, const std::vector<Curve>& others) {
+  const auto taken = [&] {
+    return std::ranges::any_of(others, [&](const Curve& other) {
+      return other.ink == curve.ink && other.shade == curve.shade;
+    });
+  };
+  const auto first = static_cast<int>(Ink::joint_1), last = static_cast<int>(Ink::joint_7);
+  for (const float shade : {curve.shade, 0.45f, -0.45f}) {
+    curve.shade = shade;
+    if (!taken()) return;
+    for (int i = first; i <= last; ++i) {
+      Curve other = curve;
+      other.ink = static_cast<Ink>(i);
+      if (std::ranges::any_of(others, [&](const Curve& o) { return o.ink == other.ink; })) continue;
+      curve.ink = other.ink;
+      return;
+    }
+  }
+}
+
+// The same channel of the second run.
+Curve of_second(const Curve& first, std::size_t number, const TraceChannels& channels,
+                const RunNames& names) {
+  constexpr std::array kShades{0.0f, 0.5f, -0.5f, 0.25f, -0.25f};
+  Curve curve = first;
+  curve.channel += channels.count();
+  if (curve.across >= 0) curve.across += channels.count();
+  if (names.twin) {
+    curve.shade = std::min(1.0f, first.shade + kTwinTint);
+  } else {
+    curve.ink = Ink::rerun;
+    curve.shade = kShades[number % kShades.size()];
+  }
+  return curve;
+}
+
+std::string slug(const std::string& title) {
+  std::string text;
+  for (const char c : title) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && c > 0;
+    if (plain) {
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!text.empty() && text.back() != '-') {
+      text += '-';
+    }
+  }
+  while (text.ends_with('-')) text.pop_back();
+  return text.empty() ? "plot" : text;
+}
+
+// Where a single run had which law, and where a motor was at its limit.
+std::vector<Band> bands(bool single) {
+  std::vector<Band> bands;
+  if (single) {
+    Band laws{.channel = static_cast<int>(Channel::kind), .tint = 0.09f};
+    for (std::uint8_t i = 0; i < kLaws; ++i) laws.names.emplace_back(info(CouplingKind{i}).key);
+    bands.push_back(std::move(laws));
+  }
+  bands.push_back({static_cast<int>(Channel::limited), {"", "motor at its limit"}});
+  return bands;
+}
+
+}  // namespace
+
+const char* name(PlotKind kind) {
+  constexpr std::array kNames{"time", "cross", "spectrum"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<PlotChoice> default_plots() {
+  return {
+      {.title = "coordination error", .channels = {"coordination/error"}},
+      {.title = "controller energy",
+       .channels = {"energy/controller_total", "energy/controller_commanded"}},
+      {.title = "human and contact torque",
+       .channels = {"hand/torque_norm", "hand/torque_estimate_norm", "proxy/contact_torque_norm"}},
+      {.title = "error against torque",
+       .kind = PlotKind::cross,
+       .across = "proxy/contact_torque_norm",
+       .channels = {"coordination/error"}}};
+}
+
+std::string title_of(const PlotChoice& choice, const TraceChannels& channels) {
+  if (!choice.title.empty()) return choice.title;
+  const auto label = [&](const std::string& key) {
+    const auto channel = channels.find(key);
+    return channel ? channels.infos()[static_cast<std::size_t>(*channel)].label : key;
+  };
+  std::string title;
+  for (const std::string& key : choice.channels) {
+    title += (title.empty() ? "" : ", ") + label(key);
+  }
+  if (title.empty()) return "empty plot";
+  if (choice.kind == PlotKind::cross) return title + " against " + label(choice.across);
+  return choice.kind == PlotKind::spectrum ? "spectrum of " + title : title;
+}
+
+PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, const RunNames& names) {
+  PlotSpec spec{.title = title_of(choice, channels), .kind = choice.kind};
+  spec.file_name = slug(spec.title);
+  const auto at = [&](int i) { return channels.infos()[static_cast<std::size_t>(i)]; };
+  const auto across = channels.find(choice.across);
+  std::vector<ChannelInfo> shown;
+  std::vector<Curve> firsts;
+  for (const std::string& key : choice.channels) {
+    const auto channel = channels.find(key);
+    if (!channel || (choice.kind == PlotKind::cross && !across)) continue;
+    shown.push_back(at(*channel));
+    const ChannelInfo& info = shown.back();
+    Curve curve{.channel = *channel, .label = info.label, .ink = info.ink, .shade = info.shade};
+    if (choice.kind == PlotKind::cross) curve.across = *across;
+    tell_apart(curve, firsts);
+    curve.visible = !names.twin || !info.seldom;
+    firsts.push_back(std::move(curve));
+  }
+  spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
+  if (spec.y.unit.find(',') != std::string::npos) {
+    for (std::size_t i = 0; i < firsts.size(); ++i) firsts[i].label += " [" + shown[i].unit + "]";
+  }
+  for (const bool again : {false, true}) {
+    if (again && names.second.empty()) break;
+    const std::string& run = again ? names.second : names.first;
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+      Curve curve = again ? of_second(firsts[i], i, channels, names) : firsts[i];
+      if (!run.empty()) curve.label = firsts.size() == 1 ? run : run + " " + curve.label;
+      spec.curves.push_back(std::move(curve));
+    }
+  }
+  if (choice.kind == PlotKind::spectrum) {
+    spec.x = {.label = "frequency", .unit = "Hz", .zero_line = false, .log = true};
+  } else if (across) {
+    spec.x = axis_for({at(*across)}, false);
+    spec.x.label = at(*across).label;
+  }
+  spec.bands = bands(names.second.empty());
+  spec.end_labels = !names.second.empty();
+  return spec;
+}
+
+}  // namespace limpid

@@ -1,0 +1,26 @@
+#include "app/desktop/panels/plot_chooser.h"
+
+#include <gtest/gtest.h>
+
+namespace limpid {
+namespace {
+
+TEST(PlotChooser, FindsChannelsByAnyWordsOfTheirs) {
+  const TraceChannels channels{RowLayout(3)};
+  const auto found = [&](const std::string& words) {
+    std::vector<std::string> keys;
+    for (const ChannelInfo& info : channels.infos()) {
+      if (meant_by(info, words)) keys.push_back(info.key);
+    }
+    return keys;
+  };
+  EXPECT_EQ(found("").size(), static_cast<std::size_t>(channels.count()));
+  EXPECT_EQ(found("Device VELOCITY joint 2"),
+            (std::vector<std::string>{"device/velocity.2", "device/measured_velocity.2"}));
+  EXPECT_EQ(found("|f2|"), std::vector<std::string>{"proxy/contact_torque_norm"});
+  EXPECT_EQ(found("x_e 3"), std::vector<std::string>{"coordination/error.3"});
+  EXPECT_TRUE(found("velocity banana").empty());
+}
+
+}  // namespace
+}  // namespace limpid

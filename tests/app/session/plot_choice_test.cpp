@@ -1,0 +1,103 @@
+#include "app/session/plot_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace limpid {
+namespace {
+
+const RunNames kTwin{"standard", "predictive", true}, kRerun{"", "re-run", false};
+
+class PlotChoiceOfJoints : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, PlotChoiceOfJoints, testing::Values(1, 2, 3, 7, 32));
+
+TEST_P(PlotChoiceOfJoints, ShowsOnlyChannelsThatThereAre) {
+  const TraceChannels channels{RowLayout(GetParam())};
+  std::vector<PlotChoice> choices = default_plots();
+  choices.push_back({.channels = {"device/position.7", "no/such", "device/position.1"}});
+  choices.push_back({.kind = PlotKind::cross, .across = "no/such", .channels = {"coupling/eta"}});
+  for (const RunNames& names : {RunNames{}, kTwin, kRerun}) {
+    const int runs = names.second.empty() ? 1 : 2;
+    for (const PlotChoice& choice : choices) {
+      const PlotSpec spec = plot_spec(choice, channels, names);
+      EXPECT_FALSE(spec.title.empty());
+      EXPECT_FALSE(spec.file_name.empty());
+      for (const Curve& curve : spec.curves) {
+        EXPECT_GE(curve.channel, 0);
+        EXPECT_LT(curve.channel, runs * channels.count());
+        EXPECT_LT(curve.across, runs * channels.count());
+        EXPECT_EQ(curve.across >= 0, choice.kind == PlotKind::cross);
+      }
+    }
+    EXPECT_EQ(plot_spec(choices[4], channels, names).curves.size(),
+              static_cast<std::size_t>(runs * (GetParam() >= 7 ? 2 : 1)));
+    EXPECT_TRUE(plot_spec(choices[5], channels, names).curves.empty());
+  }
+}
+
+// Each run's error stands over its own contact torque.
+TEST(PlotChoice, SetsTheErrorOfBothRunsAgainstTheirOwnTorque) {
+  const TraceChannels channels{RowLayout(3)};
+  const PlotSpec spec = plot_spec(default_plots().back(), channels, kTwin);
+  ASSERT_EQ(spec.curves.size(), 2u);
+  for (const int run : {0, 1}) {
+    const Curve& curve = spec.curves[static_cast<std::size_t>(run)];
+    EXPECT_EQ(curve.channel, static_cast<int>(Channel::error) + run * channels.count());
+    EXPECT_EQ(curve.across, static_cast<int>(Channel::contact) + run * channels.count());
+    EXPECT_EQ(curve.label, run == 0 ? "standard" : "predictive");
+  }
+  EXPECT_EQ(spec.x.unit, "N m");
+}
+
+// Of two runs in one plot no two curves look alike, whatever is in it.
+TEST(PlotChoice, TellsCurvesApartByTheirColours) {
+  const TraceChannels channels{RowLayout(7)};
+  std::vector<PlotChoice> choices = default_plots();
+  choices.push_back({.channels = {"device/position.1", "proxy/position.1", "device/velocity.1",
+                                  "device/position.2"}});
+  choices.push_back({.channels = {"energy/port", "energy/ledger", "energy/proxy_kinetic"}});
+  for (const Palette* palette : {&kDarkPalette, &kLightPalette}) {
+    for (const RunNames& names : {RunNames{}, kRerun}) {
+      for (const PlotChoice& choice : choices) {
+        const PlotSpec plot = plot_spec(choice, channels, names);
+        std::vector<Rgb> seen;
+        for (const Curve& curve : plot.curves) {
+          const Rgb rgb = ink(*palette, curve.ink, curve.shade);
+          for (const Rgb other : seen) {
+            const int apart =
+                std::abs(rgb.r - other.r) + std::abs(rgb.g - other.g) + std::abs(rgb.b - other.b);
+            EXPECT_GT(apart, 30) << plot.title << ": " << curve.label;
+          }
+          seen.push_back(rgb);
+        }
+      }
+    }
+  }
+}
+
+TEST(PlotChoice, WritesOneUnitScaledAndSeveralAsTheyAre) {
+  const TraceChannels channels{RowLayout(3)};
+  const auto y = [&](std::vector<std::string> keys) {
+    return plot_spec({.channels = std::move(keys)}, channels, {}).y;
+  };
+  EXPECT_FALSE(y({"energy/port", "energy/ledger"}).units.empty());
+  const PlotAxis mixed = y({"energy/port", "device/velocity.1"});
+  EXPECT_EQ(mixed.unit, "J, rad/s");
+  EXPECT_TRUE(mixed.units.empty());
+  EXPECT_EQ(mixed.factor, 1);
+  EXPECT_TRUE(y({"energy/port"}).zero_line);
+  EXPECT_FALSE(y({"device/position.2"}).zero_line) << "where a joint is, has no zero of interest";
+}
+
+TEST(PlotChoice, IsCalledByWhatItShowsUnlessItHasAName) {
+  const TraceChannels channels{RowLayout(3)};
+  PlotChoice choice{.kind = PlotKind::spectrum, .channels = {"hand/torque_norm"}};
+  EXPECT_EQ(title_of(choice, channels), "spectrum of |f1|");
+  choice.title = "tremor";
+  EXPECT_EQ(title_of(choice, channels), "tremor");
+  EXPECT_EQ(plot_spec({.title = "a/b: c", .channels = {}}, channels, {}).file_name, "a-b-c");
+}
+
+}  // namespace
+}  // namespace limpid
