@@ -33,7 +33,7 @@ struct IdentifyOptions {
   std::string out;
   std::string gravity = "0,0,-9.81";
   unsigned seed = 1;
-  bool yes = false;
+  bool yes = false, forget = false;
   ExcitationPlan plan;
 };
 
@@ -178,12 +178,31 @@ void write(const fs::path& file, const std::string& text) {
   if (!wrong.empty()) throw std::runtime_error(wrong);
 }
 
-int identify_device(IdentifyOptions& options) {
+// With the device in use that was before.
+void save(DeviceHub& hub, const std::string& in_use) {
+  hub.use(in_use);
+  if (const std::string wrong = hub.save(); !wrong.empty()) throw std::runtime_error(wrong);
+}
+
+int forget(const IdentifyOptions& options) {
+  DeviceHub hub(device_book_file(), {});
+  const std::string in_use = hub.in_use();
+  if (!options.device.empty()) hub.use(options.device);
+  hub.forget_arm();
+  save(hub, in_use);
+  fmt::print("forgotten\n");
+  return 0;
+}
+
+int identify_device(const IdentifyOptions& options) {
+  if (options.forget) return forget(options);
+  if (options.out.empty()) throw UsageError("--out is required");
   const Vec3 gravity = gravity_of(options.gravity);
   ArmDescription guess;
   SceneDocument scene;
   read_world(options.input, guess, scene);
   DeviceHub hub(device_book_file(), {});
+  const std::string in_use = hub.in_use();
   const bool simulated = options.device == kSimulated;
   std::unique_ptr<Device> device;
   if (simulated) {
@@ -192,7 +211,7 @@ int identify_device(IdentifyOptions& options) {
         Unlikeness{.gravity = gravity, .encoder_step = 1e-4, .delay = 2});
   } else {
     device = opened(options, hub);
-    guess = arm_for(device->traits(), guess);
+    if (options.input.device.empty()) guess = hub.arm_for(device->traits(), guess);
   }
   const double seconds = Excitation(guess, device->traits(), options.plan).duration();
   if (!simulated) ask_to_begin(options, *device, seconds);
@@ -214,10 +233,17 @@ int identify_device(IdentifyOptions& options) {
   const Identified found = identify(guess, run.record, {.gravity = gravity});
   const std::string name = device->traits().name;
   write(out / "identified.json", as_json(found, run, name).dump(2) + "\n");
-  write(out / "identified.urdf",
-        urdf_text(found.arm, fmt::format("identified by limpid on {}, from {}", name, guess.name)));
+  const std::string urdf =
+      urdf_text(found.arm, fmt::format("identified by limpid on {}, from {}", name, guess.name));
+  write(out / "identified.urdf", urdf);
   print(found, guess, run);
   fmt::print("arm: {}\n", (out / "identified.urdf").string());
+  if (simulated) return 0;
+  if (const std::string wrong = hub.remember_arm(urdf); !wrong.empty()) {
+    throw std::runtime_error(wrong);
+  }
+  save(hub, in_use);
+  fmt::print("remembered: {} is this arm from now on; --forget ends that\n", name);
   return 0;
 }
 
@@ -232,8 +258,7 @@ Command declare_identify(CLI::App& app) {
                                   "unlike its file, drawn by --seed; default: the one in use",
                                   kSimulated));
   options->input.add_world(*command);
-  command->add_option("--out", options->out, "folder for identified.urdf, .json and motion.csv")
-      ->required();
+  command->add_option("--out", options->out, "folder for identified.urdf, .json and motion.csv");
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");
   command->add_option("--range", options->plan.range, "part of each joint's range that is used")
@@ -242,6 +267,7 @@ Command declare_identify(CLI::App& app) {
       ->check(CLI::Range(0.05, 1.0));
   require_whole_number(command->add_option("--seed", options->seed, "of the simulated device"));
   command->add_flag("--yes", options->yes, "begin without asking");
+  command->add_flag("--forget", options->forget, "take the device for its file's arm again");
   command->footer(
       "The device is held by nobody meanwhile. It ends at once on Ctrl-C, when something holds it, "
       "when it\nfalls silent, and at every limit of safety. The URDF holds what was found: "
