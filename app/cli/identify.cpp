@@ -43,9 +43,10 @@ Vec3 gravity_of(const std::string& text) {
   int end = 0;
   const bool three = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &g.x(), &g.y(), &g.z(), &end) == 3;
   if (three && end == static_cast<int>(text.size()) && g.allFinite() && g.norm() < 30) return g;
-  throw UsageError(fmt::format("--gravity {}: needed: none, or X,Y,Z in m/s^2 in the frame of the "
-                               "arm's base, as 0,0,-9.81",
-                               text));
+  throw UsageError(
+      fmt::format("--gravity {}: needed: none, or X,Y,Z in m/s^2 in the frame of the "
+                  "arm's base, as 0,0,-9.81",
+                  text));
 }
 
 std::unique_ptr<Device> opened(const IdentifyOptions& options, DeviceHub& hub) {
@@ -67,10 +68,11 @@ std::unique_ptr<Device> opened(const IdentifyOptions& options, DeviceHub& hub) {
 }
 
 void ask_to_begin(const IdentifyOptions& options, const Device& device, double seconds) {
-  fmt::print("{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
-             "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
-             "holding on to it.\n",
-             device.traits().name, seconds, 100 * options.plan.range);
+  fmt::print(
+      "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
+      "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
+      "holding on to it.\n",
+      device.traits().name, seconds, 100 * options.plan.range);
   if (options.yes) return;
   if (isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may move; needed: --yes, or a terminal");
@@ -129,9 +131,9 @@ ordered_json as_json(const Identified& found, const IdentifyRun& run, const std:
 }
 
 void print(const Identified& found, const ArmDescription& guess, const IdentifyRun& run) {
-  fmt::print("{:<14} {:>22} {:>10} {:>20} {:>22} {:>22} {:>20} {:>9}\n", "joint",
-             "inertia [g m^2]", "was", "weight [mN m]", "friction [mN m]", "viscous [mN m s/rad]",
-             "spring [N m/rad]", "missed");
+  fmt::print("{:<14} {:>22} {:>10} {:>20} {:>22} {:>22} {:>20} {:>9}\n", "joint", "inertia [g m^2]",
+             "was", "weight [mN m]", "friction [mN m]", "viscous [mN m s/rad]", "spring [N m/rad]",
+             "missed");
   const auto pair = [](const Found& f, double unit) {
     return fmt::format("{:.3f} +- {:.3f}", f.value / unit, f.deviation / unit);
   };
@@ -151,9 +153,10 @@ void print(const Identified& found, const ArmDescription& guess, const IdentifyR
   fmt::print("delay          {:.2f} +- {:.2f} ms from a reading to the torque that answers it\n",
              1e3 * found.delay.value, 1e3 * found.delay.deviation);
   if (run.timing.rate > 0) {
-    fmt::print("readings       {:.0f} a second; between two: {:.2f} ms in the middle, {:.2f} ms at "
-               "99 %, {:.2f} ms at most\n",
-               run.timing.rate, 1e3 * run.timing.p50, 1e3 * run.timing.p99, 1e3 * run.timing.most);
+    fmt::print(
+        "readings       {:.0f} a second; between two: {:.2f} ms in the middle, {:.2f} ms at "
+        "99 %, {:.2f} ms at most\n",
+        run.timing.rate, 1e3 * run.timing.p50, 1e3 * run.timing.p99, 1e3 * run.timing.most);
   }
 }
 
@@ -164,7 +167,8 @@ std::string csv_of(const MotionRecord& record) {
   text += '\n';
   for (Eigen::Index i = 0; i < record.rows(); ++i) {
     text += fmt::format("{:.3f}", static_cast<double>(i) * record.T);
-    for (Eigen::Index j = 0; j < record.joints(); ++j) text += fmt::format(",{:.9g}", record.x(i, j));
+    for (Eigen::Index j = 0; j < record.joints(); ++j)
+      text += fmt::format(",{:.9g}", record.x(i, j));
     for (Eigen::Index j = 0; j < record.joints(); ++j) {
       text += fmt::format(",{:.9g}", record.torque(i, j));
     }

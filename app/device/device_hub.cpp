@@ -21,8 +21,7 @@ constexpr std::chrono::milliseconds kFirstReading{200};
 
 }  // namespace
 
-ArmDescription DeviceHub::arm_for(const DeviceTraits& traits,
-                                  const ArmDescription& present) const {
+ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
   if (const std::string file = known().arm; !file.empty()) arm = read_urdf(file);
   if (arm.dof() != traits.dof) {

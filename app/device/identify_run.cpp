@@ -13,8 +13,8 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kTick{1};
-constexpr double kT = 1e-3;           // [s]
-constexpr double kLongestWay = 30;    // to the middle, at the start [s]
+constexpr double kT = 1e-3;         // [s]
+constexpr double kLongestWay = 30;  // to the middle, at the start [s]
 
 double seconds(steady_clock::duration t) { return duration<double>(t).count(); }
 
@@ -29,9 +29,7 @@ class Recording {
     intervals_.reserve(static_cast<std::size_t>(rows));
   }
 
-  bool running() const {
-    return motion_.end() == ExcitationEnd::running && rows_ < x_.cols();
-  }
+  bool running() const { return motion_.end() == ExcitationEnd::running && rows_ < x_.cols(); }
   void cancel() noexcept { motion_.cancel(); }
 
   // `periods` since the tick before, `dt` [s] the same as it really passed; `silence` of the
@@ -134,7 +132,8 @@ IdentifyRun run_identification(Device& device, const ArmDescription& arm,
     const auto tick = [&](const TickTiming& timing) {
       if (done) return;
       if (talk.cancel) recording.cancel();
-      recording.tick(device, timing.periods, timing.dt, seconds(steady_clock::now() - talk.seen.load()));
+      recording.tick(device, timing.periods, timing.dt,
+                     seconds(steady_clock::now() - talk.seen.load()));
       recording.tell(talk);
       done = !recording.running();
     };

@@ -61,7 +61,10 @@ std::string joint_text(const Joint& joint, const std::string& parent, const std:
       "    <child link=\"{}\"/>\n    <axis xyz=\"{}\"/>\n"
       "    <limit {}effort=\"{}\" velocity=\"10\"/>\n"
       "    <dynamics damping=\"{}\" friction=\"{}\"/>\n  </joint>\n",
-      escaped(joint.name), slides ? "prismatic" : limited ? "revolute" : "continuous",
+      escaped(joint.name),
+      slides    ? "prismatic"
+      : limited ? "revolute"
+                : "continuous",
       origin(joint.origin), parent, child, numbers(joint.axis), range, joint.effort / unit,
       joint.damping / (unit * unit), joint.friction / unit);
 }

@@ -21,9 +21,8 @@ Eigen::Matrix<double, 3, 6> product(const Vec3& w) {
 }  // namespace
 
 LinkParameters parameters_of(const Link& link) {
-  const Mat3 about_origin =
-      link.inertia + link.mass * (link.com.squaredNorm() * Mat3::Identity() -
-                                  link.com * link.com.transpose());
+  const Mat3 about_origin = link.inertia + link.mass * (link.com.squaredNorm() * Mat3::Identity() -
+                                                        link.com * link.com.transpose());
   LinkParameters out;
   out << link.mass, link.mass * link.com, about_origin(0, 0), about_origin(0, 1),
       about_origin(0, 2), about_origin(1, 1), about_origin(1, 2), about_origin(2, 2);
@@ -34,8 +33,8 @@ void set_parameters(Link& link, const LinkParameters& p) {
   link.mass = p[0];
   link.com = p.segment<3>(1) / link.mass;
   link.inertia << p[4], p[5], p[6], p[5], p[7], p[8], p[6], p[8], p[9];
-  link.inertia -= link.mass * (link.com.squaredNorm() * Mat3::Identity() -
-                               link.com * link.com.transpose());
+  link.inertia -=
+      link.mass * (link.com.squaredNorm() * Mat3::Identity() - link.com * link.com.transpose());
 }
 
 // Newton and Euler for each link, outward; its force and moment then act on all joints before it.
@@ -56,8 +55,10 @@ Eigen::MatrixXd regressor(const Arm<kAnyDof>& arm, const Vec<kAnyDof>& x, const 
     const Mat3& R = f.R[J];
     const Vec3 origin = R.transpose() * (udot + wdot.cross(f.p[J]) + w.cross(u + w.cross(f.p[J])));
     const Vec3 rate = R.transpose() * w, turning = R.transpose() * wdot;
-    Eigen::Matrix<double, 3, kLinkParameters> force, moment;  // in the link's axes, about its origin
-    force << origin, cross(turning) + cross(rate) * cross(rate), Eigen::Matrix<double, 3, 6>::Zero();
+    Eigen::Matrix<double, 3, kLinkParameters> force,
+        moment;  // in the link's axes, about its origin
+    force << origin, cross(turning) + cross(rate) * cross(rate),
+        Eigen::Matrix<double, 3, 6>::Zero();
     moment << Vec3::Zero(), -cross(origin), product(turning) + cross(rate) * product(rate);
     const Eigen::Matrix<double, 3, kLinkParameters> push = R * force;
     const Eigen::Matrix<double, 3, kLinkParameters> twist = R * moment + cross(f.p[J]) * push;

@@ -14,13 +14,13 @@ using std::numbers::pi;
 
 constexpr double kFollow = 2 * pi * 5;  // of the controller on the guessed inertia [rad/s]
 constexpr double kZeta = 0.7;
-constexpr double kSmooth = 0.004;    // of its velocity [s]
-constexpr double kIntegral = 2;      // of its error [1/s]
-constexpr double kEnvelope = 1;      // in and out of each part [s]
-constexpr double kFade = 0.5;        // at the end [s]
-constexpr double kApproach = 0.4;    // speed towards the middle [rad/s]
-constexpr double kPatience = 0.6;    // with a joint that does not follow [s]
-constexpr double kSweep = 1.0 / 3;   // periods a second
+constexpr double kSmooth = 0.004;   // of its velocity [s]
+constexpr double kIntegral = 2;     // of its error [1/s]
+constexpr double kEnvelope = 1;     // in and out of each part [s]
+constexpr double kFade = 0.5;       // at the end [s]
+constexpr double kApproach = 0.4;   // speed towards the middle [rad/s]
+constexpr double kPatience = 0.6;   // with a joint that does not follow [s]
+constexpr double kSweep = 1.0 / 3;  // periods a second
 
 // From 0 to 1 and back within a part of this length, without corners.
 double envelope(double t, double length) {
@@ -156,8 +156,8 @@ Excitation::Vector Excitation::wanted(double time) noexcept {
 
 bool Excitation::follows(const Vector& error, const Vector& torque, double T) noexcept {
   for (Eigen::Index j = 0; j < error.size(); ++j) {
-    const bool astray = std::abs(error[j]) > 0.8 * amplitude_[j] + 0.05 ||
-                        std::abs(torque[j]) >= limit_[j];
+    const bool astray =
+        std::abs(error[j]) > 0.8 * amplitude_[j] + 0.05 || std::abs(torque[j]) >= limit_[j];
     away_[j] = astray ? away_[j] + T : 0;
     if (away_[j] <= kPatience) continue;
     joint_ = static_cast<int>(j);
@@ -179,9 +179,11 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
 
   const Vector before = wish_;
   wish_ = wanted(time_);
-  const Vector rate = first ? Vector(Vector::Zero(middle_.size())) : Vector((wish_ - before) / in.T);
+  const Vector rate =
+      first ? Vector(Vector::Zero(middle_.size())) : Vector((wish_ - before) / in.T);
   const Vector error = wish_ - x;
-  sum_ = (sum_ + in.T * kIntegral * stiffness_.cwiseProduct(error)).cwiseMin(limit_).cwiseMax(-limit_);
+  sum_ =
+      (sum_ + in.T * kIntegral * stiffness_.cwiseProduct(error)).cwiseMin(limit_).cwiseMax(-limit_);
   Vector torque = stiffness_.cwiseProduct(error) + damping_.cwiseProduct(rate - v_) + sum_;
   const double left = duration_ - time_;
   if (stage_ == ExcitationStage::fade) torque *= std::clamp(left / kFade, 0.0, 1.0);
@@ -190,8 +192,7 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   Jacobian<kAnyDof> J;
   arm_.frames(x, f);
   arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
-  const Objections against =
-      safety_.judge(in.health, !torque.allFinite(), x, v_, J, put_out, in.T);
+  const Objections against = safety_.judge(in.health, !torque.allFinite(), x, v_, J, put_out, in.T);
   gate_.step(first ? ForceWish::arm : ForceWish::as_it_is, against, in.T);
   torque_ = motors_.pass(safety_.within_tip_force(torque, J), limit_, gate_.gain(), in.T,
                          SafetyLimits::kSlew);

@@ -3,7 +3,8 @@
 //
 // A gentle controller follows a path about the middle of the range; the torque passes the same
 // stages as the loop's own: arming and fading, the limits of safety, the slew. Whatever they object
-// to, a hand that holds on, and a joint that does not follow end it, and nothing goes on from there.
+// to, a hand that holds on, and a joint that does not follow end it, and nothing goes on from
+// there.
 //
 // To drive it, at every tick and with nothing else pushing:
 //
@@ -29,10 +30,10 @@ enum class ExcitationEnd : std::uint8_t {
   running,
   complete,
   cancelled,
-  not_well,    // the device: lost, silent, at fault, or the loop stood still
-  let_go,      // its dead-man switch opened
-  limit,       // too fast, too far, or too much energy
-  held,        // something holds it: it does not follow
+  not_well,  // the device: lost, silent, at fault, or the loop stood still
+  let_go,    // its dead-man switch opened
+  limit,     // too fast, too far, or too much energy
+  held,      // something holds it: it does not follow
 };
 const char* explain(ExcitationEnd end);  // for people, a sentence
 
@@ -66,7 +67,7 @@ class Excitation {
   ExcitationEnd end() const { return end_; }
   ExcitationStage stage() const { return stage_; }
   ForceState objection() const { return gate_.why(); }
-  int joint() const { return joint_; }  // being swept, or the one that did not follow
+  int joint() const { return joint_; }           // being swept, or the one that did not follow
   double duration() const { return duration_; }  // all of it [s]
   double time() const { return time_; }          // gone of it [s]
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/LevenbergMarquardt>
 
+#include "devices/identify/equations.h"
 #include "devices/identify/plausible.h"
 
 namespace limpid {
@@ -16,71 +17,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kOwn = 4;  // of a joint besides its link's: viscous, Coulomb, offset, spring
 constexpr Index kLeast = 100;
-constexpr double kLeastSpeed = 0.05;  // that is motion [rad/s]
 constexpr double kHuber = 2;  // deviations from which on a miss counts less
-
-// The rows of tau = A z that can be trusted: those of joints that move on throughout the window,
-// as friction is what it is taken for only there.
-struct Rows {
-  MatrixXd A;
-  std::vector<Index> time, joint;  // of each row
-};
-
-// About that time the joint moves in the direction of v all along, faster than one that sticks or
-// an encoder that flickers.
-bool moves_on(const MotionRecord& record, const Window& window, double time, Index joint, double v,
-              double step) {
-  const double piece = std::max(window.sigma, 0.01);
-  const double least = std::max(1.5 * step, kLeastSpeed * piece);
-  const auto at = [&](double t) {
-    const auto row = static_cast<Index>(std::llround(t / record.T));
-    return record.x(std::clamp<Index>(row, 0, record.rows() - 1), joint);
-  };
-  const double edge = 3 * window.sigma;
-  for (double t = time - edge; t < time + edge - 1e-9; t += piece) {
-    const double moved = at(t + piece) - at(t);
-    if (!(v > 0 ? moved >= least : moved <= -least)) return false;
-  }
-  return true;
-}
-
-Rows rows_of(const ArmDescription& guess, const MotionRecord& record, const FitSettings& settings,
-             const Window& window, const VectorXd& times) {
-  const Motion3 motion = motion_at(record, window, times);
-  const VectorXd step = encoder_steps(record);
-  const Arm<kAnyDof> arm(guess);
-  const Index n = record.joints();
-  Rows rows;
-  std::vector<Eigen::RowVectorXd> lines;
-  for (Index k = 0; k < times.size(); ++k) {
-    const MatrixXd Y = regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
-                                 motion.a.row(k).transpose(), settings.gravity);
-    for (Index j = 0; j < n; ++j) {
-      const double v = motion.v(k, j);
-      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
-      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero((kLinkParameters + kOwn) * n);
-      line.head(kLinkParameters * n) = Y.row(j);
-      line.segment<kOwn>(kLinkParameters * n + kOwn * j) << v, v > 0 ? 1 : -1, 1, motion.x(k, j);
-      lines.push_back(std::move(line));
-      rows.time.push_back(k);
-      rows.joint.push_back(j);
-    }
-  }
-  rows.A.resize(static_cast<Index>(lines.size()), (kLinkParameters + kOwn) * n);
-  for (Index i = 0; i < rows.A.rows(); ++i) rows.A.row(i) = lines[static_cast<std::size_t>(i)];
-  return rows;
-}
-
-VectorXd of_rows(const Rows& rows, const MatrixXd& torque) {
-  VectorXd b(rows.A.rows());
-  for (Index i = 0; i < b.size(); ++i) {
-    const auto I = static_cast<std::size_t>(i);
-    b[i] = torque(rows.time[I], rows.joint[I]);
-  }
-  return b;
-}
 
 // The least squares of A z = b for many b.
 class Projection {
@@ -115,8 +53,10 @@ double least_of(const F& f, double low, double high) {
   constexpr double kGolden = 0.6180339887498949;
   while (high - low > 1e-6) {
     const double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-    if (f(left) < f(right)) high = right;
-    else low = left;
+    if (f(left) < f(right))
+      high = right;
+    else
+      low = left;
   }
   return 0.5 * (low + high);
 }
@@ -124,8 +64,7 @@ double least_of(const F& f, double low, double high) {
 // Bodies near the guess and friction that fit R z = y, deviations all 1: what is asked of the
 // library's Levenberg and Marquardt.
 struct Nearest : Eigen::DenseFunctor<double> {
-  Nearest(const ArmDescription& guess, const MatrixXd& A, const VectorXd& b,
-          const VectorXd& torque)
+  Nearest(const ArmDescription& guess, const MatrixXd& A, const VectorXd& b, const VectorXd& torque)
       : DenseFunctor<double>(static_cast<int>(A.cols()), static_cast<int>(2 * A.cols())) {
     for (const Link& link : guess.links) bodies.emplace_back(parameters_of(link));
     const Eigen::HouseholderQR<MatrixXd> qr(A);
@@ -136,7 +75,8 @@ struct Nearest : Eigen::DenseFunctor<double> {
     prior = VectorXd::Ones(A.cols());
     for (Index j = 0; j < bodies_size(); ++j) {
       const double spring = 1 / (0.3 * torque[j]);
-      prior.segment<kOwn>(kLinkParameters * bodies_size() + kOwn * j) << 0, 0, spring, spring;
+      prior.segment<kOwnParameters>(kLinkParameters * bodies_size() + kOwnParameters * j) << 0, 0,
+          spring, spring;
     }
   }
   Index bodies_size() const { return static_cast<Index>(bodies.size()); }
@@ -145,8 +85,7 @@ struct Nearest : Eigen::DenseFunctor<double> {
     VectorXd out = q;
     for (Index i = 0; i < bodies_size(); ++i) {
       const LinkParameters d = q.segment<kLinkParameters>(kLinkParameters * i);
-      out.segment<kLinkParameters>(kLinkParameters * i) =
-          bodies[static_cast<std::size_t>(i)].at(d);
+      out.segment<kLinkParameters>(kLinkParameters * i) = bodies[static_cast<std::size_t>(i)].at(d);
     }
     return out;
   }
@@ -177,10 +116,14 @@ struct Nearest : Eigen::DenseFunctor<double> {
 class Fit {
  public:
   Fit(const ArmDescription& guess, const MotionRecord& record, const FitSettings& settings)
-      : guess_(guess), record_(record), settings_(settings), window_(window_for(record)), n_(record.joints()) {
+      : guess_(guess),
+        record_(record),
+        settings_(settings),
+        window_(window_for(record)),
+        n_(record.joints()) {
     if (guess.dof() != n_) {
-      throw std::invalid_argument(fmt::format(
-          "the arm has {} joints, the recorded motion {}", guess.dof(), n_));
+      throw std::invalid_argument(
+          fmt::format("the arm has {} joints, the recorded motion {}", guess.dof(), n_));
     }
     const double margin = 1.5 * window_.reach() + settings.longest_delay;
     const double spacing = window_.independent();
@@ -188,7 +131,7 @@ class Fit {
     if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
     const auto count = static_cast<Index>(length / spacing);
     times_ = VectorXd::LinSpaced(count, margin, margin + static_cast<double>(count - 1) * spacing);
-    rows_ = rows_of(guess, record, settings, window_, times_);
+    rows_ = equations_of(guess, record, settings.gravity, window_, times_);
     count_ = Eigen::VectorX<Index>::Zero(n_);
     for (const Index j : rows_.joint) ++count_[j];
     for (Index j = 0; j < n_; ++j) {
@@ -207,7 +150,7 @@ class Fit {
 
  private:
   VectorXd torque(double delay) const {
-    return of_rows(rows_, torque_at(record_, window_, times_, delay));
+    return rows_.of(torque_at(record_, window_, times_, delay));
   }
   double miss(const Projection& fit, double delay) const {
     return fit.miss(weight_.cwiseProduct(torque(delay)));
@@ -248,7 +191,8 @@ class Fit {
 
     Identified out{.arm = guess_, .joints = {}, .middle = record_.x.colwise().mean(), .delay = {}};
     const auto found = [&](const Eigen::RowVectorXd& row) {
-      return Found{row.dot(z), std::sqrt(std::max(0.0, (row * covariance * row.transpose()).value()))};
+      return Found{row.dot(z),
+                   std::sqrt(std::max(0.0, (row * covariance * row.transpose()).value()))};
     };
     const Arm<kAnyDof> arm(guess_);
     const Vec<kAnyDof> zero = VectorXd::Zero(n_), middle = out.middle;
@@ -261,17 +205,19 @@ class Fit {
         return found(row);
       };
       const auto own = [&](Index k) {
-        return found(Eigen::RowVectorXd::Unit(z.size(), kLinkParameters * n_ + kOwn * j + k));
+        return found(
+            Eigen::RowVectorXd::Unit(z.size(), kLinkParameters * n_ + kOwnParameters * j + k));
       };
-      JointFinding joint{.inertia = of_links(regressor(arm, middle, zero, unit, Vec3::Zero()).row(j)),
-                         .gravity = of_links(weight.row(j)),
-                         .viscous = own(0),
-                         .coulomb = own(1),
-                         .offset = own(2),
-                         .spring = own(3),
-                         .residual = noise_[j],
-                         .torque = torque[j],
-                         .samples = count_[j]};
+      JointFinding joint{
+          .inertia = of_links(regressor(arm, middle, zero, unit, Vec3::Zero()).row(j)),
+          .gravity = of_links(weight.row(j)),
+          .viscous = own(0),
+          .coulomb = own(1),
+          .offset = own(2),
+          .spring = own(3),
+          .residual = noise_[j],
+          .torque = torque[j],
+          .samples = count_[j]};
       out.joints.push_back(joint);
       const auto J_ = static_cast<std::size_t>(j);
       set_parameters(out.arm.links[J_], z.segment<kLinkParameters>(kLinkParameters * j));
@@ -286,8 +232,9 @@ class Fit {
   double delay_deviation() const {
     constexpr double kStep = 2e-4;  // [s]
     const Projection fit(weight_.asDiagonal() * rows_.A);
-    const double curve = (miss(fit, delay_ + kStep) + miss(fit, delay_ - kStep) -
-                          2 * miss(fit, delay_)) / (kStep * kStep);
+    const double curve =
+        (miss(fit, delay_ + kStep) + miss(fit, delay_ - kStep) - 2 * miss(fit, delay_)) /
+        (kStep * kStep);
     return curve > 0 ? std::sqrt(2 / curve) : settings_.longest_delay;
   }
 
@@ -297,7 +244,7 @@ class Fit {
   Window window_;
   Index n_;
   VectorXd times_;
-  Rows rows_;
+  Equations rows_;
   Eigen::VectorX<Index> count_;
   VectorXd weight_, b_, noise_;
   double delay_ = 0;
@@ -305,7 +252,8 @@ class Fit {
 
 }  // namespace
 
-Identified identify(const ArmDescription& guess, const MotionRecord& record, const FitSettings& settings) {
+Identified identify(const ArmDescription& guess, const MotionRecord& record,
+                    const FitSettings& settings) {
   return Fit(guess, record, settings).run();
 }
 

@@ -15,15 +15,15 @@ struct Found {
 };
 
 struct JointFinding {
-  Found inertia;   // M_jj at the middle of the record [kg m^2]
-  Found gravity;   // torque of the links' weight there [N m]
-  Found viscous;   // [N m s/rad]
-  Found coulomb;   // [N m]
-  Found offset;    // torque that is always there: of a spring's middle, or friction that differs
-                   // by direction [N m]
-  Found spring;    // [N m/rad]
-  double residual = 0;  // of the torque, root mean square [N m]
-  double torque = 0;    // root mean square of what was there to explain [N m]
+  Found inertia;  // M_jj at the middle of the record [kg m^2]
+  Found gravity;  // torque of the links' weight there [N m]
+  Found viscous;  // [N m s/rad]
+  Found coulomb;  // [N m]
+  Found offset;   // torque that is always there: of a spring's middle, or friction that differs
+                  // by direction [N m]
+  Found spring;   // [N m/rad]
+  double residual = 0;       // of the torque, root mean square [N m]
+  double torque = 0;         // root mean square of what was there to explain [N m]
   Eigen::Index samples = 0;  // independent ones that were used
 };
 
@@ -35,7 +35,7 @@ struct Identified {
 };
 
 struct FitSettings {
-  Vec3 gravity = Vec3::Zero();  // in the base's frame; zero: there is none, or it is compensated
+  Vec3 gravity = Vec3::Zero();   // in the base's frame; zero: there is none, or it is compensated
   double longest_delay = 0.012;  // [s]
 };
 
@@ -45,6 +45,7 @@ struct FitSettings {
 // joint's noise, large misses for less (Huber), the links' parameters plausible throughout.
 // Errors: std::invalid_argument for too little motion: no joint may be nearly at rest, and each
 // needs at least 100 independent samples.
-Identified identify(const ArmDescription& guess, const MotionRecord& record, const FitSettings& settings);
+Identified identify(const ArmDescription& guess, const MotionRecord& record,
+                    const FitSettings& settings);
 
 }  // namespace limpid

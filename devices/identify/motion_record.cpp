@@ -23,7 +23,8 @@ Rows rows_about(const MotionRecord& record, const Window& window, double time) {
 }  // namespace
 
 Eigen::VectorXd encoder_steps(const MotionRecord& record) {
-  Eigen::VectorXd step = Eigen::VectorXd::Constant(record.joints(), std::numeric_limits<double>::infinity());
+  Eigen::VectorXd step =
+      Eigen::VectorXd::Constant(record.joints(), std::numeric_limits<double>::infinity());
   for (Eigen::Index i = 1; i < record.rows(); ++i) {
     for (Eigen::Index j = 0; j < record.joints(); ++j) {
       const double moved = std::abs(record.x(i, j) - record.x(i - 1, j));
@@ -77,8 +78,8 @@ Motion3 motion_at(const MotionRecord& record, const Window& window, const Eigen:
 }
 
 // A torque that is held for a tick has the window's integral over it.
-Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window, const Eigen::VectorXd& times,
-                          double delay) {
+Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window,
+                          const Eigen::VectorXd& times, double delay) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(times.size(), record.joints());
   const double scale = 1 / (window.sigma * std::numbers::sqrt2);
   for (Eigen::Index k = 0; k < times.size(); ++k) {

@@ -36,7 +36,7 @@ Window window_for(const MotionRecord& record);
 // At these times [s] since the first row; each at least the window's reach within the record.
 Motion3 motion_at(const MotionRecord& record, const Window& window, const Eigen::VectorXd& times);
 // The torques that acted there if each began `delay` [s] after its reading and was held for a tick.
-Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window, const Eigen::VectorXd& times,
-                          double delay);
+Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window,
+                          const Eigen::VectorXd& times, double delay);
 
 }  // namespace limpid

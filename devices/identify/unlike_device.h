@@ -8,9 +8,9 @@
 namespace limpid {
 
 struct Unlikeness {
-  Vec3 gravity = Vec3::Zero();        // in the base's frame [m/s^2]
-  double encoder_step = 0;            // [rad]
-  int delay = 0;                      // [ticks]
+  Vec3 gravity = Vec3::Zero();         // in the base's frame [m/s^2]
+  double encoder_step = 0;             // [rad]
+  int delay = 0;                       // [ticks]
   Eigen::VectorXd spring{}, offset{};  // of each joint; none: nothing [N m/rad, N m]
 };
 

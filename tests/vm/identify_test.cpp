@@ -52,8 +52,7 @@ void expect_found(unsigned seed, int bits, Time lag) {
   identification.finish();
   const IdentifyRun& run = identification.run;
   ASSERT_EQ(run.end, ExcitationEnd::complete) << explain(run.end) << ", " << explain(run.objection);
-  const Identified found =
-      identify(joystick_arm(), run.record, {.gravity = Vec3(0, 0, -9.81)});
+  const Identified found = identify(joystick_arm(), run.record, {.gravity = Vec3(0, 0, -9.81)});
   stick.expect_found(found, 1e-3);
   EXPECT_NEAR(run.timing.rate, 1000, 10);
   std::printf("| %2d bits, lag %.0f ms | delay %.2f ms |", bits, in_ms(lag),
@@ -92,52 +91,55 @@ void expect_end(const char* what, const std::function<void(Identification&)>& fa
 }
 
 TEST(IdentifyEnds, WhenItIsCancelled) {
-  expect_end("cancelled", [](Identification& i) { i.talk.cancel = true; }, kTickLife,
-             ExcitationEnd::cancelled);
+  expect_end(
+      "cancelled", [](Identification& i) { i.talk.cancel = true; }, kTickLife,
+      ExcitationEnd::cancelled);
 }
 
 TEST(IdentifyEnds, WhenTheStickFallsSilent) {
-  expect_end("silent",
-             [](Identification& i) {
-               i.device.with([&](Time) { i.model->set_fault(Fault::silent); });
-             },
-             kReadingLife + kReport, ExcitationEnd::not_well);
+  expect_end(
+      "silent",
+      [](Identification& i) { i.device.with([&](Time) { i.model->set_fault(Fault::silent); }); },
+      kReadingLife + kReport, ExcitationEnd::not_well);
 }
 
 TEST(IdentifyEnds, WhenItsHandSwitchOpens) {
-  expect_end("hand switch open",
-             [](Identification& i) { i.device.with([&](Time) { i.model->hand().hold(false); }); },
-             kTickLife, ExcitationEnd::let_go);
+  expect_end(
+      "hand switch open",
+      [](Identification& i) { i.device.with([&](Time) { i.model->hand().hold(false); }); },
+      kTickLife, ExcitationEnd::let_go);
 }
 
 TEST(IdentifyEnds, WhenAHandHoldsOn) {
-  expect_end("held",
-             [](Identification& i) {
-               i.device.with([&](Time) {
-                 for (int axis = 0; axis < 2; ++axis) {
-                   const double here = i.model->hand().position(axis);
-                   i.model->hand().axis(axis).path = [here](double) { return here; };
-                   i.model->hand().axis(axis).stiffness = 20;
-                   i.model->hand().axis(axis).damping = 0.1;
-                 }
-               });
-             },
-             3500ms, ExcitationEnd::held);
+  expect_end(
+      "held",
+      [](Identification& i) {
+        i.device.with([&](Time) {
+          for (int axis = 0; axis < 2; ++axis) {
+            const double here = i.model->hand().position(axis);
+            i.model->hand().axis(axis).path = [here](double) { return here; };
+            i.model->hand().axis(axis).stiffness = 20;
+            i.model->hand().axis(axis).damping = 0.1;
+          }
+        });
+      },
+      3500ms, ExcitationEnd::held);
 }
 
 TEST(IdentifyEnds, WhenNobodyWatches) {
-  expect_end("unwatched", [](Identification& i) { i.watched = false; }, 230ms,
-             ExcitationEnd::limit);
+  expect_end(
+      "unwatched", [](Identification& i) { i.watched = false; }, 230ms, ExcitationEnd::limit);
 }
 
 TEST(IdentifyEnds, WhenTheTicksStandStill) {
-  expect_end("ticks stand still",
-             [](Identification& i) {
-               i.stalled = true;
-               wait(50ms);
-               i.stalled = false;
-             },
-             kTickLife, ExcitationEnd::not_well);
+  expect_end(
+      "ticks stand still",
+      [](Identification& i) {
+        i.stalled = true;
+        wait(50ms);
+        i.stalled = false;
+      },
+      kTickLife, ExcitationEnd::not_well);
 }
 
 }  // namespace

@@ -79,12 +79,12 @@ TEST_F(AnExcitation, EndsWhenTheDeviceFallsSilent) {
 }
 
 TEST_F(AnExcitation, EndsWhenTheDeviceIsLostOrAtFaultOrTheLoopStoodStill) {
-  for (const DeviceHealth& health : {DeviceHealth{.guarded = true, .lost = true},
-                                     DeviceHealth{.guarded = true, .fault = true},
-                                     DeviceHealth{.guarded = true, .gap = true}}) {
+  for (const DeviceHealth& health :
+       {DeviceHealth{.guarded = true, .lost = true}, DeviceHealth{.guarded = true, .fault = true},
+        DeviceHealth{.guarded = true, .gap = true}}) {
     UnlikeDevice device(arm_, {});
     Excitation motion(arm_, device.traits(), plan_);
-    const std::array<double, 3> x{0, 0.5, 0.5};
+    const std::array<double, 3> x{0, -0.5, 1.5};
     for (int i = 0; i < 300; ++i) motion.step({x, 0.001, {.guarded = true}});
     const auto sent = motion.step({x, 0.001, health});
     EXPECT_EQ(motion.end(), ExcitationEnd::not_well);

@@ -1,8 +1,8 @@
 // Devices that are not what their file says are found out by moving them.
 #include <gtest/gtest.h>
 
-#include "devices/identify/fit.h"
 #include "devices/identify/excitation.h"
+#include "devices/identify/fit.h"
 #include "devices/identify/unlike_device.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
@@ -60,8 +60,8 @@ void expect_found(const ArmDescription& truth, const Unlikeness& bench, const Id
                   const MotionRecord& record, Random& random) {
   double heaviest = 0, wrong = 0;
   for (int pose = 0; pose < 20; ++pose) {
-    const auto row = static_cast<Eigen::Index>(random.between(0, 1) *
-                                               static_cast<double>(record.rows() - 1));
+    const auto row =
+        static_cast<Eigen::Index>(random.between(0, 1) * static_cast<double>(record.rows() - 1));
     const Eigen::VectorXd x = record.x.row(row);
     const Eigen::MatrixXd M = inertia_at(truth, x), got = inertia_at(found.arm, x);
     for (Eigen::Index i = 0; i < M.rows(); ++i) {
