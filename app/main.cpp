@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);
+  commands["identify"] = declare_identify(app);
   commands["story"] =
       declare_story(app, [argv](const std::string& script, const VideoOptions& options, double) {
         return make_story_video(script, options, argv);

@@ -21,6 +21,7 @@ Command declare_check(CLI::App& app);
 Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
+Command declare_identify(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);
 // The window: `limpid` without a command, and `limpid play`. The options of the app itself are the
 // window's and hold for both.

@@ -33,6 +33,7 @@ DeviceNotes read_notes(const toml::table& t) {
     }
   }
   notes.checked = t["checked"].value_or(false);
+  notes.arm = t["arm"].value_or(std::string());
   if (const toml::array* axes = t["axis"].as_array()) {
     for (const toml::node& node : *axes) {
       AxisAdjustment& axis = notes.axes.emplace_back();
@@ -65,6 +66,7 @@ toml::table write_notes(const DeviceNotes& notes) {
                      {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
                      {"limits", write_limits(notes.limits)},
                      {"checked", notes.checked},
+                     {"arm", notes.arm},
                      {"axis", axes}};
 }
 

@@ -19,6 +19,7 @@ struct DeviceNotes {
   PidSettings pid;                   // of a joystick
   SafetyLimits limits;               // of its force; lower than usual
   bool checked = false;              // its motors were seen to move its axes as they are told
+  std::string arm;                   // URDF of what it was identified as; empty: it was not
 };
 
 // Takes in what a check that is done has found of a joystick with the settings noted here; the

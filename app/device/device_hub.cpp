@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <optional>
 
 #include "app/base/assets.h"
+#include "app/base/user_dirs.h"
 #include "devices/files/arm/urdf_file.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
 #include "devices/hid/hid_error.h"
 
@@ -18,9 +21,10 @@ constexpr std::chrono::milliseconds kFirstReading{200};
 
 }  // namespace
 
-ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) {
+ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
-  if (present.dof() != traits.dof) {
+  if (const std::string file = known().arm; !file.empty()) arm = read_urdf(file);
+  if (arm.dof() != traits.dof) {
     const char* file = traits.dof == 2 ? "joystick.urdf" : traits.dof == 3 ? "omni.urdf" : nullptr;
     if (file == nullptr) {
       throw FileError(
@@ -79,6 +83,15 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
     await_reading(*opened, kFirstReading);
     return opened;
   };
+}
+
+std::string DeviceHub::remember_arm(const std::string& urdf) {
+  std::string name = book_.in_use;
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  const std::filesystem::path file = user_data_dir() / "devices" / (name + ".urdf");
+  if (std::string wrong = try_write_atomically(file, urdf); !wrong.empty()) return wrong;
+  notes(book_.in_use).arm = file.string();
+  return {};
 }
 
 bool DeviceHub::needs_check() const {

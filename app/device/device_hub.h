@@ -14,10 +14,6 @@
 
 namespace limpid {
 
-// The arm for a device: `present` if it has as many joints, else a built-in one. Its torque limits
-// are no higher than the device's. Errors: FileError if there is none with so many joints.
-ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present);
-
 class DeviceHub {
  public:
   // `file`: of the book. `ask`: for the devices' own threads.
@@ -38,6 +34,14 @@ class DeviceHub {
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
   // be called from anywhere, later. Errors: HidError.
   std::function<std::unique_ptr<Device>()> opening() const;
+  // The arm for the device in use: what it was identified as, else `present` if it has as many
+  // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
+  // FileError if there is none with so many joints.
+  ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) const;
+  // From now on the device in use is this arm; once saved. Returns what went wrong, empty if
+  // nothing did.
+  std::string remember_arm(const std::string& urdf);
+  void forget_arm() { notes(book_.in_use).arm.clear(); }
   // Its axes must be checked and were not yet: it may not push.
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check().

@@ -28,8 +28,8 @@ void Desktop::open_device(std::unique_ptr<Device> device) {
     }
     return desk_.loop().plug(std::move(device));
   }
-  const ArmDescription arm = arm_for(traits, present);
-  if (desk_.loop().device_in_place() && arm.dof() == present.dof()) {
+  const ArmDescription arm = devices_.hub().arm_for(traits, present);
+  if (desk_.loop().device_in_place() && arm.urdf == present.urdf) {
     return desk_.loop().plug(std::move(device));
   }
   playback_.close();

@@ -59,6 +59,9 @@ void RawDeviceModel::restart(Time now) {
 
 void RawDeviceModel::run(Time now) {
   hand_.run(now, [&](Time step) {
+    for (; !late_.empty() && late_.front().first <= step; late_.pop_front()) {
+      act(late_.front().second, step, ForceCause::told);
+    }
     const bool missed = step - fed_ > layout_.watchdog && fault() != Fault::frozen;
     if (missed && torque_ != Torque{}) {
       cut_ = true;
@@ -117,7 +120,11 @@ void RawDeviceModel::on_output(ReportView report, Time now) {
   for (std::size_t i = 0; message[3] == 1 && i < static_cast<std::size_t>(layout_.joints); ++i) {
     torque[i] = std::clamp(static_cast<double>(torque_at(message, i)), -limit, limit);
   }
-  act(torque, now, ForceCause::told);
+  if (layout_.lag > Time{}) {
+    late_.emplace_back(now + layout_.lag, torque);
+  } else {
+    act(torque, now, ForceCause::told);
+  }
 }
 
 bool RawDeviceModel::well_formed(ReportView message) const {

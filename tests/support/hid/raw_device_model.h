@@ -2,6 +2,8 @@
 // and a watchdog of its own, led by springy hands.
 #pragma once
 
+#include <deque>
+
 #include "tests/support/hid/reference_device.h"
 #include "tests/support/hid/sprung_hand.h"
 
@@ -15,6 +17,7 @@ struct RawDeviceLayout {
   Time period = std::chrono::milliseconds(1);
   double resolution = 1e-4;   // of the encoders [rad]; 0: none but that of a float
   double torque_limit = 1.5;  // [N m]
+  Time lag{};                 // from a command to its torque
   AxisPhysics physics{};      // of each joint; paths may be set later
 };
 
@@ -50,6 +53,7 @@ class RawDeviceModel : public ReferenceDevice {
   SprungHand hand_;
   bool motors_ = true, unwell_ = false, calibrated_ = true, cut_ = false, addressed_ = false;
   int commands_ = 0, rejected_ = 0, gaps_ = 0;
+  std::deque<std::pair<Time, Torque>> late_;  // commands that do not act yet
   Torque torque_{};
   Time start_{}, fed_{};
   std::uint32_t sequence_ = 0;  // of its newest report

@@ -1,6 +1,7 @@
 #include "tests/support/hid/sprung_hand.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace limpid::test {
 
@@ -27,12 +28,14 @@ void SprungHand::step(std::size_t i, double t, double torque) {
   const AxisPhysics& axis = axes_[i];
   State& state = states_[i];
   const double dt = seconds(kStep);
-  double push = torque - axis.friction * state.v;
+  double push = torque - axis.friction * state.v + axis.weight * std::sin(state.x);
   if (held_) {
     const double speed = (axis.path(t + dt) - axis.path(t)) / dt;
     push += axis.stiffness * (axis.path(t) - state.x) + axis.damping * (speed - state.v);
   }
   state.v += push / axis.inertia * dt;
+  const double lost = axis.coulomb / axis.inertia * dt;
+  state.v = std::abs(state.v) > lost ? state.v - std::copysign(lost, state.v) : 0;
   state.x += state.v * dt;
   if (state.x >= axis.lower && state.x <= axis.upper) return;
   state.x = std::clamp(state.x, axis.lower, axis.upper);

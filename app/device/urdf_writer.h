@@ -1,0 +1,14 @@
+// Arms as URDF files.
+#pragma once
+
+#include <string>
+
+#include "core/dynamics/arm_description.h"
+
+namespace limpid {
+
+// The chain with its masses, limits and resistances, links that were fixed to others merged into
+// them; read again it is the same arm. `remark` stands in a comment.
+std::string urdf_text(const ArmDescription& arm, const std::string& remark);
+
+}  // namespace limpid

@@ -1,0 +1,51 @@
+// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
+#pragma once
+
+#include <vector>
+
+#include "core/dynamics/regressor.h"
+#include "devices/identify/motion_record.h"
+
+namespace limpid {
+
+// A found value and its standard deviation.
+struct Found {
+  double value = 0;
+  double deviation = 0;
+};
+
+struct JointFinding {
+  Found inertia;  // M_jj at the middle of the record [kg m^2]
+  Found gravity;  // torque of the links' weight there [N m]
+  Found viscous;  // [N m s/rad]
+  Found coulomb;  // [N m]
+  Found offset;   // torque that is always there: of a spring's middle, or friction that differs
+                  // by direction [N m]
+  Found spring;   // [N m/rad]
+  double residual = 0;       // of the torque, root mean square [N m]
+  double torque = 0;         // root mean square of what was there to explain [N m]
+  Eigen::Index samples = 0;  // independent ones that were used
+};
+
+struct Identified {
+  ArmDescription arm;  // the guess with what was found in it
+  std::vector<JointFinding> joints;
+  Eigen::VectorXd middle;  // where inertia and gravity are given [rad]
+  Found delay;             // from a reading to the torque that answers it, beyond the tick [s]
+};
+
+struct FitSettings {
+  Vec3 gravity = Vec3::Zero();   // in the base's frame; zero: there is none, or it is compensated
+  double longest_delay = 0.012;  // [s]
+};
+
+// The chain is the guess's: its axes and lengths are taken as they are, its masses as a start that
+// is only left where the motion says so. tau = Y(x, v, a) pi + viscous v + coulomb sign(v) + offset
+// + spring x, over windows, torques shifted by the delay that explains them best; weighted by each
+// joint's noise, large misses for less (Huber), the links' parameters plausible throughout.
+// Errors: std::invalid_argument for too little motion: no joint may be nearly at rest, and each
+// needs at least 100 independent samples.
+Identified identify(const ArmDescription& guess, const MotionRecord& record,
+                    const FitSettings& settings);
+
+}  // namespace limpid

@@ -1,0 +1,141 @@
+// What ends the motion, and that nothing leaves from then on.
+#include "devices/identify/excitation.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/identify/unlike_device.h"
+#include "tests/support/built_in.h"
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+class AnExcitation : public testing::Test {
+ protected:
+  // One tick; the torque that left.
+  Eigen::VectorXd step(const DeviceHealth& health = {.guarded = true}) {
+    const DeviceReading now = reading();
+    const auto sent = motion_.step({std::span(now.x).first(3), 0.001, health});
+    device_.write(sent);
+    return Eigen::Map<const Eigen::VectorXd>(sent.data(), 3);
+  }
+  DeviceReading reading() {
+    DeviceReading now;
+    device_.read(now);
+    return now;
+  }
+  void run(double seconds) {
+    for (int i = 0; i < 1000 * seconds && motion_.end() == ExcitationEnd::running; ++i) step();
+  }
+  void expect_nothing_leaves_after(ExcitationEnd end) {
+    EXPECT_EQ(motion_.end(), end) << explain(motion_.end());
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(step().norm(), 0);
+    EXPECT_EQ(motion_.end(), end);
+  }
+
+  ArmDescription arm_ = test::omni();
+  UnlikeDevice device_{arm_, {.gravity = Vec3(0, 0, -9.81), .encoder_step = 1e-4}};
+  ExcitationPlan plan_{};
+  Excitation motion_{arm_, device_.traits(), plan_};
+};
+
+TEST_F(AnExcitation, StaysWithinItsPartOfTheMotorsAndTheRange) {
+  Eigen::VectorXd last = Eigen::VectorXd::Zero(3);
+  while (motion_.end() == ExcitationEnd::running) {
+    const Eigen::VectorXd torque = step();
+    const DeviceReading now = reading();
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const Joint& joint = arm_.joints[static_cast<std::size_t>(j)];
+      ASSERT_LE(std::abs(torque[j]), plan_.torque * joint.effort * (1 + 1e-12));
+      ASSERT_LE(std::abs(torque[j] - last[j]),
+                plan_.torque * joint.effort * 0.001 / SafetyLimits::kSlew * (1 + 1e-9));
+      ASSERT_GT(now.x[static_cast<std::size_t>(j)], joint.lower);
+      ASSERT_LT(now.x[static_cast<std::size_t>(j)], joint.upper);
+    }
+    last = torque;
+  }
+  expect_nothing_leaves_after(ExcitationEnd::complete);
+  EXPECT_NEAR(motion_.time(), motion_.duration(), 0.002);
+}
+
+TEST_F(AnExcitation, FadesIn) {
+  EXPECT_EQ(motion_.stage(), ExcitationStage::approach);
+  for (int i = 0; i < 100; ++i) {
+    const double part = 0.001 * (i + 1) / ForceGate::kFade;
+    EXPECT_LE(step().cwiseAbs().maxCoeff(), part * plan_.torque * arm_.joints[0].effort + 1e-12);
+  }
+}
+
+TEST_F(AnExcitation, EndsWhenItIsCancelled) {
+  run(4);
+  motion_.cancel();
+  expect_nothing_leaves_after(ExcitationEnd::cancelled);
+}
+
+TEST_F(AnExcitation, EndsWhenTheDeviceFallsSilent) {
+  run(4);
+  EXPECT_EQ(step({.guarded = true, .age = 0.006}).norm(), 0);
+  expect_nothing_leaves_after(ExcitationEnd::not_well);
+}
+
+TEST_F(AnExcitation, EndsWhenTheDeviceIsLostOrAtFaultOrTheLoopStoodStill) {
+  for (const DeviceHealth& health :
+       {DeviceHealth{.guarded = true, .lost = true}, DeviceHealth{.guarded = true, .fault = true},
+        DeviceHealth{.guarded = true, .gap = true}}) {
+    UnlikeDevice device(arm_, {});
+    Excitation motion(arm_, device.traits(), plan_);
+    const std::array<double, 3> x{0, -0.5, 1.5};
+    for (int i = 0; i < 300; ++i) motion.step({x, 0.001, {.guarded = true}});
+    const auto sent = motion.step({x, 0.001, health});
+    EXPECT_EQ(motion.end(), ExcitationEnd::not_well);
+    for (const double torque : sent) EXPECT_EQ(torque, 0);
+  }
+}
+
+TEST_F(AnExcitation, EndsWhenTheHandSwitchOpens) {
+  run(4);
+  EXPECT_EQ(step({.guarded = true, .hand = false}).norm(), 0);
+  expect_nothing_leaves_after(ExcitationEnd::let_go);
+}
+
+TEST_F(AnExcitation, EndsWhenTheWindowThatShowsItIsSilent) {
+  run(4);
+  step({.guarded = true, .silence = 0.3});
+  expect_nothing_leaves_after(ExcitationEnd::limit);
+}
+
+// A hand that does not let a joint go: a stiff spring to where it is.
+TEST_F(AnExcitation, EndsWhenAHandHoldsOn) {
+  run(4);
+  const DeviceReading held = reading();
+  int ticks = 0;
+  while (motion_.end() == ExcitationEnd::running && ticks < 10000) {
+    const DeviceReading now = reading();
+    device_.push = Eigen::VectorXd::Zero(3);
+    for (std::size_t j = 0; j < 3; ++j) {
+      device_.push[static_cast<Eigen::Index>(j)] = 20 * (held.x[j] - now.x[j]);
+    }
+    step();
+    ++ticks;
+  }
+  EXPECT_LT(ticks, 4000);
+  expect_nothing_leaves_after(ExcitationEnd::held);
+}
+
+TEST_F(AnExcitation, EndsWhenSomethingThrowsIt) {
+  run(4);
+  device_.push = Eigen::VectorXd::Constant(3, 2);
+  run(1);
+  EXPECT_TRUE(motion_.end() == ExcitationEnd::limit || motion_.end() == ExcitationEnd::held);
+  expect_nothing_leaves_after(motion_.end());
+}
+
+TEST_F(AnExcitation, NeedsMotorsAndAnArmOfAsManyJoints) {
+  DeviceTraits traits = device_.traits();
+  EXPECT_THROW(Excitation(test::random_arm(2, 1), traits, plan_), std::invalid_argument);
+  traits.pushes = false;
+  EXPECT_THROW(Excitation(arm_, traits, plan_), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,156 @@
+// Devices that are not what their file says are found out by moving them.
+#include <gtest/gtest.h>
+
+#include "devices/identify/excitation.h"
+#include "devices/identify/fit.h"
+#include "devices/identify/unlike_device.h"
+#include "tests/support/built_in.h"
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+
+MotionRecord moved(UnlikeDevice& device, Excitation& motion) {
+  const Eigen::Index n = device.traits().dof;
+  MotionRecord record;
+  std::vector<Eigen::VectorXd> x, torque;
+  while (motion.end() == ExcitationEnd::running) {
+    DeviceReading reading;
+    device.read(reading);
+    const auto at = std::span(reading.x).first(static_cast<std::size_t>(n));
+    const auto sent = motion.step({at, 0.001, {.guarded = true}});
+    x.emplace_back(Eigen::Map<const Eigen::VectorXd>(at.data(), n));
+    torque.emplace_back(Eigen::Map<const Eigen::VectorXd>(sent.data(), n));
+    device.write(sent);
+  }
+  record.x.resize(static_cast<Eigen::Index>(x.size()), n);
+  record.torque.resizeLike(record.x);
+  for (Eigen::Index i = 0; i < record.rows(); ++i) {
+    record.x.row(i) = x[static_cast<std::size_t>(i)];
+    record.torque.row(i) = torque[static_cast<std::size_t>(i)];
+  }
+  return record;
+}
+
+Eigen::MatrixXd inertia_at(const ArmDescription& description, const Vec<kAnyDof>& x) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames f;
+  Mat<kAnyDof> M;
+  arm.frames(x, f);
+  arm.inertia(f, M);
+  return M;
+}
+
+Eigen::VectorXd weight_at(const ArmDescription& description, const Vec<kAnyDof>& x,
+                          const Vec3& gravity) {
+  const Eigen::Index n = description.dof();
+  Eigen::VectorXd parameters(kLinkParameters * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    parameters.segment<kLinkParameters>(kLinkParameters * i) =
+        parameters_of(description.links[static_cast<std::size_t>(i)]);
+  }
+  const Vec<kAnyDof> zero = Vec<kAnyDof>::Zero(n);
+  return regressor(Arm<kAnyDof>(description), x, zero, zero, gravity) * parameters;
+}
+
+// Inertia and weight in poses that were moved through, friction, delay.
+void expect_found(const ArmDescription& truth, const Unlikeness& bench, const Identified& found,
+                  const MotionRecord& record, Random& random) {
+  double heaviest = 0, wrong = 0;
+  for (int pose = 0; pose < 20; ++pose) {
+    const auto row =
+        static_cast<Eigen::Index>(random.between(0, 1) * static_cast<double>(record.rows() - 1));
+    const Eigen::VectorXd x = record.x.row(row);
+    const Eigen::MatrixXd M = inertia_at(truth, x), got = inertia_at(found.arm, x);
+    for (Eigen::Index i = 0; i < M.rows(); ++i) {
+      for (Eigen::Index j = 0; j < M.cols(); ++j) {
+        EXPECT_NEAR(got(i, j), M(i, j), 0.05 * std::sqrt(M(i, i) * M(j, j))) << i << ", " << j;
+      }
+    }
+    // What a spring and an offset take over of the weight is as good.
+    Eigen::VectorXd weight = weight_at(truth, x, bench.gravity);
+    Eigen::VectorXd said = weight_at(found.arm, x, bench.gravity);
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+      const JointFinding& joint = found.joints[static_cast<std::size_t>(j)];
+      said[j] += joint.offset.value + joint.spring.value * x[j];
+      if (bench.spring.size() > 0) weight[j] += bench.spring[j] * x[j] + bench.offset[j];
+    }
+    heaviest = std::max(heaviest, weight.norm());
+    wrong = std::max(wrong, (said - weight).norm());
+  }
+  EXPECT_LT(wrong, 0.05 * heaviest + 1e-4);
+  for (std::size_t j = 0; j < truth.joints.size(); ++j) {
+    const JointFinding& joint = found.joints[j];
+    EXPECT_NEAR(joint.coulomb.value, truth.joints[j].friction,
+                0.1 * truth.joints[j].friction + 1e-4);
+    EXPECT_NEAR(joint.viscous.value, truth.joints[j].damping, 0.1 * truth.joints[j].damping);
+    EXPECT_LT(joint.residual, 0.05 * joint.torque);
+  }
+  EXPECT_NEAR(found.delay.value, 1e-3 * bench.delay, 0.5e-3);
+}
+
+void expect_found(const ArmDescription& guess, Unlikeness bench, unsigned seed) {
+  Random random(seed);
+  const ArmDescription truth = unlike(guess, seed, 0.03);
+  UnlikeDevice device(truth, bench);
+  Excitation motion(guess, device.traits(), {});
+  const MotionRecord record = moved(device, motion);
+  SCOPED_TRACE(testing::Message() << guess.name << ", seed " << seed << ", "
+                                  << explain(motion.end()) << " after " << motion.time() << " s");
+  ASSERT_EQ(motion.end(), ExcitationEnd::complete);
+  expect_found(truth, bench, identify(guess, record, {.gravity = bench.gravity}), record, random);
+}
+
+const Vec3 kDown(0, 0, -9.81);
+
+TEST(Identify, FindsADevicesInertiaWeightFrictionAndDelay) {
+  expect_found(test::omni(), {.gravity = kDown, .encoder_step = 3e-5, .delay = 2}, 501);
+  expect_found(test::omni(), {.gravity = kDown, .encoder_step = 1e-4, .delay = 4}, 502);
+}
+
+// About 1000 steps over a joint's range.
+TEST(Identify, FindsThemThroughCoarseEncoders) {
+  expect_found(test::omni(), {.gravity = kDown, .encoder_step = 2e-3, .delay = 3}, 503);
+  expect_found(test::omni(), {.gravity = kDown, .encoder_step = 2e-3, .delay = 1}, 504);
+}
+
+TEST(Identify, FindsSpringsThatCentreAStick) {
+  const ArmDescription stick = read_urdf(test::assets_dir() / "devices/joystick.urdf");
+  Unlikeness bench{.encoder_step = 5e-4, .delay = 1};
+  bench.spring = Eigen::Vector2d(0.12, 0.2);
+  bench.offset = Eigen::Vector2d(0.01, -0.02);
+  Random random(505);
+  const ArmDescription truth = unlike(stick, 505, 0.02);
+  UnlikeDevice device(truth, bench);
+  Excitation motion(stick, device.traits(), {});
+  const MotionRecord record = moved(device, motion);
+  ASSERT_EQ(motion.end(), ExcitationEnd::complete);
+  const Identified found = identify(stick, record, {});
+  expect_found(truth, bench, found, record, random);
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    const JointFinding& joint = found.joints[static_cast<std::size_t>(j)];
+    EXPECT_NEAR(joint.spring.value, bench.spring[j], 0.05 * bench.spring[j]);
+    EXPECT_NEAR(joint.offset.value, bench.offset[j], 0.05 * std::abs(bench.offset[j]) + 5e-4);
+  }
+}
+
+TEST(Identify, SaysWhichJointMovedTooLittle) {
+  const ArmDescription stick = read_urdf(test::assets_dir() / "devices/joystick.urdf");
+  MotionRecord record;
+  record.x = record.torque = Eigen::MatrixXd::Zero(20000, 2);
+  for (Eigen::Index i = 0; i < record.rows(); ++i) {
+    record.x(i, 0) = 0.3 * std::sin(0.004 * static_cast<double>(i));
+  }
+  try {
+    identify(stick, record, {});
+    FAIL() << "it did not move";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr(stick.joints[1].name));
+    EXPECT_THAT(e.what(), testing::HasSubstr("moved too little"));
+  }
+}
+
+}  // namespace
+}  // namespace limpid
