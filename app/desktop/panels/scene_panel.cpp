@@ -98,7 +98,7 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   tooltip("Turns the camera to it (double click).");
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
-    if (ImGui::MenuItem("Model (.glb, .stl, .obj, ...)...", "Ctrl+M")) act(Action::add_model);
+    if (ImGui::MenuItem("Model...", "Ctrl+M")) act(Action::add_model);
     if (ImGui::MenuItem("Ball")) add(Sphere{.name = "ball", .radius = 0.02});
     if (ImGui::MenuItem("Block")) {
       add(Box{.name = "block", .size = Vec3::Constant(0.04)});
