@@ -94,9 +94,10 @@ std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& 
   const double size = model.bounds().sizes().maxCoeff();
   const double share = thin_share(model, shape, kThin * size);
   if (share > 0.2) {
-    lines.push_back(fmt::format("{:.0f} % of its surface is a wall thinner than {:.2g} % of its "
-                                "size: pressed hard, the tip may slip around its edge",
-                                100 * share, 100 * kThin));
+    lines.push_back(
+        fmt::format("{:.0f} % of its surface is a wall thinner than {:.2g} % of its "
+                    "size: pressed hard, the tip may slip around its edge",
+                    100 * share, 100 * kThin));
   }
   return lines;
 }

@@ -55,7 +55,7 @@ void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& a
   const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
   const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
   ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
-  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a .glb here.");
+  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a model here.");
   for (const ObjectRef& ref : all) {
     ImGui::PushID(static_cast<int>(ref.kind) * 1000 + static_cast<int>(ref.index));
     const bool chosen = editor != nullptr && editor->selected() == ref;
@@ -98,7 +98,7 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   tooltip("Turns the camera to it (double click).");
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
-    if (ImGui::MenuItem("Model (.glb, .gltf)...", "Ctrl+M")) act(Action::add_model);
+    if (ImGui::MenuItem("Model...", "Ctrl+M")) act(Action::add_model);
     if (ImGui::MenuItem("Ball")) add(Sphere{.name = "ball", .radius = 0.02});
     if (ImGui::MenuItem("Block")) {
       add(Box{.name = "block", .size = Vec3::Constant(0.04)});

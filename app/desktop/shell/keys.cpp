@@ -37,7 +37,7 @@ constexpr std::array kShortcuts{
     Shortcut{"F1, ?", "this list"},
     Shortcut{"Ctrl+O, Ctrl+Q", "open a recording, quit"},
     Shortcut{"Ctrl+Z, Ctrl+Y, Ctrl+Shift+Z", "undo, redo, redo"},
-    Shortcut{"Ctrl+G, Ctrl+M", "gallery of scenes; add a model (.glb), or drop one here"},
+    Shortcut{"Ctrl+G, Ctrl+M", "gallery of scenes; add a model, or drop one here"},
     Shortcut{"Ctrl+S, Ctrl+Shift+S", "save the scene; under another name"},
     Shortcut{"Tab, Shift+Tab", "select the next object of the scene, or the one before"},
     Shortcut{"Delete, Ctrl+D", "remove or copy the selected object"},

@@ -166,7 +166,7 @@ void scene_menu(Desktop& d, const Act& act) {
   item("Copy selected object", "Ctrl+D", Action::duplicate_selected, act, any);
   item("Remove selected object", "Delete", Action::remove_selected, act, any);
   ImGui::Separator();
-  ImGui::TextDisabled("Drop a model (.glb) or a scene (.toml) on the window.");
+  ImGui::TextDisabled("Drop models, scenes or recordings on the window.");
   ImGui::EndMenu();
 }
 

@@ -58,7 +58,7 @@ void draw_about(bool& open) {
       "cite the paper when you publish what you measured here.");
   ImGui::Spacing();
   ImGui::TextWrapped(
-      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, HDF5, urdfdom and fmt. Text "
+      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. Text "
       "is set in Inter (SIL Open Font License).");
   ImGui::End();
 }

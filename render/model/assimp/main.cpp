@@ -17,19 +17,20 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "render/model/assimp/assimp_guard.h"
 #include "render/model/assimp/assimp_model.h"
 #include "render/model/assimp/glb_writer.h"
 
 namespace {
 
-// Much more than any model within what is read needs.
-void limit_self() {
+// Much more than a model of so many bytes needs: some broken files are read for ever.
+void limit_self(std::size_t bytes) {
   const auto set = [](auto what, rlim_t most) {
     const rlimit limit{most, most};
     setrlimit(what, &limit);
   };
   set(RLIMIT_CORE, 0);
-  set(RLIMIT_CPU, 600);
+  set(RLIMIT_CPU, 3 + (bytes >> 20));
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   set(RLIMIT_AS, rlim_t{8} << 30);
 #endif
@@ -59,13 +60,14 @@ int main(int count, char** words) {
     std::fputs("limpid-model belongs to limpid, which calls it.\n", stderr);
     return 2;
   }
-  limit_self();
   std::FILE* const lines = fdopen(std::atoi(words[3]), "w");
   if (lines == nullptr) return 2;
   setlinebuf(lines);
   try {
     const std::string name = "model", kind = words[1];
     const auto bytes = standard_input();
+    limit_self(bytes.size());
+    limpid::guard_counts(bytes, kind);
     limpid::Companions companions(name, words[2],
                                   std::min(bytes.size(), limpid::kLargestModelFiles));
     auto* const files = new limpid::AssimpFiles(bytes, kind, companions);

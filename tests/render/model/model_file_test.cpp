@@ -1,0 +1,209 @@
+// Models of other kinds than glTF, which a program of its own reads.
+#include "render/model/model_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/render/model/gltf_builder.h"
+
+namespace limpid {
+namespace {
+
+using Eigen::Vector3f;
+
+const std::array<Vector3f, 4> kCorners = {Vector3f(0, 0, 0), Vector3f(1, 0, 0), Vector3f(0, 2, 0),
+                                          Vector3f(0, 0, 3)};
+const std::array<std::array<int, 3>, 4> kFaces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+
+Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+Bytes binary_stl() {
+  Bytes out(80, ' ');
+  append_word(out, kFaces.size());
+  for (const auto& face : kFaces) {
+    append_values<float>(out, {0, 0, 0});
+    for (const int i : face) {
+      const Vector3f& p = kCorners[static_cast<std::size_t>(i)];
+      append_values<float>(out, {p.x(), p.y(), p.z()});
+    }
+    append_values<std::uint16_t>(out, {0});
+  }
+  return out;
+}
+
+std::string text_stl() {
+  std::string out = "solid tetrahedron\n";
+  for (const auto& face : kFaces) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (const int i : face) {
+      const Vector3f& p = kCorners[static_cast<std::size_t>(i)];
+      out += fmt::format("vertex {} {} {}\n", p.x(), p.y(), p.z());
+    }
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid tetrahedron\n";
+}
+
+std::string obj(const std::string& before = "", const std::string& between = "") {
+  std::string out = before;
+  for (const Vector3f& p : kCorners) out += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+  for (std::size_t i = 0; i < kFaces.size(); ++i) {
+    if (i == 2) out += between;
+    out += fmt::format("f {} {} {}\n", kFaces[i][0] + 1, kFaces[i][1] + 1, kFaces[i][2] + 1);
+  }
+  return out;
+}
+
+std::string ply() {
+  std::string out =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vector3f& p : kCorners) out += fmt::format("{} {} {} 255 0 0\n", p.x(), p.y(), p.z());
+  for (const auto& face : kFaces) out += fmt::format("3 {} {} {}\n", face[0], face[1], face[2]);
+  return out;
+}
+
+// Six times the volume of a closed body; of the tetrahedron 1 * 2 * 3.
+float volume(const Model& model) {
+  float sum = 0;
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return model.vertices[model.indices[i + k]].position; };
+    sum += at(0).dot(at(1).cross(at(2)));
+  }
+  return sum;
+}
+
+std::string refusal(const Bytes& bytes, const std::string& name) {
+  try {
+    parse_model(bytes, name);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ModelFile, ReadsTheSameBodyFromEveryKind) {
+  for (const auto& [name, bytes] : std::map<std::string, Bytes>{{"a.stl", binary_stl()},
+                                                                {"b.STL", bytes_of(text_stl())},
+                                                                {"c.Obj", bytes_of(obj())},
+                                                                {"d.ply", bytes_of(ply())}}) {
+    const Model model = parse_model(bytes, name);
+    EXPECT_EQ(model.indices.size(), 12u) << name;
+    EXPECT_EQ(model.vertices.size(), 4u) << name;  // those of STL are put together
+    EXPECT_FLOAT_EQ(volume(model), 6) << name;
+    EXPECT_TRUE(model.parts[0].material.flat) << name;
+    EXPECT_EQ(model.unit, 0) << name;
+    EXPECT_EQ(model.up, Model::Up::unsaid) << name;
+  }
+}
+
+TEST(ModelFile, KeepsTheColoursOfVertices) {
+  for (const Vertex& v : parse_model(bytes_of(ply()), "a.ply").vertices)
+    EXPECT_TRUE(v.color.isApprox(Vector3f(1, 0, 0)));
+}
+
+// In a folder with materials and a picture, as OBJ has them.
+class ModelFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl seen\nKd 0 0 0\nmap_Kd red.png\n");
+    write("red.png", std::string(kRedPng.begin(), kRedPng.end()));
+    write("a.obj", obj("mtllib a.mtl\nvt 0 0\nusemtl red\n", "usemtl seen\n"));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / "limpid_model_folder";
+};
+
+void expect_red_and_picture(const Model& model) {
+  ASSERT_EQ(model.parts.size(), 2u);
+  ASSERT_EQ(model.images.size(), 1u);
+  for (const Part& part : model.parts) {
+    EXPECT_EQ(part.count, 6u);
+    const Vertex& v = model.vertices[model.indices[part.first]];
+    EXPECT_TRUE(v.color.isApprox(part.material.color >= 0 ? Vector3f(1, 1, 1) : Vector3f(1, 0, 0)));
+  }
+  EXPECT_TRUE(model.warnings.empty());
+}
+
+TEST_F(ModelFolder, HasSeveralMaterialsAndPictures) {
+  expect_red_and_picture(load_model_file(folder_ / "a.obj"));
+}
+
+TEST_F(ModelFolder, CanBeCarriedAway) {
+  const std::string text = obj("mtllib a.mtl\nvt 0 0\nusemtl red\n", "usemtl seen\n");
+  std::vector<unsigned char> whole;
+  const Model here = parse_model(bytes_of(text), "a.obj", folder_, {}, &whole);
+  ASSERT_FALSE(whole.empty());
+  const Model there = parse_model(whole, "a.obj");
+  expect_red_and_picture(there);
+  EXPECT_EQ(there.indices, here.indices);
+  for (std::size_t i = 0; i < here.vertices.size(); ++i)
+    EXPECT_EQ(there.vertices[i].position, here.vertices[i].position);
+}
+
+TEST_F(ModelFolder, StaysTouchableWithoutItsFiles) {
+  std::filesystem::remove(folder_ / "red.png");
+  const Model model = load_model_file(folder_ / "a.obj");
+  EXPECT_EQ(model.indices.size(), 12u);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("\"red.png\" is missing"), std::string::npos);
+}
+
+TEST_F(ModelFolder, HasNothingFromOutside) {
+  write("a.mtl", "newmtl red\nmap_Kd ../../etc/passwd\n");
+  const Model model = load_model_file(folder_ / "a.obj");
+  ASSERT_FALSE(model.warnings.empty());
+  EXPECT_NE(model.warnings[0].find("outside of the model's folder"), std::string::npos);
+}
+
+TEST(ModelFile, NeedsNoOtherFileOfOneThatStandsAlone) {
+  std::vector<unsigned char> whole;
+  parse_model(binary_stl(), "a.stl", "/tmp", {}, &whole);
+  EXPECT_TRUE(whole.empty());
+}
+
+TEST(ModelFile, SaysWhatCannotBeRead) {
+  EXPECT_NE(refusal({1}, "a.step").find("allowed are .glb, .gltf, .stl"), std::string::npos);
+  EXPECT_EQ(refusal({}, "a.stl"), "a.stl: is empty");
+  EXPECT_NE(refusal(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
+            std::string::npos);
+}
+
+// Whatever the library makes of it: a model, or one line that names the file.
+TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
+  const std::map<std::string, Bytes> all{
+      {"a.stl", binary_stl()}, {"a.obj", bytes_of(obj())}, {"a.ply", bytes_of(ply())}};
+  for (const auto& [name, bytes] : all) {
+    for (std::size_t i = 1; i < 8; ++i) {
+      Bytes broken(bytes.begin(), bytes.begin() + static_cast<long>(i * bytes.size() / 8));
+      broken[broken.size() / 2] ^= 0x55;
+      if (const std::string why = refusal(broken, name); !why.empty()) {
+        EXPECT_EQ(why.find(name + ": "), 0u) << why;
+      }
+    }
+  }
+}
+
+// A count that no file of its size can have: memory for it must not be looked for here.
+TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
+  std::string text = ply();
+  text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
+  EXPECT_EQ(refusal(bytes_of(text), "a.ply").find("a.ply: "), 0u);
+}
+
+TEST(ModelFile, GivesUpWhenItIsNotWanted) {
+  const std::atomic<bool> cancel = true;
+  EXPECT_THROW(parse_model(binary_stl(), "a.stl", {}, {.cancel = &cancel}), LoadCancelled);
+}
+
+}  // namespace
+}  // namespace limpid

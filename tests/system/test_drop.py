@@ -1,0 +1,77 @@
+"""Drops files on the window, as a file manager would."""
+
+import struct
+import subprocess
+import unittest
+from pathlib import Path
+
+from support import ASSETS, LIMPID
+from test_scene_window import CORNERS, FACES, write_pyramid
+from window import WindowTest
+
+try:
+    from drop import drop
+except ImportError:
+    drop = None
+
+
+def write_stl(path: Path) -> None:
+    """The pyramid in millimetres, as CAD programs save it."""
+    facets = b"".join(
+        struct.pack("<3f", 0, 0, 0) + b"".join(struct.pack("<3f", *CORNERS[i]) for i in face)
+        + b"\0\0" for face in FACES)
+    path.write_bytes(b" " * 80 + struct.pack("<I", len(FACES)) + facets)
+
+
+def write_obj(path: Path) -> None:
+    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS)
+                    + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES))
+
+
+@unittest.skipUnless(drop, "needs python3-xlib")
+class Drop(WindowTest):
+    def drop(self, *files: Path) -> None:
+        drop(self.environment["DISPLAY"], int(self.window), list(files))
+
+    def test_models_of_all_kinds_come_in_at_once(self) -> None:
+        glb, stl, obj = (self.home / f"pyramid {kind}" for kind in ("a.glb", "b.STL", "c.obj"))
+        write_pyramid(glb)
+        write_stl(stl)
+        write_obj(obj)
+        self.drop(glb, stl, obj)
+        self.wait("three models", lambda s: s["objects"] == 4 and not s["loading"])
+        self.assertIn("in mm, z up (guessed), 6 cm", self.notices())
+        self.assertIn("in m, y up", self.notices())
+
+    def test_what_cannot_be_opened_says_what_can(self) -> None:
+        wrong = [self.home / "notes.txt", self.home / "folder.glb"]
+        wrong[0].write_text("nothing")
+        wrong[1].mkdir()
+        broken = self.home / "broken.stl"
+        broken.write_bytes(b"solid nothing")
+        self.drop(*wrong, broken)
+        self.wait_for_notice("notes.txt, folder.glb: not opened. Drop models (.glb, .gltf, .stl")
+        self.wait_for_notice("broken.stl: ")
+        self.assertEqual(self.state()["objects"], 1)
+
+    def test_a_scene_and_then_a_recording(self) -> None:
+        self.drop(ASSETS / "scenes/spheres.toml")
+        self.wait("the scene", lambda s: s["scene"].endswith("spheres.toml") and not s["loading"])
+        session = self.home / "touch.h5"
+        subprocess.run([LIMPID, "run", "--duration", "1", "--record", str(session)], check=True,
+                       stdout=subprocess.DEVNULL)
+        self.drop(session)
+        self.wait("playback", lambda s: s["playing"])
+
+    def test_a_hands_path_is_run_in_the_present_world(self) -> None:
+        self.drop(ASSETS / "hands/touch.csv")
+        self.wait("playback", lambda s: s["playing"])
+        self.assertTrue((self.home / "data/limpid/sessions/hand-touch.h5").exists())
+
+    def test_an_arm_takes_the_place_of_the_present_one(self) -> None:
+        self.drop(ASSETS / "devices/joystick.urdf")
+        self.wait_for_notice("joystick")
+
+
+if __name__ == "__main__":
+    unittest.main()
