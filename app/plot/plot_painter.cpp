@@ -131,8 +131,10 @@ void draw_band(const PlotFrame& frame, const Band& band, const History& history,
                              colour(frame.palette.accent, tint));
     const std::string& name = band.names[static_cast<std::size_t>(now)];
     const ImVec2 label = text_size(Face::small, name);
-    const float x = std::min(left, frame.area.max.x - label.x) + 2 * frame.scale;
+    const float x = std::min(left, frame.area.max.x - label.x - 6 * frame.scale) + 2 * frame.scale;
     if (name.empty() || std::exchange(before, now) == now || x < free_from) continue;
+    // A moment under another law is a line without a name.
+    if (!band.names.front().empty() && right - left < label.x) continue;
     draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.75f);
     free_from = x + label.x + 12 * frame.scale;
   }

@@ -26,6 +26,11 @@ std::string number_text(const PlotAxis& axis, const AxisMap& map, double value) 
   return exponent != 0 ? text + exponent_text(exponent) : text;
 }
 
+// Three digits, with the typographic minus.
+std::string short_text(double value) {
+  return (value < 0 ? "\u2212" : "") + three_digits(std::abs(value));
+}
+
 std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
   return number_text(axis, map, value) + " " + axis.unit;
 }
@@ -202,7 +207,7 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
     const auto value = static_cast<double>(history.value(curve.channel, row));
     if (!curve.visible || !std::isfinite(value)) continue;
     lines.push_back({"",
-                     three_digits(value * spec.y.factor / std::pow(10.0, exponent)),
+                     short_text(value * spec.y.factor / std::pow(10.0, exponent)),
                      ink_of(frame, curve),
                      {0, frame.y_of(value)}});
   }

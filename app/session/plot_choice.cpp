@@ -34,7 +34,7 @@ const Scale& scale_of(std::string_view unit) {
 
 // The axis for these; different units stand beside one another, unscaled.
 PlotAxis axis_for(const std::vector<ChannelInfo>& shown, bool log) {
-  PlotAxis axis{.zero_line = false, .log = log};
+  PlotAxis axis{.zero_line = false, .smallest_span = 1, .log = log};
   if (shown.empty()) return axis;
   std::set<std::string> units;
   for (const ChannelInfo& info : shown) {

@@ -9,9 +9,9 @@ from window import HEIGHT, WIDTH, WindowTest
 FOUR = ["coordination error", "controller energy", "human and contact torque",
         "error against torque"]
 PLOTS = HEIGHT - 130   # a height at which the plots are
-RENAME = (0, 0)        # buttons of the dialogs
-REMOVE = (0, 0)
-SAVE_CSV = (0, 0)      # in the plot's menu, from where it was opened
+RENAME = (492, 464)    # buttons of the dialog of layouts
+REMOVE = (567, 464)
+SAVE_CSV = (1060, 499)  # in the menu of the last plot
 
 
 def titles(state: dict) -> list[str]:
@@ -142,9 +142,9 @@ class Plots(WindowTest):
         self.xdotool("click", "3")
         time.sleep(0.5)
         sessions = self.home / "data/limpid/sessions"
-        self.click(WIDTH - 100 + SAVE_CSV[0], PLOTS + SAVE_CSV[1])
+        self.click(*SAVE_CSV)
         self.wait_until(lambda: any(sessions.glob("error-against-torque-*.csv")), "the table")
-        header = next(sessions.glob("*.csv")).open().readline().strip()
+        header = next(sessions.glob("*.csv")).read_text().splitlines()[0]
         self.assertEqual(header, "time [s],|f2| [N m],|x_E| [mrad]")
 
     def test_files_that_cannot_be_read_are_told_and_kept(self) -> None:

@@ -32,9 +32,8 @@ NamedDialog::Asked NamedDialog::draw(bool& open, NamedTexts& texts) {
   ImGui::SetNextItemWidth(-13 * em);
   if (appears) ImGui::SetKeyboardFocusHere();
   const std::string before = name_;
-  const bool entered =
-      ImGui::InputTextWithHint("##name", "name: Enter uses it, or saves under a new one", &name_,
-                               ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##name", "a name; Enter uses or saves it", &name_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
   if (name_ != before) {
     complaint_.clear();
     sure_ = false;
