@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "app/experiments/excitation.h"
-#include "app/experiments/grip_limit.h"
 #include "app/experiments/series.h"
 #include "app/run/analysis.h"
+#include "app/run/grip_limit.h"
 #include "core/dynamics/arm.h"
 
 namespace limpid {

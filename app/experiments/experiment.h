@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 #include "app/run/simulate.h"
 
 namespace limpid {

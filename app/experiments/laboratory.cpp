@@ -8,6 +8,7 @@
 #include "app/experiments/trial_store.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/run/run_key.h"
 
 namespace limpid {
 

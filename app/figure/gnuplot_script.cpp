@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 
 namespace limpid {
 namespace {
