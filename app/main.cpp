@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
   commands["experiment"] = declare_experiment(app);
+  commands["sweep"] = declare_sweep(app);
   commands["analyze"] = declare_analyze(app);
   commands["check"] = declare_check(app);
   commands["info"] = declare_info(app);

@@ -17,4 +17,11 @@ fs::path data_dir() {
                            LIMPID_SOURCE_DIR + "; run `cmake --install` again");
 }
 
+fs::path beside_or_own(const fs::path& folder, const std::string& kind, const std::string& name) {
+  fs::path beside = folder / name;
+  if (fs::exists(beside)) return beside;
+  fs::path own = data_dir() / "assets" / kind / name;
+  return fs::exists(own) ? own : beside;
+}
+
 }  // namespace limpid

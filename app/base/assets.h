@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace limpid {
 
@@ -12,5 +13,9 @@ std::filesystem::path data_dir();
 inline std::filesystem::path default_device() { return data_dir() / "assets/devices/omni.urdf"; }
 inline std::filesystem::path default_scene() { return data_dir() / "assets/scenes/table.toml"; }
 inline std::filesystem::path default_hand() { return data_dir() / "assets/hands/touch.csv"; }
+
+// `name` beside a script in `folder`, else among the program's own in assets/`kind`.
+std::filesystem::path beside_or_own(const std::filesystem::path& folder, const std::string& kind,
+                                    const std::string& name);
 
 }  // namespace limpid

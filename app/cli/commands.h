@@ -16,6 +16,7 @@ using Command = std::function<int()>;
 
 Command declare_run(CLI::App& app);
 Command declare_experiment(CLI::App& app);
+Command declare_sweep(CLI::App& app);
 Command declare_analyze(CLI::App& app);
 Command declare_check(CLI::App& app);
 Command declare_info(CLI::App& app);

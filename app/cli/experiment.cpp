@@ -1,17 +1,15 @@
 #include "app/experiments/experiment.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <filesystem>
 #include <vector>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 
 namespace limpid {
@@ -38,33 +36,6 @@ std::vector<const Experiment*> chosen(const std::string& name) {
   if (name == "all") return all;
   if (const Experiment* one = find_experiment(name)) return {one};
   throw UsageError(fmt::format("\"{}\" is not an experiment; allowed: {}", name, names));
-}
-
-// Tries a file there, so that what forbids it is known. 0, or errno.
-int try_to_write(const fs::path& dir) {
-  const std::string probe = (dir / fmt::format(".{}.probe", getpid())).string();
-  const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (descriptor < 0) return errno;
-  const std::vector<char> some(1 << 16);
-  errno = ENOSPC;  // what a short write means
-  const bool written =
-      write(descriptor, some.data(), some.size()) == std::ssize(some) && fsync(descriptor) == 0;
-  const int code = written ? 0 : errno;
-  close(descriptor);
-  unlink(probe.c_str());
-  return code;
-}
-
-// Before the first trial, so that no work is lost on a place that cannot be written or is full.
-void prepare(const fs::path& dir) {
-  std::error_code error;
-  const bool created = fs::create_directories(dir, error);
-  if (!error && !fs::is_directory(dir)) error = std::make_error_code(std::errc::not_a_directory);
-  if (!error) error = {try_to_write(dir), std::generic_category()};
-  if (!error) return;
-  std::error_code none;
-  if (created) fs::remove(dir, none);
-  throw UsageError(fmt::format("--out {}: {}", dir.string(), error.message()));
 }
 
 void print(const Experiment& experiment, const Outcome& outcome) {
@@ -100,7 +71,7 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOp
 
 int run(const ExperimentOptions& options) {
   const std::vector<const Experiment*> wanted = chosen(options.name);
-  prepare(options.out);
+  prepare_out(options.out);
   catch_interrupts();
   std::vector<std::string> failed;  // checks
   try {

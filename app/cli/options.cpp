@@ -11,9 +11,9 @@
 #include "app/base/assets.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
+#include "app/run/reach_check.h"
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
-#include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
 #include "devices/files/scene/scene_file.h"
@@ -61,27 +61,6 @@ std::string allowed_values(const ParameterInfo& info) {
   if (std::holds_alternative<bool Parameters::*>(info.field)) return "true, false";
   const std::string unit = std::string(info.unit) == "-" ? "" : std::string(" ") + info.unit;
   return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
-}
-
-// Refuses a path that leaves the reach of the arm, before anything is written.
-void check_reach(const RunPlan& plan) {
-  const Vec3 base = plan.arm.joints.front().origin.translation();
-  const double limit = reach(plan.arm) * (1 + 1e-9);  // stretched out is in reach
-  for (std::size_t i = 0; i < plan.hand.position.size(); ++i) {
-    const double distance = (plan.hand.position[i] - base).norm();
-    if (distance <= limit) continue;
-    throw UsageError(fmt::format(
-        "{}: the point at {:.3f} s is {:.4f} m from the first joint; the arm {} reaches {:.4f} m",
-        plan.hand.source, plan.hand.time[i], distance, plan.arm.name, limit));
-  }
-  if (plan.start) return;
-  if (!inverse_kinematics(plan.arm, plan.hand.position.front(), rest_pose(plan.arm))) {
-    const Vec3& p = plan.hand.position.front();
-    throw UsageError(fmt::format(
-        "{}: the first point ({:.4f}, {:.4f}, {:.4f}) m is out of reach of the arm {} within its "
-        "joint limits",
-        plan.hand.source, p.x(), p.y(), p.z(), plan.arm.name));
-  }
 }
 
 // A session brings its own world and parameters; options override them.
@@ -227,7 +206,7 @@ RunPlan make_plan(const InputOptions& options) {
       plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
     }
   }
-  check_reach(plan);
+  if (const std::string why = out_of_reach(plan); !why.empty()) throw UsageError(why);
   const double duration = options.duration.value_or(plan.hand.duration());
   plan.rows = ticks_in(duration, plan.parameters.tick);
   if (options.seed) plan.seed = *options.seed;

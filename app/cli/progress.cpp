@@ -29,6 +29,14 @@ std::size_t room() {
   return known ? size.ws_col - 1u : 79u;
 }
 
+// Over the lines above the progress line, whose number it is given; returns how many there are.
+std::size_t draw_over(std::size_t before, const std::vector<std::string>& lines) {
+  if (before > 0) fmt::print(stderr, "\r\x1b[{}A", before);
+  for (const std::string& line : lines) fmt::print(stderr, "\x1b[K{}\n", line);
+  fmt::print(stderr, "\x1b[J");
+  return lines.size();
+}
+
 // In place of what stood there, whose length it is given; returns its own.
 std::size_t write_over(std::size_t before, std::string line) {
   line.resize(std::min(line.size(), room()));
@@ -67,8 +75,9 @@ void Progress::show(const std::stop_token& stop) const {
   };
   if (over_within(1s)) return;
   double before = 0;
-  std::size_t length = 0;
+  std::size_t length = 0, above = 0;
   do {
+    if (words_.picture) above = draw_over(above, words_.picture());
     const double done = done_.load(std::memory_order_relaxed);
     if (done < before) began = std::chrono::steady_clock::now();
     before = done;
@@ -76,6 +85,7 @@ void Progress::show(const std::stop_token& stop) const {
     length = write_over(length, progress_line(words_, done, elapsed.count()));
   } while (!over_within(200ms));
   write_over(length, "");
+  if (above > 0) draw_over(above, {});
 }
 
 }  // namespace limpid

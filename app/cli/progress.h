@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace limpid {
 
@@ -17,6 +19,7 @@ class Progress {
     double whole = 100;  // what at() comes to in the end
     std::string unit;    // of it, where done and whole are worth saying: "s"; else empty
     std::string rate;    // what it is called a second: "times real time"
+    std::function<std::vector<std::string>()> picture = {};  // lines above it, any time
   };
   explicit Progress(Words words);
   Progress(const Progress&) = delete;

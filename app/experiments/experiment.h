@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 #include "app/run/simulate.h"
 
 namespace limpid {
+
+struct SweepPlan;
+struct SweepTable;
 
 // One promise: `value` stands in a relation to `bound` that `what` says in words.
 struct Check {
@@ -81,8 +84,12 @@ class Laboratory {
   // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
   void run(const std::vector<Trial>& trials,
            const std::function<void(std::size_t, const TrialResult&)>& take);
+  // All points of a plan. Throws Cancelled; std::runtime_error.
+  SweepTable sweep(const SweepPlan& plan);
 
  private:
+  // Does every one of them, on all cores.
+  void each(std::size_t count, const std::function<void(std::size_t)>& work);
   TrialResult run_one(const Trial& trial) const;
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 

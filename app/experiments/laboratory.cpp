@@ -8,6 +8,8 @@
 #include "app/experiments/trial_store.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/run/run_key.h"
+#include "app/sweep/sweep_table.h"
 
 namespace limpid {
 
@@ -54,36 +56,51 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   return result;
 }
 
-void Laboratory::run(const std::vector<Trial>& trials,
-                     const std::function<void(std::size_t, const TrialResult&)>& take) {
+void Laboratory::each(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::size_t done = 0;
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < trials.size(); i = next++) {
+  const auto work_on = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
       try {
-        const TrialResult result = run_one(trials[i]);
-        take(i, result);
+        work(i);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!failure) failure = std::current_exception();
-        next = trials.size();
+        next = count;
         return;
       }
       const std::lock_guard lock(mutex);
       ++done;
       if (options_.progress) {
-        options_.progress(static_cast<double>(done) / static_cast<double>(trials.size()));
+        options_.progress(static_cast<double>(done) / static_cast<double>(count));
       }
     }
   };
   {
     std::vector<std::jthread> threads;
-    const auto count = std::min<std::size_t>(options_.threads, trials.size());
-    for (std::size_t i = 0; i < count; ++i) threads.emplace_back(work);
+    const auto most = std::min<std::size_t>(options_.threads, count);
+    for (std::size_t i = 0; i < most; ++i) threads.emplace_back(work_on);
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+void Laboratory::run(const std::vector<Trial>& trials,
+                     const std::function<void(std::size_t, const TrialResult&)>& take) {
+  each(trials.size(), [&](std::size_t i) { take(i, run_one(trials[i])); });
+}
+
+SweepTable Laboratory::sweep(const SweepPlan& plan) {
+  SweepTable table(plan);
+  static const std::atomic<bool> kNever{false};
+  const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
+  each(table.points(), [&](std::size_t i) {
+    const auto values = measure_point(plan, i, stop);
+    if (!values) throw Cancelled();
+    table.take(i, *values);
+  });
+  return table;
 }
 
 std::vector<TrialResult> Laboratory::run(const std::vector<Trial>& trials) {

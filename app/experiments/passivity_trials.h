@@ -7,11 +7,6 @@
 
 namespace limpid {
 
-// A hand's path as the same person would follow it another time: a little larger or smaller, faster
-// or slower, hurrying here and dawdling there, with a tremor of 8 to 12 Hz. The same seeds give the
-// same path.
-HandPath varied(const HandPath& path, std::uint64_t seed, std::uint64_t variation);
-
 // One of the couplings compared, over all its trials.
 struct PassivityCase {
   std::string name;       // "eta = 0.6", "standard"

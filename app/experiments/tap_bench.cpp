@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "app/base/assets.h"
-#include "app/experiments/high_pass.h"
 #include "app/experiments/series.h"
 #include "app/run/analysis.h"
 #include "core/dynamics/arm.h"
+#include "core/math/high_pass.h"
 #include "devices/files/arm/urdf_file.h"
 
 namespace limpid {

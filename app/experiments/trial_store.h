@@ -10,13 +10,6 @@
 
 namespace limpid {
 
-// Stands for the program that is running: another build has another one.
-std::uint64_t program_digest();
-
-// Stands for a program and all that decides a run: arm, scene and models, hand, parameters and
-// their changes, rows, seed.
-std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program);
-
 // Beside NAME.h5 lies NAME.key: the trial's key and what the session file's bytes add up to.
 // Written once the recording is closed. Errors: FileError.
 void stamp(const std::filesystem::path& session, std::uint64_t key);

@@ -39,7 +39,6 @@ bool Summary::add(std::span<const double> row) {
 
 std::string Summary::text() const {
   const Totals& t = totals();
-  const auto rows = static_cast<double>(std::max<std::uint64_t>(t.rows, 1));
   std::string text = fmt::format("ticks                    {}\n", all_.rows);
   if (watch_.lost()) {
     text += fmt::format(
@@ -54,18 +53,17 @@ std::string Summary::text() const {
                     "rms human torque         {:.4f} N m\n"
                     "E_c total                {:.3f} mJ (highest {:.3f} mJ)\n"
                     "E_c commanded            {:.3f} mJ\n",
-                    100 * static_cast<double>(t.in_contact) / rows, 1e3 * t.largest_error,
-                    t.largest_contact, std::sqrt(t.human_square_sum / rows), 1e3 * t.energy_total,
-                    1e3 * t.highest_total, 1e3 * t.energy_commanded);
+                    100 * t.share_in_contact(), 1e3 * t.largest_error, t.largest_contact,
+                    t.human_rms(), 1e3 * t.energy_total, 1e3 * t.highest_total,
+                    1e3 * t.energy_commanded);
 }
 
 std::vector<Summary::Number> Summary::numbers() const {
   const Totals& t = totals();
-  const auto rows = static_cast<double>(std::max<std::uint64_t>(t.rows, 1));
-  return {{"in contact", "%", 100 * static_cast<double>(t.in_contact) / rows},
+  return {{"in contact", "%", 100 * t.share_in_contact()},
           {"largest |x_E|", "mrad", 1e3 * t.largest_error},
           {"largest |f2|", "N m", t.largest_contact},
-          {"rms human torque", "N m", std::sqrt(t.human_square_sum / rows)},
+          {"rms human torque", "N m", t.human_rms()},
           {"E_c total", "mJ", 1e3 * t.energy_total},
           {"E_c total, highest", "mJ", 1e3 * t.highest_total}};
 }

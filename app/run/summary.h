@@ -1,6 +1,7 @@
 // What a run or a recording amounts to, in a few lines.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ class Summary {
   // Whether it is the memorable one, for now.
   bool add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
+  const DivergenceWatch& watch() const { return watch_; }
   // The row of the strongest contact; the last one of a run without any.
   std::span<const double> memorable() const { return totals().memorable; }
   std::string text() const;
@@ -25,7 +27,6 @@ class Summary {
   static std::string beside(const Summary& first, const std::string& name, const Summary& second,
                             const std::string& other);
 
- private:
   struct Totals {
     std::uint64_t rows = 0;
     double largest_error = 0;                                          // |x_E| [rad]
@@ -34,14 +35,23 @@ class Summary {
     double energy_total = 0, energy_commanded = 0, highest_total = 0;  // [J]
     std::uint64_t in_contact = 0;
     std::vector<double> memorable;
+
+    double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }
+    double human_rms() const { return std::sqrt(human_square_sum / counted()); }  // [N m]
+
+   private:
+    double counted() const { return rows > 0 ? static_cast<double>(rows) : 1; }
   };
+  // Of a loop that became unstable: up to there.
+  const Totals& totals() const { return watch_.lost() ? stable_ : all_; }
+
+ private:
   struct Number {
     const char* what;
     const char* unit;
     double value;
   };
   std::vector<Number> numbers() const;
-  const Totals& totals() const { return watch_.lost() ? stable_ : all_; }
 
   RowLayout layout_;
   DivergenceWatch watch_;

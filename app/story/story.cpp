@@ -68,7 +68,7 @@ class Reader {
   void read_world() {
     const auto file = [&](const char* key, const char* kind, const fs::path& otherwise) {
       const auto name = file_.text(key);
-      return name ? file_of_story(folder_, kind, *name) : otherwise;
+      return name ? beside_or_own(folder_, kind, *name) : otherwise;
     };
     RunPlan& plan = story_.plan;
     plan.arm = read_urdf(file("device", "devices", default_device()));

@@ -36,14 +36,6 @@ std::array<double, 4> point_in(const TomlTable& step, const toml::node& node) {
 
 }  // namespace
 
-std::filesystem::path file_of_story(const std::filesystem::path& folder, const std::string& kind,
-                                    const std::string& name) {
-  std::filesystem::path beside = folder / name;
-  if (std::filesystem::exists(beside)) return beside;
-  const std::filesystem::path own = data_dir() / "assets" / kind / name;
-  return std::filesystem::exists(own) ? own : beside;
-}
-
 void StoryHand::read(const TomlTable& step, double begins, double ends) {
   const toml::node* node = step.find("hand");
   if (node == nullptr) {
@@ -79,7 +71,7 @@ void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
 
 void StoryHand::read_file(const TomlTable& step, const std::string& file, double begins,
                           double ends) {
-  const HandPath path = read_hand(file_of_story(folder_, "hands", file));
+  const HandPath path = read_hand(beside_or_own(folder_, "hands", file));
   const std::uint32_t line = step.find("hand")->source().begin.line;
   for (std::size_t i = 0; i < path.time.size() && begins + path.time[i] < ends; ++i) {
     add(begins + path.time[i], path.position[i], line);

@@ -34,8 +34,4 @@ class StoryHand {
   Eigen::VectorXd near_;  // a configuration with the tip on the last point [rad]
 };
 
-// `name` beside the script, else among the program's own in assets/`kind`.
-std::filesystem::path file_of_story(const std::filesystem::path& folder, const std::string& kind,
-                                    const std::string& name);
-
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -18,11 +19,18 @@ namespace fs = std::filesystem;
   throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(code)));
 }
 
+// Other computers, too, may write in the same folder.
+std::string this_process() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  return fmt::format("{}.{}", host.data(), ::getpid());
+}
+
 // A new file that is gone again unless it is kept.
 class Draft {
  public:
   explicit Draft(const fs::path& file)
-      : path_(file.string() + fmt::format(".{}.new", ::getpid())),
+      : path_(file.string() + fmt::format(".{}.new", this_process())),
         descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) fail(file, errno);
   }

@@ -109,6 +109,32 @@ std::optional<double> TomlTable::number(const char* key, const Range& range) con
   return x;
 }
 
+std::optional<std::uint64_t> TomlTable::count(const char* key, std::uint64_t least,
+                                              std::uint64_t most) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto x = node->value_exact<std::int64_t>();
+  if (x && *x >= 0 && static_cast<std::uint64_t>(*x) >= least &&
+      static_cast<std::uint64_t>(*x) <= most) {
+    return static_cast<std::uint64_t>(*x);
+  }
+  refuse(key, fmt::format("a whole number from {} to {}", least, most));
+}
+
+std::vector<std::string> TomlTable::texts(const char* key) const {
+  std::vector<std::string> all;
+  const toml::node* node = find(key);
+  if (node == nullptr) return all;
+  const toml::array* list = node->as_array();
+  const char* allowed = "a list of text, as [\"one\", \"two\"]";
+  if (list == nullptr) refuse(key, allowed);
+  for (const toml::node& each : *list) {
+    if (!each.is_string()) refuse(key, allowed);
+    all.push_back(*each.value<std::string>());
+  }
+  return all;
+}
+
 std::optional<Vec3> TomlTable::vector(const char* key, const Range& each) const {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

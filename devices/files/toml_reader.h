@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,9 @@ class TomlTable {
   void allow_only(const std::vector<const char*>& keys) const;
   std::optional<std::string> text(const char* key) const;
   std::optional<double> number(const char* key, const Range& range) const;
+  std::optional<std::uint64_t> count(const char* key, std::uint64_t least,
+                                     std::uint64_t most) const;
+  std::vector<std::string> texts(const char* key) const;  // a list of text; empty without the key
   std::optional<Vec3> vector(const char* key, const Range& each) const;
   std::vector<TomlTable> tables(const char* key) const;  // of [[key]]
   const toml::node* find(const char* key) const { return table_.get(key); }

@@ -18,7 +18,7 @@ import numpy as np
 from limpid_check.session import ATTRIBUTES, DATASETS, read_session
 from support import Started, SystemTest, WithAnArm, Words, limpid
 
-COMMANDS = ("play", "run", "story", "experiment", "analyze", "devices", "info", "recover")
+COMMANDS = ("play", "run", "story", "experiment", "sweep", "analyze", "devices", "info", "recover")
 
 
 class Help(SystemTest):

@@ -6,6 +6,7 @@
 
 #include "app/experiments/passivity_trials.h"
 #include "app/experiments/series.h"
+#include "app/run/varied_hand.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -10,6 +10,7 @@
 
 #include "app/experiments/experiment.h"
 #include "app/experiments/series.h"
+#include "app/run/run_key.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,4 +1,4 @@
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
@@ -27,6 +28,10 @@ std::string csv_text(const std::string& text) {
     safe += c;
   }
   return safe + '"';
+}
+
+double middle(double low, double high, bool logarithmic) {
+  return logarithmic ? std::sqrt(low * high) : (low + high) / 2;
 }
 
 // Runs `gnuplot FILE`, quietly. Returns the exit status; -1 when it did not end by itself.
@@ -71,6 +76,10 @@ void write_figure_data(const Figure& figure, const fs::path& csv) {
         for (const FigurePoint& p : series.points) {
           file.print("{},{},{},{},{}\n", names, p.x, p.y, p.low, p.high);
         }
+        for (const FigureCell& c : series.cells) {
+          file.print("{},{},{},{},{}\n", names, middle(c.x_low, c.x_high, panel.log_x),
+                     middle(c.y_low, c.y_high, panel.log_y), c.value, c.value);
+        }
       }
     }
     file.close();
@@ -86,12 +95,16 @@ void draw_figure(const Figure& figure, const fs::path& dir, const std::string& n
   };
   for (const Format& format : {Format{"pngcairo", ".png", 2}, Format{"svg", ".svg", 1}}) {
     const fs::path out = dir / (name + format.extension);
-    const fs::path script = dir / (name + ".gnuplot");
-    std::ofstream(script) << gnuplot_script(figure, format.terminal, format.scale, out);
+    // Others may be drawing the same.
+    const fs::path part = dir / fmt::format(".{}.{}{}", name, getpid(), format.extension);
+    const fs::path script = dir / fmt::format(".{}.{}.gnuplot", name, getpid());
+    std::ofstream(script) << gnuplot_script(figure, format.terminal, format.scale, part);
     const int status = gnuplot(script);
-    std::error_code none;
+    std::error_code none, failure;
     fs::remove(script, none);
-    if (status != 0) {
+    if (status == 0) fs::rename(part, out, failure);
+    if (status != 0 || failure) {
+      fs::remove(part, none);
       throw std::runtime_error(
           fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
     }

@@ -1,4 +1,4 @@
-#include "app/experiments/high_pass.h"
+#include "core/math/high_pass.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 
 namespace limpid {
 namespace {
@@ -17,6 +17,7 @@ constexpr int kPanelWidth = 640;
 constexpr int kTitleHeight = 52;
 constexpr int kLeft = 92, kRight = 26, kBottom = 58;  // from the axes to the cell's edges
 constexpr int kPanelTitle = 38, kLegendLine = 20;
+constexpr int kBar = 14, kBarRoom = 104;  // of a map's colours: its width; beside the axes
 constexpr double kLetter = 6.8, kSample = 26, kGap = 20;  // widths in a legend
 constexpr double kYLabel = 20;                            // from the cell's left edge
 
@@ -79,7 +80,8 @@ std::vector<LegendEntry> legend_of(const FigurePanel& panel) {
   double x = 0;
   int line = 0;
   for (const Series& series : panel.series) {
-    if (series.label.empty() || series.points.empty()) continue;
+    const bool nothing = series.points.empty() && series.cells.empty();
+    if (series.label.empty() || series.color.empty() || nothing) continue;  // or a bar of colours
     const double width = kSample + 6 + letters(series.label) * kLetter;
     if (x > 0 && x + width > kPanelWidth - kLeft - kRight) {
       x = 0;
@@ -125,6 +127,10 @@ std::string plot_words(const Series& series, const std::string& data) {
     case Series::Style::line: return data + " using 1:2 with lines lw 1.8 " + end;
     case Series::Style::dashed: return data + " using 1:2 with lines lw 1.8 dt (7,4) " + end;
     case Series::Style::points: return data + " using 1:2 with points pt 7 ps 0.35 " + end;
+    case Series::Style::cells:
+      return data + " using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder " +
+             (series.color.empty() ? "fc palette notitle"
+                                   : fmt::format("fc rgb '{}' notitle", series.color));
     case Series::Style::band:
       return data + " using 1:3:4 with filledcurves fs transparent solid 0.2 noborder " + end;
   }
@@ -139,6 +145,10 @@ std::string data_blocks(const Figure& figure) {
       text += fmt::format("$d{} << EOD\n", block++);
       for (const FigurePoint& p : series.points) {
         text += fmt::format("{:.7g} {:.7g} {:.7g} {:.7g}\n", p.x, p.y, p.low, p.high);
+      }
+      for (const FigureCell& c : series.cells) {
+        text += fmt::format("{0:.7g} {2:.7g} {0:.7g} {1:.7g} {2:.7g} {3:.7g} {4:.7g}\n", c.x_low,
+                            c.x_high, c.y_low, c.y_high, c.value);
       }
       text += "EOD\n";
     }
@@ -164,11 +174,11 @@ std::string sample_of(const Series& series, const Screen& screen, double x, doub
     case Series::Style::points:
       return fmt::format("set label '' at {} point pt 7 ps 0.6 lc rgb '{}'\n",
                          screen.at(x + kSample / 2, y), series.color);
+    case Series::Style::cells:
     case Series::Style::band:
-      return fmt::format(
-          "set object rectangle from {} to {} fc rgb '{}' "
-          "fs transparent solid 0.2 noborder\n",
-          screen.at(x, y - 5), screen.at(x + kSample, y + 5), series.color);
+      return fmt::format("set object rectangle from {} to {} fc rgb '{}' fs {} noborder\n",
+                         screen.at(x, y - 5), screen.at(x + kSample, y + 5), series.color,
+                         series.style == Series::Style::band ? "transparent solid 0.2" : "solid");
   }
   return {};
 }
@@ -191,18 +201,49 @@ std::string heading(const FigurePanel& panel, const std::vector<LegendEntry>& le
 std::string plot_command(const FigurePanel& panel, int first_block) {
   std::string plots;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    if (panel.series[i].points.empty()) continue;
+    if (panel.series[i].points.empty() && panel.series[i].cells.empty()) continue;
     plots += (plots.empty() ? "" : ", ") +
              plot_words(panel.series[i], fmt::format("$d{}", first_block + static_cast<int>(i)));
   }
   return "plot " + (plots.empty() ? "NaN notitle" : plots) + '\n';
 }
 
+const Series* map_of(const FigurePanel& panel) {
+  const auto found = std::ranges::find_if(panel.series, [](const Series& s) {
+    return s.style == Series::Style::cells && s.color.empty();
+  });
+  return found == panel.series.end() ? nullptr : &*found;
+}
+
+// The bar of a map's colours, right of the axes.
+std::string colour_bar(const FigurePanel& panel, const Screen& screen, double right, double bottom,
+                       double top) {
+  const Series* map = map_of(panel);
+  if (map == nullptr) return "unset colorbox\n";
+  return fmt::format(
+      "set colorbox vertical user origin {} size {:.6f},{:.6f} noborder\nset cbrange {}\nset "
+      "format cb '%g'\n"
+      "set label {} at {} center rotate by 90 noenhanced font ',11'\n",
+      screen.at(right + 10, bottom), kBar / screen.width, (top - bottom) / screen.height,
+      range_text(panel.value_range), printed(map->label),
+      screen.at(right + kBarRoom - 22, (top + bottom) / 2));
+}
+
+std::string x_ticks(const FigurePanel& panel) {
+  if (panel.x_ticks.empty()) return "set xtics autofreq\n";
+  std::string text;
+  for (const auto& [x, name] : panel.x_ticks) {
+    text += fmt::format("{}\"{}\" {:.7g}", text.empty() ? "" : ", ", typeset(name), x);
+  }
+  return "set xtics noenhanced (" + text + ")\n";
+}
+
 // All of a panel but its curves, in the cell whose upper left corner is given.
 std::string panel_commands(const FigurePanel& panel, const Screen& screen, double cell_left,
                            double cell_top, double cell_height) {
   const std::vector<LegendEntry> legend = legend_of(panel);
-  const double left = cell_left + kLeft, right = cell_left + kPanelWidth - kRight;
+  const double left = cell_left + kLeft,
+               right = cell_left + kPanelWidth - (map_of(panel) ? kBarRoom : kRight);
   const double top = cell_top - kPanelTitle - lines_of(legend) * kLegendLine;
   const double bottom = cell_top - cell_height + kBottom;
   std::string text = fmt::format(
@@ -210,6 +251,7 @@ std::string panel_commands(const FigurePanel& panel, const Screen& screen, doubl
       "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
       left / screen.width, right / screen.width, bottom / screen.height, top / screen.height);
   text += heading(panel, legend, screen, left, top);
+  text += colour_bar(panel, screen, right, bottom, top) + x_ticks(panel);
   text += fmt::format("set label {} at {} center rotate by 90 noenhanced\n", printed(panel.y_label),
                       screen.at(cell_left + kYLabel, (top + bottom) / 2));
   text += fmt::format("set xlabel {} noenhanced offset 0,0.3\n", printed(panel.x_label));
@@ -239,7 +281,8 @@ std::string gnuplot_script(const Figure& figure, const std::string& terminal, do
   text += data_blocks(figure);
   text += fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
   text +=
-      "unset key\nset border 3 lc rgb '#444444' lw 0.8\n"
+      "unset key\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', "
+      "4 '#fde725')\nset border 3 lc rgb '#444444' lw 0.8\n"
       "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
       "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
   int block = 0;

@@ -1,4 +1,4 @@
-#include "app/experiments/grip_limit.h"
+#include "app/run/grip_limit.h"
 
 #include <gtest/gtest.h>
 

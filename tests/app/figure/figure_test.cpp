@@ -1,4 +1,4 @@
-#include "app/experiments/figure.h"
+#include "app/figure/figure.h"
 
 #include <gmock/gmock.h>
 

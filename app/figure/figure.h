@@ -13,13 +13,20 @@ struct FigurePoint {
   double low = 0, high = 0;  // of a band
 };
 
+// A rectangle in a map, coloured by its value.
+struct FigureCell {
+  double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
+  double value = 0;
+};
+
 struct Series {
-  enum class Style { line, dashed, points, band };
+  enum class Style { line, dashed, points, band, cells };
 
   std::string label;  // empty: not in the legend
   std::string color;  // "#rrggbb"
   Style style = Style::line;
   std::vector<FigurePoint> points;
+  std::vector<FigureCell> cells = {};  // of a map, whose label stands at the bar of colours
 };
 
 // One pair of axes.
@@ -28,6 +35,8 @@ struct FigurePanel {
   std::string x_label = {}, y_label = {};  // with unit
   bool log_x = false, log_y = false;
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};
+  std::vector<std::pair<double, std::string>> x_ticks = {};   // in place of numbers
+  std::optional<std::pair<double, double>> value_range = {};  // of a map's colours
   std::vector<Series> series = {};
 };
 

@@ -1,0 +1,300 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/base/interrupt.h"
+#include "app/cli/commands.h"
+#include "app/cli/options.h"
+#include "app/cli/out_folder.h"
+#include "app/cli/progress.h"
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "app/sweep/map_text.h"
+#include "app/sweep/ranks.h"
+#include "app/sweep/slurm.h"
+#include "app/sweep/sweep_figure.h"
+#include "app/sweep/sweep_work.h"
+#include "devices/files/scene/scene_writer.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr unsigned kMostThreads = 1024;
+constexpr Seconds kBetweenTables{2};
+constexpr std::chrono::milliseconds kBetweenLooks{50};
+constexpr int kLooksATurn = 40;  // of Slurm's queue
+
+struct SweepOptions {
+  std::string plan, out, shard;
+  std::optional<unsigned> threads;
+  std::optional<std::uint64_t> open;
+  bool gather = false, mpi = false, slurm = false, csv = false;
+  SlurmOptions array;
+};
+
+// "3/8" as the third of eight.
+SweepShare share_in(const std::string& text) {
+  unsigned long i = 0, n = 0;
+  int read = 0;
+  const bool two = std::sscanf(text.c_str(), "%5lu/%5lu%n", &i, &n, &read) == 2;
+  if (!two || read != static_cast<int>(text.size()) || i < 1 || i > n) {
+    throw UsageError(fmt::format(
+        "--shard: \"{}\" is not allowed; allowed: I/N with I from 1 to N, N up to 99999", text));
+  }
+  return {.shard = i - 1, .shards = n};
+}
+
+SweepShare share_of(const SweepOptions& options) {
+  SweepShare share;
+  if (!options.shard.empty()) share = share_in(options.shard);
+  if (options.mpi) {
+    const auto rank = own_rank();
+    if (!rank) {
+      throw UsageError("--mpi: no rank among many; start it as mpirun -n 8 limpid sweep ... --mpi");
+    }
+    share = {.shard = rank->rank, .shards = rank->size, .helps = true, .threads = 1};
+  }
+  if (options.threads) share.threads = *options.threads;
+  return share;
+}
+
+// Writes the table now and then while the work goes on, so that it can be read at any moment.
+class Bookkeeper {
+ public:
+  explicit Bookkeeper(SweepBook& book) : book_(book) { wait(kBetweenTables); }
+
+  void write_if_time() {
+    if (Clock::now() < next_) return;
+    const auto began = Clock::now();
+    book_.write();
+    wait(std::max<Seconds>(kBetweenTables, 20 * (Clock::now() - began)));
+  }
+
+ private:
+  void wait(Seconds time) {
+    next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
+  }
+  SweepBook& book_;
+  Clock::time_point next_;
+};
+
+// One call of the command.
+class Sweeping {
+ public:
+  Sweeping(const SweepOptions& options, const SweepShare& share, const SweepPlan& plan,
+           const SweepFolder& folder)
+      : options_(options),
+        share_(share),
+        plan_(plan),
+        folder_(folder),
+        map_(plan, measured_columns(plan)),
+        book_(plan, folder, options.csv, [this](std::uint64_t block, const auto& rows) {
+          map_.take(folder_.first(block), rows);
+        }) {}
+
+  int carry_out() {
+    if (options_.slurm) return on_slurm();
+    // One of many writes no table, for the others' sake.
+    const bool alone = share_.shards == 1, first = options_.mpi && share_.shard == 0;
+    if (!options_.gather) {
+      const bool finished = work(alone);
+      if (!finished && alone) book_.write();
+      if (!finished) return stopped("the same command goes on from here");
+    }
+    if (!alone && !first && !options_.gather) return 0;
+    book_.gather();
+    return finish();
+  }
+
+ private:
+  Progress::Words words(double points) const {
+    return {.title = plan_.title,
+            .whole = points,
+            .unit = "",
+            .rate = "points a second",
+            .picture = [this] { return map_.lines(); }};
+  }
+
+  // False if it was stopped.
+  bool work(bool alone) {
+    std::atomic<std::uint64_t> done{0};
+    Bookkeeper keeper(book_);
+    const TakeBlock take = [&](std::uint64_t block, const auto& rows) {
+      book_.take(block, rows);
+      if (alone) keeper.write_if_time();
+    };
+    Progress progress(
+        words(static_cast<double>(plan_.points()) / static_cast<double>(share_.shards)));
+    const std::jthread watch([&](const std::stop_token& over) {
+      while (!over.stop_requested()) {
+        progress.at(static_cast<double>(done.load()));
+        std::this_thread::sleep_for(kBetweenLooks);
+      }
+    });
+    return work_off(plan_, folder_, share_, interrupted, done, take);
+  }
+
+  int on_slurm() {
+    SlurmArray array(plan_, folder_, options_.array);
+    Bookkeeper keeper(book_);
+    {
+      Progress progress(words(static_cast<double>(plan_.points())));
+      while (!interrupted) {
+        array.turn(book_);
+        progress.at(static_cast<double>(book_.table().count()));
+        keeper.write_if_time();
+        if (book_.complete()) break;
+        for (int i = 0; i < kLooksATurn && !interrupted; ++i) {
+          std::this_thread::sleep_for(kBetweenLooks);
+        }
+      }
+    }
+    if (book_.complete()) return finish();
+    book_.write();
+    return stopped(
+        fmt::format("its tasks go on, and the same command gathers what they find; "
+                    "scancel -n {} ends them",
+                    array.name()));
+  }
+
+  int stopped(const std::string& advice) {
+    fmt::print(stderr, "limpid: stopped; {}\n", advice);
+    return 1;
+  }
+
+  int finish() {
+    book_.write();
+    const SweepTable& table = book_.table();
+    fmt::print("{} of {} points in {}\n", table.count(), table.points(), folder_.table().string());
+    std::fflush(stdout);
+    if (table.count() > 0) draw(table);
+    return book_.complete() ? 0 : 1;
+  }
+
+  // Nodes of a cluster may have no gnuplot; the table is what counts.
+  void draw(const SweepTable& table) {
+    try {
+      draw_figure(sweep_figure(plan_, table), folder_.path(), "figure");
+    } catch (const std::runtime_error& e) {
+      fmt::print(stderr, "limpid: no figure: {}\n", e.what());
+    }
+  }
+
+  const SweepOptions& options_;
+  const SweepShare& share_;
+  const SweepPlan& plan_;
+  const SweepFolder& folder_;
+  MapText map_;
+  SweepBook book_;
+};
+
+void check_point(std::uint64_t index, const SweepPlan& plan) {
+  if (plan.boundary) throw UsageError("--open: a point of a boundary is many runs");
+  if (index < plan.points()) return;
+  throw UsageError(fmt::format("--open {}: is not allowed; allowed: a point from 0 to {}", index,
+                               plan.points() - 1));
+}
+
+// Runs one point again, as a session.
+int open_point(const SweepOptions& options, const SweepPlan& plan) {
+  const std::uint64_t index = *options.open;
+  RunPlan run = run_of(plan, index);
+  run.document.toml = scene_text(run.document, run.arm);  // as the axes have made it
+  const fs::path file = fs::path(options.out) / "points" / fmt::format("{}.h5", index);
+  fs::create_directories(file.parent_path());
+  Recorder recorder(file, session_info(run), run.parameters, true, Recorder::kWaitingRoom);
+  Summary summary(RowLayout(run.arm.dof()));
+  simulate(run, {.realtime = false, .stop = &interrupted},
+           [&](std::span<const double> row, const Parameters*) {
+             summary.add(row);
+             return recorder.push_waiting(row);
+           });
+  recorder.finish();
+  fmt::print("{}recorded in {}\n", summary.text(), file.string());
+  std::fflush(stdout);
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return 0;
+  ::execl("/proc/self/exe", "limpid", "play", file.c_str(), nullptr);
+  return 0;
+}
+
+int sweep(const SweepOptions& options) {
+  const SweepShare share = share_of(options);
+  const SweepPlan plan = read_sweep_plan(options.plan);
+  if (options.open) check_point(*options.open, plan);
+  if (!options.gather) prepare_out(options.out);
+  catch_interrupts();
+  if (options.open) return open_point(options, plan);
+  const SweepFolder folder(plan, options.out);
+  try {
+    return Sweeping(options, share, plan, folder).carry_out();
+  } catch (const FileError& e) {  // of this run's own making, no bad input
+    throw std::runtime_error(fmt::format("{}; the same command goes on from here", e.what()));
+  }
+}
+
+std::string measure_help() {
+  std::string text = "Measures:\n";
+  for (const MeasureInfo& m : measure_table()) {
+    text += fmt::format("  {:<17} {:<11} {}\n", m.name, m.unit, m.what);
+  }
+  return text;
+}
+
+}  // namespace
+
+Command declare_sweep(CLI::App& app) {
+  auto* command = app.add_subcommand("sweep", "many runs over a plan's axes, as one table");
+  auto options = std::make_shared<SweepOptions>();
+  command->add_option("PLAN.toml", options->plan, "what is varied and what is measured")
+      ->required()
+      ->type_name("");
+  command->add_option("--out", options->out, "the folder for what it finds")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--threads", options->threads, "default: one a core; one under mpirun")
+      ->type_name("N")
+      ->check(CLI::Range(1u, kMostThreads));
+  auto* shard =
+      command->add_option("--shard", options->shard, "only the I-th of N parts")->type_name("I/N");
+  auto* gather =
+      command->add_flag("--gather", options->gather, "only put together what there is by now");
+  auto* mpi = command->add_flag("--mpi", options->mpi, "the part of this rank under mpirun");
+  auto* slurm = command->add_flag("--slurm", options->slurm, "as an array job of Slurm");
+  for (auto* one : {shard, gather, mpi, slurm}) {
+    for (auto* other : {shard, gather, mpi, slurm}) {
+      if (one != other) one->excludes(other);
+    }
+  }
+  command
+      ->add_option("--tasks", options->array.tasks, "with --slurm: tasks of the array; default 100")
+      ->type_name("N")
+      ->check(CLI::Range(1u, 100000u))
+      ->needs(slurm);
+  command
+      ->add_option("--sbatch", options->array.options,
+                   "with --slurm: an option of sbatch, as --sbatch=--time=60; repeatable")
+      ->type_name("OPTION")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->needs(slurm);
+  command
+      ->add_option("--open", options->open,
+                   "runs that point again, records it in DIR/points and plays it")
+      ->type_name("POINT");
+  command->add_flag("--csv", options->csv, "DIR/table.csv, too");
+  command->footer(
+      "How to write a plan: assets/sweeps/README.md. Writes DIR/table.h5, and its parts while it\n"
+      "runs. Called again it goes on where it was stopped, or killed.\n\n" +
+      measure_help());
+  return [options] { return sweep(*options); };
+}
+
+}  // namespace limpid

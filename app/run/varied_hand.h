@@ -1,0 +1,15 @@
+// One hand's path as it differs from time to time.
+#pragma once
+
+#include <cstdint>
+
+#include "devices/files/hand/hand_file.h"
+
+namespace limpid {
+
+// A hand's path as the same person would follow it another time: a little larger or smaller, faster
+// or slower, hurrying here and dawdling there, with a tremor of 8 to 12 Hz. The same seeds give the
+// same path.
+HandPath varied(const HandPath& path, std::uint64_t seed, std::uint64_t variation);
+
+}  // namespace limpid

@@ -1,0 +1,114 @@
+#include "app/sweep/blocks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/sweep/file_image.h"
+#include "app/sweep/sweep_table.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestNote = 1 << 12;  // [bytes]
+
+// What a folder, or a block, says that it belongs to.
+struct Belongs {
+  std::uint64_t plan, build;
+};
+
+void check_same(const Belongs& found, const Belongs& own, const fs::path& file) {
+  const auto refuse = [&](const char* what, std::uint64_t theirs, std::uint64_t mine) {
+    throw FileError(fmt::format(
+        "{}: made from another {} ({}); needed: {}. Take another --out, or remove that folder",
+        file.string(), what, hex(theirs), hex(mine)));
+  };
+  if (found.plan != own.plan) refuse("plan, or other files that it names", found.plan, own.plan);
+  if (found.build != own.build) {
+    refuse("build of limpid, or on another kind of processor", found.build, own.build);
+  }
+}
+
+std::string note_of(const Belongs& own) {
+  return fmt::format("plan {}\nbuild {}\n", hex(own.plan), hex(own.build));
+}
+
+}  // namespace
+
+SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
+    : plan_(plan), dir_(std::move(dir)), columns_(measured_columns(plan).size()) {
+  const Belongs own{plan.key, build_digest()};
+  const fs::path note = dir_ / "sweep.key";
+  if (fs::exists(note)) {
+    const std::string said = read_text(note, kLongestNote);
+    Belongs found{};
+    if (std::sscanf(said.c_str(), "plan %lx\nbuild %lx", &found.plan, &found.build) != 2) {
+      throw FileError(fmt::format("{}: is no note of a sweep", note.string()));
+    }
+    check_same(found, own, note);
+    return;
+  }
+  std::error_code error;
+  fs::create_directories(dir_ / "blocks", error);
+  if (error) throw FileError(fmt::format("{}: {}", dir_.string(), error.message()));
+  const std::string text = note_of(own);
+  write_atomically(note, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+std::uint64_t SweepFolder::blocks() const {
+  return (plan_.points() + plan_.block - 1) / plan_.block;
+}
+
+std::uint64_t SweepFolder::size(std::uint64_t block) const {
+  return std::min(plan_.block, plan_.points() - first(block));
+}
+
+fs::path SweepFolder::file(std::uint64_t block) const {
+  return dir_ / "blocks" / fmt::format("{:06d}.h5", block);
+}
+
+bool SweepFolder::there(std::uint64_t block) const {
+  std::error_code none;
+  return fs::exists(file(block), none);
+}
+
+std::optional<std::vector<double>> SweepFolder::read(std::uint64_t block) const {
+  const fs::path path = file(block);
+  if (!there(block)) return std::nullopt;
+  const hdf5::Quiet quiet;
+  const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (!file) return std::nullopt;
+  std::vector<double> rows(size(block) * columns_);
+  try {
+    check_same(
+        {hdf5::read_count(file.get(), "plan", path), hdf5::read_count(file.get(), "build", path)},
+        {plan_.key, build_digest()}, path);
+  } catch (const FileError&) {
+    if (H5Aexists(file.get(), "plan") > 0 && H5Aexists(file.get(), "build") > 0) throw;
+    return std::nullopt;
+  }
+  const hdf5::Dataset dataset(H5Dopen2(file.get(), "/values", H5P_DEFAULT));
+  if (!dataset) return std::nullopt;
+  const hdf5::Dataspace space(H5Dget_space(dataset.get()));
+  if (H5Sget_simple_extent_npoints(space.get()) != std::ssize(rows)) return std::nullopt;
+  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
+    return std::nullopt;
+  }
+  return rows;
+}
+
+void SweepFolder::write(std::uint64_t block, const std::vector<double>& rows) const {
+  FileImage image(file(block));
+  image.number(image.root(), "plan", plan_.key);
+  image.number(image.root(), "build", build_digest());
+  image.number(image.root(), "first", first(block));
+  image.add("/values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, size(block), columns_, rows.data());
+  image.write();
+}
+
+}  // namespace limpid

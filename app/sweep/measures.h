@@ -1,0 +1,90 @@
+// What a sweep can measure of a run.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/summary.h"
+#include "core/dynamics/arm.h"
+#include "core/math/high_pass.h"
+
+namespace limpid {
+
+class RunMeter;
+
+struct MeasureInfo {
+  const char* name;
+  const char* unit;  // "-" for none; "yes/no" is 1 or 0
+  const char* what;
+  double (*value)(const RunMeter&);
+  bool felt = false;  // needs the arm's inertia and tip
+
+  bool yes_no() const { return std::string_view(unit) == "yes/no"; }
+};
+
+std::span<const MeasureInfo> measure_table();
+const MeasureInfo* find_measure(std::string_view name);
+
+// Energy that does not count [J].
+inline constexpr double kNoEnergy = 1e-6;
+
+// Takes a run's rows in turn; at any moment every measure has a value of the run so far, not a
+// number where there is nothing to measure.
+class RunMeter {
+ public:
+  // Of a run of `rows` ticks of T [s]. `felt`: whether what needs the arm's inertia and tip is
+  // wanted, which costs as much as a tick.
+  RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt);
+
+  void add(std::span<const double> row);
+  const Summary& summary() const { return summary_; }
+
+  double seconds() const { return static_cast<double>(row_) * T_; }
+  double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
+  double highest_port() const { return highest_port_; }  // [J]
+  double chatter() const;  // of the tip above 20 Hz in the second half, rms [m/s]
+  double felt_stiffness()
+      const;  // slope of the hand's force over the tip's way, along the mean force in contact [N/m]
+  // f1 = m M a + b v out of contact, least squares in the metric of M^-1: m [-], b [N m s/rad].
+  std::array<double, 2> felt_inertia_damping() const;
+  bool dies_away() const;  // the device's speed, over twentieths of the run
+
+ private:
+  // Only with `felt`.
+  struct Felt {
+    Arm<kAnyDof> arm;
+    std::array<HighPass, 3> fast;
+    Arm<kAnyDof>::Frames frames = {};
+    Jacobian<kAnyDof> J = {};
+    // Of the row before.
+    bool began = false, free = false;
+    Vec3 tip = Vec3::Zero();                // [m]
+    Mat<kAnyDof> M = {};                    // [kg m^2]
+    Vec<kAnyDof> Cv = {}, v = {}, f1 = {};  // [N m, rad/s, N m]
+    // Sums: of the second half; of rows in contact; of free ones.
+    double fast2 = 0, settled = 0;
+    double touching = 0;
+    Vec3 mean_x = Vec3::Zero(), mean_f = Vec3::Zero();
+    Mat3 xx = Mat3::Zero(), xf = Mat3::Zero();
+    double aa = 0, av = 0, vv = 0, af = 0, vf = 0;  // of M a + C v, v and f1, in M^-1
+  };
+
+  void add_felt(std::span<const double> row);
+  void add_contact(Felt& f, const Vec<kAnyDof>& f1) const;
+  void add_free(Felt& f, const Vec<kAnyDof>& v) const;
+
+  RowLayout layout_;
+  Summary summary_;
+  double T_;
+  std::uint64_t rows_, row_ = 0;
+  double highest_port_ = 0;
+  double error_contact_ = 0, contact2_ = 0;
+  static constexpr std::size_t kSpans = 20;
+  std::array<double, kSpans> speed2_{};  // sums over each span
+
+  std::optional<Felt> felt_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,232 @@
+#include "app/sweep/read_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+
+#include "app/sweep/sampling.h"
+#include "devices/files/config/config_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kLongestName = 40;
+constexpr std::uint64_t kMostValues = 1'000'000;
+constexpr Range kAnything{-1e300, 1e300};
+constexpr Range kStiffness{0, 1e9, true, "N/m"};
+constexpr const char* kScales[] = {"linear", "log"};
+
+std::size_t choice_in(const TomlTable& table, const char* key, std::span<const char* const> words) {
+  const std::string word = table.text(key).value_or(words.front());
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) table.refuse(key, fmt::format("{}", fmt::join(words, ", ")));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+// An axis of files: a case for each.
+void read_files(const TomlTable& table, std::string SweepWorld::*part, SweepAxis& axis) {
+  for (const std::string& file : table.texts("values")) {
+    SweepCase& one = axis.cases.emplace_back();
+    one.name = stem(file);
+    one.world.*part = file;
+  }
+  if (axis.cases.empty()) table.refuse_missing("values");
+}
+
+void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis) {
+  for (const TomlTable& each : table.tables("cases")) {
+    each.allow_only({"name", "set", "device", "scene", "hand"});
+    SweepCase& one = axis.cases.emplace_back();
+    one.name = each.need(each.text("name"), "name");
+    one.settings = each.texts("set");
+    one.world = {each.text("device").value_or(""), each.text("scene").value_or(""),
+                 each.text("hand").value_or("")};
+    Parameters tried = base;
+    try {
+      for (const std::string& setting : one.settings) apply_setting(tried, setting);
+    } catch (const ParameterError& error) {
+      each.refuse("set", error.what());
+    }
+  }
+}
+
+// Refuses what is not allowed of a parameter.
+double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
+  if (axis.key == kStiffnessKey) {
+    if (!(x > kStiffness.minimum && x <= kStiffness.maximum)) {
+      table.refuse(key, fmt::format("numbers above 0 up to {} N/m", kStiffness.maximum));
+    }
+    return x;
+  }
+  Parameters p;
+  try {
+    set_parameter(p, axis.key, x);
+  } catch (const ParameterError& error) {
+    table.refuse(key, error.what());
+  }
+  return x;
+}
+
+std::vector<const char*> words_of(const ParameterInfo& info) {
+  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    return {choice->words.begin(), choice->words.end()};
+  }
+  if (std::holds_alternative<bool Parameters::*>(info.field)) return {"false", "true"};
+  return {};
+}
+
+void read_words(const TomlTable& table, SweepAxis& axis) {
+  const std::string allowed = fmt::format("a list of words among {}", fmt::join(axis.words, ", "));
+  const toml::node* node = table.find("values");
+  if (node == nullptr) table.refuse_missing("values");
+  if (!node->is_array()) table.refuse("values", allowed);
+  for (const toml::node& each : *node->as_array()) {
+    const auto text = each.value_exact<std::string>();
+    const std::string word = text ? *text : found_text(each);
+    const auto found = std::ranges::find(axis.words, word);
+    if (found == axis.words.end()) table.refuse("values", allowed);
+    axis.values.push_back(static_cast<double>(found - axis.words.begin()));
+  }
+}
+
+void read_list(const TomlTable& table, SweepAxis& axis) {
+  const toml::array* list = table.find("values")->as_array();
+  if (list == nullptr || list->empty()) table.refuse("values", "a list of numbers");
+  for (const toml::node& each : *list) {
+    if (!each.is_number()) table.refuse("values", "a list of numbers");
+    axis.values.push_back(allowed_number(table, "values", axis, *each.value<double>()));
+  }
+}
+
+AxisRange read_range(const TomlTable& table, const SweepAxis& axis) {
+  const AxisRange range{table.need(table.number("from", kAnything), "from"),
+                        table.need(table.number("to", kAnything), "to")};
+  allowed_number(table, "from", axis, range.from);
+  allowed_number(table, "to", axis, range.to);
+  if (!(range.to > range.from)) table.refuse("to", fmt::format("more than {}", range.from));
+  if (axis.logarithmic && !(range.from > 0)) table.refuse("from", "above 0 on a log scale");
+  return range;
+}
+
+double scaled(const AxisRange& range, double part, bool logarithmic) {
+  if (part == 0) return range.from;
+  if (part == 1) return range.to;
+  return logarithmic ? range.from * std::pow(range.to / range.from, part)
+                     : range.from + (range.to - range.from) * part;
+}
+
+void refuse_key(const TomlTable& table, const std::string& key) {
+  std::vector<std::string> keys{"device", "scene", "hand", kStiffnessKey};
+  for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
+  const auto meant = nearest(key, keys);
+  table.refuse("key", "device, scene, hand, scene.stiffness, or a parameter of limpid run --help" +
+                          (meant ? "; did you mean " + *meant + "?" : std::string()));
+}
+
+void read_numbers(const TomlTable& table, ReadAxis& read) {
+  SweepAxis& axis = read.axis;
+  axis.spread = static_cast<Spread>(choice_in(table, "sample", kSpreads));
+  axis.logarithmic = choice_in(table, "scale", kScales) == 1;
+  if (table.find("values") != nullptr) return read_list(table, axis);
+  read.range = read_range(table, axis);
+  if (axis.spread != Spread::grid) return;
+  const std::uint64_t count = table.need(table.count("count", 2, kMostValues), "count");
+  for (const double x : spread(read.range, count, axis.logarithmic)) {
+    axis.values.push_back(allowed_number(table, "count", axis, x));
+  }
+}
+
+// Names of columns, and in figures.
+void check_name(const TomlTable& table, const std::string& name) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == ' ';
+  };
+  if (!name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, plain)) return;
+  table.refuse("name", fmt::format("up to {} letters, digits, _, - and spaces", kLongestName));
+}
+
+}  // namespace
+
+std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool logarithmic) {
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(scaled(range, part, logarithmic));
+  }
+  return values;
+}
+
+ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
+  table.allow_only({"key", "name", "values", "from", "to", "count", "scale", "sample", "cases"});
+  ReadAxis read;
+  SweepAxis& axis = read.axis;
+  if (table.find("cases") != nullptr) {
+    axis.name = table.need(table.text("name"), "name");
+    read_cases(table, base, axis);
+  } else {
+    const std::string key = table.need(table.text("key"), "key");
+    const std::string last = key == kStiffnessKey ? "wall" : key.substr(key.rfind('.') + 1);
+    axis.name = table.text("name").value_or(last);
+    const ParameterInfo* info = find_parameter(key);
+    if (key == "device") {
+      read_files(table, &SweepWorld::device, axis);
+    } else if (key == "scene") {
+      read_files(table, &SweepWorld::scene, axis);
+    } else if (key == "hand") {
+      read_files(table, &SweepWorld::hand, axis);
+    } else if (info == nullptr && key != kStiffnessKey) {
+      refuse_key(table, key);
+    } else {
+      axis.key = key;
+      axis.unit = info ? info->unit : "N/m";
+      if (info) std::ranges::copy(words_of(*info), std::back_inserter(axis.words));
+      axis.words.empty() ? read_numbers(table, read) : read_words(table, axis);
+    }
+  }
+  check_name(table, axis.name);
+  for (const SweepCase& one : axis.cases) {
+    axis.values.push_back(static_cast<double>(axis.words.size()));
+    axis.words.push_back(one.name);
+  }
+  return read;
+}
+
+void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t seed) {
+  for (const auto& [way, draw] : {std::pair{Spread::random, &random_samples},
+                                  {Spread::latin, &latin_samples},
+                                  {Spread::sobol, &sobol_samples}}) {
+    std::vector<ReadAxis*> these;
+    for (ReadAxis& read : axes) {
+      if (read.axis.spread == way) these.push_back(&read);
+    }
+    if (these.empty()) continue;
+    const UnitSamples drawn = draw(these.size(), samples, seed);
+    for (std::size_t d = 0; d < these.size(); ++d) {
+      SweepAxis& axis = these[d]->axis;
+      const ParameterInfo* info = find_parameter(axis.key);
+      const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
+      for (const double part : drawn[d]) {
+        const double x = scaled(these[d]->range, part, axis.logarithmic);
+        axis.values.push_back(whole ? std::round(x) : x);
+      }
+    }
+  }
+}
+
+SweepLimit read_limit(const TomlTable& table) {
+  const std::string name = table.need(table.text("measure"), "measure");
+  SweepLimit limit{find_measure(name), table.number("above", kAnything),
+                   table.number("below", kAnything)};
+  if (limit.measure == nullptr) table.refuse("measure", "a measure of limpid sweep --help");
+  if (!limit.measure->yes_no() && !limit.above && !limit.below) {
+    table.refuse("measure", "a yes/no measure, or any with above or below");
+  }
+  return limit;
+}
+
+}  // namespace limpid

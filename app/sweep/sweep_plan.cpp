@@ -1,0 +1,95 @@
+#include "app/sweep/sweep_plan.h"
+
+#include <cmath>
+
+#include "app/run/varied_hand.h"
+#include "devices/files/config/config_file.h"
+
+namespace limpid {
+namespace {
+
+void set_stiffness(Scene& scene, double k) {
+  for (Plane& each : scene.planes) each.material.stiffness = k;
+  for (Sphere& each : scene.spheres) each.material.stiffness = k;
+  for (Box& each : scene.boxes) each.material.stiffness = k;
+  for (MeshObstacle& each : scene.meshes) each.material.stiffness = k;
+}
+
+// What an axis does to a run: parameters and the scene; what a case names of the world.
+struct Chosen {
+  SweepWorld world;
+  Parameters parameters;
+  std::optional<double> stiffness = {};
+
+  void take(const SweepAxis& axis, double value) {
+    if (axis.key == kStiffnessKey) {
+      stiffness = value;
+    } else if (!axis.key.empty()) {
+      set_parameter_number(parameters, *find_parameter(axis.key), value);
+    } else {
+      const SweepCase& one = axis.cases[static_cast<std::size_t>(value)];
+      for (const std::string& setting : one.settings) apply_setting(parameters, setting);
+      world = world.with(one.world);
+    }
+  }
+};
+
+}  // namespace
+
+SweepWorld SweepWorld::with(const SweepWorld& chosen) const {
+  const auto either = [](const std::string& now, const std::string& said) {
+    return said.empty() ? now : said;
+  };
+  return {either(device, chosen.device), either(scene, chosen.scene), either(hand, chosen.hand)};
+}
+
+bool SweepLimit::met(double value) const {
+  if (!above && !below) return value == 1;
+  return (!above || value > *above) && (!below || value < *below);
+}
+
+std::uint64_t SweepPlan::points() const {
+  std::uint64_t count = samples * repeats;
+  for (const SweepAxis& axis : axes) {
+    if (axis.spread == Spread::grid) count *= axis.values.size();
+  }
+  return count;
+}
+
+SweepPoint point_of(const SweepPlan& plan, std::uint64_t index) {
+  SweepPoint point;
+  const auto next = [&index](std::uint64_t of) {
+    const std::uint64_t digit = index % of;
+    index /= of;
+    return digit;
+  };
+  point.repeat = next(plan.repeats);
+  const std::uint64_t sample = next(plan.samples);
+  point.place.resize(plan.axes.size());
+  for (std::size_t a = plan.axes.size(); a-- > 0;) {
+    const SweepAxis& axis = plan.axes[a];
+    point.place[a] = axis.spread == Spread::grid ? next(axis.values.size()) : sample;
+  }
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    point.values.push_back(plan.axes[a].values[point.place[a]]);
+  }
+  return point;
+}
+
+RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double> at) {
+  const SweepPoint point = point_of(plan, index);
+  Chosen chosen{plan.world, plan.parameters};
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) chosen.take(plan.axes[a], point.values[a]);
+  if (at) chosen.take(plan.boundary->axis, *at);
+  RunPlan run = *plan.worlds.at(chosen.world);
+  run.parameters = chosen.parameters;
+  run.seed = plan.seed;
+  if (chosen.stiffness) set_stiffness(run.document.scene, *chosen.stiffness);
+  if (plan.jump) run.hand.time.back() = run.parameters.tick;
+  if (point.repeat > 0) run.hand = varied(run.hand, plan.seed, point.repeat);
+  const double seconds = plan.seconds > 0 ? plan.seconds : run.hand.duration();
+  run.rows = static_cast<std::uint64_t>(std::max(1LL, std::llround(seconds / run.parameters.tick)));
+  return run;
+}
+
+}  // namespace limpid

@@ -1,0 +1,31 @@
+// Plans of a test's own.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "app/sweep/sweep_plan.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid::test {
+
+inline SweepPlan sweep_plan(const TempDir& dir, const std::string& text) {
+  const std::filesystem::path file = dir / "plan.toml";
+  std::ofstream(file) << text;
+  return read_sweep_plan(file);
+}
+
+// Fast: a few ticks a point.
+inline const std::string kShort = R"(title = "Short"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms", "energy", "stable"]
+block = 4
+axis = [
+  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
+  { key = "coupling.eta", from = 0.4, to = 1, count = 7 },
+]
+)";
+
+}  // namespace limpid::test
