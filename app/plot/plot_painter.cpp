@@ -133,6 +133,8 @@ void draw_band(const PlotFrame& frame, const Band& band, const History& history,
     const ImVec2 label = text_size(Face::small, name);
     const float x = std::min(left, frame.area.max.x - label.x - 6 * frame.scale) + 2 * frame.scale;
     if (name.empty() || std::exchange(before, now) == now || x < free_from) continue;
+    // Where the plot is low, names would fill it.
+    if (frame.area.height() < 6 * label.y) continue;
     // A moment under another law is a line without a name.
     if (!band.names.front().empty() && right - left < label.x) continue;
     draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.75f);

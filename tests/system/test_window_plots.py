@@ -104,6 +104,7 @@ class Plots(WindowTest):
         self.wait("the other one", lambda s: len(s["plots"]) == 5)
         self.open("ctrl+l", "layouts")
         self.type("mine")
+        time.sleep(1)  # a frame in which it stands there, which chooses it
         self.key("ctrl+a")
         self.type("yours")
         self.click(*RENAME)

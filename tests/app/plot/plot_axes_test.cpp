@@ -166,17 +166,17 @@ TEST(Picture, FullDiskIsToldOf) {
 TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-fulfil";
   std::filesystem::remove_all(folder);
-  const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
+  const PlotSpec spec{.file_name = "energy", .y = {.unit = "J"}, .curves = {{.label = "E"}}};
   const History history = seconds_of_data(1);
   PlotSaving saving;
   saving.folder = folder;
-  const auto good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, saving);
+  const auto good = fulfil(PlotWish::save_csv, spec, history, {0, 1, {}, {{-1, 1}}}, saving);
   ASSERT_TRUE(good);
   EXPECT_FALSE(good->bad);
   EXPECT_TRUE(std::filesystem::exists(folder / "energy-001.csv"));
   EXPECT_NE(good->text.find("energy-001.csv"), std::string::npos);
   saving.folder = "/dev/null/x";
-  const auto bad = fulfil(PlotWish::save_svg, spec, history, {0, 1, {-1, 1}}, saving);
+  const auto bad = fulfil(PlotWish::save_svg, spec, history, {0, 1, {}, {{-1, 1}}}, saving);
   ASSERT_TRUE(bad);
   EXPECT_TRUE(bad->bad);
 }
@@ -185,7 +185,7 @@ TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
 TEST(PlotMenu, WritesATableElsewhereAsItWasWhenAskedFor) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-beside";
   std::filesystem::remove_all(folder);
-  const PlotSpec spec{.unit = "J", .file_name = "energy", .curves = {{.label = "E"}}};
+  const PlotSpec spec{.file_name = "energy", .y = {.unit = "J"}, .curves = {{.label = "E"}}};
   std::function<PlotNotice()> work;
   PlotSaving saving;
   saving.folder = folder;
@@ -194,7 +194,7 @@ TEST(PlotMenu, WritesATableElsewhereAsItWasWhenAskedFor) {
     History history({.channels = 1, .seconds = 1});
     history.append(0, std::array{0.25});
     history.append(0.001, std::array{0.5});
-    EXPECT_FALSE(fulfil(PlotWish::save_csv, spec, history, {0, 1, {-1, 1}}, saving));
+    EXPECT_FALSE(fulfil(PlotWish::save_csv, spec, history, {0, 1, {}, {{-1, 1}}}, saving));
     history.append(0.002, std::array{0.75});
   }
   EXPECT_FALSE(std::filesystem::exists(folder)) << "nothing is written before";

@@ -430,6 +430,49 @@ TEST_F(ADesktop, RunsATwinWhoseSettingsAreItsOwnAndWhoseWorldIsNot) {
   EXPECT_TRUE(desktop->desk().stage().names().second.empty());
 }
 
+TEST_F(ADesktop, TakesBackAPresetOfEitherRunOfATwin) {
+  frames(5);
+  desktop->toggle_twin();
+  frames(5);
+  Settings& settings = desktop->settings();
+  for (const bool second : {false, true}) {
+    settings.twin.edited = second;
+    Parameters& edited = second ? settings.twin.parameters : settings.parameters;
+    const Parameters before = edited;
+    const Parameters other = second ? settings.parameters : settings.twin.parameters;
+    desktop->use_preset("Light hand");
+    EXPECT_EQ(edited.eta, 0.3);
+    EXPECT_EQ(edited.kind, CouplingKind::predictive);
+    frames(5);
+    desktop->document().undo();
+    EXPECT_EQ(edited, before);
+    EXPECT_EQ(second ? settings.parameters : settings.twin.parameters, other);
+    frames(5);
+    desktop->document().redo();
+    EXPECT_EQ(edited.eta, 0.3);
+    frames(5);
+  }
+}
+
+TEST_F(ADesktop, ShowsTheChosenPlotsLiveAndInPlayback) {
+  desktop->add_plot();
+  desktop->settings().plot_choices.back() = {.kind = PlotKind::spectrum,
+                                             .channels = {"hand/torque_norm"}};
+  frames(3);
+  ASSERT_EQ(desktop->shown().plots.size(), 5u);
+  EXPECT_EQ(desktop->dialog(), Dialog::plot);
+  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  frames(2);
+  ASSERT_EQ(desktop->shown().plots.size(), 5u);
+  EXPECT_EQ(desktop->shown().plots.back().spec().title, "spectrum of |f1|");
+  desktop->remove_plot(0);
+  desktop->use_layout("As at first");
+  frames(2);
+  EXPECT_EQ(desktop->shown().plots.size(), 4u);
+  EXPECT_EQ(desktop->dialog(), Dialog::none);
+}
+
 TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
   desktop->open_world("", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");

@@ -22,11 +22,12 @@ TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndView) {
 }
 
 TEST(Focus, WhatIsOnlyReadLeavesTheKeysToTheView) {
-  for (const Dialog dialog : {Dialog::none, Dialog::help, Dialog::about, Dialog::experiments}) {
+  for (const Dialog dialog :
+       {Dialog::none, Dialog::help, Dialog::about, Dialog::experiments, Dialog::plot}) {
     EXPECT_EQ(owner_of({.dialog = dialog}), KeyOwner::view) << name(dialog);
   }
-  for (const Dialog dialog :
-       {Dialog::open_session, Dialog::gallery, Dialog::add_model, Dialog::save_scene}) {
+  for (const Dialog dialog : {Dialog::open_session, Dialog::gallery, Dialog::add_model,
+                              Dialog::save_scene, Dialog::layouts, Dialog::presets}) {
     EXPECT_EQ(owner_of({.dialog = dialog}), KeyOwner::dialog) << name(dialog);
   }
 }
