@@ -31,6 +31,7 @@ class Slurm:
         self.directory = directory
         self.started: list[subprocess.Popen] = []
         self.munge = Path("/run/munge/munge.socket.2")
+        self.own_munge = not self.munge.exists()
         name = socket.gethostname().split(".")[0]
         for folder in ("state", "spool"):
             (directory / folder).mkdir(parents=True)
@@ -68,7 +69,7 @@ PartitionName=all Nodes={name} Default=YES MaxTime=INFINITE State=UP
             raise
 
     def start(self) -> None:
-        if not self.munge.exists():
+        if self.own_munge:
             self.munge.parent.mkdir(parents=True, exist_ok=True)
             shutil.chown(self.munge.parent, "munge", "munge")
             subprocess.run(["runuser", "-u", "munge", "munged"], capture_output=True)
@@ -97,3 +98,6 @@ PartitionName=all Nodes={name} Default=YES MaxTime=INFINITE State=UP
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+        if self.own_munge:
+            words = ["runuser", "-u", "munge", "--", "munged", "--stop"]
+            subprocess.run(words, capture_output=True)
