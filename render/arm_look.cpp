@@ -99,6 +99,10 @@ Item body(const ArmDescription& arm, std::size_t i, double reach) {
   const double radius = std::clamp(0.16 * reach / n, 0.003, 0.03);
   const bool last = i + 1 == arm.joints.size();
   Model link = make_capsule(Vec3::Zero(), end_of(arm, i), last ? 0.7 * radius : radius, paint);
+  if (arm.slides(i)) {  // a rod as long as its travel
+    const Joint& joint = arm.joints[i];
+    append(link, make_capsule(Vec3::Zero(), -kSlideUnit * joint.upper * joint.axis, radius, paint));
+  }
   if (last) {
     Model tip = make_sphere(radius, paint);
     transform(tip, Eigen::Affine3d(Eigen::Translation3d(end_of(arm, i))));

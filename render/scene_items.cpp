@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/dynamics/arm.h"
 #include "render/arm_look.h"
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
@@ -121,6 +122,13 @@ Bounds bounds_of_arm(const ArmDescription& arm, const SceneItems& items) {
   for (const auto* list : {&items.base, &items.moving})
     for (const Item& item : *list)
       box.extend(moved(item.model.bounds(), pose_of(links, item.link) * item.pose));
+  if (arm.dof() > 0) {  // as it stands to begin with
+    const Arm<kAnyDof> at_rest(arm);
+    Arm<kAnyDof>::Frames f;
+    at_rest.frames(Vec<kAnyDof>(rest_pose(arm)), f);
+    for (int i = 0; i < arm.dof(); ++i) box.extend(f.p[static_cast<std::size_t>(i)]);
+    box.extend(at_rest.tip(f));
+  }
   const Vec3 root = links.empty() ? Vec3::Zero() : Vec3(links[0].translation());
   box.extend(root + items.reach * Vec3(0.25, -0.26, 0.0));
   box.extend(root + items.reach * Vec3(0.85, 0.26, 0.28));

@@ -186,8 +186,9 @@ ArmDescription arm_of(const InputOptions& options) {
 MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {
   arm = arm_of(options);
   const bool own = options.hand.empty() && !options.device.empty();
-  const std::filesystem::path otherwise = own ? default_scene(arm) : default_scene();
-  document = read_scene(options.scene.empty() ? otherwise : options.scene, arm);
+  std::filesystem::path scene = options.scene;
+  if (options.scene.empty()) scene = own ? default_scene(arm) : default_scene();
+  document = read_scene(scene, arm);
   return build_meshes(document);
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLongest = 8;    // [s]
 constexpr double kStep = 0.01;    // between two points [s]
 constexpr double kPart = 0.05;    // of the reach
-constexpr double kLargest = 4;    // times the farthest point of the default path, that the arm reaches
+constexpr double kDesk = 0.6;     // reach of what stands on a desk [m]
 
 }  // namespace
 
@@ -25,7 +25,7 @@ bool suits_default_world(const ArmDescription& arm) {
   double farthest = 0;
   for (const Vec3& point : path.position) farthest = std::max(farthest, (point - base).norm());
   const double most = reach(arm);
-  return farthest <= most && most <= kLargest * farthest &&
+  return farthest <= most && most <= kDesk &&
          inverse_kinematics(arm, path.position.front(), rest_pose(arm)).has_value();
 }
 

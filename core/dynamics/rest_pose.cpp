@@ -9,7 +9,7 @@ namespace {
 
 using Any = Arm<kAnyDof>;
 
-constexpr double kStretched = 0.01;  // the slowest direction of the tip against the fastest [-]
+constexpr double kStretched = 0.1;  // the slowest direction of the tip against the fastest [-]
 
 // How well the tip moves in its slowest direction, and in its fastest [m]; of one or two joints, in
 // one or two directions.

@@ -100,7 +100,7 @@ class Desktop {
   // Another arm in place of the virtual one, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
   void use_built_in_arm();
-  bool built_in_arm() const { return settings_.device.empty(); }
+  bool built_in_arm() const;
   void add_object(SceneObject object);
   void frame_selected();
   // Where the scene has no file of the user's own, its name is asked for.

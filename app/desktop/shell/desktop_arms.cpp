@@ -29,6 +29,8 @@ void Desktop::open_arm(const fs::path& file, const std::string& tip) {
 
 void Desktop::use_built_in_arm() { open_arm(default_device()); }
 
+bool Desktop::built_in_arm() const { return device_file_ == default_device(); }
+
 // Of the last time; the built-in one if its file is gone or spoilt.
 std::pair<std::string, std::string> Desktop::last_arm() {
   try {
