@@ -73,6 +73,7 @@ class Window(WindowTest):
         self.assertGreater(pressed["contact"], 0)
         self.key("b")
         self.wait_for_notice("Stop the recording")
+        time.sleep(1)  # enough rows to compare, on a fast computer, too
         self.key("r")
         self.wait("the end", lambda s: not s["recording"])
         self.xdotool("mouseup", "1")

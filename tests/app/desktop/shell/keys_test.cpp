@@ -33,6 +33,7 @@ const Case kCases[] = {
     {"0", GLFW_KEY_0, 0, Action::reset_camera, Action::reset_camera},
     {"C", GLFW_KEY_C, 0, Action::toggle_coupling, Action::toggle_coupling},
     {"B", GLFW_KEY_B, 0, Action::toggle_twin, Action::toggle_twin},
+    {"Shift+B", GLFW_KEY_B, kShift, Action::toggle_overlay, Action::toggle_overlay},
     {"[", GLFW_KEY_LEFT_BRACKET, 0, Action::smaller_eta, Action::smaller_eta, true},
     {"]", GLFW_KEY_RIGHT_BRACKET, 0, Action::larger_eta, Action::larger_eta, true},
     {"Shift+[", GLFW_KEY_LEFT_BRACKET, kShift, Action::smaller_alpha, Action::smaller_alpha, true},
@@ -58,6 +59,7 @@ const Case kCases[] = {
     {"N", GLFW_KEY_N, 0, Action::add_plot, Action::add_plot},
     {"Ctrl+L", GLFW_KEY_L, kControl, Action::layouts, Action::layouts},
     {"Ctrl+P", GLFW_KEY_P, kControl, Action::presets, Action::presets},
+    {"V", GLFW_KEY_V, 0, Action::none, Action::write_video},
     {"X", GLFW_KEY_X, 0, Action::freeze_plots, Action::freeze_plots},
     {"G", GLFW_KEY_G, 0, Action::toggle_ghost, Action::toggle_ghost},
     {"M", GLFW_KEY_M, 0, Action::toggle_lens, Action::toggle_lens},
@@ -109,8 +111,9 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
     // "[, ]" and the like; what the mouse does is written in words.
     for (const std::string& key : split(shortcut.keys)) listed.insert(key);
   }
-  for (const char* other : {"left drag", "right drag", "Alt+left drag", "middle drag",
-                            "Shift+right drag", "wheel", "plots", "sliders", "Esc", "Space"}) {
+  for (const char* other :
+       {"left drag", "right drag", "Alt+left drag", "middle drag", "Shift+right drag", "wheel",
+        "plots", "sliders", "gamepad", "Esc", "Space"}) {
     EXPECT_EQ(listed.erase(other), 1u) << other;
   }
   std::set<std::string> expected;
