@@ -49,8 +49,8 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
       // What it refers to is not there any more when a recording is opened; so recordings get one
       // file.
       std::vector<unsigned char> whole;
-      models.push_back(std::make_shared<const Model>(
-          parse_model(*file.bytes, name, folder, progress, &whole)));
+      models.push_back(
+          std::make_shared<const Model>(parse_model(*file.bytes, name, folder, progress, &whole)));
       if (!whole.empty()) {
         file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }

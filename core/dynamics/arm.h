@@ -2,7 +2,8 @@
 //
 // Everything is expressed in the base frame about its origin O. A joint's motion is the spatial
 // axis S_j = (a_j, o_j): turning at rate 1 gives the body angular velocity a_j and gives the point
-// of the body that is at O the velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its axis.
+// of the body that is at O the velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its
+// axis.
 //
 // M and C are sums over the links of J_k^T I_k J_k and J_k^T (I_k Jdot_k + B_k J_k), with
 //     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],
@@ -107,7 +108,7 @@ class Arm {
     int first = 0, second = 1, third = 2;  // columns: first turns towards second, third the axis
     double sign = 1;                       // -1 where the axis points against the third column
     bool slides = false;
-    Vec3 offset = Vec3::Zero();            // origin in the previous link's frame [m]
+    Vec3 offset = Vec3::Zero();  // origin in the previous link's frame [m]
   };
   struct LinkModel {
     double mass = 0;                          // [kg]

@@ -43,7 +43,8 @@ void print_state(Desktop& d, int width, int height) {
       "\"slipped\": {}, \"dropped\": {}, \"objects\": {}, \"selected\": {}, \"loading\": {}, "
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
-      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": {:.6f}, \"size\": [{}, "
+      "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"twin\": {}, \"twin_error\": "
+      "{:.6f}, \"size\": [{}, "
       "{}]}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
@@ -55,7 +56,8 @@ void print_state(Desktop& d, int width, int height) {
       d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(), !d.twin_row().empty(), twin_error(d), width, height);
+      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(), !d.twin_row().empty(),
+      twin_error(d), width, height);
   std::fflush(stdout);
 }
 
