@@ -42,9 +42,8 @@ Paint paint_of(const Visual& visual) {
 // Neither colours nor pictures of its own, as an STL.
 bool unpainted(const Model& model) {
   const Eigen::Vector3f none = Vertex{}.color;
-  return model.images.empty() && std::ranges::all_of(model.vertices, [&](const Vertex& v) {
-           return v.color == none;
-         });
+  return model.images.empty() &&
+         std::ranges::all_of(model.vertices, [&](const Vertex& v) { return v.color == none; });
 }
 
 void stretch(Model& model, const Vec3& by) {
@@ -54,7 +53,8 @@ void stretch(Model& model, const Vec3& by) {
     v.normal = v.normal.cwiseQuotient(scale).normalized();
   }
   if (scale.prod() > 0) return;
-  for (auto* corners : {&model.indices, &model.coarse}) {  // seen in a mirror they run the other way
+  for (auto* corners :
+       {&model.indices, &model.coarse}) {  // seen in a mirror they run the other way
     for (std::size_t i = 0; i + 2 < corners->size(); i += 3) {
       std::swap((*corners)[i], (*corners)[i + 1]);
     }

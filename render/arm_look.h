@@ -12,8 +12,8 @@ namespace limpid {
 // warnings. Errors: LoadCancelled.
 void load_visuals(ArmDescription& arm, const LoadProgress& progress = {});
 
-// What there is to draw of an arm whose visuals are loaded, into items.base and items.moving. An arm
-// without any, and a link of which only stand-ins are left, is drawn as capsules from joint to
+// What there is to draw of an arm whose visuals are loaded, into items.base and items.moving. An
+// arm without any, and a link of which only stand-ins are left, is drawn as capsules from joint to
 // joint.
 void add_arm(const ArmDescription& arm, SceneItems& items);
 

@@ -45,8 +45,8 @@ std::string joint_line(const Joint& joint, const Link& link, double inertia) {
 }
 
 void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, Report& report) {
-  report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint", "range",
-                                     "effort", "damping", "its link", "moves at rest"));
+  report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint",
+                                     "range", "effort", "damping", "its link", "moves at rest"));
   for (int i = 0; i < arm.dof(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     report.facts.push_back(joint_line(arm.joints[k], arm.links[k], M(i, i)));
@@ -59,9 +59,9 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
   report.facts.push_back(fit.empty() ? "gains        the paper's suit it"
                                      : "gains        fitted: " + fit);
   const Analysis a = analyze(arm, rest, p, std::nullopt);
-  report.facts.push_back(fmt::format(
-      "             condition (3) {}; eta from {:.2f} on is passive (25)",
-      a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
+  report.facts.push_back(
+      fmt::format("             condition (3) {}; eta from {:.2f} on is passive (25)",
+                  a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
   if (!a.condition3.holds) {
     report.warnings.push_back(
         "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
@@ -77,8 +77,8 @@ Report on_arm(const std::string& file, const InputOptions& input) {
   for (const Link& link : arm.links) mass += link.mass;
   const std::size_t pictures = static_cast<std::size_t>(std::ranges::count_if(
       arm.visuals, [](const Visual& v) { return v.shape != Visual::Shape::stand_in; }));
-  report.facts.push_back(fmt::format("arm          {}, {} joints to '{}'", arm.name, arm.dof(),
-                                     arm.tip_link));
+  report.facts.push_back(
+      fmt::format("arm          {}, {} joints to '{}'", arm.name, arm.dof(), arm.tip_link));
   report.facts.push_back(
       fmt::format("reach        {:.3g} m, {:.3g} kg in motion", reach(arm), mass));
   report.facts.push_back(pictures == 0 ? "picture      capsules from joint to joint"
@@ -102,10 +102,10 @@ Report on_scene(const std::string& file, const InputOptions& input) {
   const Scene& scene = loaded.document.scene;
   Report report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
-  report.facts.push_back(fmt::format(
-      "to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
-      scene.planes.size(), scene.spheres.size(), scene.boxes.size(), scene.meshes.size(),
-      scene.joint_contacts.size()));
+  report.facts.push_back(
+      fmt::format("to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
+                  scene.planes.size(), scene.spheres.size(), scene.boxes.size(),
+                  scene.meshes.size(), scene.joint_contacts.size()));
   for (std::size_t i = 0; i < loaded.models.size(); ++i) {
     list_mesh(scene.meshes[i], *loaded.models[i], scene.meshes[i].scale, report);
   }

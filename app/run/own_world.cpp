@@ -12,10 +12,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kLongest = 8;    // [s]
-constexpr double kStep = 0.01;    // between two points [s]
-constexpr double kPart = 0.05;    // of the reach
-constexpr double kDesk = 0.6;     // reach of what stands on a desk [m]
+constexpr double kLongest = 8;  // [s]
+constexpr double kStep = 0.01;  // between two points [s]
+constexpr double kPart = 0.05;  // of the reach
+constexpr double kDesk = 0.6;   // reach of what stands on a desk [m]
 
 }  // namespace
 
@@ -46,8 +46,7 @@ SmallPath small_path(const ArmDescription& description) {
     for (Eigen::Index i = 0; i < n; ++i) {
       const Joint& joint = description.joints[static_cast<std::size_t>(i)];
       const double rate = 2 * std::numbers::pi * (1 + static_cast<double>(i % 3)) / 4;
-      const double room =
-          0.9 * std::min(rest[i] - joint.lower, joint.upper - rest[i]);
+      const double room = 0.9 * std::min(rest[i] - joint.lower, joint.upper - rest[i]);
       x[i] += std::clamp(swing * gate * std::sin(rate * t + static_cast<double>(i)), -room, room);
     }
     return Vec<kAnyDof>(x);

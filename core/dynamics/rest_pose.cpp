@@ -18,8 +18,8 @@ Eigen::Vector2d mobility(const Any& arm, const Eigen::VectorXd& x) {
   arm.frames(Vec<kAnyDof>(x), f);
   Jacobian<kAnyDof> J;
   arm.point_jacobian(f, arm.dof() - 1, arm.tip(f), J);
-  const Eigen::MatrixXd JJ = J.cols() < 3 ? Eigen::MatrixXd(J.transpose() * J)
-                                          : Eigen::MatrixXd(J * J.transpose());
+  const Eigen::MatrixXd JJ =
+      J.cols() < 3 ? Eigen::MatrixXd(J.transpose() * J) : Eigen::MatrixXd(J * J.transpose());
   const Eigen::VectorXd squares = symmetric_eigen(JJ).values.cwiseMax(0);
   return {std::sqrt(squares[0]), std::sqrt(squares[squares.size() - 1])};
 }

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 Model triangle() {
   Model model;
   for (int i = 0; i < 3; ++i) {
-    model.vertices.push_back({(i + 1.0f) * Eigen::Vector3f::Unit(i), Eigen::Vector3f::UnitX()});
+    model.vertices.push_back(
+        {static_cast<float>(i + 1) * Eigen::Vector3f::Unit(i), Eigen::Vector3f::UnitX()});
     model.indices.push_back(static_cast<std::uint32_t>(i));
   }
   model.parts = {{0, 3}};

@@ -10,8 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostFolders = 4000;  // that are looked into for one package
-constexpr int kDeepest = 6;         // below a folder of ROS_PACKAGE_PATH
+constexpr int kMostFolders = 4000;                 // that are looked into for one package
+constexpr int kDeepest = 6;                        // below a folder of ROS_PACKAGE_PATH
 constexpr std::size_t kLongestManifest = 1 << 20;  // [bytes]
 
 bool is_folder(const fs::path& path) {

@@ -11,9 +11,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastShare = 1e-6;  // of what hangs on a link, its own inertia
-constexpr double kGuess = 1e-3;       // where it is less
-constexpr double kGravity = 9.81;     // [m/s^2]
+constexpr double kLeastShare = 1e-6;   // of what hangs on a link, its own inertia
+constexpr double kGuess = 1e-3;        // where it is less
+constexpr double kGravity = 9.81;      // [m/s^2]
 constexpr double kLeastEffort = 0.01;  // [N m]
 
 bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
@@ -88,9 +88,10 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   }
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
-  places.warn(fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
-                          "[kg m^2]; an <inertial> says better",
-                          list(guessed)));
+  places.warn(
+      fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
+                  "[kg m^2]; an <inertial> says better",
+                  list(guessed)));
 }
 
 void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
@@ -112,9 +113,10 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
   }
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
-  places.warn(fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
-                          "out",
-                          list(guessed)));
+  places.warn(
+      fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
+                  "out",
+                  list(guessed)));
 }
 
 }  // namespace limpid

@@ -132,9 +132,10 @@ class Chain {
   // Over joint i of the way; returns the frame of its child in that of the link that moves.
   Pose pass(const urdf::Joint& joint, const Pose& here, std::size_t i) {
     if (joint.mimic && i < last_moving_) {
-      places_.refuse_joint(joint.name,
-                           "mimics another joint inside the chain; not supported: name a tip before "
-                           "it (--tip LINK)");
+      places_.refuse_joint(
+          joint.name,
+          "mimics another joint inside the chain; not supported: name a tip before "
+          "it (--tip LINK)");
     }
     if (!moves(joint)) return held(joint, here);
     const Pose origin = origin_of(joint, here);
@@ -174,7 +175,8 @@ class Chain {
                                          out.lower, out.upper, slides ? "m" : "rad"));
       }
     }
-    out.effort = at_least_zero(joint.name, "effort", limit_of(joint, &urdf::JointLimits::effort, 0));
+    out.effort =
+        at_least_zero(joint.name, "effort", limit_of(joint, &urdf::JointLimits::effort, 0));
     if (joint.dynamics) {
       out.damping = at_least_zero(joint.name, "damping", joint.dynamics->damping);
       out.friction = at_least_zero(joint.name, "friction", joint.dynamics->friction);
@@ -203,8 +205,7 @@ class Chain {
     constexpr std::size_t kNamed = 6;
     const std::size_t named = std::min(held_.size(), kNamed);
     places_.warn(fmt::format(
-        "held still, beside the chain to '{}': {}{}",
-        arm_.tip_link,
+        "held still, beside the chain to '{}': {}{}", arm_.tip_link,
         fmt::join(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
         held_.size() > named ? fmt::format(" and {} more joints", held_.size() - named) : ""));
   }

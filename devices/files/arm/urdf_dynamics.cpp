@@ -39,8 +39,8 @@ bool says_nothing(const TiXmlElement& limit) {
 }
 
 TiXmlElement joint_of(const TiXmlElement& from, std::vector<std::string>& unlimited) {
-  TiXmlElement joint = with_children(
-      from, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
+  TiXmlElement joint =
+      with_children(from, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
   TiXmlElement* const limit = joint.FirstChildElement("limit");
   const char* type = joint.Attribute("type");
   const char* name = joint.Attribute("name");

@@ -73,8 +73,8 @@ void check_depth(const std::string& text, const std::string& where) {
 void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& places) {
   document.Parse(text.c_str());
   if (document.Error()) {
-    throw FileError(fmt::format("{}:{}: not XML: {}", places.where, std::max(document.ErrorRow(), 1),
-                                document.ErrorDesc()));
+    throw FileError(fmt::format("{}:{}: not XML: {}", places.where,
+                                std::max(document.ErrorRow(), 1), document.ErrorDesc()));
   }
   const TiXmlElement* robot = document.RootElement();
   if (robot == nullptr || robot->ValueStr() != "robot") {

@@ -8,18 +8,18 @@
 
 namespace limpid {
 
-// A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is named to
-// the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest chain
-// (way_to_tip in urdf_path.h). Everything else is held still at zero or the limit next to it; links
-// behind joints that do not move are merged into the one that moves them (those before the first
-// joint weigh nothing); the tip is the origin of the last link.
+// A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is
+// named to the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest
+// chain (way_to_tip in urdf_path.h). Everything else is held still at zero or the limit next to it;
+// links behind joints that do not move are merged into the one that moves them (those before the
+// first joint weigh nothing); the tip is the origin of the last link.
 //
 // What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
 // MeshFinder) or read, efforts of 0, links without inertia between others that have some.
-// Errors: FileError "FILE:LINE: ..." for what is not URDF or xacro that cannot be expanded, two tips
-// to choose from, floating and planar joints in the chain, a zero axis, numbers that are not finite,
-// negative damping, friction, effort or mass, crossed limits, and ends that no torque could hold
-// back, because they have no inertia.
+// Errors: FileError "FILE:LINE: ..." for what is not URDF or xacro that cannot be expanded, two
+// tips to choose from, floating and planar joints in the chain, a zero axis, numbers that are not
+// finite, negative damping, friction, effort or mass, crossed limits, and ends that no torque could
+// hold back, because they have no inertia.
 ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {});
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the

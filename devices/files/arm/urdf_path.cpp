@@ -16,9 +16,7 @@ using Way = std::vector<urdf::JointConstSharedPtr>;
 constexpr std::size_t kMostLinks = 5000;
 constexpr int kDeepest = 500;
 
-bool is_fixed(const urdf::JointConstSharedPtr& joint) {
-  return joint->type == urdf::Joint::FIXED;
-}
+bool is_fixed(const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; }
 
 // Recursion below relies on a tree of limited depth.
 void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
@@ -29,9 +27,9 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   for (const auto& [name, joint] : model.joints_) {
     const auto [other, first] = carrier.emplace(joint->child_link_name, name);
     if (first) continue;
-    places.refuse_link(joint->child_link_name,
-                       fmt::format("hangs on two joints, '{}' and '{}'; needed: one",
-                                   other->second, name));
+    places.refuse_link(
+        joint->child_link_name,
+        fmt::format("hangs on two joints, '{}' and '{}'; needed: one", other->second, name));
   }
   for (const auto& [name, link] : model.links_) {
     int depth = 0;
@@ -43,11 +41,11 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
 
 // What lies behind a joint, the joint with it.
 struct Branch {
-  int moving = 0;         // the most joints that move on one way outwards
-  bool turns = false;     // any of all that move is no slide
-  bool any_joint = false; // also one that mimics
-  double mass = 0;        // of what its joints move
-  std::string tip;        // at the end of that way
+  int moving = 0;          // the most joints that move on one way outwards
+  bool turns = false;      // any of all that move is no slide
+  bool any_joint = false;  // also one that mimics
+  double mass = 0;         // of what its joints move
+  std::string tip;         // at the end of that way
 };
 
 class Search {
@@ -165,7 +163,8 @@ Way named(const urdf::ModelInterface& model, const std::string& tip, const UrdfP
   if (!link) {
     std::string some;
     for (const auto& [name, each] : model.links_) {
-      if (each->child_joints.empty() && some.size() < 200) some += (some.empty() ? "" : ", ") + name;
+      if (each->child_joints.empty() && some.size() < 200)
+        some += (some.empty() ? "" : ", ") + name;
     }
     places.refuse(fmt::format("tip '{}': no such link; links at an end: {}", tip, some));
   }

@@ -18,9 +18,9 @@ std::string one_line(std::string text) {
 std::string at(const std::string& where, const std::map<std::string, int>& lines, const char* kind,
                const std::string& name, const std::string& what) {
   const auto line = lines.find(name);
-  return one_line(
-      fmt::format("{}{}: {} '{}': {}", where,
-                  line == lines.end() ? "" : fmt::format(":{}", line->second), kind, name, what));
+  return one_line(fmt::format("{}{}: {} '{}': {}", where,
+                              line == lines.end() ? "" : fmt::format(":{}", line->second), kind,
+                              name, what));
 }
 
 }  // namespace

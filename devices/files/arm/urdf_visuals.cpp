@@ -47,7 +47,8 @@ Pose origin_of(const TiXmlElement& visual) {
   Pose pose = Pose::Identity();
   const TiXmlElement* origin = visual.FirstChildElement("origin");
   if (origin == nullptr) return pose;
-  if (const char* xyz = origin->Attribute("xyz")) pose.translation() = numbers<3>(xyz, "origin xyz");
+  if (const char* xyz = origin->Attribute("xyz"))
+    pose.translation() = numbers<3>(xyz, "origin xyz");
   if (const char* rpy = origin->Attribute("rpy")) {
     pose.linear() = rotation(numbers<3>(rpy, "origin rpy"));
   }
@@ -165,7 +166,8 @@ std::map<std::string, std::vector<Visual>> urdf_visuals(const TiXmlElement& robo
   Reader reader(meshes, places);
   reader.learn_colours(robot);
   std::map<std::string, std::vector<Visual>> all;
-  for (auto* link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+  for (auto* link = robot.FirstChildElement("link"); link;
+       link = link->NextSiblingElement("link")) {
     if (const char* name = link->Attribute("name")) all[name] = reader.visuals_of(*link, name);
   }
   return all;

@@ -83,7 +83,8 @@ TEST_F(MeshNames, OfPackagesAreFoundAsRosFindsThem) {
   const test::TempDir far;
   MeshFinder before(far / "");
   EXPECT_EQ(before.find("package://one/a.stl"), "");
-  setenv("ROS_PACKAGE_PATH", (dir_ / "ros").string().append(":").append((dir_ / "workspace").string()).c_str(), 1);
+  setenv("ROS_PACKAGE_PATH",
+         (dir_ / "ros").string().append(":").append((dir_ / "workspace").string()).c_str(), 1);
   setenv("AMENT_PREFIX_PATH", (dir_ / "install").c_str(), 1);
   MeshFinder finder(far / "");
   EXPECT_EQ(finder.find("package://one/a.stl"), direct);

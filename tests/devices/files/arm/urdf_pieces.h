@@ -17,7 +17,7 @@ inline std::string link(const std::string& name, const std::string& inside = kIn
 }
 
 inline std::string joint(const std::string& parent, const std::string& child,
-                  const std::string& type = "revolute", const std::string& inside = kLimit) {
+                         const std::string& type = "revolute", const std::string& inside = kLimit) {
   return "<joint name='" + parent + "_" + child + "' type='" + type + "'><parent link='" + parent +
          "'/><child link='" + child + "'/>" + inside + "</joint>\n";
 }

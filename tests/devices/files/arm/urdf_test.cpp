@@ -162,8 +162,7 @@ TEST(Urdf, RefusesWhatIsNoArm) {
        {"x.urdf:6", "'c'", "inertia 0", "--tip"}},
       {two + joint("a", "b") + joint("b", "c", "prismatic") + link("c", ""),
        {"x.urdf:6", "'c'", "inertia 0"}},
-      {two + link("c") +
-           joint("a", "b", "revolute", std::string(kLimit) + "<mimic joint='b_c'/>") +
+      {two + link("c") + joint("a", "b", "revolute", std::string(kLimit) + "<mimic joint='b_c'/>") +
            joint("b", "c"),
        {"a_b", "mimics", "--tip"}},
       {link("a") + joint("a", "b") +

@@ -119,17 +119,17 @@ TEST(UrdfTree, PassesByWhatMovesWithoutAMass) {
   const std::string arm = link("a") + joint("a", "b") + link("b") + joint("b", "c") + link("c");
   const ArmDescription beside = parse(arm + joint("a", "dial") + link("dial", ""));
   EXPECT_THAT(joints_of(beside), ElementsAre("a_b", "b_c"));
-  const ArmDescription fingers = parse(arm + joint("c", "left") + link("left", "") +
-                                       joint("c", "right") + link("right", ""));
+  const ArmDescription fingers =
+      parse(arm + joint("c", "left") + link("left", "") + joint("c", "right") + link("right", ""));
   EXPECT_THAT(joints_of(fingers), ElementsAre("a_b", "b_c"));
 }
 
 // A frame without mass between two joints, as wrists have: M would not be positive definite where
 // the two axes are one.
 TEST(UrdfTree, GivesAFrameWithoutInertiaAThousandthOfWhatHangsOnIt) {
-  const ArmDescription arm = parse(link("a") + joint("a", "b") + link("b", "") +
-                                   joint("b", "c", "revolute", kLimit + at("0 0 0")) +
-                                   link("c", kBall));
+  const ArmDescription arm =
+      parse(link("a") + joint("a", "b") + link("b", "") +
+            joint("b", "c", "revolute", kLimit + at("0 0 0")) + link("c", kBall));
   EXPECT_NEAR(arm.links[0].inertia(2, 2), 1e-4, 1e-18);
   EXPECT_EQ(arm.links[0].mass, 0);
   ASSERT_EQ(arm.warnings.size(), 1u);
@@ -163,10 +163,11 @@ TEST(UrdfTree, TakesLimitsOfNothingButZerosForNone) {
 }
 
 TEST(UrdfTree, HoldsAJointWithoutRoomStillWhereItIs) {
-  const ArmDescription arm =
-      parse(link("a") + joint("a", "b") + link("b") +
-            joint("b", "c", "revolute", "<axis xyz='0 0 1'/>" + at("1 0 0") + limit(1.5707963267948966, 1.5707963267948966)) +
-            link("c") + joint("c", "d", "revolute", kLimit + at("1 0 0")) + link("d"));
+  const ArmDescription arm = parse(
+      link("a") + joint("a", "b") + link("b") +
+      joint("b", "c", "revolute",
+            "<axis xyz='0 0 1'/>" + at("1 0 0") + limit(1.5707963267948966, 1.5707963267948966)) +
+      link("c") + joint("c", "d", "revolute", kLimit + at("1 0 0")) + link("d"));
   ASSERT_THAT(joints_of(arm), ElementsAre("a_b", "c_d"));
   EXPECT_LT((arm.joints[1].origin.translation() - Vec3(1, 1, 0)).norm(), 1e-12);
 }

@@ -24,12 +24,13 @@ ArmDescription showing(const std::string& visuals, const std::string& more = {})
 TEST(UrdfVisuals, AreShapesAndMeshes) {
   const test::TempDir dir;
   test::write_file(dir / "m.glb", "");
-  const std::string text = robot(
-      link("a", visual("<box size='1 2 3'/>", "<origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/>")) +
-      joint("a", "b") +
-      link("b", std::string(kInertial) + visual("<cylinder radius='1' length='2'/>") +
-                    visual("<sphere radius='3'/>") +
-                    visual("<mesh filename='m.glb' scale='1 -1 2e0'/>")));
+  const std::string text =
+      robot(link("a", visual("<box size='1 2 3'/>",
+                             "<origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/>")) +
+            joint("a", "b") +
+            link("b", std::string(kInertial) + visual("<cylinder radius='1' length='2'/>") +
+                          visual("<sphere radius='3'/>") +
+                          visual("<mesh filename='m.glb' scale='1 -1 2e0'/>")));
   test::write_file(dir / "x.urdf", text);
   const ArmDescription arm = read_urdf(dir / "x.urdf");
   ASSERT_EQ(arm.visuals.size(), 4u);
@@ -49,13 +50,13 @@ TEST(UrdfVisuals, AreShapesAndMeshes) {
 
 TEST(UrdfVisuals, HaveTheColoursOfTheirMaterials) {
   const std::string red = "<material name='red'><color rgba='1 0 0 0.5'/></material>";
-  const ArmDescription arm =
-      showing(visual("<sphere radius='1'/>", "<material name='blue'/>") +
-                  visual("<sphere radius='1'/>", red) +
-                  visual("<sphere radius='1'/>", "<material name='red'/>") +
-                  visual("<sphere radius='1'/>", "<material name='unknown'/>") +
-                  visual("<sphere radius='1'/>", "<material name='x'><color rgba='1 nan'/></material>"),
-              "<material name='blue'><color rgba='0 0 2 1'/></material>");
+  const ArmDescription arm = showing(
+      visual("<sphere radius='1'/>", "<material name='blue'/>") +
+          visual("<sphere radius='1'/>", red) +
+          visual("<sphere radius='1'/>", "<material name='red'/>") +
+          visual("<sphere radius='1'/>", "<material name='unknown'/>") +
+          visual("<sphere radius='1'/>", "<material name='x'><color rgba='1 nan'/></material>"),
+      "<material name='blue'><color rgba='0 0 2 1'/></material>");
   ASSERT_EQ(arm.visuals.size(), 5u);
   EXPECT_EQ(arm.visuals[0].color, Eigen::Vector4f(0, 0, 1, 1));
   EXPECT_EQ(arm.visuals[1].color, Eigen::Vector4f(1, 0, 0, 0.5f));

@@ -65,9 +65,10 @@ TEST_F(Xacro, IsRefusedWithoutTheProgramAndSaysHowToExpandIt) {
 
 TEST_F(Xacro, IsNotWhatAnExpandedFileSaysOfWhereItCameFrom) {
   setenv("PATH", "/nowhere", 1);
-  test::write_file(dir_ / "arm.urdf",
-                   "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><!-- <xacro:macro/> -->" +
-                       link("a") + joint("a", "b") + link("b") + "</robot>");
+  test::write_file(
+      dir_ / "arm.urdf",
+      "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><!-- <xacro:macro/> -->" +
+          link("a") + joint("a", "b") + link("b") + "</robot>");
   EXPECT_EQ(read_urdf(dir_ / "arm.urdf").dof(), 1);
 }
 
