@@ -247,8 +247,9 @@ void Desktop::cut_force() {
 void Desktop::reset_parameters() {
   settings_.parameters = fitted(desk_.stage().arm());
   const bool usual = settings_.parameters == Parameters{};
-  notices_.say(usual ? "All settings have their usual values again, the paper's where it gives them."
-                     : "All settings have their usual values again, with gains fitted to this arm.");
+  notices_.say(usual
+                   ? "All settings have their usual values again, the paper's where it gives them."
+                   : "All settings have their usual values again, with gains fitted to this arm.");
 }
 
 void Desktop::toggle_recording() {
