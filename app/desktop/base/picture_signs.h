@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/plot/plot_frame.h"
-#include "app/session/trace_channels.h"
+#include "app/session/plot_choice.h"
 #include "render/camera.h"
 #include "render/view_state.h"
 
