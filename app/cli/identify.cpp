@@ -11,6 +11,7 @@
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/device/device_hub.h"
 #include "app/device/identify_run.h"
@@ -201,6 +202,7 @@ int forget(const IdentifyOptions& options) {
 int identify_device(const IdentifyOptions& options) {
   if (options.forget) return forget(options);
   if (options.out.empty()) throw UsageError("--out is required");
+  prepare_out(options.out);
   const Vec3 gravity = gravity_of(options.gravity);
   ArmDescription guess;
   SceneDocument scene;
