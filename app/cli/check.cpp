@@ -10,6 +10,7 @@
 #include "app/desktop/document/scene_loader.h"
 #include "app/run/analysis.h"
 #include "app/run/fitted_gains.h"
+#include "app/run/model_report.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/arm/urdf_file.h"
@@ -92,7 +93,7 @@ Report on_arm(const std::string& file, const InputOptions& input) {
 
 void list_mesh(const MeshObstacle& mesh, const Model& model, double scale, Report& report) {
   const Vec3 size = scale * model.bounds().sizes();
-  report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g}",
+  report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g} m",
                                      mesh.name, model.indices.size() / 3, size.x(), size.y(),
                                      size.z()));
 }
@@ -113,10 +114,8 @@ Report on_scene(const std::string& file, const InputOptions& input) {
 }
 
 Report on_model(const std::string& file) {
-  const LoadedModel loaded = load_model(file);
-  Report report{{}, loaded.warnings};
-  list_mesh(loaded.mesh, *loaded.model, 1, report);
-  return report;
+  ModelReport report = report_on_model(file);
+  return {std::move(report.facts), std::move(report.warnings)};
 }
 
 Report on(const CheckOptions& options) {

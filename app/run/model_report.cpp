@@ -108,7 +108,7 @@ ModelReport report_on_model(const std::filesystem::path& file, const LoadProgres
   const ModelAxes axes = axes_of(model, file);
   ModelReport report;
   const auto fact = [&](const char* what, const std::string& value) {
-    report.facts.push_back(fmt::format("{:<12}{}", what, value));
+    report.facts.push_back(fmt::format("{:<13}{}", what, value));
   };
   fact("triangles", fmt::format("{}", shape->triangles()));
   fact("size", size_text(model, axes.unit));

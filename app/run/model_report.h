@@ -14,7 +14,7 @@
 namespace limpid {
 
 struct ModelReport {
-  std::vector<std::string> facts;     // "triangles  12,000", a line each
+  std::vector<std::string> facts;     // "triangles    12000", a line each
   std::vector<std::string> warnings;  // what was left out, and what touching will feel odd
 };
 

@@ -28,18 +28,20 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
+  ImVec2 last(-1e6f, -1e6f);
   for (int cm = -30; cm <= 30; cm += 10) {
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
     if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
     const auto pixel = camera.project(point);
+    if (!pixel) continue;
+    const ImVec2 place = at(rect, *pixel);
     const auto hidden = [&](float along) {
-      const ImVec2 place = at(rect, *pixel);
       return lens && lens->contains({place.x + along, place.y + 0.5f * em});
     };
-    if (pixel && !hidden(0) && !hidden(3 * em)) {
-      list.AddText(small, em, at(rect, *pixel), colour(colours.muted, 0.9f),
-                   fmt::format("{} cm", cm).c_str());
-    }
+    const bool crowded = std::hypot(place.x - last.x, place.y - last.y) < 4.5f * em;
+    if (crowded || hidden(0) || hidden(3 * em)) continue;
+    list.AddText(small, em, place, colour(colours.muted, 0.9f), fmt::format("{} cm", cm).c_str());
+    last = place;
   }
 }
 
