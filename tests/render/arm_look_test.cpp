@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "tests/support/built_in.h"
+#include "devices/files/arm/urdf_file.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/temp_dir.h"
 
@@ -68,7 +68,7 @@ TEST(ArmLook, PaintsWhatHasNoColourOfItsOwn) {
 
 // glTF has y up, URDF z: the built-in arm's pictures stand as its links do.
 TEST(ArmLook, TurnsGltfUpright) {
-  ArmDescription arm = test::omni();
+  ArmDescription arm = read_urdf(LIMPID_ASSETS_DIR "/devices/omni.urdf");
   load_visuals(arm);
   ASSERT_EQ(arm.warnings, std::vector<std::string>());
   const auto bounds = [&](std::size_t i) { return arm.visuals[i].model->bounds(); };
