@@ -10,6 +10,12 @@
 namespace limpid {
 namespace {
 
+// A comment ends at its first two hyphens.
+std::string as_comment(std::string text) {
+  for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.insert(at + 1, " ");
+  return text;
+}
+
 std::string numbers(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
 std::string origin(const Pose& pose) {
@@ -77,7 +83,7 @@ std::string urdf_text(const ArmDescription& arm, const std::string& remark) {
   std::string out = fmt::format(
       "<?xml version=\"1.0\"?>\n<!-- {} -->\n<robot name=\"{}\">\n  <link name=\"base\">\n{}"
       "  </link>\n",
-      escaped(remark), escaped(arm.name), visuals(arm, -1));
+      as_comment(remark), escaped(arm.name), visuals(arm, -1));
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     std::string child = escaped(arm.links[i].name);
     if (child == "base" || child == "tip") child += "_link";

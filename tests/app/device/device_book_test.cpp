@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "app/device/device_hub.h"
+#include "app/device/urdf_writer.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
 #include "tests/support/device_traits.h"
@@ -177,13 +178,33 @@ DeviceTraits joints(int count, double effort) {
 
 TEST(ArmForADevice, HasAsManyJointsAndPushesNoHarder) {
   const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
-  const ArmDescription same = arm_for(joints(3, 0.01), omni);
+  const test::TempDir dir;
+  const DeviceHub hub(dir / "devices.toml", {});
+  const ArmDescription same = hub.arm_for(joints(3, 0.01), omni);
   EXPECT_EQ(same.urdf, omni.urdf);
   for (const Joint& joint : same.joints) EXPECT_EQ(joint.effort, 0.01);
-  const ArmDescription strong = arm_for(joints(3, 100), omni);
+  const ArmDescription strong = hub.arm_for(joints(3, 100), omni);
   EXPECT_EQ(strong.joints[1].effort, omni.joints[1].effort);
-  EXPECT_EQ(arm_for(joints(2, 0.2), omni).dof(), 2);
-  EXPECT_THROW(arm_for(joints(5, 1), omni), FileError);
+  EXPECT_EQ(hub.arm_for(joints(2, 0.2), omni).dof(), 2);
+  EXPECT_THROW(hub.arm_for(joints(5, 1), omni), FileError);
+}
+
+TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
+  const test::TempDir dir;
+  setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);
+  const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
+  ArmDescription found = omni;
+  found.links[1].mass = 0.123;
+  {
+    DeviceHub hub(dir / "devices.toml", {});
+    hub.use("1209:4c50:a/b c");
+    EXPECT_EQ(hub.remember_arm(urdf_text(found, "found")), "");
+    EXPECT_EQ(hub.save(), "");
+  }
+  DeviceHub hub(dir / "devices.toml", {});
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, 0.123);
+  hub.forget_arm();
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ struct ADesktop : testing::Test {
       GTEST_SKIP() << "no OpenGL here: " << e.what();
     }
     desktop = std::make_unique<Desktop>(Settings{}, AskForPriority{});
-    desktop->open_world("", "");
+    desktop->open_world("", "", "");
     frames(3);
   }
   void TearDown() override {
@@ -474,7 +474,7 @@ TEST_F(ADesktop, ShowsTheChosenPlotsLiveAndInPlayback) {
 }
 
 TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
-  desktop->open_world("", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->open_world("", "", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   EXPECT_TRUE(until([&] { return desktop->playback().on(); }));
   EXPECT_TRUE(until([&] { return !document().loader().busy(); }));

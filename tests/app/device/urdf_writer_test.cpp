@@ -1,0 +1,48 @@
+#include "app/device/urdf_writer.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/files/arm/urdf_file.h"
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Slides;
+
+class UrdfOf : public testing::TestWithParam<Slides> {};
+INSTANTIATE_TEST_SUITE_P(Arms, UrdfOf, testing::Values(Slides::none, Slides::some, Slides::all));
+
+TEST_P(UrdfOf, AnArmReadsAsThatArm) {
+  ArmDescription arm = test::random_arm(4, 91, GetParam());
+  arm.name = "a \"robot\" & <more>";
+  for (std::size_t i = 0; i < 4; ++i) {
+    Joint& joint = arm.joints[i];
+    joint.friction = 0.01 * static_cast<double>(i + 1);
+    if (i == 0 && !arm.slides(0)) continue;  // without stops
+    joint.lower = -0.5 - 0.1 * static_cast<double>(i);
+    joint.upper = 0.7;
+  }
+  const ArmDescription read = parse_urdf(urdf_text(arm, "a remark -- <of> it"), "text", {});
+  EXPECT_EQ(read.name, arm.name);
+  ASSERT_EQ(read.dof(), 4);
+  EXPECT_LT((read.tip.matrix() - arm.tip.matrix()).norm(), 1e-9);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Joint &a = arm.joints[i], &b = read.joints[i];
+    EXPECT_EQ(b.kind, a.kind);
+    EXPECT_EQ(b.name, a.name);
+    EXPECT_LT((b.origin.matrix() - a.origin.matrix()).norm(), 1e-9);
+    EXPECT_LT((b.axis - a.axis).norm(), 1e-9);
+    EXPECT_DOUBLE_EQ(b.lower, a.lower);
+    EXPECT_DOUBLE_EQ(b.upper, a.upper);
+    EXPECT_DOUBLE_EQ(b.effort, a.effort);
+    EXPECT_DOUBLE_EQ(b.damping, a.damping);
+    EXPECT_DOUBLE_EQ(b.friction, a.friction);
+    EXPECT_DOUBLE_EQ(read.links[i].mass, arm.links[i].mass);
+    EXPECT_LT((read.links[i].com - arm.links[i].com).norm(), 1e-12);
+    EXPECT_LT((read.links[i].inertia - arm.links[i].inertia).norm(), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace limpid
