@@ -18,8 +18,8 @@ class Identification {
     connection_ = open_device(find_device("raw"));
     await_reading(*connection_, 200ms);
     stalling_ = std::make_unique<Stalling>(std::move(connection_), stalled);
-    watcher_ = std::jthread([this](const std::stop_token& over) {
-      for (; !over.stop_requested(); wait(20ms)) {
+    watcher_ = std::jthread([this](const std::stop_token& gone) {
+      for (; !gone.stop_requested(); wait(20ms)) {
         if (watched) talk.see();
       }
     });
