@@ -58,8 +58,11 @@ std::string counted(std::size_t n, const char* what) {
 }
 
 std::string size_text(const Model& model, double unit) {
-  const Vec3 mm = 1e3 * unit * model.bounds().sizes();
-  return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", mm.x(), mm.y(), mm.z());
+  const Vec3 size = unit * model.bounds().sizes();
+  const bool large = size.maxCoeff() >= 1;
+  const Vec3 shown = large ? size : Vec3(1e3 * size);
+  return fmt::format("{:.4g} x {:.4g} x {:.4g} {}", shown.x(), shown.y(), shown.z(),
+                     large ? "m" : "mm");
 }
 
 std::size_t materials(const Model& model) {

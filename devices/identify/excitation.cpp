@@ -60,7 +60,9 @@ Excitation::Excitation(const ArmDescription& arm, const DeviceTraits& traits,
   for (int j = 0; j < n; ++j) {
     const Joint& joint = arm.joints[static_cast<std::size_t>(j)];
     const double half = plan.range * (joint.upper - joint.lower) / 2;
-    amplitude_[j] = std::min(plan.amplitude, half);
+    // The middle is a pose at rest, which may be off the range's own.
+    const double room = 0.9 * std::min(middle_[j] - joint.lower, joint.upper - middle_[j]);
+    amplitude_[j] = std::min({plan.amplitude, half, room});
     limit_[j] = plan.torque * std::min(joint.effort, traits.effort[static_cast<std::size_t>(j)]);
     auto& tones = frequency_[static_cast<std::size_t>(j)];
     auto& share = share_[static_cast<std::size_t>(j)];
