@@ -199,8 +199,9 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   torque_ = motors_.pass(safety_.within_tip_force(torque, J), limit_, gate_.gain(), in.T,
                          SafetyLimits::kSlew);
 
+  // An open switch cuts the device's torque, which looks like a gap as well.
+  if (!in.health.hand) finish(ExcitationEnd::let_go);
   if (against.fault != ForceState::on || against.gap) finish(ExcitationEnd::not_well);
-  if (!against.hand) finish(ExcitationEnd::let_go);
   if (against.ceiling < 1) finish(ExcitationEnd::limit);
   if (!follows(error, torque, in.T)) finish(ExcitationEnd::held);
   time_ += in.T;

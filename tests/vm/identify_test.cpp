@@ -12,7 +12,9 @@ namespace {
 // A stick on the desk, the run that moves it, and who watches.
 class Identification {
  public:
-  explicit Identification(const UnlikeStick& stick) : model(stick.made()), device(*model) {}
+  explicit Identification(const UnlikeStick& stick) : model(stick.made()), device(*model) {
+    model->forces().expect(60000);
+  }
 
   void begin() {
     connection_ = open_device(find_device("raw"));
