@@ -223,6 +223,9 @@ void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
   ImGuiGl::begin_frame();
   ImGui_ImplGlfw_NewFrame();
+  // A double click is four events, of which ImGui takes one a frame; frames may be slow.
+  ImGuiIO& io = ImGui::GetIO();
+  io.MouseDoubleClickTime = std::max(0.3f, 5 * std::min(io.DeltaTime, 0.2f));
   ImGui::NewFrame();
 }
 
