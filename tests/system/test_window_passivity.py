@@ -29,6 +29,7 @@ class Energy(WindowTest):
                 self.wait("energy that grows",
                           lambda s: s["energy_total"] > broken["energy_total"] + 0.02)
                 self.xdotool("mouseup", "1")
+                self.wait("the hand to let go", lambda s: s["grip"] == 0)
                 if end == "undo":
                     self.key("ctrl+z")
                 else:
