@@ -99,7 +99,7 @@ bool DeviceHub::needs_check() const {
   return device != nullptr && device->kind->uncalibrated && !known().checked;
 }
 
-std::function<AxisCheck()> DeviceHub::checking(std::shared_ptr<AxisCheckTalk> talk) const {
+std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckTalk>& talk) const {
   return [id = book_.in_use, found = found_now(), pid = known().pid, ask = ask_, talk] {
     const std::unique_ptr<Device> device = open_device(usable(found, id), pid, ask);
     await_reading(*device, kFirstReading);

@@ -45,7 +45,7 @@ class DeviceHub {
   // Its axes must be checked and were not yet: it may not push.
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check().
-  std::function<AxisCheck()> checking(std::shared_ptr<AxisCheckTalk> talk) const;
+  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckTalk>& talk) const;
   // Returns what went wrong, empty if nothing did.
   std::string save() const { return save_device_book(book_, file_); }
   const std::string& complaint() const { return complaint_; }
