@@ -16,6 +16,7 @@
 #include "app/device/device_hub.h"
 #include "app/device/identify_run.h"
 #include "app/device/urdf_writer.h"
+#include "app/run/analysis.h"
 #include "devices/files/atomic_file.h"
 #include "devices/identify/fit.h"
 #include "devices/identify/unlike_device.h"
@@ -138,11 +139,7 @@ void print(const Identified& found, const ArmDescription& guess, const IdentifyR
   const auto pair = [](const Found& f, double unit) {
     return fmt::format("{:.3f} +- {:.3f}", f.value / unit, f.deviation / unit);
   };
-  const Arm<kAnyDof> arm(guess);
-  Arm<kAnyDof>::Frames f;
-  Mat<kAnyDof> M;
-  arm.frames(found.middle, f);
-  arm.inertia(f, M);
+  const Eigen::MatrixXd M = arm_at(guess, found.middle).M;
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
     const JointFinding& joint = found.joints[j];
     const auto i = static_cast<Eigen::Index>(j);
@@ -199,7 +196,7 @@ int forget(const IdentifyOptions& options) {
   return 0;
 }
 
-int identify_device(const IdentifyOptions& options) {
+int identify_device(IdentifyOptions options) {
   if (options.forget) return forget(options);
   if (options.out.empty()) throw UsageError("--out is required");
   prepare_out(options.out);
@@ -217,6 +214,7 @@ int identify_device(const IdentifyOptions& options) {
         Unlikeness{.gravity = gravity, .encoder_step = 1e-4, .delay = 2});
   } else {
     device = opened(options, hub);
+    options.plan = within(options.plan, hub.notes(hub.in_use()).limits);
     if (options.input.device.empty()) guess = hub.arm_for(device->traits(), guess);
   }
   const double seconds = Excitation(guess, device->traits(), options.plan).duration();

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "core/realtime/haptic_thread.h"
+#include "devices/reading_health.h"
 
 namespace limpid {
 namespace {
@@ -38,13 +39,8 @@ class Recording {
     DeviceReading reading;
     const bool here = device.read(reading);
     note_arrival(reading);
-    const DeviceHealth health{.guarded = true,
-                              .hand = reading.hand,
-                              .fault = reading.fault,
-                              .lost = !here,
-                              .age = reading.age,
-                              .gap = dt > SafetyLimits::kGap || lapsed(reading),
-                              .silence = silence};
+    if (rows_ <= 1) lapses_ = reading.lapses;  // those before the first torque are not this run's
+    const DeviceHealth health = health_of(reading, here, true, dt, silence, lapses_);
     const std::span<const double> x = std::span(reading.x).first(joints_);
     // The rows of ticks that were given up: nothing else was sent.
     for (int i = 1; i < periods && rows_ > 0 && rows_ < x_.cols(); ++i, ++rows_) {
@@ -103,24 +99,27 @@ class Recording {
     count_ = reading.count;
     arrived_ = arrived;
   }
-  // It was without torque since, as nobody gave it one in time.
-  bool lapsed(const DeviceReading& reading) noexcept {
-    const bool did = rows_ > 1 && reading.lapses != lapses_;
-    lapses_ = reading.lapses;
-    return did;
-  }
 
   Excitation motion_;
   std::size_t joints_;
   Eigen::MatrixXd x_, torque_;  // a column a tick
   Eigen::Index rows_ = 0;
   std::uint64_t count_ = 0, readings_ = 0;
-  std::uint32_t lapses_ = 0;
+  std::optional<std::uint32_t> lapses_;
   double arrived_ = 0, heard_ = 0;
   std::vector<double> intervals_;
 };
 
 }  // namespace
+
+ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits) {
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    plan.limits.*info.field = std::min(plan.limits.*info.field, limits.*info.field);
+  }
+  // Overshoot stays within the limit as well.
+  plan.range = std::min(plan.range, ExcitationPlan{}.range * plan.limits.range);
+  return plan;
+}
 
 IdentifyRun run_identification(Device& device, const ArmDescription& arm,
                                const ExcitationPlan& plan, IdentifyTalk& talk,

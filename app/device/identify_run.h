@@ -38,6 +38,9 @@ struct IdentifyRun {
   DeviceTiming timing;
 };
 
+// The plan within limits that somebody set for the device.
+ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits);
+
 // Drives the device, which nobody else uses meanwhile, until the motion is done, cancelled or
 // ended, or its watcher has been silent; it is without torque then. Not for the window's thread.
 // `ask`: see become_realtime().

@@ -29,6 +29,15 @@ LinkParameters parameters_of(const Link& link) {
   return out;
 }
 
+Eigen::VectorXd parameters_of(const ArmDescription& arm) {
+  Eigen::VectorXd all(kLinkParameters * arm.dof());
+  for (Eigen::Index i = 0; i < arm.dof(); ++i) {
+    all.segment<kLinkParameters>(kLinkParameters * i) =
+        parameters_of(arm.links[static_cast<std::size_t>(i)]);
+  }
+  return all;
+}
+
 void set_parameters(Link& link, const LinkParameters& p) {
   link.mass = p[0];
   link.com = p.segment<3>(1) / link.mass;

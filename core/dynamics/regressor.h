@@ -11,6 +11,8 @@ inline constexpr Eigen::Index kLinkParameters = 10;
 using LinkParameters = Eigen::Matrix<double, kLinkParameters, 1>;
 
 LinkParameters parameters_of(const Link& link);
+// Of all its links, one after another.
+Eigen::VectorXd parameters_of(const ArmDescription& arm);
 // The link's mass, centre and inertia become those; its mass must be above 0.
 void set_parameters(Link& link, const LinkParameters& parameters);
 

@@ -42,11 +42,7 @@ ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_fri
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
     : unlike_(unlike), arm_(truth), device_(truth), traits_(device_.traits()) {
-  parameters_of_links_.resize(kLinkParameters * truth.dof());
-  for (int i = 0; i < truth.dof(); ++i) {
-    parameters_of_links_.segment<kLinkParameters>(kLinkParameters * i) =
-        parameters_of(truth.links[static_cast<std::size_t>(i)]);
-  }
+  parameters_of_links_ = parameters_of(truth);
   traits_.name = "a device unlike its file";
   traits_.guarded = true;
   others_ = push = Eigen::VectorXd::Zero(truth.dof());

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/dynamics/inverse_kinematics.h"
+#include "devices/reading_health.h"
 #include "devices/virtual_arm.h"
 
 namespace limpid {
@@ -79,11 +80,8 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   // What a device without a hand on it says is not made better: the tick finds that it diverged.
   const bool nonsense = guarded && !x.allFinite();
   if (nonsense) x = x_before;
-  DeviceHealth health{guarded, reading.hand, reading.fault || nonsense, !here, reading.age,
-                      false,   now.silence};
-  if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
-  health.gap = now.dt > SafetyLimits::kGap || (here && lapses != reading.lapses);
-  if (here) lapses = reading.lapses;
+  DeviceHealth health = health_of(reading, here, guarded, now.dt, now.silence, lapses);
+  health.fault = health.fault || nonsense;
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
   const auto truth = device->truth();

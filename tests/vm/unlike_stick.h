@@ -62,10 +62,8 @@ struct UnlikeStick {
   static double pull_at(const Identified& found, const Vec<kAnyDof>& x, std::size_t joint) {
     const Arm<kAnyDof> arm(found.arm);
     const Vec<kAnyDof> zero = Vec<kAnyDof>::Zero(2);
-    Eigen::VectorXd parameters(2 * kLinkParameters);
-    parameters << parameters_of(found.arm.links[0]), parameters_of(found.arm.links[1]);
     const auto j = static_cast<Eigen::Index>(joint);
-    return (regressor(arm, x, zero, zero, Vec3(0, 0, -9.81)) * parameters)[j] +
+    return (regressor(arm, x, zero, zero, Vec3(0, 0, -9.81)) * parameters_of(found.arm))[j] +
            found.joints[joint].spring.value * x[j];
   }
 };

@@ -15,15 +15,6 @@ using test::Slides;
 using Any = Arm<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 
-Eigen::VectorXd parameters_of(const ArmDescription& arm) {
-  Eigen::VectorXd all(kLinkParameters * arm.dof());
-  for (Eigen::Index i = 0; i < arm.dof(); ++i) {
-    all.segment<kLinkParameters>(kLinkParameters * i) =
-        limpid::parameters_of(arm.links[static_cast<std::size_t>(i)]);
-  }
-  return all;
-}
-
 // Potential energy of the links, -sum m g.c.
 double height_energy(const ArmDescription& description, const Vector& x, const Vec3& gravity) {
   const Any arm(description);
@@ -74,7 +65,7 @@ TEST_P(RegressorOf, GivesTheTorquesOfTheArm) {
 TEST(LinkParameters, MakeTheLinkThatTheyAreOf) {
   const ArmDescription arm = random_arm(2, 303);
   Link again;
-  set_parameters(again, limpid::parameters_of(arm.links[1]));
+  set_parameters(again, parameters_of(arm.links[1]));
   EXPECT_NEAR(again.mass, arm.links[1].mass, 1e-16);
   EXPECT_LT((again.com - arm.links[1].com).norm(), 1e-16);
   EXPECT_LT((again.inertia - arm.links[1].inertia).norm(), 1e-18);

@@ -130,6 +130,21 @@ TEST_F(AnExcitation, EndsWhenSomethingThrowsIt) {
   expect_nothing_leaves_after(motion_.end());
 }
 
+// Its controller then pushes it away from where it should go.
+TEST_F(AnExcitation, EndsWhereAnAxisIsTheWrongWayRound) {
+  for (int i = 0; i < 10000 && motion_.end() == ExcitationEnd::running; ++i) {
+    const DeviceReading now = reading();
+    const auto sent =
+        motion_.step({std::span(now.x).first(3), 0.001, DeviceHealth{.guarded = true}});
+    std::array<double, 3> turned{};
+    for (std::size_t j = 0; j < 3; ++j) turned[j] = j == 1 ? -sent[j] : sent[j];
+    device_.write(turned);
+  }
+  EXPECT_LT(motion_.time(), 4);
+  EXPECT_TRUE(motion_.end() == ExcitationEnd::limit || motion_.end() == ExcitationEnd::held);
+  expect_nothing_leaves_after(motion_.end());
+}
+
 TEST_F(AnExcitation, NeedsMotorsAndAnArmOfAsManyJoints) {
   DeviceTraits traits = device_.traits();
   EXPECT_THROW(Excitation(test::random_arm(2, 1), traits, plan_), std::invalid_argument);

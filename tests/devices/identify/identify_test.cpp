@@ -45,14 +45,8 @@ Eigen::MatrixXd inertia_at(const ArmDescription& description, const Vec<kAnyDof>
 
 Eigen::VectorXd weight_at(const ArmDescription& description, const Vec<kAnyDof>& x,
                           const Vec3& gravity) {
-  const Eigen::Index n = description.dof();
-  Eigen::VectorXd parameters(kLinkParameters * n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    parameters.segment<kLinkParameters>(kLinkParameters * i) =
-        parameters_of(description.links[static_cast<std::size_t>(i)]);
-  }
-  const Vec<kAnyDof> zero = Vec<kAnyDof>::Zero(n);
-  return regressor(Arm<kAnyDof>(description), x, zero, zero, gravity) * parameters;
+  const Vec<kAnyDof> zero = Vec<kAnyDof>::Zero(description.dof());
+  return regressor(Arm<kAnyDof>(description), x, zero, zero, gravity) * parameters_of(description);
 }
 
 // Inertia and weight in poses that were moved through, friction, delay.

@@ -1,0 +1,73 @@
+#include "app/device/identify_run.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/files/arm/urdf_file.h"
+#include "devices/identify/unlike_device.h"
+
+namespace limpid {
+namespace {
+
+ArmDescription omni() { return read_urdf(LIMPID_ASSETS_DIR "/devices/omni.urdf"); }
+
+// The smallest force at the tip that makes the torque.
+double tip_force(const ArmDescription& description, const Eigen::VectorXd& x,
+                 const Eigen::VectorXd& torque) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames f;
+  Jacobian<kAnyDof> J;
+  arm.frames(x, f);
+  arm.point_jacobian(f, arm.dof() - 1, arm.tip(f), J);
+  return ((J * J.transpose()).inverse() * (J * torque)).norm();
+}
+
+TEST(IdentifyRun, KeepsWithinTheLimitsThatAreSetForTheDevice) {
+  SafetyLimits set;
+  set.tip_force = 0.4;
+  set.range = 0.3;
+  const ArmDescription arm = omni();
+  const ExcitationPlan plan = within({}, set);
+  EXPECT_EQ(plan.limits.tip_force, 0.4);
+  EXPECT_LT(plan.range, 0.3);
+  EXPECT_EQ(plan.limits.energy, ExcitationPlan{}.limits.energy) << "no limit is widened";
+  UnlikeDevice device(arm, {.encoder_step = 1e-4});
+  IdentifyTalk talk;
+  const IdentifyRun run = simulate_identification(device, arm, plan, talk);
+  EXPECT_EQ(run.end, ExcitationEnd::complete);
+  double most = 0;
+  for (Eigen::Index i = 0; i < run.record.rows(); i += 10) {
+    most = std::max(most, tip_force(arm, run.record.x.row(i), run.record.torque.row(i)));
+  }
+  EXPECT_LT(most, 0.4 * 1.05) << "a reading's change within the slew";
+  EXPECT_GT(most, 0.1) << "it pushed";
+}
+
+// Where it is, it has not said.
+class Mute final : public Device {
+ public:
+  Mute() : traits_(UnlikeDevice(omni(), {}).traits()) {}
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    newest = {};
+    return true;
+  }
+  void write(std::span<const double> torque) noexcept override {
+    for (const double t : torque) pushed = pushed || t != 0;
+  }
+  void stop() noexcept override {}
+  bool pushed = false;
+
+ private:
+  DeviceTraits traits_;
+};
+
+TEST(IdentifyRun, DoesNotPushADeviceThatHasNotSaidWhereItIs) {
+  Mute device;
+  IdentifyTalk talk;
+  const IdentifyRun run = simulate_identification(device, omni(), {}, talk);
+  EXPECT_EQ(run.end, ExcitationEnd::not_well);
+  EXPECT_FALSE(device.pushed);
+}
+
+}  // namespace
+}  // namespace limpid
