@@ -13,6 +13,7 @@
 #include "app/run/model_report.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "core/tick/safety.h"
 #include "devices/files/arm/urdf_file.h"
 #include "render/arm_look.h"
 
@@ -70,6 +71,15 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
   }
 }
 
+// What leaves for the motors, however the gains are set.
+void list_limits(const Parameters& p, Report& report) {
+  report.facts.push_back(fmt::format(
+      "limits       torque {}, within {:.0f} ms from none; a real device's tip: {:.0f} N",
+      std::isfinite(p.torque_limit) ? fmt::format("{:.3g} N m", p.torque_limit)
+                                    : "as the effort above",
+      1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
+}
+
 Report on_arm(const std::string& file, const InputOptions& input) {
   ArmDescription arm = read_urdf(file, input.tip);
   load_visuals(arm);
@@ -87,7 +97,9 @@ Report on_arm(const std::string& file, const InputOptions& input) {
   const Eigen::VectorXd rest = rest_pose(arm);
   const Eigen::MatrixXd M = arm_at(arm, rest).M;
   list_joints(arm, M, report);
-  list_gains(arm, rest, make_parameters(input, arm), report);
+  const Parameters p = make_parameters(input, arm);
+  list_gains(arm, rest, p, report);
+  list_limits(p, report);
   return report;
 }
 

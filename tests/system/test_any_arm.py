@@ -91,7 +91,8 @@ class AnyArm(SystemTest):
     def test_check_ends_with_what_it_found(self) -> None:
         fine = limpid("check", self.write("scara.urdf", SCARA))
         self.assertEqual(fine.status, 0, fine.err + fine.out)
-        for words in ("4 joints to 'tool0'", "0 to 0.2 m", "condition (3) holds", "fine"):
+        for words in ("4 joints to 'tool0'", "0 to 0.2 m", "condition (3) holds", "fine",
+                      "torque as the effort above, within 20 ms"):
             self.assertIn(words, fine.out)
         warned = limpid("check", self.write("industrial.urdf", INDUSTRIAL))
         self.assertEqual(warned.status, 1, warned.err)

@@ -28,6 +28,25 @@ def write_obj(path: Path) -> None:
                     + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES))
 
 
+def two_arms() -> str:
+    """On one body; the right one has a joint more."""
+    body = ("<inertial><mass value='0.1'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0'"
+            " izz='1e-4'/></inertial>")
+    ways = {"left": ("left upper", "left hand"), "right": ("right upper", "right lower",
+                                                           "right hand")}
+    links, joints = ["body"], ""
+    for way in ways.values():
+        before = "body"
+        for link in way:
+            joints += (f"<joint name='{link}' type='revolute'><parent link='{before}'/>"
+                       f"<child link='{link}'/><origin xyz='0.1 0.02 0'/><axis xyz='0 1 0'/>"
+                       "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
+            links.append(link)
+            before = link
+    return ("<robot name='two arms'>" + "".join(f"<link name='{name}'>{body}</link>"
+                                                for name in links) + joints + "</robot>")
+
+
 @unittest.skipUnless(drop, "needs python3-xlib")
 class Drop(WindowTest):
     def drop(self, *files: Path) -> None:
@@ -71,6 +90,20 @@ class Drop(WindowTest):
     def test_an_arm_takes_the_place_of_the_present_one(self) -> None:
         self.drop(ASSETS / "devices/joystick.urdf")
         self.wait_for_notice("joystick")
+
+    def test_an_arm_that_branches_asks_for_its_tip(self) -> None:
+        arm = self.home / "two arms.urdf"
+        arm.write_text(two_arms())
+        self.drop(arm)
+        self.wait("the question", lambda s: s["dialog"] == "arm tip")
+        self.key("Escape")
+        self.wait("no question", lambda s: s["dialog"] == "")
+        self.drop(arm)
+        self.wait("the question", lambda s: s["dialog"] == "arm tip")
+        self.key("Down")
+        self.key("Return")
+        self.wait("no question", lambda s: s["dialog"] == "")
+        self.wait_for_notice("2 joints to left hand")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/focus.h"
 #include "app/run/analysis.h"
+#include "devices/files/arm/arm_tip.h"
 #include "render/camera.h"
 #include "render/quality.h"
 
@@ -101,6 +103,8 @@ class Desktop {
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
   void use_built_in_arm();
   bool built_in_arm() const;
+  // The arm whose tip is to be chosen, with Dialog::arm_tip.
+  const std::optional<TipsToChoose>& tips() const { return tips_; }
   void add_object(SceneObject object);
   void frame_selected();
   // Where the scene has no file of the user's own, its name is asked for.
@@ -156,6 +160,7 @@ class Desktop {
   NamedTexts layouts_, presets_;
   std::size_t chosen_plot_ = 0;
   std::string device_file_, device_tip_;
+  std::optional<TipsToChoose> tips_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know

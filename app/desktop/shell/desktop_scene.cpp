@@ -47,6 +47,9 @@ void Desktop::take_loaded() {
     if (auto loaded = document_.loader().take()) {
       std::visit([this](auto& what) { accept(what); }, *loaded);
     }
+  } catch (const TipsToChoose& choice) {
+    tips_ = choice;
+    open_dialog(Dialog::arm_tip);
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
   }

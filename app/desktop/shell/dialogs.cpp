@@ -64,6 +64,12 @@ void Dialogs::draw_paths() {
     last_folder_ = arm.parent_path();
     desktop_.open_arm(arm);
   }
+  if (desktop_.tips()) {
+    const TipsToChoose& choice = *desktop_.tips();
+    const std::string tip =
+        draw(Dialog::arm_tip, [&](bool& open) { return tip_.draw(open, choice); });
+    if (!tip.empty()) desktop_.open_arm(choice.file, tip);
+  }
   Document& document = desktop_.document();
   fs::path first = document.own_file();
   if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();

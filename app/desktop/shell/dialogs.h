@@ -9,6 +9,7 @@
 #include "app/desktop/panels/named_dialog.h"
 #include "app/desktop/panels/plot_chooser.h"
 #include "app/desktop/panels/session_dialog.h"
+#include "app/desktop/panels/tip_question.h"
 #include "app/desktop/panels/video_dialog.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/path_dialog.h"
@@ -45,8 +46,11 @@ class Dialogs {
   SessionDialog session_;
   VideoDialog video_;
   ExperimentsPanel experiments_;
-  PathDialog add_{{.title = "Add model", .action = "Add", .extensions = {".glb", ".gltf"}}};
+  PathDialog add_{{.title = "Add model",
+                   .action = "Add",
+                   .extensions = {".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"}}};
   PathDialog arm_{{.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}}};
+  TipQuestion tip_;
   PathDialog save_{
       {.title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true}};
   PlotChooser chooser_;

@@ -23,6 +23,7 @@ const char* name(Dialog dialog) {
     case Dialog::gallery: return "gallery";
     case Dialog::add_model: return "add model";
     case Dialog::open_arm: return "open arm";
+    case Dialog::arm_tip: return "arm tip";
     case Dialog::save_scene: return "save scene";
     case Dialog::video: return "video";
     case Dialog::layouts: return "layouts";

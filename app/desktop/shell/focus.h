@@ -18,6 +18,7 @@ enum class Dialog : std::uint8_t {
   gallery,
   add_model,
   open_arm,
+  arm_tip,
   save_scene,
   video,
   layouts,

@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 
 #include "app/desktop/widgets/modal.h"
@@ -15,6 +16,11 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 }  // namespace
 
@@ -98,7 +104,8 @@ void PathDialog::list_folder() {
     if (entry.path().filename().string().starts_with(".")) continue;
     if (entry.is_directory(none)) {
       folders_.push_back(entry.path());
-    } else if (std::ranges::find(options_.extensions, entry.path().extension().string()) !=
+    } else if (std::ranges::find(options_.extensions,
+                                 small_letters(entry.path().extension().string())) !=
                options_.extensions.end()) {
       files_.push_back(entry.path());
     }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/dynamics/arm_description.h"
+#include "devices/files/arm/arm_tip.h"
 
 namespace limpid {
 
@@ -16,10 +17,10 @@ namespace limpid {
 //
 // What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
 // MeshFinder) or read, efforts of 0, links without inertia between others that have some.
-// Errors: FileError "FILE:LINE: ..." for what is not URDF or xacro that cannot be expanded, two
-// tips to choose from, floating and planar joints in the chain, a zero axis, numbers that are not
-// finite, negative damping, friction, effort or mass, crossed limits, and ends that no torque could
-// hold back, because they have no inertia.
+// Errors: TipsToChoose where a name has to say which tip; FileError "FILE:LINE: ..." for what is
+// not URDF or xacro that cannot be expanded, floating and planar joints in the chain, a zero axis,
+// numbers that are not finite, negative damping, friction, effort or mass, crossed limits, and ends
+// that no torque could hold back, because they have no inertia.
 ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {});
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/dynamics/arm_description.h"
+#include "devices/files/arm/arm_tip.h"
 
 namespace limpid {
 namespace {
@@ -66,6 +67,34 @@ class Search {
   }
 
  private:
+  [[noreturn]] void ask(const urdf::Link& link, const std::string& one,
+                        const std::string& other) const {
+    std::vector<ArmTip> tips;
+    list_tips(*model_.getRoot(), 0, tips);
+    std::ranges::stable_sort(tips, std::ranges::greater{}, &ArmTip::joints);
+    try {
+      places_.refuse_link(link.name,
+                          fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
+                                      "--tip LINK, and the other branches are held still",
+                                      one, other));
+    } catch (const FileError& error) {
+      throw TipsToChoose(error, places_.where, std::move(tips));
+    }
+  }
+
+  // Ends, and where hands begin: a palm is a tip as well as its fingers are.
+  void list_tips(const urdf::Link& link, int joints, std::vector<ArmTip>& tips) const {
+    int further = 0;
+    for (const auto& joint : link.child_joints) {
+      if (branch(*joint).moving == 0) continue;
+      ++further;
+      list_tips(*model_.getLink(joint->child_link_name), joints + (moves(*joint) ? 1 : 0), tips);
+    }
+    if (joints == 0 || further == 1) return;
+    const Way end = further == 0 ? farthest(link) : Way{};
+    tips.push_back({end.empty() ? link.name : end.back()->child_link_name, joints});
+  }
+
   Branch branch(const urdf::Joint& joint) const {
     const urdf::LinkConstSharedPtr link = model_.getLink(joint.child_link_name);
     Branch all;
@@ -111,10 +140,7 @@ class Search {
       }
       ++turns;
       if (turning && by.mass > 0 && b.mass > 0) {
-        places_.refuse_link(
-            link.name, fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
-                                   "--tip LINK, and the other branches are held still",
-                                   by.tip, b.tip));
+        ask(link, by.tip, b.tip);
       }
       if (turning && std::pair(by.mass > 0, by.moving) >= std::pair(b.mass > 0, b.moving)) continue;
       turning = joint;

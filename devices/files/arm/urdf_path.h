@@ -20,8 +20,8 @@ bool moves(const urdf::Joint& joint);
 // The joints from the root to `tip`. Without a name, to the tip with the most joints that move.
 // Grippers are no tips: where there is a choice, branches of slides and of joints that mimic others
 // are passed by, as is what moves without a mass. Of several links at the end that are fixed to
-// each other the one farthest out. Errors: FileError for what is no tree, two tips to choose from,
-// a tip that is not there or does not move.
+// each other the one farthest out. Errors: TipsToChoose; FileError for what is no tree, a tip that
+// is not there or does not move.
 std::vector<urdf::JointConstSharedPtr> way_to_tip(const urdf::ModelInterface& model,
                                                   const std::string& tip, const UrdfPlaces& places);
 

@@ -93,6 +93,29 @@ TEST(UrdfTree, GoesToTheTipThatIsNamedAndHoldsTheOtherBranchStill) {
   EXPECT_THAT(refusal([&] { parse(two_arms, "base"); }), HasSubstr("no joint moves it"));
 }
 
+TEST(UrdfTree, NamesTheEndsToChooseFrom) {
+  const std::string hand =
+      link("base") + joint("base", "l1") + link("l1") + joint("base", "r1") + link("r1") +
+      joint("r1", "palm") + link("palm") + joint("palm", "thumb") + link("thumb") +
+      joint("thumb", "nail", "fixed") + link("nail", "") + joint("palm", "finger") +
+      link("finger") + joint("palm", "light", "fixed") + link("light", "");
+  std::vector<ArmTip> tips;
+  try {
+    parse(hand);
+    FAIL() << "two arms";
+  } catch (const TipsToChoose& choice) {
+    tips = choice.tips;
+  }
+  EXPECT_THAT(tips, testing::UnorderedElementsAre(ArmTip{"nail", 3}, ArmTip{"finger", 3},
+                                                  ArmTip{"palm", 2}, ArmTip{"l1", 1}));
+  EXPECT_TRUE(std::ranges::is_sorted(tips, std::ranges::greater{}, &ArmTip::joints));
+  for (const ArmTip& tip : tips) {
+    const ArmDescription arm = parse(hand, tip.link);
+    EXPECT_EQ(arm.dof(), tip.joints) << tip.link;
+    EXPECT_EQ(arm.tip_link, tip.link);
+  }
+}
+
 TEST(UrdfTree, TellsItsTextWhichTipWasNamed) {
   const std::string tool = link("a") + joint("a", "b") + link("b") + joint("b", "c") + link("c");
   const ArmDescription arm = parse(tool, "b");

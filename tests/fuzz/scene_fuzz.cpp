@@ -1,0 +1,71 @@
+// Any text at all: a scene whose numbers a loop can touch, or one line for people. What is written
+// of a scene is read again as the same.
+#include <cmath>
+#include <cstdlib>
+
+#include "devices/files/arm/urdf_file.h"
+#include "devices/files/file_error.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_writer.h"
+
+namespace {
+
+void demand(bool holds) {
+  if (!holds) std::abort();
+}
+
+void check(const limpid::Material& material) {
+  demand(material.stiffness > 0 && std::isfinite(material.stiffness));
+  demand(material.damping >= 0 && std::isfinite(material.damping));
+  demand(material.friction_kinetic >= 0 && material.friction_static >= material.friction_kinetic);
+  demand(std::isfinite(material.friction_static));
+}
+
+void check(const limpid::Scene& scene, int joints) {
+  demand(scene.tip_radius >= 0 && std::isfinite(scene.tip_radius));
+  for (const limpid::Plane& plane : scene.planes) {
+    demand(plane.point.allFinite() && std::abs(plane.normal.norm() - 1) < 1e-9);
+    check(plane.material);
+  }
+  for (const limpid::Sphere& sphere : scene.spheres) {
+    demand(sphere.center.allFinite() && sphere.radius > 0 && std::isfinite(sphere.radius));
+    check(sphere.material);
+  }
+  for (const limpid::Box& box : scene.boxes) {
+    demand(box.pose.matrix().allFinite() && box.size.allFinite() && box.size.minCoeff() > 0);
+    check(box.material);
+  }
+  for (const limpid::MeshObstacle& mesh : scene.meshes) {
+    demand(mesh.stood().matrix().allFinite() && std::isfinite(mesh.size()) && mesh.size() > 0);
+    check(mesh.material);
+  }
+  for (const limpid::JointContact& contact : scene.joint_contacts) {
+    demand(contact.joint >= 0 && contact.joint < joints && std::isfinite(contact.angle));
+    demand(std::abs(contact.direction) == 1 && contact.stiffness > 0);
+  }
+  for (const limpid::Probe& probe : scene.probes) {
+    demand(probe.link >= 0 && probe.link < joints && probe.radius >= 0);
+    demand(probe.from.allFinite() && probe.to.allFinite() && std::isfinite(probe.radius));
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+  static const limpid::ArmDescription arm =
+      limpid::read_urdf(LIMPID_ASSETS_DIR "/devices/omni.urdf");
+  static const limpid::SceneFiles files{{"a.glb", {}}, {"b.stl", {}}};
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    const limpid::SceneDocument scene = limpid::parse_scene(text, "fuzz.toml", "", arm, files);
+    check(scene.scene, arm.dof());
+    const std::string written = limpid::scene_text(scene, arm);
+    const limpid::SceneDocument again = limpid::parse_scene(written, "fuzz.toml", "", arm, files);
+    check(again.scene, arm.dof());
+    demand(again.title == scene.title && again.scene.meshes.size() == scene.scene.meshes.size());
+    demand(again.scene.probes.size() == scene.scene.probes.size());
+  } catch (const limpid::FileError& error) {
+    demand(std::string(error.what()).find('\n') == std::string::npos);
+  }
+  return 0;
+}
