@@ -243,7 +243,7 @@ int identify_device(IdentifyOptions options) {
   print(found, guess, run);
   fmt::print("arm: {}\n", (out / "identified.urdf").string());
   if (simulated) return 0;
-  if (const std::string wrong = hub.remember_arm(urdf); !wrong.empty()) {
+  if (const std::string wrong = hub.remember_arm(urdf, found.delay.value); !wrong.empty()) {
     throw std::runtime_error(wrong);
   }
   save(hub, in_use);

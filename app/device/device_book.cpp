@@ -34,6 +34,7 @@ DeviceNotes read_notes(const toml::table& t) {
   }
   notes.checked = t["checked"].value_or(false);
   notes.arm = t["arm"].value_or(std::string());
+  take(t, "delay", 0, 1, notes.delay);
   if (const toml::array* axes = t["axis"].as_array()) {
     for (const toml::node& node : *axes) {
       AxisAdjustment& axis = notes.axes.emplace_back();
@@ -61,13 +62,15 @@ toml::table write_notes(const DeviceNotes& notes) {
     axes.push_back(
         toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
   }
-  return toml::table{{"range", notes.pid.range},
-                     {"effort", notes.pid.effort},
-                     {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
-                     {"limits", write_limits(notes.limits)},
-                     {"checked", notes.checked},
-                     {"arm", notes.arm},
-                     {"axis", axes}};
+  toml::table table{{"range", notes.pid.range},
+                    {"effort", notes.pid.effort},
+                    {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
+                    {"limits", write_limits(notes.limits)},
+                    {"checked", notes.checked},
+                    {"arm", notes.arm},
+                    {"axis", axes}};
+  if (notes.delay >= 0) table.insert("delay", notes.delay);
+  return table;
 }
 
 }  // namespace

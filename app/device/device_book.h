@@ -20,6 +20,8 @@ struct DeviceNotes {
   SafetyLimits limits;               // of its force; lower than usual
   bool checked = false;              // its motors were seen to move its axes as they are told
   std::string arm;                   // URDF of what it was identified as; empty: it was not
+  double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
+                      // [s]; below 0: not known
 };
 
 // Takes in what a check that is done has found of a joystick with the settings noted here; the

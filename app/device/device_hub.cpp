@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <optional>
@@ -19,19 +20,32 @@ namespace {
 
 constexpr std::chrono::milliseconds kFirstReading{200};
 
+// Another arm in its place would be one that nobody has measured: it is for people to say so.
+ArmDescription identified(const std::string& file) {
+  try {
+    return read_urdf(file);
+  } catch (const FileError& error) {
+    throw FileError(
+        fmt::format("{}; the device was identified as that arm, and `limpid identify "
+                    "--forget` takes it for its usual one again",
+                    error.what()));
+  }
+}
+
 }  // namespace
 
 ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
-  if (const std::string file = known().arm; !file.empty()) arm = read_urdf(file);
+  if (const std::string file = known().arm; !file.empty()) arm = identified(file);
   if (arm.dof() != traits.dof) {
-    const char* file = traits.dof == 2 ? "joystick.urdf" : traits.dof == 3 ? "omni.urdf" : nullptr;
-    if (file == nullptr) {
+    constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
+    const auto k = static_cast<std::size_t>(traits.dof - 1);
+    if (traits.dof < 1 || k >= kBuiltIn.size()) {
       throw FileError(
           fmt::format("{} has {} joints; start Limpid with --device FILE.urdf, an arm of as many",
                       traits.name, traits.dof));
     }
-    arm = read_urdf(data_dir() / "assets/devices" / file);
+    arm = read_urdf(data_dir() / "assets/devices" / kBuiltIn[k]);
   }
   for (std::size_t i = 0; i < arm.joints.size() && i < traits.effort.size(); ++i) {
     arm.joints[i].effort = std::min(arm.joints[i].effort, traits.effort[i]);
@@ -85,13 +99,19 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   };
 }
 
-std::string DeviceHub::remember_arm(const std::string& urdf) {
+std::string DeviceHub::remember_arm(const std::string& urdf, double delay) {
   std::string name = book_.in_use;
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   const std::filesystem::path file = user_data_dir() / "devices" / (name + ".urdf");
   if (std::string wrong = try_write_atomically(file, urdf); !wrong.empty()) return wrong;
   notes(book_.in_use).arm = file.string();
+  notes(book_.in_use).delay = delay;
   return {};
+}
+
+void DeviceHub::forget_arm() {
+  notes(book_.in_use).arm.clear();
+  notes(book_.in_use).delay = DeviceNotes{}.delay;
 }
 
 bool DeviceHub::needs_check() const {

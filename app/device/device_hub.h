@@ -36,12 +36,12 @@ class DeviceHub {
   std::function<std::unique_ptr<Device>()> opening() const;
   // The arm for the device in use: what it was identified as, else `present` if it has as many
   // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
-  // FileError if there is none with so many joints.
+  // FileError if there is none with so many joints, or what it was identified as cannot be read.
   ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) const;
-  // From now on the device in use is this arm; once saved. Returns what went wrong, empty if
-  // nothing did.
-  std::string remember_arm(const std::string& urdf);
-  void forget_arm() { notes(book_.in_use).arm.clear(); }
+  // From now on the device in use is this arm with this delay [s]; once saved. Returns what went
+  // wrong, empty if nothing did.
+  std::string remember_arm(const std::string& urdf, double delay);
+  void forget_arm();
   // Its axes must be checked and were not yet: it may not push.
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check().

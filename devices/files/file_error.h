@@ -11,9 +11,17 @@
 
 namespace limpid {
 
-// A file that cannot be read or written; what() names it and says why.
+// What is in a file may hold anything; a message is one line.
+inline std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  }
+  return text;
+}
+
+// A file that cannot be read or written; what() names it and says why, in one line.
 struct FileError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit FileError(const std::string& what) : std::runtime_error(one_line(what)) {}
 };
 
 // Why there is nothing to be found at `path`, in the system's words or as `absent` if it is simply

@@ -97,6 +97,29 @@ void status(DeviceDesk& devices, const LiveLoop& loop) {
            "Force is off until the hand has the device and F arms it; it then fades in.");
 }
 
+// What of the device was measured and what is assumed, and the delay that the law reckons with.
+void knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
+  if (!desk.loop().device_in_place()) return;
+  const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
+  const bool found = !notes.arm.empty();
+  read_out("inertia, friction", found ? "measured" : "assumed", {},
+           "Measured: by limpid identify, and remembered for this device. Assumed: what the arm's "
+           "file says. Condition (3), \xCE\xB7_min and the walls in the analysis rest on them.");
+  if (notes.delay < 0) {
+    read_out("delay", "not measured", {}, "limpid identify finds it.");
+    return;
+  }
+  const int ticks = static_cast<int>(std::lround(notes.delay / p.tick));
+  read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
+           "From a reading to the torque that answers it, beyond the tick.");
+  if (p.delay == ticks) return;
+  if (ImGui::Button(
+          fmt::format("Reckon with {} tick{} of delay", ticks, ticks == 1 ? "" : "s").c_str())) {
+    p.delay = ticks;
+  }
+  tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
+}
+
 // A joint: where it is, which way round, how far, and its zero.
 bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
   bool changed = false;
@@ -206,9 +229,11 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
 
 }  // namespace
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads) {
+void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads,
+                       Parameters& p) {
   choices(devices, pads);
   status(devices, desk.loop());
+  if (!devices.hub().in_use().empty()) knowledge(devices, desk, p);
   if (!devices.hub().in_use().empty()) adjustments(devices, desk);
   ImGui::Separator();
 }

@@ -11,6 +11,6 @@ struct PadChoice {
   std::string& chosen;           // the one that leads the hand; empty: the mouse alone
 };
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads);
+void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
 
 }  // namespace limpid

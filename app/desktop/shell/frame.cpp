@@ -172,7 +172,7 @@ void Frame::draw_side(ScreenRect rect) {
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
-    draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad});
+    draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad}, parameters);
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",

@@ -7,14 +7,6 @@
 namespace limpid {
 namespace {
 
-// Names in a file may hold anything; a message is one line.
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  }
-  return text;
-}
-
 std::string at(const std::string& where, const std::map<std::string, int>& lines, const char* kind,
                const std::string& name, const std::string& what) {
   const auto line = lines.find(name);
@@ -26,7 +18,7 @@ std::string at(const std::string& where, const std::map<std::string, int>& lines
 }  // namespace
 
 void UrdfPlaces::refuse(const std::string& why) const {
-  throw FileError(one_line(fmt::format("{}: {}", where, why)));
+  throw FileError(fmt::format("{}: {}", where, why));
 }
 
 void UrdfPlaces::refuse_joint(const std::string& name, const std::string& why) const {

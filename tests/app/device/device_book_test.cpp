@@ -186,6 +186,7 @@ TEST(ArmForADevice, HasAsManyJointsAndPushesNoHarder) {
   const ArmDescription strong = hub.arm_for(joints(3, 100), omni);
   EXPECT_EQ(strong.joints[1].effort, omni.joints[1].effort);
   EXPECT_EQ(hub.arm_for(joints(2, 0.2), omni).dof(), 2);
+  EXPECT_EQ(hub.arm_for(joints(1, 0.2), omni).dof(), 1);
   EXPECT_THROW(hub.arm_for(joints(5, 1), omni), FileError);
 }
 
@@ -198,12 +199,21 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   {
     DeviceHub hub(dir / "devices.toml", {});
     hub.use("1209:4c50:a/b c");
-    EXPECT_EQ(hub.remember_arm(urdf_text(found, "found")), "");
+    EXPECT_EQ(hub.remember_arm(urdf_text(found, "found"), 0.0021), "");
     EXPECT_EQ(hub.save(), "");
   }
   DeviceHub hub(dir / "devices.toml", {});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, 0.123);
+  EXPECT_EQ(hub.notes("1209:4c50:a/b c").delay, 0.0021);
+  std::filesystem::remove_all(dir / "data");
+  try {
+    hub.arm_for(joints(3, 0.3), omni);
+    ADD_FAILURE() << "an arm that nobody has measured in its place";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("--forget"), std::string::npos) << error.what();
+  }
   hub.forget_arm();
+  EXPECT_LT(hub.notes("1209:4c50:a/b c").delay, 0);
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
 }
 

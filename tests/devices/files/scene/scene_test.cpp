@@ -120,6 +120,7 @@ TEST(Scene, RefusesWithFileLineKeyFoundAndAllowed) {
       {"[[visual]]\nfile = \"nothing.glb\"\n", {"x.toml:2:", "visual.file", "nothing.glb"}},
       {"[[visual]]\nscale = 1\n", {"x.toml:1:", "visual.file", "missing"}},
       {"[[plane\n", {"x.toml:1:", "not TOML"}},
+      {" c_ =f\n", {"x.toml:1:", "not TOML"}},
   };
   for (const Case& c : cases) {
     const std::string said = refusal([&] { parse(c.text); });
