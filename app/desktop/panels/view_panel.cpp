@@ -176,7 +176,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     const ViewState twin = twin_of(scene, settings);
     paint(twin, right, SceneView::Sheet::beside);
     list.PushClipRect(right.min, right.max);
-    draw_gap(twin, camera, right, list);
+    draw_gap(twin, camera, {right}, list);
     list.PopClipRect();
     list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
                        colour(current_palette().border));
@@ -198,7 +198,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (settings.show_grid) {
     draw_grid_labels(scene.stage.picture.grid(), camera, rect, magnifier_.rect(), list);
   }
-  draw_gap(view, camera, rect, list, scene.split() ? RunNames() : scene.names);
+  draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
   magnifier_.draw_frame(view, camera, list);
   if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
     draw_hint(scene.pad, rect, list);
