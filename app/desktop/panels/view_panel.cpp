@@ -28,6 +28,7 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
+  const float edge = rect.max.x - 1.6f * em;  // where a panel's tab may be
   ImVec2 last(-1e6f, -1e6f);
   for (int cm = -30; cm <= 30; cm += 10) {
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
@@ -39,8 +40,10 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
       return lens && lens->contains({place.x + along, place.y + 0.5f * em});
     };
     const bool crowded = std::hypot(place.x - last.x, place.y - last.y) < 4.5f * em;
-    if (crowded || hidden(0) || hidden(3 * em)) continue;
-    list.AddText(small, em, place, colour(colours.muted, 0.9f), fmt::format("{} cm", cm).c_str());
+    const std::string text = fmt::format("{} cm", cm);
+    const bool cut = place.x + small->CalcTextSizeA(em, 1e9f, 0, text.c_str()).x > edge;
+    if (crowded || cut || hidden(0) || hidden(3 * em)) continue;
+    list.AddText(small, em, place, colour(colours.muted, 0.9f), text.c_str());
     last = place;
   }
 }
