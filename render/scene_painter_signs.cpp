@@ -26,7 +26,8 @@ void ScenePainter::draw_ghost_outline(const Ghost& ghost, int mark) const {
   const auto& [links, color, outline] = ghost;
   glCullFace(GL_FRONT);
   outline_.use();
-  outline_.set("width", 1.6f);
+  // With one sample a pixel a thinner line would come and go.
+  outline_.set("width", quality_.msaa > 1 ? 1.6f : 2.2f);
   const auto draw = [&](float share) {
     for (const Drawable& item : moving_) {
       const auto link = static_cast<std::size_t>(item.link);

@@ -6,9 +6,7 @@ uniform vec4 place;  // the rectangle in the target: corner and size, at least t
 out vec4 color;
 
 // Green is nearly all of the brightness, and one channel is quick to read.
-float brightness(ivec2 p) {
-  return texelFetch(picture, clamp(p, ivec2(0), textureSize(picture, 0) - 1), 0).g;
-}
+float brightness(int x, int y) { return texelFetch(picture, ivec2(x, y), 0).g; }
 
 void main() {
   vec2 uv = (gl_FragCoord.xy - place.xy) / place.zw;
@@ -20,11 +18,17 @@ void main() {
   color = vec4(0.25 * sum, 1.0);
 #else
   ivec2 p = ivec2(uv * size);
-  float nw = brightness(p + ivec2(-1, 1)), ne = brightness(p + ivec2(1, 1));
-  float sw = brightness(p + ivec2(-1, -1)), se = brightness(p + ivec2(1, -1));
-  vec2 along = vec2(sw + se - nw - ne, ne + se - nw - sw);  // across the gradient
-  float flat_part = max(0.03 * (nw + ne + sw + se), 0.008);
+  ivec2 low = max(p - 1, ivec2(0)), high = min(p + 1, textureSize(picture, 0) - 1);
+  float c = brightness(p.x, p.y), n = brightness(p.x, high.y), e = brightness(high.x, p.y);
+  float s = brightness(p.x, low.y), w = brightness(low.x, p.y);
+  vec2 along = vec2(s - n, e - w);  // across the gradient
+  float flat_part = max(0.03 * (n + e + s + w), 0.008);
   along = clamp(along / (min(abs(along.x), abs(along.y)) + flat_part), -1.6, 1.6) / size;
+  // A line as thin as a pixel has no side to be blurred along and would fall into dots: it is left
+  // as it is, and a single dot half of it.
+  float across_x = (c - e) * (c - w), across_y = (c - n) * (c - s);
+  if (max(across_x, across_y) > 4e-4)
+    along = vec2(min(across_x, across_y) > 4e-4 ? 0.3 : 0.0) / size;
   color = vec4(0.5 * (texture(picture, uv - along).rgb + texture(picture, uv + along).rgb), 1.0);
 #endif
 }

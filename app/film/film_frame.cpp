@@ -84,7 +84,7 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
     Camera shown = camera;
     shown.resize(rect.width(), rect.height());
     list.PushClipRect(rect.min, rect.max);
-    draw_gap(view, shown, rect, list, stage.names());
+    draw_gap(view, shown, {rect}, list, stage.names());
     return list.PopClipRect();
   }
   const auto half = [&](const ViewState& state, bool right, const std::string& name) {
@@ -93,7 +93,7 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
     Camera shown = camera;
     shown.resize(part.width(), part.height());
     list.PushClipRect(part.min, part.max);
-    draw_gap(state, shown, part, list);
+    draw_gap(state, shown, {part}, list);
     draw_run_name(name, part, list);
     list.PopClipRect();
   };

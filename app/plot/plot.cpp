@@ -165,9 +165,10 @@ void Plot::draw_inside(const PlotFrame& frame, const History& history, const Plo
   frame.list.PushClipRect(frame.area.min, {frame.area.max.x, frame.area.max.y + rim}, true);
   if (over_time()) {
     draw_bands(frame, spec_, history, rows_);
-    draw_marks(frame, history, mouse);
+    draw_mark_lines(frame, history);
   }
   draw_curves(frame, history);
+  if (over_time()) draw_mark_labels(frame, history, traces_, mouse);
   draw_thresholds(frame, spec_);
   if (over_time() && group.playback()) {
     draw_playback(frame, *group.playback(), drag_ == Drag::playback);

@@ -65,7 +65,11 @@ void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset)
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows);
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
-void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse);
+// Behind the curves a line wherever something was changed, and over them what it was, where they
+// leave room.
+void draw_mark_lines(const PlotFrame& frame, const History& history);
+void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<const Trace> traces,
+                      ImVec2 mouse);
 
 // `emphasis` below 1 fades the curve, above 1 thickens it.
 void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "app/plot/plot_frame.h"
@@ -74,37 +75,95 @@ void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
   }
 }
 
-// A label stands right of its line, at the end left of it, on the lowest line of text that is free.
-void draw_marks(const PlotFrame& frame, const History& history, ImVec2 mouse) {
-  constexpr std::size_t kRows = 4;
-  std::array<float, kRows> free_from{};
-  free_from.fill(frame.area.min.x);
-  float last_line = -1e9f;
+namespace {
+
+// In sight, from the left.
+template <class Draw>
+void for_marks(const PlotFrame& frame, const History& history, Draw&& draw) {
   for (const Mark& mark : history.marks()) {
     const float x = std::round(frame.x_of(mark.time));
-    if (x < frame.area.min.x || x > frame.area.max.x) continue;
-    if (x - last_line >= 3 * frame.scale) {
-      dashed_line(frame, {x, frame.area.min.y}, {x, frame.area.max.y},
-                  colour(frame.palette.muted, 0.45f), 2 * frame.scale);
-      last_line = x;
-    }
-    const ImVec2 size = text_size(Face::small, mark.label);
-    const float gap = 4 * frame.scale;
-    const bool at_the_end = x + gap + size.x > frame.area.max.x;
-    const float left = at_the_end ? x - gap - size.x : x + gap;
-    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < gap;
-    const auto rows = std::clamp(static_cast<std::size_t>(frame.area.height() / (2 * size.y)),
-                                 std::size_t{1}, kRows);
-    const auto* free = std::find_if(free_from.begin(), free_from.begin() + rows,
-                                    [&](float from) { return left >= from; });
-    const bool room = free != free_from.begin() + rows;
-    if (!room && !pointed_at) continue;
-    const auto row = room ? static_cast<std::size_t>(free - free_from.begin()) : 0;
-    const float top = frame.area.max.y - static_cast<float>(row + 1) * size.y - 2 * frame.scale;
-    draw_backed_text(frame, {left, top}, frame.palette.muted, mark.label,
-                     pointed_at ? 1.0f : 0.75f);
-    free_from[row] = std::max(free_from[row], left + size.x + 6 * frame.scale);
+    if (x >= frame.area.min.x && x <= frame.area.max.x) draw(mark, x);
   }
+}
+
+bool crosses(const PlotFrame& frame, const Trace& trace, const ScreenRect& box) {
+  for (const TraceRun& run : trace.runs) {
+    for (std::size_t i = run.first; i < run.first + run.count; ++i) {
+      const TracePoint& to = trace.points[i];
+      const TracePoint& from = trace.points[i > run.first ? i - 1 : i];
+      if (frame.area.min.x + to.x < box.min.x || frame.area.min.x + from.x > box.max.x) continue;
+      const auto low = static_cast<double>(std::min(from.low, to.low));
+      const auto high = static_cast<double>(std::max(from.high, to.high));
+      if (frame.y_of(low) > box.min.y && frame.y_of(high) < box.max.y) return true;
+    }
+  }
+  return false;
+}
+
+// Lines of text from the bottom on, each free from some place on.
+class MarkRows {
+ public:
+  explicit MarkRows(const PlotFrame& frame, float line) : frame_(frame), line_(line) {
+    free_from_.fill(frame.area.min.x);
+    const float fit = frame.area.height() / line;
+    most_ = std::clamp(static_cast<std::size_t>(fit), std::size_t{1}, kRows);
+    usual_ = std::clamp(static_cast<std::size_t>(fit / 2), std::size_t{1}, kRows);
+  }
+  ScreenRect box(std::size_t row, float left, float width) const {
+    const float bottom = frame_.area.max.y - static_cast<float>(row) * line_ - 2 * frame_.scale;
+    return {{left, bottom - line_}, {left + width, bottom}};
+  }
+  // The lowest one that no curve crosses, else the lowest one in the lower half.
+  std::optional<std::size_t> find(std::span<const Trace> traces, float left, float width) const {
+    std::optional<std::size_t> crossed;
+    for (std::size_t row = 0; row < most_; ++row) {
+      if (left < free_from_[row]) continue;
+      const ScreenRect place = box(row, left, width);
+      if (std::ranges::none_of(traces, [&](const Trace& t) { return crosses(frame_, t, place); }))
+        return row;
+      if (!crossed && row < usual_) crossed = row;
+    }
+    return crossed;
+  }
+  void take(std::size_t row, float until) { free_from_[row] = std::max(free_from_[row], until); }
+
+ private:
+  static constexpr std::size_t kRows = 5;
+
+  const PlotFrame& frame_;
+  float line_;
+  std::size_t most_ = 1, usual_ = 1;
+  std::array<float, kRows> free_from_{};
+};
+
+}  // namespace
+
+void draw_mark_lines(const PlotFrame& frame, const History& history) {
+  float last = -1e9f;
+  for_marks(frame, history, [&](const Mark&, float x) {
+    if (x - last < 3 * frame.scale) return;
+    dashed_line(frame, {x, frame.area.min.y}, {x, frame.area.max.y},
+                colour(frame.palette.muted, 0.45f), 2 * frame.scale);
+    last = x;
+  });
+}
+
+// A label stands right of its line, at the end left of it.
+void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<const Trace> traces,
+                      ImVec2 mouse) {
+  MarkRows rows(frame, text_size(Face::small, "0").y);
+  for_marks(frame, history, [&](const Mark& mark, float x) {
+    const float width = text_size(Face::small, mark.label).x;
+    const float gap = 4 * frame.scale;
+    const bool at_the_end = x + gap + width > frame.area.max.x;
+    const float left = at_the_end ? x - gap - width : x + gap;
+    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < gap;
+    const auto row = rows.find(traces, left, width);
+    if (!row && !pointed_at) return;
+    draw_backed_text(frame, rows.box(row.value_or(0), left, width).min, frame.palette.muted,
+                     mark.label, pointed_at ? 1.0f : 0.85f);
+    rows.take(row.value_or(0), left + width + 6 * frame.scale);
+  });
 }
 
 namespace {

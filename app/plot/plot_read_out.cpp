@@ -206,8 +206,9 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
   for (const Curve& curve : spec.curves) {
     const auto value = static_cast<double>(history.value(curve.channel, row));
     if (!curve.visible || !std::isfinite(value)) continue;
+    const bool nothing = std::abs(value) < 1e-6 * frame.y.limits.span();  // beside the others
     lines.push_back({"",
-                     short_text(value * spec.y.factor / std::pow(10.0, exponent)),
+                     short_text(nothing ? 0 : value * spec.y.factor / std::pow(10.0, exponent)),
                      ink_of(frame, curve),
                      {0, frame.y_of(value)}});
   }

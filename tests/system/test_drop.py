@@ -59,8 +59,8 @@ class Drop(WindowTest):
         write_obj(obj)
         self.drop(glb, stl, obj)
         self.wait("three models", lambda s: s["objects"] == 4 and not s["loading"])
-        self.assertIn("in mm, z up (guessed), 6 cm", self.notices())
-        self.assertIn("in m, y up", self.notices())
+        self.wait_for_notice("in mm, z up (guessed), 6 cm")
+        self.wait_for_notice("in m, y up")
 
     def test_what_cannot_be_opened_says_what_can(self) -> None:
         wrong = [self.home / "notes.txt", self.home / "folder.glb"]
@@ -71,7 +71,7 @@ class Drop(WindowTest):
         self.drop(*wrong, broken)
         self.wait_for_notice("notes.txt, folder.glb: not opened. Drop models (.glb, .gltf, .stl")
         self.wait_for_notice("broken.stl: ")
-        self.assertEqual(self.state()["objects"], 1)
+        self.assertEqual(self.settled()["objects"], 1)
 
     def test_a_scene_and_then_a_recording(self) -> None:
         self.drop(ASSETS / "scenes/spheres.toml")

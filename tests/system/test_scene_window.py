@@ -2,7 +2,6 @@
 
 import json
 import struct
-import time
 import unittest
 from pathlib import Path
 
@@ -43,8 +42,7 @@ def write_pyramid(path: Path) -> None:
 class SceneWindow(WindowTest):
     def answer(self, text: str = "") -> None:
         """Types into the dialog that opens, over what stands there, and enters it."""
-        self.wait("the dialog", lambda s: s["asking"])
-        time.sleep(0.5)
+        self.wait("the dialog", lambda s: s["asking"] and s["typing"])
         if text:
             self.key("ctrl+a")
             self.type(text)
@@ -55,12 +53,12 @@ class SceneWindow(WindowTest):
         self.key("ctrl+m")
         self.answer(str(path))
 
-    def add_pyramid(self) -> Path:
+    def add_pyramid(self) -> dict:
         model = self.home / "pyramid.glb"
         write_pyramid(model)
         self.add_model(model)
-        self.wait("the model", lambda s: s["objects"] == 2 and not s["loading"])
-        return model
+        return self.wait("the model", lambda s: s["objects"] == 2 and not s["loading"]
+                         and s["selected"] == "pyramid")
 
     def save_as(self, path: Path) -> None:
         self.key("ctrl+shift+s")
@@ -70,10 +68,7 @@ class SceneWindow(WindowTest):
 
     def test_a_model_is_added_undone_copied_removed_saved_and_opened_again(self) -> None:
         self.assertFalse(self.state()["dirty"])
-        self.add_pyramid()
-        added = self.state()
-        self.assertEqual(added["selected"], "pyramid")
-        self.assertTrue(added["dirty"])
+        self.assertTrue(self.add_pyramid()["dirty"])
 
         self.key("c")
         self.wait("the proposed coupling", lambda s: s["kind"] == 1)
@@ -116,9 +111,9 @@ class SceneWindow(WindowTest):
         self.key("Delete")
         self.key("ctrl+z")
         self.press_onto_table()
-        time.sleep(0.5)
+        self.go_on(0.5)
         self.xdotool("mouseup", "1")
-        self.assertEqual(self.state()["objects"], 2, "not changed while recording")
+        self.assertEqual(self.settled()["objects"], 2, "not changed while recording")
         self.key("r")
         self.wait("the end of the recording", lambda s: not s["recording"])
         (self.home / "pyramid.glb").unlink()
@@ -129,8 +124,7 @@ class SceneWindow(WindowTest):
         self.key("p")
         self.wait("playback", lambda s: s["playing"])
         self.key("Delete")
-        time.sleep(0.5)
-        self.assertEqual(self.state()["objects"], 2, "not changed during playback")
+        self.assertEqual(self.settled()["objects"], 2, "not changed during playback")
         self.key("e")
         self.wait("the re-run", lambda s: s["rerun"])
 
@@ -155,7 +149,7 @@ class SceneWindow(WindowTest):
         broken = self.home / "broken.glb"
         broken.write_bytes((ASSETS / "scenes/table.glb").read_bytes()[:1000])
         self.add_model(broken)
-        time.sleep(2)
+        self.wait_for_notice("broken.glb")
         state = self.wait("the end of loading", lambda s: not s["loading"])
         self.assertEqual(state["objects"], 1)
         self.assertFalse(state["dirty"])

@@ -1,6 +1,5 @@
 """The story in the window: it plays, somebody takes over, gives back, and ends it."""
 
-import time
 import unittest
 
 from window import WindowTest
@@ -13,7 +12,6 @@ class Story(WindowTest):
     LAW = None  # a first start's
 
     def play(self) -> dict:
-        time.sleep(1)  # the button comes with the second frame
         self.click(*SHOW_ME)
         self.wait("the story", lambda s: s["playing"] and s["told"], 120)
         return self.first_sentence()
@@ -45,8 +43,7 @@ class Story(WindowTest):
 
         self.key("BackSpace")
         self.wait("the end", lambda s: not s["playing"])
-        time.sleep(0.5)
-        self.assertFalse(self.state()["playing"])
+        self.assertFalse(self.settled()["playing"])
 
     def test_its_session_has_its_captions_when_it_is_opened_again(self) -> None:
         self.play()
@@ -60,8 +57,9 @@ class Story(WindowTest):
         self.key("Return")
         self.wait("a sentence", lambda s: s["playing"] and s["told"])
         self.first_sentence()
-        pictures = list((self.home / "cache/limpid/thumbnails").glob("*.png"))
-        self.assertEqual(len(pictures), 1, "one small picture of one session")
+        cache = self.home / "cache/limpid/thumbnails"
+        self.wait_until("a small picture", lambda: any(cache.glob("*.png")))
+        self.assertEqual(len(list(cache.glob("*.png"))), 1, "one small picture of one session")
 
 
 class Overlay(WindowTest):
@@ -85,7 +83,7 @@ class Video(WindowTest):
     def test_a_video_is_ordered_in_a_dialog_and_can_be_cancelled(self) -> None:
         self.key("r")
         self.wait("recording", lambda s: s["recording"])
-        time.sleep(3)
+        self.go_on(3)
         self.key("r")
         self.wait_for_notice("Recorded")
         self.key("p")

@@ -1,6 +1,5 @@
 """Two runs on one hand: from the command line, and in the window."""
 
-import time
 import unittest
 
 import h5py
@@ -56,16 +55,10 @@ class Window(WindowTest):
         self.assertFalse(self.state()["twin"])
         self.key("b")
         self.wait("the twin", lambda s: s["twin"])
-        x, y = 551, 286  # the tip, in the left half, once that is drawn
-        self.move(x, y)
-        for _ in range(20):
-            self.xdotool("mousedown", "1")
-            time.sleep(0.5)
-            if self.state()["grip"] == 1:
-                break
-            self.xdotool("mouseup", "1")
-        self.wait("the hand to hold", lambda s: s["grip"] == 1)
+        x, y = 551, 286  # the tip, in the left half
+        self.hold_tip(x, y)
         self.key("r")
+        self.wait("recording", lambda s: s["recording"])
         for step in range(60):
             self.move(x, y + 3 * step)
         pressed = self.wait("standard to drift",
@@ -73,7 +66,7 @@ class Window(WindowTest):
         self.assertGreater(pressed["contact"], 0)
         self.key("b")
         self.wait_for_notice("Stop the recording")
-        time.sleep(1)  # enough rows to compare, on a fast computer, too
+        self.go_on(1)  # enough rows to compare, on a fast computer, too
         self.key("r")
         self.wait("the end", lambda s: not s["recording"])
         self.xdotool("mouseup", "1")

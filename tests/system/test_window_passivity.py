@@ -12,9 +12,7 @@ FAULT = 1e-3  # from here on the panel says so [J]
 class Energy(WindowTest):
     def hold(self) -> None:
         """Takes the tip and keeps it where it is, a little aside."""
-        self.move(800, 315)
-        self.xdotool("mousedown", "1")
-        self.wait("the hand to hold", lambda s: s["grip"] == 1)
+        self.hold_tip()
         for step in range(10):
             self.move(800 - step, 315 + step)
             time.sleep(0.03)
@@ -45,9 +43,9 @@ class Energy(WindowTest):
         for kind in (1, 2, 0, 1):
             self.key("c")
             self.wait("the next law", lambda s: s["kind"] == kind)
-            time.sleep(1)
+            after = self.go_on(1)
             if kind != 2:  # the predictive law promises another thing, in its ledger
-                self.assertLess(self.state()["energy_own"], FAULT, f"law {kind}")
+                self.assertLess(after["energy_own"], FAULT, f"law {kind}")
         self.xdotool("mouseup", "1")
 
 

@@ -1,6 +1,5 @@
 """Plots, layouts and presets in the window, under Xvfb with xdotool."""
 
-import time
 import tomllib
 import unittest
 
@@ -31,12 +30,9 @@ class Plots(WindowTest):
         self.key(key)
         self.wait(dialog, lambda s: s["dialog"] == dialog and s["typing"])
 
-    def wait_until(self, holds, what: str) -> None:
-        self.wait(what, lambda _: holds())
-
     def wait_for_layout(self, name: str) -> dict:
         file = self.home / "config/limpid/layouts.toml"
-        self.wait_until(lambda: file.exists() and name in self.kept("layouts.toml"), name)
+        self.wait_until(name, lambda: file.exists() and name in self.kept("layouts.toml"))
         return self.kept("layouts.toml")
 
     def use(self, key: str, dialog: str, name: str) -> None:
@@ -72,7 +68,7 @@ class Plots(WindowTest):
 
         self.open("n", "plot")  # nothing is chosen: nothing stays
         self.close()
-        self.assertEqual(len(self.state()["plots"]), 5)
+        self.assertEqual(len(self.settled()["plots"]), 5)
 
         self.key("b")
         twin = self.wait("the twin", lambda s: s["twin"] and len(s["plots"][4]["curves"]) == 2)
@@ -104,16 +100,16 @@ class Plots(WindowTest):
         self.wait("the other one", lambda s: len(s["plots"]) == 5)
         self.open("ctrl+l", "layouts")
         self.type("mine")
-        time.sleep(1)  # a frame in which it stands there, which chooses it
+        self.settled()  # a frame in which it stands there, which chooses it
         self.key("ctrl+a")
         self.type("yours")
         self.click(*RENAME)
         self.assertNotIn("mine", self.wait_for_layout("yours"))
         self.click(*REMOVE)
-        time.sleep(0.5)
+        self.settled()
         self.assertIn("yours", self.kept("layouts.toml"), "it asks once more")
         self.click(*REMOVE)
-        self.wait_until(lambda: "yours" not in self.kept("layouts.toml"), "the layout to go")
+        self.wait_until("the layout to go", lambda: "yours" not in self.kept("layouts.toml"))
         self.assertIn("with ledger", self.kept("layouts.toml"))
 
     def test_presets_set_the_running_loop_and_can_be_undone(self) -> None:
@@ -129,7 +125,9 @@ class Plots(WindowTest):
         smaller = self.wait("a smaller eta", lambda s: s["eta"] < 0.3)["eta"]
         self.open("ctrl+p", "presets")
         self.type_and_enter("mine")
-        self.wait_until(lambda: "mine" in self.kept("presets.toml"), "the preset's file")
+        presets = self.home / "config/limpid/presets.toml"
+        self.wait_until("the preset's file",
+                        lambda: presets.exists() and "mine" in self.kept("presets.toml"))
         self.assertEqual(self.kept("presets.toml")["mine"]["coupling"]["eta"], smaller)
         self.close()
         self.restart()
@@ -139,13 +137,11 @@ class Plots(WindowTest):
         self.wait("one's own", lambda s: s["eta"] == smaller)
 
     def test_a_plot_against_a_channel_is_saved_by_its_menu(self) -> None:
-        self.move(WIDTH - 100, PLOTS)  # the plot of error over torque
-        self.xdotool("click", "3")
-        time.sleep(0.5)
+        self.click(WIDTH - 100, PLOTS, button=3)  # the plot of error over torque
         sessions = self.home / "data/limpid/sessions"
         self.click(*SAVE_CSV)
-        self.wait_until(lambda: any(sessions.glob("error-against-torque-*.csv")), "the table")
-        header = next(sessions.glob("*.csv")).read_text().splitlines()[0]
+        self.wait_for_notice("error-against-torque")
+        header = next(sessions.glob("error-against-torque-*.csv")).read_text().splitlines()[0]
         self.assertEqual(header, "time [s],|f2| [N m],|x_E| [mrad]")
 
     def test_files_that_cannot_be_read_are_told_and_kept(self) -> None:

@@ -21,6 +21,7 @@ class WindowTest(unittest.TestCase):
 
     SIZE = (WIDTH, HEIGHT)  # of the window, as it was left the last time
     LAW = "standard"        # the coupling, likewise; none: a first start's
+    REPEATS = False         # keys that are held; a key of a test may be held long on a slow machine
 
     def setUp(self) -> None:
         self.home = Path(tempfile.mkdtemp(prefix="limpid-window-"))
@@ -32,7 +33,8 @@ class WindowTest(unittest.TestCase):
         read, write = os.pipe()
         self.xvfb = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1600x900x24", "-nolisten", "tcp",
-             "-ac", "-noreset", "+extension", "GLX"], pass_fds=[write], stderr=subprocess.DEVNULL)
+             "-ac", "-noreset", "+extension", "GLX", *([] if self.REPEATS else ["-r"])],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
         self.addCleanup(self.stop, self.xvfb)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -56,7 +58,7 @@ class WindowTest(unittest.TestCase):
         self.app = subprocess.Popen([LIMPID, "--print-state"], env=self.environment,
                                     stdout=self.states)
         self.addCleanup(self.stop, self.app)
-        self.wait("the first tick", lambda s: s["ticks"] > 200, 60)
+        self.wait("the first ticks and frames", lambda s: s["ticks"] > 200 and s["frames"] > 5, 60)
         self.window = self.xdotool("search", "--onlyvisible", "--name", "^Limpid").split()[0]
         self.xdotool("windowfocus", self.window)
 
@@ -86,10 +88,11 @@ class WindowTest(unittest.TestCase):
     def wait_for_notice(self, text: str) -> None:
         self.wait(f"a notice with '{text}'", lambda s: any(text in n for n in s["notices"]))
 
-    def click(self, x: float, y: float, times: int = 1) -> None:
+    def click(self, x: float, y: float, times: int = 1, button: int = 1) -> None:
+        """At what is drawn by the frames that all that was done before needs."""
         self.move(x, y)
-        time.sleep(0.2)
-        self.xdotool("click", "--repeat", str(times), "--delay", "120", "1")
+        self.settled()
+        self.xdotool("click", "--repeat", str(times), "--delay", "20", str(button))
 
     def move(self, x: float, y: float) -> None:
         self.xdotool("mousemove", "--window", self.window, str(int(x)), str(int(y)))
@@ -101,7 +104,7 @@ class WindowTest(unittest.TestCase):
                 return json.loads(line)
             except json.JSONDecodeError:
                 continue  # half a line
-        return {"ticks": 0}
+        return {"ticks": 0, "frames": 0}
 
     def wait(self, what: str, holds, seconds: float = 30) -> dict:
         """The first state for which `holds`; slow machines get their time."""
@@ -114,11 +117,34 @@ class WindowTest(unittest.TestCase):
             time.sleep(0.1)
         self.fail(f"waited {seconds} s for {what}; the state is {self.state()}")
 
-    def press_onto_table(self) -> None:
-        """Drags the tip, which stands right of the middle of the view, down onto the table."""
-        x, y = 800, 315
+    def wait_until(self, what: str, holds) -> None:
+        """What is not told by the state."""
+        self.wait(what, lambda _: holds())
+
+    def settled(self) -> dict:
+        """The state once all that was done up to now has done what it does: a frame may be under
+        way, the next one takes it, and what it opened needs some more."""
+        time.sleep(0.2)  # a state is never older, unless a frame takes longer
+        frames = self.state()["frames"]
+        return self.wait("some frames", lambda s: s["frames"] >= frames + 5
+                         and not s["input_waits"])
+
+    def go_on(self, seconds: float) -> dict:
+        """The state after so many seconds of the loop, however long it takes."""
+        ticks = self.state()["ticks"]
+        return self.wait(f"{seconds} s", lambda s: s["ticks"] > ticks + 1000 * seconds)
+
+    def hold_tip(self, x: float = 800, y: float = 315) -> None:
+        """By the mouse; it stands right of the middle of the view."""
         self.move(x, y)
+        self.settled()
         self.xdotool("mousedown", "1")
+        self.wait("the hand to hold", lambda s: s["grip"] == 1)
+
+    def press_onto_table(self) -> None:
+        """Drags the tip down onto the table."""
+        x, y = 800, 315
+        self.hold_tip(x, y)
         for step in range(1, 31):
             self.move(x - step, y + 5 * step)
             time.sleep(0.04)

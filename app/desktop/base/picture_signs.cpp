@@ -25,9 +25,14 @@ std::string gap_text(double meters) {
 
 namespace {
 
+bool overlap(ScreenRect a, ScreenRect b) {
+  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
+}
+
 // Beside the middle of the tips, above them or below.
 void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool below,
-                      const Camera& camera, ScreenRect picture, ImDrawList& list) {
+                      const Camera& camera, const GapPlace& at, ImDrawList& list) {
+  const ScreenRect& picture = at.picture;
   const auto pixel = camera.project(0.5 * (a + b));
   std::string text = gap_text((a - b).norm());
   if (text.empty() || !pixel) return;
@@ -38,23 +43,27 @@ void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool
   const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
                              picture.min.y + static_cast<float>(pixel->y()));
   const float edge = picture.max.x - 1.6f * em;  // where a panel's tab may be
-  const float left = std::min(tips.x + 1.6f * em, edge - size.x - pad);
-  const ImVec2 place(left, tips.y + (below ? 1.2f : -2.2f) * em);
+  const float top = tips.y + (below ? 1.2f : -2.2f) * em;
+  const auto box_at = [&](float left) {
+    return ScreenRect{{left - pad, top - 0.5f * pad},
+                      {left + size.x + pad, top + size.y + 0.5f * pad}};
+  };
+  ScreenRect box = box_at(std::min(tips.x + 1.6f * em, edge - size.x - pad));
+  if (at.lens && overlap(box, *at.lens)) box = box_at(tips.x - 1.6f * em - size.x);
+  const ImVec2 place(box.min.x + pad, top);
   const Palette& colours = current_palette();
-  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
-                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
-                     colour(colours.backdrop, 0.75f), 3);
+  list.AddRectFilled(box.min, box.max, colour(colours.backdrop, 0.75f), 3);
   list.AddText(face, em, place, colour(colours.text), text.c_str());
 }
 
 }  // namespace
 
-void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list,
+void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names) {
   if (view.device.links.empty() || view.proxy.links.empty()) return;
-  draw_gap_between(view.device.tip, view.proxy.tip, names.first, false, camera, picture, list);
+  draw_gap_between(view.device.tip, view.proxy.tip, names.first, false, camera, at, list);
   if (!view.twin) return;
-  draw_gap_between(view.twin->device.tip, view.twin->proxy.tip, names.second, true, camera, picture,
+  draw_gap_between(view.twin->device.tip, view.twin->proxy.tip, names.second, true, camera, at,
                    list);
 }
 

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <string>
 
 #include "app/plot/plot_frame.h"
@@ -14,9 +15,14 @@ namespace limpid {
 
 // "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
 std::string gap_text(double meters);
-// At the two tips: how far apart they are. `picture` is where the camera's picture is. Of two runs
-// in one picture each has its number, with its name.
-void draw_gap(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list,
+// Where the camera's picture is, and in it a lens that is to stay free.
+struct GapPlace {
+  ScreenRect picture;
+  std::optional<ScreenRect> lens = {};
+};
+// At the two tips: how far apart they are. Of two runs in one picture each has its number, with its
+// name.
+void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
 // What a run of a twin is called, at the top of its half.
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);

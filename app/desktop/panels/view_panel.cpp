@@ -28,6 +28,7 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
+  const float edge = rect.max.x - 1.6f * em;  // where a panel's tab may be
   ImVec2 last(-1e6f, -1e6f);
   for (int cm = -30; cm <= 30; cm += 10) {
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
@@ -39,8 +40,10 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
       return lens && lens->contains({place.x + along, place.y + 0.5f * em});
     };
     const bool crowded = std::hypot(place.x - last.x, place.y - last.y) < 4.5f * em;
-    if (crowded || hidden(0) || hidden(3 * em)) continue;
-    list.AddText(small, em, place, colour(colours.muted, 0.9f), fmt::format("{} cm", cm).c_str());
+    const std::string text = fmt::format("{} cm", cm);
+    const bool cut = place.x + small->CalcTextSizeA(em, 1e9f, 0, text.c_str()).x > edge;
+    if (crowded || cut || hidden(0) || hidden(3 * em)) continue;
+    list.AddText(small, em, place, colour(colours.muted, 0.9f), text.c_str());
     last = place;
   }
 }
@@ -176,7 +179,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     const ViewState twin = twin_of(scene, settings);
     paint(twin, right, SceneView::Sheet::beside);
     list.PushClipRect(right.min, right.max);
-    draw_gap(twin, camera, right, list);
+    draw_gap(twin, camera, {right}, list);
     list.PopClipRect();
     list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
                        colour(current_palette().border));
@@ -198,7 +201,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (settings.show_grid) {
     draw_grid_labels(scene.stage.picture.grid(), camera, rect, magnifier_.rect(), list);
   }
-  draw_gap(view, camera, rect, list, scene.split() ? RunNames() : scene.names);
+  draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
   magnifier_.draw_frame(view, camera, list);
   if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
     draw_hint(scene.pad, rect, list);

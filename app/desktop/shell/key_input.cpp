@@ -4,64 +4,60 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include <utility>
+#include <algorithm>
 
 namespace limpid {
+namespace {
+
+using Kind = KeyInput::Event::Kind;
+
+bool is_control(int key) { return key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL; }
+bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+
+void show(int key, bool down) {
+  if (key >= 0 && key <= GLFW_KEY_LAST) ImGui::GetIO().KeysDown[key] = down;
+}
+
+// ImGui has yet to see that it was let go.
+bool just_released(int key) {
+  const ImGuiIO& io = ImGui::GetIO();
+  return key >= 0 && key <= GLFW_KEY_LAST && !io.KeysDown[key] && io.KeysDownDuration[key] >= 0;
+}
+
+}  // namespace
 
 void KeyInput::key(int key, int action, int modifiers) {
-  const auto kind = action == GLFW_PRESS    ? Event::Kind::press
-                    : action == GLFW_REPEAT ? Event::Kind::repeat
-                                            : Event::Kind::release;
+  const auto kind = action == GLFW_PRESS    ? Kind::press
+                    : action == GLFW_REPEAT ? Kind::repeat
+                                            : Kind::release;
   events_.push_back({.kind = kind, .key = key, .modifiers = modifiers});
 }
 
 void KeyInput::character(unsigned character) {
-  events_.push_back({.kind = Event::Kind::character, .character = character});
+  events_.push_back({.kind = Kind::character, .character = character});
 }
 
 void KeyInput::deal(const Focus& focus) {
   ImGuiIO& io = ImGui::GetIO();
-  for (const int key : std::exchange(tapped_, {})) io.KeysDown[key] = false;
   held_.set_focus(focus);
-  const std::vector<KeyPress> down = take_events();
-  for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
-    if (held_.stale(key)) io.KeysDown[key] = false;
-  }
-  show_imgui(down);
-}
-
-std::vector<KeyPress> KeyInput::take_events() {
-  std::vector<KeyPress> down;
+  Taken taken = Taken::nothing;
   int last = GLFW_KEY_UNKNOWN;  // that a character comes from
-  for (const Event& event : std::exchange(events_, {})) {
-    if (event.kind != Event::Kind::character) last = event.key;
-    switch (event.kind) {
-      case Event::Kind::press:
-        held_.press(event.key);
-        pressed_.push_back({event.key, event.modifiers});
-        down.push_back(pressed_.back());
-        break;
-      case Event::Kind::repeat:
-        if (!held_.stale(event.key)) pressed_.push_back({event.key, event.modifiers, true});
-        break;
-      case Event::Kind::release: held_.release(event.key); break;
-      case Event::Kind::character:
-        if (!held_.stale(last)) ImGui::GetIO().AddInputCharacter(event.character);
-        break;
+  int modifiers = 0;
+  while (!events_.empty() && (urgent(focus) || !ends_frame(taken))) {
+    const Event event = events_.front();
+    const bool writes = event.kind == Kind::character || (focus.text && types());
+    events_.pop_front();
+    take(event, last);
+    if (event.kind == Kind::press) modifiers |= event.modifiers;
+    if (event.kind != Kind::character) last = event.key;
+    if (event.kind == Kind::press && !is_modifier(event.key)) {
+      taken = writes ? Taken::text : Taken::key;
+    } else if (event.kind == Kind::character && taken == Taken::nothing) {
+      taken = Taken::text;
     }
   }
-  return down;
-}
-
-// ImGui looks at what is down, and would never see keys let go before it looks.
-void KeyInput::show_imgui(const std::vector<KeyPress>& down) {
-  ImGuiIO& io = ImGui::GetIO();
-  int modifiers = 0;
-  for (const KeyPress& press : down) {
-    if (press.key < 0 || io.KeysDown[press.key]) continue;
-    io.KeysDown[press.key] = true;
-    tapped_.push_back(press.key);
-    modifiers |= press.modifiers;
+  for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
+    if (held_.stale(key)) io.KeysDown[key] = false;
   }
   const auto held_down = [&](int modifier, int left, int right) {
     return (modifiers & modifier) != 0 || io.KeysDown[left] || io.KeysDown[right];
@@ -69,6 +65,50 @@ void KeyInput::show_imgui(const std::vector<KeyPress>& down) {
   io.KeyCtrl = held_down(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
   io.KeyShift = held_down(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   io.KeyAlt = held_down(GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+}
+
+// The next key leaves a character, which comes right behind it.
+bool KeyInput::types() const {
+  return events_.front().kind == Kind::press && events_.size() > 1 &&
+         events_[1].kind == Kind::character;
+}
+
+// The next event has to wait for the next frame.
+bool KeyInput::ends_frame(Taken taken) const {
+  const Event& next = events_.front();
+  if (next.kind == Kind::press && just_released(next.key)) return true;
+  if (taken == Taken::nothing || next.kind == Kind::character || next.kind == Kind::repeat)
+    return false;
+  if (taken == Taken::key) return true;
+  return next.kind == Kind::press && (is_modifier(next.key) ? is_control(next.key) : !types());
+}
+
+// A key that cuts the force waits for nothing.
+bool KeyInput::urgent(const Focus& focus) const {
+  return std::ranges::any_of(events_, [&](const Event& event) {
+    return event.kind == Kind::press &&
+           (event.key == GLFW_KEY_ESCAPE || (event.key == GLFW_KEY_SPACE && !focus.text));
+  });
+}
+
+void KeyInput::take(const Event& event, int last) {
+  switch (event.kind) {
+    case Kind::press:
+      held_.press(event.key);
+      pressed_.push_back({event.key, event.modifiers});
+      show(event.key, true);
+      break;
+    case Kind::repeat:
+      if (!held_.stale(event.key)) pressed_.push_back({event.key, event.modifiers, true});
+      break;
+    case Kind::release:
+      held_.release(event.key);
+      show(event.key, false);
+      break;
+    case Kind::character:
+      if (!held_.stale(last)) ImGui::GetIO().AddInputCharacter(event.character);
+      break;
+  }
 }
 
 }  // namespace limpid

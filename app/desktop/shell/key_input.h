@@ -1,6 +1,7 @@
 // Keys on their way from the window to who has the focus.
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "app/desktop/shell/focus.h"
@@ -16,17 +17,6 @@ struct KeyPress {
 
 class KeyInput {
  public:
-  // What GLFW says, in the order it happened.
-  void key(int key, int action, int modifiers);
-  void character(unsigned character);
-
-  // Once a frame, before ImGui's: hands the keys out, and to ImGui those that are its own.
-  void deal(const Focus& focus);
-  // Those pressed in this frame, without those held since somebody else had the focus.
-  const std::vector<KeyPress>& pressed() const { return pressed_; }
-  void forget_pressed() { pressed_.clear(); }
-
- private:
   // What a key or an input method did.
   struct Event {
     enum class Kind { press, repeat, release, character } kind;
@@ -34,12 +24,29 @@ class KeyInput {
     int modifiers = 0;
     unsigned character = 0;
   };
-  // Those that went down since the last frame.
-  std::vector<KeyPress> take_events();
-  void show_imgui(const std::vector<KeyPress>& down);
 
-  std::vector<Event> events_;
-  std::vector<int> tapped_;  // pressed and released within the last frame
+  // What GLFW says, in the order it happened.
+  void key(int key, int action, int modifiers);
+  void character(unsigned character);
+
+  // Once a frame, before ImGui's: hands keys out, and to ImGui those that are its own. A frame
+  // takes what was typed in one go, or one other key, as that may have opened something for the
+  // next one; all that is before a key that cuts the force.
+  void deal(const Focus& focus);
+  // Some are left for the next frame.
+  bool waiting() const { return !events_.empty(); }
+  // Those pressed in this frame, without those held since somebody else had the focus.
+  const std::vector<KeyPress>& pressed() const { return pressed_; }
+  void forget_pressed() { pressed_.clear(); }
+
+ private:
+  enum class Taken { nothing, text, key };  // by a frame
+  bool types() const;
+  bool ends_frame(Taken taken) const;
+  bool urgent(const Focus& focus) const;
+  void take(const Event& event, int last);
+
+  std::deque<Event> events_;
   HeldKeys held_;
   std::vector<KeyPress> pressed_;
 };

@@ -35,7 +35,7 @@ std::string told(Desktop& d) {
 
 }  // namespace
 
-void print_state(Desktop& d, int width, int height) {
+void print_state(Desktop& d, const WindowState& window) {
   const Parameters& p = d.settings().parameters;
   const Desk& desk = d.desk();
   const SceneEditor& editor = d.document().editor();
@@ -61,7 +61,7 @@ void print_state(Desktop& d, int width, int height) {
       "{}, "
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
-      "\"filming\": {}, \"pads\": {}}}\n",
+      "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -73,9 +73,9 @@ void print_state(Desktop& d, int width, int height) {
       focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
       nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(),
-      plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), width, height,
+      plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), window.width, window.height,
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
-      d.pads().size());
+      d.pads().size(), window.frames, window.input_waits);
   std::fflush(stdout);
 }
 

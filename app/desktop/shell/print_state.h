@@ -5,7 +5,14 @@
 
 namespace limpid {
 
-// One line of JSON on stdout; the size is the window's.
-void print_state(Desktop& desktop, int width, int height);
+// What only the window knows.
+struct WindowState {
+  int width, height;
+  long frames;       // drawn up to now
+  bool input_waits;  // what was done is not all in them
+};
+
+// One line of JSON on stdout.
+void print_state(Desktop& desktop, const WindowState& window);
 
 }  // namespace limpid

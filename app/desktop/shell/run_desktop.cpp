@@ -15,6 +15,8 @@
 namespace limpid {
 namespace {
 
+constexpr double kBetweenStates = 0.09;  // [s]; as often as frames come where they are slower
+
 // Changes that the user could not be asked about are kept for the next start.
 void keep_changes(const SceneDocument& document, const ArmDescription& arm,
                   const std::string& scene_file) {
@@ -65,7 +67,8 @@ class Application {
   Window window_;
   Frame frame_;
   double last_ = 0;
-  int turns_ = 0;
+  double printed_ = 0;  // the state
+  long frames_ = 0;
   bool leaving_ = false;
 };
 
@@ -147,10 +150,12 @@ void Application::turn() {
     // A picture that is shown again says nothing of what this computer can draw.
     if (moved) desktop_.automatic_quality().frame(window_.frame_time());
   }
-  if (options_.print_state && ++turns_ % 6 == 0) {
+  frames_ += drawing ? 1 : 0;
+  if (options_.print_state && now - printed_ >= kBetweenStates) {
+    printed_ = now;
     int width = 0, height = 0;
     window_.size(width, height);
-    print_state(desktop_, width, height);
+    print_state(desktop_, {width, height, frames_, window_.input_waits()});
   }
 }
 

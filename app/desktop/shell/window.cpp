@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "app/desktop/shell/icon.h"
+#include "app/desktop/shell/mouse_input.h"
 #include "app/desktop/shell/pacing.h"
+#include "app/desktop/shell/work_area.h"
 #include "app/style/imgui_gl.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
@@ -23,41 +25,6 @@ namespace limpid {
 namespace {
 
 constexpr auto kFrame = std::chrono::microseconds(16667);
-constexpr int kLeastWidth = 900, kLeastHeight = 560;
-
-// Where windows may be: the screen without the desktop's bars.
-struct WorkArea {
-  int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
-  float scale = 1;  // of the screen
-};
-
-WorkArea work_area() {
-  WorkArea area;
-  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
-  if (monitor == nullptr) return area;
-  glfwGetMonitorWorkarea(monitor, &area.x, &area.y, &area.width, &area.height);
-  float vertical = 1;
-  glfwGetMonitorContentScale(monitor, &area.scale, &vertical);
-  return area;
-}
-
-// Inside of the area with the frame that the desktop drew round the window.
-void move_into(const WorkArea& area, GLFWwindow* window) {
-  int left = 0, top = 0, right = 0, bottom = 0, x = 0, y = 0, width = 0, height = 0;
-  glfwGetWindowFrameSize(window, &left, &top, &right, &bottom);
-  glfwGetWindowPos(window, &x, &y);
-  glfwGetWindowSize(window, &width, &height);
-  const int fit_width = std::min(width, area.width - left - right);
-  const int fit_height = std::min(height, area.height - top - bottom);
-  if (fit_width != width || fit_height != height) glfwSetWindowSize(window, fit_width, fit_height);
-  const auto held = [](int at, int low, int high) {
-    return std::clamp(at, low, std::max(low, high));
-  };
-  const int fit_x = held(x, area.x + left, area.x + area.width - right - fit_width);
-  const int fit_y = held(y, area.y + top, area.y + area.height - bottom - fit_height);
-  if (fit_x != x || fit_y != y) glfwSetWindowPos(window, fit_x, fit_y);
-}
-
 }  // namespace
 
 struct Window::Impl {
@@ -65,6 +32,7 @@ struct Window::Impl {
   std::optional<ImGuiGl> imgui;
   std::string renderer;
   KeyInput keys;
+  MouseInput mouse;
   std::vector<std::filesystem::path> dropped;
   SteadyClock::time_point due = SteadyClock::now();
   SteadyClock::time_point began = due;
@@ -83,6 +51,27 @@ struct Window::Impl {
 
   static Impl& of(GLFWwindow* window) {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+  }
+
+  // In place of ImGui's own: keys and characters go to their owner, and nothing between two frames
+  // is lost.
+  void listen() const {
+    glfwSetCursorPosCallback(glfw, [](GLFWwindow* w, double right, double down) {
+      Window::touched(w);
+      Impl::of(w).mouse.move(static_cast<float>(right), static_cast<float>(down));
+    });
+    glfwSetMouseButtonCallback(glfw, [](GLFWwindow* w, int button, int action, int) {
+      Window::touched(w);
+      Impl::of(w).mouse.button(button, action == GLFW_PRESS);
+    });
+    glfwSetKeyCallback(glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+      Window::touched(w);
+      Impl::of(w).keys.key(key, action, modifiers);
+    });
+    glfwSetCharCallback(glfw, [](GLFWwindow* w, unsigned character) {
+      Window::touched(w);
+      Impl::of(w).keys.character(character);
+    });
   }
 
   void save(const Picture& wanted) const {
@@ -138,9 +127,7 @@ GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) 
 
 // ImGui calls what is there before it.
 void watch_touches(GLFWwindow* window) {
-  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
   glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { Window::touched(w); });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Window::touched(w); });
@@ -172,10 +159,6 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->renderer = name_of_renderer();
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   watch_touches(impl_->glfw);
-  glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
-    Window::touched(w);
-    Impl::of(w).keys.key(key, action, modifiers);
-  });
   glfwSetDropCallback(impl_->glfw, [](GLFWwindow* w, int count, const char** paths) {
     Window::touched(w);
     for (int i = 0; i < count; ++i) Impl::of(w).dropped.emplace_back(paths[i]);
@@ -183,11 +166,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
 
   impl_->imgui.emplace();
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
-  // In place of ImGui's own: characters go to their owner.
-  glfwSetCharCallback(impl_->glfw, [](GLFWwindow* w, unsigned character) {
-    Window::touched(w);
-    Impl::of(w).keys.character(character);
-  });
+  impl_->listen();
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
   const double scale = options.ui_scale > 0 ? options.ui_scale : scale_x;
@@ -213,19 +192,20 @@ bool Window::wait() {
   w.began = SteadyClock::now();
   w.keys.forget_pressed();
   w.dropped.clear();
+  w.mouse.ask(w.began);
   glfwPollEvents();
   return glfwWindowShouldClose(w.glfw) == GLFW_FALSE;
 }
 
-bool Window::due() const { return impl_->liveliness.due(SteadyClock::now()); }
+bool Window::due() const { return input_waits() || impl_->liveliness.due(SteadyClock::now()); }
+
+bool Window::input_waits() const { return impl_->keys.waiting() || impl_->mouse.waiting(); }
 
 void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
   ImGuiGl::begin_frame();
   ImGui_ImplGlfw_NewFrame();
-  // A double click is four events, of which ImGui takes one a frame; frames may be slow.
-  ImGuiIO& io = ImGui::GetIO();
-  io.MouseDoubleClickTime = std::max(0.3f, 5 * std::min(io.DeltaTime, 0.2f));
+  impl_->mouse.deal();
   ImGui::NewFrame();
 }
 

@@ -39,6 +39,8 @@ class Window {
   bool wait();
   // Somebody touched the window, or its numbers are old: a frame has to be drawn in this turn.
   bool due() const;
+  // Of what was done there is more than the frames up to now took.
+  bool input_waits() const;
   // Deals the input to who has the `focus` and begins ImGui's frame.
   void begin_frame(const Focus& focus);
   // Draws ImGui over the picture and shows the frame.

@@ -1,0 +1,89 @@
+#include "app/desktop/shell/mouse_input.h"
+
+#include "tests/app/plot/imgui_frames.h"
+
+namespace limpid {
+namespace {
+
+class MouseInputTest : public ImGuiFrames {
+ protected:
+  // GLFW is asked at this time [ms].
+  void ask(int at) { mouse_.ask(SteadyClock::time_point(std::chrono::milliseconds(1000 + at))); }
+  void click(float x, float y) {
+    mouse_.move(x, y);
+    mouse_.button(0, true);
+    mouse_.button(0, false);
+  }
+  void look() {
+    mouse_.deal();
+    frame([] {}, 0.5f);
+  }
+  // So many clicks ImGui has seen as the next press comes to it, 0 without any.
+  int next_count() {
+    while (mouse_.waiting()) {
+      look();
+      if (ImGui::GetIO().MouseClicked[0]) return ImGui::GetIO().MouseClickedCount[0];
+    }
+    return 0;
+  }
+
+  MouseInput mouse_;
+};
+
+TEST_F(MouseInputTest, ClicksBetweenTwoFramesAreAllSeenAndWhereTheyWere) {
+  ask(0);
+  click(100, 50);
+  click(300, 200);
+  mouse_.move(700, 500);
+  for (const ImVec2 at : {ImVec2(100, 50), ImVec2(300, 200)}) {
+    look();
+    EXPECT_TRUE(ImGui::IsMouseClicked(0));
+    EXPECT_EQ(ImGui::GetMousePos().x, at.x);
+    EXPECT_EQ(ImGui::GetMousePos().y, at.y);
+    look();
+    EXPECT_TRUE(ImGui::IsMouseReleased(0));
+    EXPECT_EQ(ImGui::GetMousePos().x, at.x);
+  }
+  EXPECT_FALSE(mouse_.waiting());
+}
+
+TEST_F(MouseInputTest, DoubleClickIsOneOnFramesOfHalfASecond) {
+  ask(0), ask(500);
+  click(100, 50);
+  click(100, 50);
+  EXPECT_EQ(next_count(), 1);
+  EXPECT_EQ(next_count(), 2);
+}
+
+TEST_F(MouseInputTest, DoubleClickIsOneWithAFrameBetween) {
+  ask(0), ask(500);
+  click(100, 50);
+  EXPECT_EQ(next_count(), 1);
+  ask(1000);
+  click(100, 50);
+  EXPECT_EQ(next_count(), 2);
+}
+
+TEST_F(MouseInputTest, TwoClicksAreNoneHoweverLateTheyAreSeen) {
+  ask(0), ask(500);
+  click(100, 50);
+  for (const int at : {600, 700, 800, 900, 1000}) ask(at);
+  click(100, 50);
+  EXPECT_EQ(next_count(), 1);
+  EXPECT_EQ(next_count(), 1);
+}
+
+TEST_F(MouseInputTest, ASecondPressThatIsComingIsWaitedFor) {
+  ask(0), ask(500);
+  click(100, 50);
+  click(100, 50);
+  look();
+  look();  // the release; the second press comes with the next frame
+  EXPECT_GT(ImGui::GetIO().MouseDoubleClickTime, 10.0f);
+  while (mouse_.waiting()) look();
+  look();
+  EXPECT_LT(ImGui::GetIO().MouseDoubleClickTime, 0.5f);
+}
+
+}  // namespace
+}  // namespace limpid

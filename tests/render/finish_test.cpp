@@ -1,0 +1,67 @@
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include "render/gl/frame_target.h"
+#include "render/gl/offscreen.h"
+
+namespace limpid {
+namespace {
+
+constexpr int kSize = 64;
+
+void fill(int x, int y, int width, int height, float grey) {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(x, y, width, height);
+  glClearColor(grey, grey, grey, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+// What becomes of a picture of one sample a pixel, which `draw` fills.
+template <class Draw>
+std::vector<unsigned char> finished(Draw&& draw) {
+  const OffscreenContext context(kSize, kSize);
+  GLint framebuffer = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  FrameTarget target(LIMPID_SOURCE_DIR "/shaders");
+  target.begin(kSize, kSize, 1);
+  draw();
+  const FrameTarget::Area all{0, 0, kSize, kSize};
+  target.finish(static_cast<GLuint>(framebuffer), all, all);
+  return read_rgba(kSize, kSize);
+}
+
+// Rows count from the top in pictures that are read.
+int green(const std::vector<unsigned char>& picture, int x, int y) {
+  return picture[static_cast<std::size_t>(4 * ((kSize - 1 - y) * kSize + x) + 1)];
+}
+
+TEST(Finish, LeavesLinesAsThinAsAPixelWithoutGaps) {
+  for (const int run : {1, 2, 3, 5}) {  // pixels on one level
+    const auto level = [&](int x) { return 8 + x / run; };
+    const int end = std::min(kSize, 48 * run);
+    const auto picture = finished([&] {
+      fill(0, 0, kSize, kSize, 0.4f);
+      for (int x = 0; x < end; ++x) fill(x, level(x), 1, 1, 0.9f);
+    });
+    for (int x = 4; x < end - 4; ++x)
+      EXPECT_GT(green(picture, x, level(x)), 255 * 0.62) << run << ", " << x;
+  }
+}
+
+TEST(Finish, SmoothsTheStepsOfAnEdge) {
+  const auto picture = finished([] {
+    fill(0, 0, kSize, kSize, 0.1f);
+    for (int x = 0; x < kSize; ++x) fill(x, 0, 1, 20 + x / 2, 0.9f);
+  });
+  int between = 0;
+  for (int x = 4; x < kSize - 4; ++x)
+    for (int y = 4; y < kSize - 4; ++y) {
+      const int at = green(picture, x, y);
+      between += at > 60 && at < 200 ? 1 : 0;
+    }
+  EXPECT_GT(between, kSize - 16) << "a pixel a column, about";
+}
+
+}  // namespace
+}  // namespace limpid
