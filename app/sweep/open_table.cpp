@@ -61,12 +61,10 @@ class TableFile {
     return values;
   }
 
-  std::uint64_t count(const char* name) const {
-    return hdf5::read_count(file_.get(), name, path_);
-  }
+  std::uint64_t count(const char* name) const { return hdf5::read_count(file_.get(), name, path_); }
   [[noreturn]] void refuse_rows(std::uint64_t found, std::uint64_t needed) const {
-    throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has", path_.string(),
-                                found, needed));
+    throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has",
+                                path_.string(), found, needed));
   }
 
  private:
@@ -79,8 +77,8 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
                                          std::string& why_no_run) {
   const std::string text = file.text_if_any("plan");
   if (text.empty()) {
-    throw FileError(fmt::format("{}: holds no plan, so that nobody knows what its points are",
-                                path.string()));
+    throw FileError(
+        fmt::format("{}: holds no plan, so that nobody knows what its points are", path.string()));
   }
   auto plan = std::make_shared<SweepPlan>(plan_of_text(text, plan_behind(path.parent_path())));
   try {

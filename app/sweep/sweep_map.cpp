@@ -12,12 +12,15 @@ namespace limpid {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRoom = 0.05;  // above and below a curve, of its height
+constexpr double kDecades = 1000;  // over so much colours go by the logarithm
+constexpr double kRoom = 0.05;     // above and below a curve, of its height
 
 bool sampled(const SweepAxis& axis) { return axis.spread != Spread::grid; }
 
 // Of a boundary's columns those that are values of its axis.
-bool along_boundary(const SweepPlan& plan, std::size_t column) { return plan.boundary && column < 2; }
+bool along_boundary(const SweepPlan& plan, std::size_t column) {
+  return plan.boundary && column < 2;
+}
 
 class Making {
  public:
@@ -122,6 +125,7 @@ class Making {
     const auto [low, highest] = sweep_.ranges[map_.choice.column];
     map_.value_range = {low, highest > low ? highest : low + 1};
     if (map_.yes_no) map_.value_range = {0, 1};
+    map_.log_values = !map_.yes_no && low > 0 && highest > kDecades * low;
     map_.x_range = wide_.all();
     if (y_ != nullptr) {
       map_.y_range = high().all();

@@ -20,11 +20,11 @@ MapChoice mended(const SweepPlan& plan, MapChoice choice);
 
 // A point, or as many as differ in repeats and samples alone.
 struct MapSpot {
-  FigureCell cell;             // around x and y; its value: the mean, not a number where none is done
+  FigureCell cell;  // around x and y; its value: the mean, not a number where none is done
   double x = 0, y = 0;
-  std::uint64_t point = 0;     // its number; of several, the first one's
-  std::uint64_t count = 0;     // done
-  bool inferred = false;       // from the points around it, where the map was not refined
+  std::uint64_t point = 0;  // its number; of several, the first one's
+  std::uint64_t count = 0;  // done
+  bool inferred = false;    // from the points around it, where the map was not refined
 
   bool there() const { return count > 0 || inferred; }
 };
@@ -35,7 +35,8 @@ struct SweepMap {
   std::vector<MapSpot> spots;  // of cells: column by column, upwards
   std::size_t rows = 1;        // of cells: in each column
   std::pair<double, double> x_range, y_range, value_range;
-  bool yes_no = false;         // one point a spot, that is a yes or a no
+  bool yes_no = false;      // one point a spot, that is a yes or a no
+  bool log_values = false;  // positive ones over many decades
   // Of a yes/no map where it changes; of theory; of a boundary the highest change.
   std::vector<Series> lines;
 };

@@ -66,9 +66,9 @@ struct SweepBoundary {
 // Where the map changes it is made finer: the axes have all values then that they may ever need,
 // and only the points of every 2^depth-th are there from the beginning.
 struct SweepRefine {
-  std::vector<std::size_t> axes;    // of the plan
-  std::uint64_t depth = 1;          // how often a cell is halved
-  std::size_t column = 0;           // that is measured
+  std::vector<std::size_t> axes;  // of the plan
+  std::uint64_t depth = 1;        // how often a cell is halved
+  std::size_t column = 0;         // that is measured
   std::optional<double> above, below;
   std::optional<double> tolerance;  // of numbers: what may differ in a cell
 
@@ -112,7 +112,6 @@ struct SweepPlan {
 };
 // Those that are there before anything is refined: how many.
 std::uint64_t coarse_points(const SweepPlan& plan);
-
 
 // Errors: FileError FILE:LINE with key, what was found and what is allowed, also for files that the
 // plan names and for hands out of reach.

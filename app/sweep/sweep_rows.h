@@ -29,7 +29,7 @@ class SweepRows {
   std::uint64_t first_block() const { return first_block_; }  // of the last round
   SweepBlock block(std::uint64_t number) const;
   std::uint64_t round(std::uint64_t row) const;
-  std::uint64_t rounds() const { return ends_.size() - 1; }  // that are known
+  std::uint64_t rounds() const { return ends_.size() - 1; }                // that are known
   std::uint64_t begin_of_last() const { return ends_[ends_.size() - 2]; }  // round, a row
 
   // Adds the next round; false where there is none, and never will be. `value` of every row so far,
@@ -79,9 +79,9 @@ class SweepRows {
   std::vector<std::uint64_t> split(const CellKey& key);  // points that it lacks then
 
   const SweepPlan* plan_;
-  std::vector<std::uint64_t> points_;  // of each row; empty: its number
+  std::vector<std::uint64_t> points_;                      // of each row; empty: its number
   std::unordered_map<std::uint64_t, std::uint64_t> rows_;  // the other way round
-  std::vector<std::uint64_t> ends_{0};  // where each round begins, and the end
+  std::vector<std::uint64_t> ends_{0};                     // where each round begins, and the end
   std::uint64_t first_block_ = 0;
   bool complete_ = true;
   Cells cells_;

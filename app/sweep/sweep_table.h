@@ -49,8 +49,8 @@ struct SweepTable {
 //   /repeat, /done points, uint32 and uint8
 //   /point, /round points, uint64 and uint32, where the plan refines: its number, and the round it
 //                  came in; else they are numbered from 0
-// Root attributes: format kSweepFormat, version 1, title, plan (TOML), key (of the plan and the files
-// that it names), points, done, app_version, build. Errors: FileError.
+// Root attributes: format kSweepFormat, version 1, title, plan (TOML), key (of the plan and the
+// files that it names), points, done, app_version, build. Errors: FileError.
 inline constexpr const char* kSweepFormat = "limpid-sweep";
 inline constexpr std::uint64_t kSweepVersion = 1;
 void write_table(const SweepPlan& plan, const SweepTable& table, const std::filesystem::path& file);

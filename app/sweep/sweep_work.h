@@ -18,13 +18,12 @@ struct SweepShare {
 // Called for a block that is there now, from any thread, one at a time.
 using TakeBlock = std::function<void(std::uint64_t block, const std::vector<double>& rows)>;
 
-// Does what of a share is not there yet, of the last round that is known. False if `stop` was set meanwhile; blocks that were not
-// finished are lost. `done` counts points. Errors: FileError, std::runtime_error; what was finished
-// stays.
+// Does what of a share is not there yet, of the last round that is known. False if `stop` was set
+// meanwhile; blocks that were not finished are lost. `done` counts points. Errors: FileError,
+// std::runtime_error; what was finished stays.
 bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
-              const SweepShare& share,
-              const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
-              const TakeBlock& take);
+              const SweepShare& share, const std::atomic<bool>& stop,
+              std::atomic<std::uint64_t>& done, const TakeBlock& take);
 
 // The table while it fills.
 class SweepBook {

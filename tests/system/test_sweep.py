@@ -252,6 +252,7 @@ class Survival(SystemTest):
     def test_another_build_is_refused(self) -> None:
         out = self.directory / "build"
         limpid("sweep", self.plan, "--out", out, "--shard", "1/50", timeout=300)
+        before = len(list((out / "blocks").glob("*.h5")))
         other = self.directory / "limpid"
         shutil.copy(LIMPID, other)
         with other.open("ab") as file:
@@ -261,7 +262,7 @@ class Survival(SystemTest):
                                   capture_output=True, text=True)  # fmt: skip
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("made from another build of limpid", done.stderr)
-        self.assertEqual(len(list((out / "blocks").glob("*.h5"))), 2)
+        self.assertEqual(len(list((out / "blocks").glob("*.h5"))), before)
 
     def test_ranks_of_mpirun_some_killed(self) -> None:
         mpirun = shutil.which("mpirun")
@@ -275,7 +276,7 @@ class Survival(SystemTest):
             run = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             while killed < 3 and run.poll() is None:
                 time.sleep(0.02)
-                if len(list(out.glob("blocks/*.h5"))) > 20 * killed:
+                if len(list(out.glob("blocks/*.h5"))) > 5 * killed:
                     if kill_one("--mpi", str(out)):
                         killed += 1
                         break

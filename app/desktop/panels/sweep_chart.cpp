@@ -206,18 +206,44 @@ class MapPainter {
   Chart chart_;
 };
 
-// From `at` down, with its numbers at the right.
+// A number of the scale, and what part of it lies below.
+struct ScaleMark {
+  float part;
+  std::string text;
+};
+
+double part_of(const SweepMap& map, double value) {
+  const auto [low, high] = map.value_range;
+  if (map.log_values) return std::log(value / low) / std::log(high / low);
+  return (value - low) / (high - low);
+}
+
+// What the numbers are divided by is added to the label.
+std::vector<ScaleMark> scale_marks(const SweepMap& map, int at_most, std::string& label) {
+  std::vector<ScaleMark> marks;
+  const auto [low, high] = map.value_range;
+  if (map.log_values) {
+    for (double x = std::pow(10, std::ceil(std::log10(low))); x <= high; x *= 10) {
+      marks.push_back({static_cast<float>(part_of(map, x)), fmt::format("{:.0e}", x)});
+    }
+    return marks;
+  }
+  const int exponent = common_exponent(low, high);
+  const double unit = std::pow(10, exponent);
+  if (exponent != 0) label += " " + exponent_text(exponent);
+  const Ticks ticks = nice_ticks(low / unit, high / unit, at_most);
+  for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
+    marks.push_back({static_cast<float>(part_of(map, ticks.at(i) * unit)),
+                     tick_text(ticks.at(i), ticks.step, 0)});
+  }
+  return marks;
+}
+
+// Of the height of `room`, with its numbers at the right and its name above, which ends at `right`.
 void draw_scale(const SweepMap& map, const SweepColumn& column, ScreenRect room, float right) {
   const Palette& colours = current_palette();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float line = font(Face::small)->FontSize;
-  const auto [low, high] = map.value_range;
-  const int exponent = common_exponent(low, high);
-  const double unit = std::pow(10, exponent);
-  std::string label = label_of(column.name, column.unit);
-  if (exponent != 0) label += " " + exponent_text(exponent);
-  draw_text(draw, Face::small, {right - text_size(Face::small, label).x, room.min.y - 1.4f * line},
-            colours.muted, label);
   for (int i = 0; i < kScaleSteps; ++i) {
     const auto edge = [&](int k) {
       return std::round(room.max.y - room.height() * static_cast<float>(k) / kScaleSteps);
@@ -225,14 +251,15 @@ void draw_scale(const SweepMap& map, const SweepColumn& column, ScreenRect room,
     draw.AddRectFilled({room.min.x, edge(i + 1)}, {room.max.x, edge(i)},
                        colour(scale_colour((i + 0.5) / kScaleSteps)));
   }
-  const Ticks ticks = nice_ticks(low / unit, high / unit,
-                                 std::max(2, static_cast<int>(room.height() / (3 * line))));
-  for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-    const auto part = static_cast<float>((ticks.at(i) * unit - low) / (high - low));
+  std::string label = label_of(column.name, column.unit);
+  const int at_most = std::max(2, static_cast<int>(room.height() / (3 * line)));
+  for (const ScaleMark& mark : scale_marks(map, at_most, label)) {
     draw_text(draw, Face::small,
-              {room.max.x + 5 * current_scale(), room.max.y - part * room.height() - line / 2},
-              colours.muted, tick_text(ticks.at(i), ticks.step, 0));
+              {room.max.x + 5 * current_scale(), room.max.y - mark.part * room.height() - line / 2},
+              colours.muted, mark.text);
   }
+  const float wide = text_size(Face::small, label).x;
+  draw_text(draw, Face::small, {right - wide, room.min.y - 1.4f * line}, colours.muted, label);
 }
 
 }  // namespace
@@ -243,8 +270,7 @@ ImU32 map_colour(const SweepMap& map, double value) {
   if (map.yes_no) {
     return colour(mix(ink(colours, value == 1 ? Ink::proxy : Ink::contact), colours.panel, 0.45f));
   }
-  const auto [low, high] = map.value_range;
-  return colour(scale_colour((value - low) / (high - low)));
+  return colour(scale_colour(part_of(map, value)));
 }
 
 Rgb map_line_colour(std::size_t line) {
