@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
+#include "app/sweep/open_table.h"
 
 namespace limpid {
 namespace {
@@ -12,6 +15,7 @@ struct WindowOptions {
   InputOptions input;
   DesktopOptions desktop;
   std::string session;
+  std::vector<std::string> files;  // to open
   VideoOptions video;
 };
 
@@ -50,7 +54,17 @@ int open_window(const WindowOptions& options) {
   const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
                    input.eta || input.alpha;
   if (own) desktop.parameters = make_parameters(input, arm);
-  if (!options.session.empty()) {
+  for (const std::string& file : options.files) {
+    if (!std::filesystem::exists(file)) {
+      throw UsageError(fmt::format(
+          "\"{}\": not expected: no command, and no file to open; `limpid --help` lists what is",
+          file));
+    }
+    desktop.files.emplace_back(file);
+  }
+  if (const auto table = sweep_table_at(options.session)) {
+    desktop.files.push_back(*table);
+  } else if (!options.session.empty()) {
     if (read_session(options.session).size() == 0) {
       throw FileError(options.session + ": holds no rows");
     }
@@ -82,11 +96,17 @@ int play(const WindowOptions& options, const MakeVideo& make_video) {
 
 WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   auto options = std::make_shared<WindowOptions>();
+  app.add_option("FILE", options->files,
+                 "to open in the window: a recording, a sweep's folder or table, a scene, a model, "
+                 "a hand, an arm")
+      ->type_name("");
   add(app, *options);
   auto* command =
       app.add_subcommand("play", "the desktop app, playing a recorded session; or its video");
   auto played = std::make_shared<WindowOptions>();
-  command->add_option("SESSION.h5", played->session, "the recording")->type_name("")->required();
+  command->add_option("SESSION.h5", played->session, "the recording; or a sweep's table")
+      ->type_name("")
+      ->required();
   played->video.add(*command);
   add(*command, *played);
   command->footer(

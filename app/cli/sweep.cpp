@@ -1,24 +1,21 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdlib>
 #include <thread>
+#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
-#include "app/run/recorder.h"
-#include "app/run/replay.h"
+#include "app/cli/sweep_point.h"
 #include "app/sweep/map_text.h"
 #include "app/sweep/ranks.h"
 #include "app/sweep/slurm.h"
 #include "app/sweep/sweep_figure.h"
 #include "app/sweep/sweep_work.h"
-#include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
 namespace {
@@ -97,7 +94,8 @@ class Sweeping {
         folder_(folder),
         map_(plan, measured_columns(plan)),
         book_(plan, folder, options.csv, [this](std::uint64_t block, const auto& rows) {
-          map_.take(folder_.first(block), rows);
+          const SweepRows& all = book_.table().rows;
+          map_.take(all, all.block(block).first, rows);
         }) {}
 
   int carry_out() {
@@ -109,47 +107,62 @@ class Sweeping {
       if (!finished && alone) book_.write();
       if (!finished) return stopped("the same command goes on from here");
     }
-    if (!alone && !first && !options_.gather) return 0;
+    if (!alone && !first && !options_.gather) return say_what_is_left();
     book_.gather();
     return finish();
   }
 
  private:
   Progress::Words words(double points) const {
-    return {.title = plan_.title,
+    const std::uint64_t rounds = book_.table().rows.rounds();
+    return {.title = rounds > 1 ? fmt::format("{}, round {}", plan_.title, rounds) : plan_.title,
             .whole = points,
             .unit = "",
             .rate = "points a second",
             .picture = [this] { return map_.lines(); }};
   }
 
-  // False if it was stopped.
+  // False if it was stopped. A refined plan goes on, round by round, while all of a round is there.
   bool work(bool alone) {
-    std::atomic<std::uint64_t> done{0};
     Bookkeeper keeper(book_);
-    const TakeBlock take = [&](std::uint64_t block, const auto& rows) {
-      book_.take(block, rows);
+    std::uint64_t rounds = 0;
+    while (std::exchange(rounds, book_.table().rows.rounds()) < book_.table().rows.rounds()) {
+      if (!work_round(alone, keeper)) return false;
+      if (plan_.refine) book_.gather();
+    }
+    return true;
+  }
+
+  bool work_round(bool alone, Bookkeeper& keeper) {
+    const SweepRows& rows = book_.table().rows;
+    std::atomic<std::uint64_t> done{0};
+    const TakeBlock take = [&](std::uint64_t block, const auto& values) {
+      book_.take(block, values);
       if (alone) keeper.write_if_time();
     };
-    Progress progress(
-        words(static_cast<double>(plan_.points()) / static_cast<double>(share_.shards)));
+    Progress progress(words(static_cast<double>(rows.size() - rows.begin_of_last()) /
+                            static_cast<double>(share_.shards)));
     const std::jthread watch([&](const std::stop_token& over) {
       while (!over.stop_requested()) {
         progress.at(static_cast<double>(done.load()));
         std::this_thread::sleep_for(kBetweenLooks);
       }
     });
-    return work_off(plan_, folder_, share_, interrupted, done, take);
+    return work_off(plan_, rows, folder_, share_, interrupted, done, take);
   }
 
   int on_slurm() {
     SlurmArray array(plan_, folder_, options_.array);
     Bookkeeper keeper(book_);
     {
-      Progress progress(words(static_cast<double>(plan_.points())));
+      std::optional<Progress> progress;
+      std::uint64_t points = 0;
       while (!interrupted) {
         array.turn(book_);
-        progress.at(static_cast<double>(book_.table().count()));
+        if (std::exchange(points, book_.table().points()) != book_.table().points()) {
+          progress.emplace(words(static_cast<double>(book_.table().points())));
+        }
+        progress->at(static_cast<double>(book_.table().count()));
         keeper.write_if_time();
         if (book_.complete()) break;
         for (int i = 0; i < kLooksATurn && !interrupted; ++i) {
@@ -165,6 +178,16 @@ class Sweeping {
                     array.name()));
   }
 
+  // Of one of many parts. What is refined follows from all parts of a round.
+  int say_what_is_left() {
+    if (!plan_.refine || options_.mpi || book_.complete()) return 0;
+    fmt::print(
+        "this part is through with round {}; once all parts are, call them again for the "
+        "next\n",
+        book_.table().rows.rounds());
+    return 0;
+  }
+
   int stopped(const std::string& advice) {
     fmt::print(stderr, "limpid: stopped; {}\n", advice);
     return 1;
@@ -173,7 +196,10 @@ class Sweeping {
   int finish() {
     book_.write();
     const SweepTable& table = book_.table();
-    fmt::print("{} of {} points in {}\n", table.count(), table.points(), folder_.table().string());
+    fmt::print(
+        "{} of {} points{} in {}\n", table.count(), table.points(),
+        table.rows.complete() ? "" : fmt::format(" of {} rounds so far", table.rows.rounds()),
+        folder_.table().string());
     std::fflush(stdout);
     if (table.count() > 0) draw(table);
     return book_.complete() ? 0 : 1;
@@ -196,42 +222,13 @@ class Sweeping {
   SweepBook book_;
 };
 
-void check_point(std::uint64_t index, const SweepPlan& plan) {
-  if (plan.boundary) throw UsageError("--open: a point of a boundary is many runs");
-  if (index < plan.points()) return;
-  throw UsageError(fmt::format("--open {}: is not allowed; allowed: a point from 0 to {}", index,
-                               plan.points() - 1));
-}
-
-// Runs one point again, as a session.
-int open_point(const SweepOptions& options, const SweepPlan& plan) {
-  const std::uint64_t index = *options.open;
-  RunPlan run = run_of(plan, index);
-  run.document.toml = scene_text(run.document, run.arm);  // as the axes have made it
-  const fs::path file = fs::path(options.out) / "points" / fmt::format("{}.h5", index);
-  fs::create_directories(file.parent_path());
-  Recorder recorder(file, session_info(run), run.parameters, true, Recorder::kWaitingRoom);
-  Summary summary(RowLayout(run.arm.dof()));
-  simulate(run, {.realtime = false, .stop = &interrupted},
-           [&](std::span<const double> row, const Parameters*) {
-             summary.add(row);
-             return recorder.push_waiting(row);
-           });
-  recorder.finish();
-  fmt::print("{}recorded in {}\n", summary.text(), file.string());
-  std::fflush(stdout);
-  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return 0;
-  ::execl("/proc/self/exe", "limpid", "play", file.c_str(), nullptr);
-  return 0;
-}
-
 int sweep(const SweepOptions& options) {
   const SweepShare share = share_of(options);
   const SweepPlan plan = read_sweep_plan(options.plan);
-  if (options.open) check_point(*options.open, plan);
+  if (options.open) check_point(plan, *options.open);
   if (!options.gather) prepare_out(options.out);
   catch_interrupts();
-  if (options.open) return open_point(options, plan);
+  if (options.open) return open_point(plan, *options.open, options.out);
   const SweepFolder folder(plan, options.out);
   try {
     return Sweeping(options, share, plan, folder).carry_out();

@@ -96,7 +96,7 @@ SweepTable Laboratory::sweep(const SweepPlan& plan) {
   static const std::atomic<bool> kNever{false};
   const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
   each(table.points(), [&](std::size_t i) {
-    const auto values = measure_point(plan, i, stop);
+    const auto values = measure_point(plan, table.rows.point(i), stop);
     if (!values) throw Cancelled();
     table.take(i, *values);
   });

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestNote = 1 << 12;  // [bytes]
+constexpr const char* kNote = "sweep.key";
+constexpr std::size_t kLongestNote = 1 << 13;  // [bytes]
 
 // What a folder, or a block, says that it belongs to.
 struct Belongs {
@@ -34,8 +35,9 @@ void check_same(const Belongs& found, const Belongs& own, const fs::path& file) 
   }
 }
 
-std::string note_of(const Belongs& own) {
-  return fmt::format("plan {}\nbuild {}\n", hex(own.plan), hex(own.build));
+std::string note_of(const Belongs& own, const fs::path& plan) {
+  return fmt::format("plan {}\nbuild {}\nfrom {}\n", hex(own.plan), hex(own.build),
+                     fs::weakly_canonical(plan).string());
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ std::string note_of(const Belongs& own) {
 SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
     : plan_(plan), dir_(std::move(dir)), columns_(measured_columns(plan).size()) {
   const Belongs own{plan.key, build_digest()};
-  const fs::path note = dir_ / "sweep.key";
+  const fs::path note = dir_ / kNote;
   if (fs::exists(note)) {
     const std::string said = read_text(note, kLongestNote);
     Belongs found{};
@@ -56,34 +58,26 @@ SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
   std::error_code error;
   fs::create_directories(dir_ / "blocks", error);
   if (error) throw FileError(fmt::format("{}: {}", dir_.string(), error.message()));
-  const std::string text = note_of(own);
+  const std::string text = note_of(own, plan.file);
   write_atomically(note, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
 }
 
-std::uint64_t SweepFolder::blocks() const {
-  return (plan_.points() + plan_.block - 1) / plan_.block;
+fs::path SweepFolder::file(const SweepBlock& block) const {
+  return dir_ / "blocks" / fmt::format("{:06d}.h5", block.number);
 }
 
-std::uint64_t SweepFolder::size(std::uint64_t block) const {
-  return std::min(plan_.block, plan_.points() - first(block));
-}
-
-fs::path SweepFolder::file(std::uint64_t block) const {
-  return dir_ / "blocks" / fmt::format("{:06d}.h5", block);
-}
-
-bool SweepFolder::there(std::uint64_t block) const {
+bool SweepFolder::there(const SweepBlock& block) const {
   std::error_code none;
   return fs::exists(file(block), none);
 }
 
-std::optional<std::vector<double>> SweepFolder::read(std::uint64_t block) const {
+std::optional<std::vector<double>> SweepFolder::read(const SweepBlock& block) const {
   const fs::path path = file(block);
   if (!there(block)) return std::nullopt;
   const hdf5::Quiet quiet;
   const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file) return std::nullopt;
-  std::vector<double> rows(size(block) * columns_);
+  std::vector<double> rows(block.size * columns_);
   try {
     check_same(
         {hdf5::read_count(file.get(), "plan", path), hdf5::read_count(file.get(), "build", path)},
@@ -102,13 +96,27 @@ std::optional<std::vector<double>> SweepFolder::read(std::uint64_t block) const 
   return rows;
 }
 
-void SweepFolder::write(std::uint64_t block, const std::vector<double>& rows) const {
+void SweepFolder::write(const SweepBlock& block, const std::vector<double>& rows) const {
   FileImage image(file(block));
   image.number(image.root(), "plan", plan_.key);
   image.number(image.root(), "build", build_digest());
-  image.number(image.root(), "first", first(block));
-  image.add("/values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, size(block), columns_, rows.data());
+  image.number(image.root(), "first", block.first);
+  image.add("/values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, block.size, columns_, rows.data());
   image.write();
+}
+
+fs::path plan_behind(const fs::path& dir) {
+  std::error_code none;
+  if (fs::is_regular_file(dir / kNote, none)) {
+    const std::string said = read_text(dir / kNote, kLongestNote), word = "\nfrom ";
+    const std::size_t at = said.find(word);
+    const fs::path plan =
+        at == std::string::npos
+            ? ""
+            : said.substr(at + word.size(), said.find('\n', at + 1) - at - word.size());
+    if (fs::is_directory(plan.parent_path(), none)) return plan;
+  }
+  return dir / "plan.toml";
 }
 
 }  // namespace limpid

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sweep/sweep_plan.h"
+#include "app/sweep/sweep_rows.h"
 
 namespace limpid {
 
@@ -18,22 +18,22 @@ class SweepFolder {
 
   const std::filesystem::path& path() const { return dir_; }
   std::filesystem::path table() const { return dir_ / "table.h5"; }
-  std::uint64_t blocks() const;
-  std::uint64_t first(std::uint64_t block) const { return block * plan_.block; }
-  std::uint64_t size(std::uint64_t block) const;  // points
-
-  std::filesystem::path file(std::uint64_t block) const;
-  bool there(std::uint64_t block) const;
+  std::filesystem::path file(const SweepBlock& block) const;
+  bool there(const SweepBlock& block) const;
   // Its values, row by row; nothing if it is not there or damaged. Errors: FileError for one of
   // another plan or build.
-  std::optional<std::vector<double>> read(std::uint64_t block) const;
+  std::optional<std::vector<double>> read(const SweepBlock& block) const;
   // Whole, or as if never begun. Errors: FileError.
-  void write(std::uint64_t block, const std::vector<double>& rows) const;
+  void write(const SweepBlock& block, const std::vector<double>& rows) const;
 
  private:
   const SweepPlan& plan_;
   std::filesystem::path dir_;
   std::size_t columns_;
 };
+
+// Where the plan of a sweep's folder came from, as a name at least: beside it are the files that it
+// names. In the folder itself, if that place is not known or gone. Errors: FileError.
+std::filesystem::path plan_behind(const std::filesystem::path& dir);
 
 }  // namespace limpid

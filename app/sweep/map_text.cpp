@@ -5,17 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/sweep/axis_cells.h"
+
 namespace limpid {
 namespace {
 
 constexpr std::size_t kMostAcross = 60, kMostUp = 20;
 constexpr const char* kShades[] = {"░░", "▒▒", "▓▓", "██"};
-
-std::string value_text(const SweepAxis& axis, std::size_t place) {
-  const double value = axis.values[place];
-  return axis.words.empty() ? fmt::format("{:.3g}", value)
-                            : axis.words[static_cast<std::size_t>(value)];
-}
 
 }  // namespace
 
@@ -40,13 +36,13 @@ MapText::Side MapText::side(std::size_t axis, std::size_t most) const {
   return {axis, count, std::min(count, most)};
 }
 
-void MapText::take(std::uint64_t first, const std::vector<double>& rows) {
+void MapText::take(const SweepRows& rows, std::uint64_t first, const std::vector<double>& values) {
   if (sum_.empty()) return;
   const std::lock_guard lock(mutex_);
-  for (std::size_t i = 0; i * columns_ < rows.size(); ++i) {
-    const double value = rows[i * columns_ + column_];
+  for (std::size_t i = 0; i * columns_ < values.size(); ++i) {
+    const double value = values[i * columns_ + column_];
     if (!std::isfinite(value)) continue;
-    const SweepPoint point = point_of(plan_, first + i);
+    const SweepPoint point = point_of(plan_, rows.point(first + i));
     const std::size_t x = sides_[0].cell(point.place[sides_[0].axis]);
     const std::size_t y = sides_[1].cell(point.place[sides_[1].axis]);
     sum_[y * sides_[0].cells + x] += value;

@@ -16,7 +16,8 @@ class MapText {
  public:
   MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns);
 
-  void take(std::uint64_t first, const std::vector<double>& rows);
+  // Of consecutive rows from `first` on.
+  void take(const SweepRows& rows, std::uint64_t first, const std::vector<double>& values);
   std::vector<std::string> lines() const;  // none without such axes
 
  private:

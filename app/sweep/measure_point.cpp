@@ -21,26 +21,6 @@ bool needs_felt(const SweepPlan& plan) {
   return felt;
 }
 
-// Runs it to its end, or to where a rule stops it; nothing if interrupted.
-std::optional<RunMeter> metered(const SweepPlan& plan, const RunPlan& run,
-                                const std::atomic<bool>& stop) {
-  RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan));
-  const auto must_stop = [&] {
-    for (const StopRule& rule : plan.stops) {
-      if (meter.seconds() >= rule.after && rule.limit.met(rule.limit.measure->value(meter))) {
-        return true;
-      }
-    }
-    return false;
-  };
-  simulate(run, {.realtime = false, .stop = &stop}, [&](std::span<const double> row, auto*) {
-    meter.add(row);
-    return !must_stop();
-  });
-  if (stop.load(std::memory_order_relaxed)) return std::nullopt;
-  return meter;
-}
-
 // Where the condition changes along the boundary's axis.
 class Search {
  public:
@@ -66,7 +46,7 @@ class Search {
  private:
   bool met(double at) {
     if (interrupted_) return false;
-    const auto meter = metered(plan_, run_of(plan_, index_, at), stop_);
+    const auto meter = run_point(plan_, run_of(plan_, index_, at), stop_);
     interrupted_ = !meter;
     ++runs_;
     return meter && b_.condition.met(b_.condition.measure->value(*meter));
@@ -114,16 +94,41 @@ std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
       {"runs", "-", "how many runs it took"}};
 }
 
+std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
+                                  const std::atomic<bool>& stop, const PointSink& also) {
+  RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan));
+  const auto must_stop = [&] {
+    for (const StopRule& rule : plan.stops) {
+      if (meter.seconds() >= rule.after && rule.limit.met(rule.limit.measure->value(meter))) {
+        return true;
+      }
+    }
+    return false;
+  };
+  bool given_up = false;
+  simulate(run, {.realtime = false, .stop = &stop}, [&](std::span<const double> row, auto*) {
+    meter.add(row);
+    given_up = also && !also(row);
+    return !given_up && !must_stop();
+  });
+  if (given_up || stop.load(std::memory_order_relaxed)) return std::nullopt;
+  return meter;
+}
+
+std::vector<double> measured(const SweepPlan& plan, const RunMeter& meter) {
+  if (plan.boundary) return {plain(plan.boundary->condition.measure->value(meter))};
+  std::vector<double> values;
+  for (const MeasureInfo* m : plan.measures) values.push_back(plain(m->value(meter)));
+  return values;
+}
+
 std::optional<std::vector<double>> measure_point(const SweepPlan& plan, std::uint64_t index,
                                                  const std::atomic<bool>& stop) {
   try {
     if (plan.boundary) return Search(plan, index, stop).find();
-    const auto meter = metered(plan, run_of(plan, index), stop);
+    const auto meter = run_point(plan, run_of(plan, index), stop);
     if (!meter) return std::nullopt;
-    std::vector<double> values;
-    for (const MeasureInfo* measure : plan.measures)
-      values.push_back(plain(measure->value(*meter)));
-    return values;
+    return measured(plan, *meter);
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(fmt::format("point {}: {}", index, e.what()));
   }

@@ -60,7 +60,7 @@ FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table)
   const std::size_t step = (points.size() + kMostLines - 1) / kMostLines;
   std::vector<Upright> uprights(plan.axes.size() + 1);
   for (std::size_t k = 0; k < points.size(); k += step) {
-    const SweepPoint point = point_of(plan, points[k]);
+    const SweepPoint point = point_of(plan, table.rows.point(points[k]));
     for (std::size_t a = 0; a < plan.axes.size(); ++a)
       uprights[a].values.push_back(point.values[a]);
     uprights.back().values.push_back(table.at(points[k], column));

@@ -8,6 +8,7 @@
 #include "app/run/reach_check.h"
 #include "app/run/run_key.h"
 #include "app/sweep/read_axes.h"
+#include "app/sweep/read_refine.h"
 #include "app/sweep/sweep_plan.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
@@ -33,7 +34,7 @@ class Reader {
 
   void read() {
     file_.allow_only({"title", "device", "scene", "hand", "seconds", "seed", "samples", "repeats",
-                      "block", "set", "measure", "axis", "stop", "boundary", "figure"});
+                      "block", "set", "measure", "axis", "stop", "boundary", "refine", "figure"});
     plan_.title = file_.text("title").value_or(plan_.file.stem().string());
     plan_.seed = file_.count("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(0);
     plan_.samples = file_.count("samples", 1, kMostPoints).value_or(1);
@@ -47,6 +48,7 @@ class Reader {
     read_figure();
     plan_.block = file_.count("block", 1, 1'000'000)
                       .value_or(std::clamp<std::uint64_t>(plan_.points() / kMostBlocks, 1, 1000));
+    if (const auto refine = table(file_, "refine", "refine")) read_refine(*refine, plan_);
   }
 
  private:
@@ -200,6 +202,8 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
   return run;
 }
 
+}  // namespace
+
 // Of every choice of cases.
 void read_worlds(SweepPlan& plan) {
   std::set<SweepWorld> worlds{plan.world};
@@ -225,15 +229,18 @@ void read_worlds(SweepPlan& plan) {
   plan.key = digest.value();
 }
 
-}  // namespace
-
-SweepPlan read_sweep_plan(const fs::path& file) {
+SweepPlan plan_of_text(std::string text, const fs::path& file) {
   SweepPlan plan;
   plan.file = file;
-  plan.text = read_text(file, kLongestPlan);
+  plan.text = std::move(text);
   const std::string where = file.string();
   const toml::table table = parse_toml(plan.text, where);
   Reader(TomlTable(table, where, ""), where, plan).read();
+  return plan;
+}
+
+SweepPlan read_sweep_plan(const fs::path& file) {
+  SweepPlan plan = plan_of_text(read_text(file, kLongestPlan), file);
   read_worlds(plan);
   return plan;
 }

@@ -7,67 +7,18 @@
 #include <map>
 #include <utility>
 
+#include "app/sweep/axis_cells.h"
 #include "app/sweep/parallel_coordinates.h"
 #include "app/sweep/theory.h"
 
 namespace limpid {
 namespace {
 
-constexpr std::size_t kMostSlices = std::size(kFamilyInk);
-constexpr int kTheoryPoints = 80;
 constexpr const char *kYesTint = "#B8D8EC", *kNoTint = "#F2C4A8";
-constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
 
-// The axis with that name, else the next grid axis of numbers after `after`.
-std::optional<std::size_t> axis_called(const SweepPlan& plan, const std::string& name,
-                                       std::optional<std::size_t> other) {
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
-    const SweepAxis& axis = plan.axes[a];
-    if (!name.empty() ? axis.name == name
-                      : axis.words.empty() && axis.spread == Spread::grid &&
-                            axis.values.size() > 1 && a != other) {
-      return a;
-    }
-  }
-  return std::nullopt;
+std::string with_name(const SweepAxis& axis, std::size_t place) {
+  return fmt::format("{} {}{}", axis.name, axis.words.empty() ? "= " : "", value_text(axis, place));
 }
-
-std::string label_of(const std::string& name, const std::string& unit) {
-  return unit == "yes/no" ? name : fmt::format("{} [{}]", name, unit);
-}
-
-std::string value_text(const SweepAxis& axis, std::size_t place) {
-  if (axis.words.empty()) return fmt::format("{} = {:.4g}", axis.name, axis.values[place]);
-  return fmt::format("{} {}", axis.name, axis.words[static_cast<std::size_t>(axis.values[place])]);
-}
-
-// From half a step before to half a step after each value, of an axis that increases.
-class Cells {
- public:
-  explicit Cells(const SweepAxis& axis) : log_(axis.logarithmic), values_(axis.values) {
-    std::ranges::sort(values_);
-  }
-  std::pair<double, double> around(double x) const {
-    const auto i = static_cast<std::size_t>(std::ranges::lower_bound(values_, x) - values_.begin());
-    const std::size_t last = values_.size() - 1;
-    if (last == 0) return {x - 0.5, x + 0.5};
-    const double low = i > 0 ? between(values_[i - 1], x) : beyond(x, values_[1]);
-    const double high = i < last ? between(x, values_[i + 1]) : beyond(x, values_[last - 1]);
-    return {low, high};
-  }
-  std::pair<double, double> all() const {
-    return {around(values_.front()).first, around(values_.back()).second};
-  }
-
- private:
-  double between(double a, double b) const { return log_ ? std::sqrt(a * b) : (a + b) / 2; }
-  // As far on the other side of x as half the way to its neighbour.
-  double beyond(double x, double neighbour) const {
-    return log_ ? x * std::sqrt(x / neighbour) : x + (x - neighbour) / 2;
-  }
-  bool log_;
-  std::vector<double> values_;
-};
 
 struct Mean {
   double sum = 0, count = 0;
@@ -101,7 +52,7 @@ class Drawing {
       panel.title = title(places);
       panel.x_label = label_of(x.name, x.unit);
       panel.log_x = x.logarithmic;
-      panel.x_range = Cells(x).all();
+      panel.x_range = AxisCells(x).all();
       if (plan_.boundary) {
         draw_boundary(panel, values);
       } else if (y_) {
@@ -121,7 +72,7 @@ class Drawing {
     for (std::uint64_t i = 0; i < table_.points(); ++i) {
       const double value = table_.at(i, column_);
       if (!table_.done[i] || std::isnan(value)) continue;
-      const SweepPoint point = point_of(plan_, i);
+      const SweepPoint point = point_of(plan_, table_.rows.point(i));
       std::vector<std::size_t> rest = point.place;
       std::array<std::size_t, 2> at{std::exchange(rest[x_], 0), 0};
       if (y_) at[1] = std::exchange(rest[*y_], 0);
@@ -131,9 +82,36 @@ class Drawing {
       Mean& mean = panels_[rest][at];
       mean.sum += value;
       ++mean.count;
-      mean.point = i;
+      mean.point = table_.rows.point(i);
       low_ = std::min(low_, mean.value());
       high_ = std::max(high_, mean.value());
+    }
+    if (plan_.refine) y_ ? fill_panels() : keep_coarse_panels();
+  }
+
+  // Where nothing else is on a finer step: panels are for the coarse ones.
+  void keep_coarse_panels() {
+    std::erase_if(panels_, [&](const auto& panel) {
+      return std::ranges::any_of(plan_.refine->axes, [&](std::size_t a) {
+        return panel.first[a] % (std::size_t{1} << plan_.refine->depth) != 0;
+      });
+    });
+  }
+
+  // What has no point of its own is what the corners of its cell make it.
+  void fill_panels() {
+    keep_coarse_panels();
+    for (auto& [places, values] : panels_) {
+      std::vector<std::size_t> at = places;
+      for (at[x_] = 0; at[x_] < plan_.axes[x_].values.size(); ++at[x_]) {
+        for (at[*y_] = 0; at[*y_] < plan_.axes[*y_].values.size(); ++at[*y_]) {
+          const std::array<std::size_t, 2> key{at[x_], at[*y_]};
+          if (values.contains(key)) continue;
+          if (const auto value = table_.inferred(at, 0, column_)) {
+            values[key] = {*value, 1, values.begin()->second.point};
+          }
+        }
+      }
     }
   }
 
@@ -142,14 +120,14 @@ class Drawing {
     for (std::size_t a = 0; a < places.size(); ++a) {
       const SweepAxis& axis = plan_.axes[a];
       if (a == x_ || a == y_ || axis.spread != Spread::grid || axis.values.size() < 2) continue;
-      text += (text.empty() ? "" : ", ") + value_text(axis, places[a]);
+      text += (text.empty() ? "" : ", ") + with_name(axis, places[a]);
     }
     return text.empty() ? measured().name : text;
   }
 
   void draw_map(FigurePanel& panel, const Panels::mapped_type& values) const {
     const SweepAxis &x = plan_.axes[x_], &y = plan_.axes[*y_];
-    const Cells wide(x), high(y);
+    const AxisCells wide(x), high(y);
     panel.y_label = label_of(y.name, y.unit);
     panel.log_y = y.logarithmic;
     panel.y_range = high.all();
@@ -198,24 +176,8 @@ class Drawing {
   // Along x, everything else as it is at a point of the panel.
   void add_theory(FigurePanel& panel, std::uint64_t point) const {
     const SweepAxis& x = plan_.axes[x_];
-    const auto* key = find_parameter(x.key);
-    const Cells wide(x);
-    const auto [from, to] = wide.all();
     for (const std::string& line : plan_.figure.theory) {
-      const auto which = std::ranges::find(kTheories, line) - std::begin(kTheories);
-      Series series{theory_label(line),
-                    kTheoryInk[which],
-                    which == 0 ? Series::Style::dashed : Series::Style::line,
-                    {}};
-      RunPlan run = run_of(plan_, point);
-      for (int i = 0; i <= kTheoryPoints; ++i) {
-        const double part = static_cast<double>(i) / kTheoryPoints;
-        const double at =
-            x.logarithmic ? from * std::pow(to / from, part) : from + (to - from) * part;
-        if (key != nullptr) set_parameter_number(run.parameters, *key, at);
-        series.points.push_back({at, eta_limit(line, run)});
-      }
-      panel.series.push_back(series);
+      panel.series.push_back(theory_line(plan_, point, x, line));
     }
   }
 

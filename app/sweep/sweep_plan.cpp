@@ -48,6 +48,21 @@ bool SweepLimit::met(double value) const {
   return (!above || value > *above) && (!below || value < *below);
 }
 
+bool SweepRefine::met(double value) const {
+  if (!above && !below) return value == 1;
+  return (!above || value > *above) && (!below || value < *below);
+}
+
+std::uint64_t coarse_points(const SweepPlan& plan) {
+  std::uint64_t count = plan.points() / plan.samples / plan.repeats;
+  if (!plan.refine) return count;
+  for (const std::size_t a : plan.refine->axes) {
+    const std::uint64_t fine = plan.axes[a].values.size();
+    count = count / fine * (((fine - 1) >> plan.refine->depth) + 1);
+  }
+  return count;
+}
+
 std::uint64_t SweepPlan::points() const {
   std::uint64_t count = samples * repeats;
   for (const SweepAxis& axis : axes) {
@@ -74,6 +89,16 @@ SweepPoint point_of(const SweepPlan& plan, std::uint64_t index) {
     point.values.push_back(plan.axes[a].values[point.place[a]]);
   }
   return point;
+}
+
+std::uint64_t number_of(const SweepPlan& plan, const std::vector<std::size_t>& place,
+                        std::uint64_t sample, std::uint64_t repeat) {
+  std::uint64_t number = 0;
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    const SweepAxis& axis = plan.axes[a];
+    if (axis.spread == Spread::grid) number = number * axis.values.size() + place[a];
+  }
+  return (number * plan.samples + sample) * plan.repeats + repeat;
 }
 
 RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double> at) {

@@ -63,6 +63,19 @@ struct SweepBoundary {
   double tolerance = 0;  // of the axis [its unit]; of the ratio, if it is logarithmic
 };
 
+// Where the map changes it is made finer: the axes have all values then that they may ever need,
+// and only the points of every 2^depth-th are there from the beginning.
+struct SweepRefine {
+  std::vector<std::size_t> axes;  // of the plan
+  std::uint64_t depth = 1;        // how often a cell is halved
+  std::size_t column = 0;         // that is measured
+  std::optional<double> above, below;
+  std::optional<double> tolerance;  // of numbers: what may differ in a cell
+
+  // Which side a value is on, where that is what counts.
+  bool met(double value) const;
+};
+
 // Where a hand is and jumps to within the first tick, in place of a path.
 struct SweepJump {
   Vec3 at = Vec3::Zero(), by = Vec3::Zero();  // [m]
@@ -89,6 +102,7 @@ struct SweepPlan {
   std::vector<const MeasureInfo*> measures;
   std::vector<StopRule> stops;
   std::optional<SweepBoundary> boundary;
+  std::optional<SweepRefine> refine;
   FigureWish figure;
   std::map<SweepWorld, std::shared_ptr<const RunPlan>> worlds;  // all that its points need
   std::uint64_t key = 0;  // stands for the plan and all the files that it names
@@ -96,10 +110,17 @@ struct SweepPlan {
   // Points are numbered from 0: repeats fastest, then samples, then the last axis of the grid.
   std::uint64_t points() const;
 };
+// Those that are there before anything is refined: how many.
+std::uint64_t coarse_points(const SweepPlan& plan);
 
 // Errors: FileError FILE:LINE with key, what was found and what is allowed, also for files that the
 // plan names and for hands out of reach.
 SweepPlan read_sweep_plan(const std::filesystem::path& file);
+// The same of a plan's text that once stood in `file`. Without its worlds, runs and key: what they
+// need may be gone by now.
+SweepPlan plan_of_text(std::string text, const std::filesystem::path& file);
+// Reads what they need. Errors: as above.
+void read_worlds(SweepPlan& plan);
 
 // One of them.
 struct SweepPoint {
@@ -108,6 +129,9 @@ struct SweepPoint {
   std::uint64_t repeat = 0;
 };
 SweepPoint point_of(const SweepPlan& plan, std::uint64_t index);
+// The number of the point at these places of the axes (of sampled ones: at this sample).
+std::uint64_t number_of(const SweepPlan& plan, const std::vector<std::size_t>& place,
+                        std::uint64_t sample, std::uint64_t repeat);
 // The run of a point; where there is a boundary, with its axis at `at`.
 RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double> at = {});
 

@@ -11,9 +11,9 @@ namespace {
 // Blocks that threads take one after the other.
 class Team {
  public:
-  Team(const SweepPlan& plan, const SweepFolder& folder, const std::atomic<bool>& stop,
-       std::atomic<std::uint64_t>& done, const TakeBlock& take)
-      : plan_(plan), folder_(folder), stop_(stop), done_(done), take_(take) {}
+  Team(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
+       const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done, const TakeBlock& take)
+      : plan_(plan), rows_(rows), folder_(folder), stop_(stop), done_(done), take_(take) {}
 
   // False if stopped.
   bool work(const std::vector<std::uint64_t>& blocks, unsigned threads) {
@@ -40,28 +40,29 @@ class Team {
     }
   }
 
-  bool do_block(std::uint64_t block) {
-    std::vector<double> rows;
+  bool do_block(std::uint64_t number) {
+    const SweepBlock block = rows_.block(number);
+    std::vector<double> values;
     if (auto found = folder_.read(block)) {
-      rows = *std::move(found);
-      done_ += folder_.size(block);
+      values = *std::move(found);
+      done_ += block.size;
     } else {
-      const std::uint64_t first = folder_.first(block);
-      for (std::uint64_t i = 0; i < folder_.size(block); ++i) {
+      for (std::uint64_t i = 0; i < block.size; ++i) {
         if (over_) return false;
-        const auto values = measure_point(plan_, first + i, stop_);
-        if (!values) return false;
-        rows.insert(rows.end(), values->begin(), values->end());
+        const auto one = measure_point(plan_, rows_.point(block.first + i), stop_);
+        if (!one) return false;
+        values.insert(values.end(), one->begin(), one->end());
         ++done_;
       }
-      folder_.write(block, rows);
+      folder_.write(block, values);
     }
     const std::lock_guard lock(mutex_);
-    if (take_) take_(block, rows);
+    if (take_) take_(number, values);
     return true;
   }
 
   const SweepPlan& plan_;
+  const SweepRows& rows_;
   const SweepFolder& folder_;
   const std::atomic<bool>& stop_;
   std::atomic<std::uint64_t>& done_;
@@ -74,20 +75,21 @@ class Team {
 
 }  // namespace
 
-bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
-              const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
-              const TakeBlock& take) {
+bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
+              const SweepShare& share, const std::atomic<bool>& stop,
+              std::atomic<std::uint64_t>& done, const TakeBlock& take) {
   const unsigned threads =
       share.threads > 0 ? share.threads : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::uint64_t> own, others;
+  const std::uint64_t begin = rows.first_block(), count = rows.blocks() - begin;
   // Each begins elsewhere with what others may be doing, too.
-  const std::uint64_t from = folder.blocks() * share.shard / share.shards;
-  for (std::uint64_t b = 0; b < folder.blocks(); ++b) {
-    if (b % share.shards == share.shard) own.push_back(b);
-    const std::uint64_t turned = (b + from) % folder.blocks();
+  const std::uint64_t from = count * share.shard / share.shards;
+  for (std::uint64_t b = 0; b < count; ++b) {
+    if ((begin + b) % share.shards == share.shard) own.push_back(begin + b);
+    const std::uint64_t turned = begin + (b + from) % count;
     if (turned % share.shards != share.shard) others.push_back(turned);
   }
-  Team team(plan, folder, stop, done, take);
+  Team team(plan, rows, folder, stop, done, take);
   return team.work(own, threads) && (!share.helps || team.work(others, threads));
 }
 
@@ -96,20 +98,23 @@ std::uint64_t SweepBook::missing() const {
 }
 
 void SweepBook::take(std::uint64_t block, const std::vector<double>& rows) {
-  table_.take(folder_.first(block), rows);
+  table_.take(table_.rows.block(block).first, rows);
   taken_[block] = true;
   if (told_) told_(block, rows);
 }
 
 std::uint64_t SweepBook::gather() {
   std::uint64_t found = 0;
-  for (std::uint64_t b = 0; b < folder_.blocks(); ++b) {
-    if (taken_[b]) continue;
-    const auto rows = folder_.read(b);
-    if (!rows) continue;
-    take(b, *rows);
-    found += folder_.size(b);
-  }
+  do {
+    taken_.resize(table_.rows.blocks(), false);
+    for (std::uint64_t b = 0; b < table_.rows.blocks(); ++b) {
+      if (taken_[b]) continue;
+      const auto rows = folder_.read(table_.rows.block(b));
+      if (!rows) continue;
+      take(b, *rows);
+      found += table_.rows.block(b).size;
+    }
+  } while (missing() == 0 && table_.grow());
   return found;
 }
 

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "app/run/simulate.h"
+#include "app/figure/figure.h"
+#include "app/sweep/sweep_plan.h"
 
 namespace limpid {
 
@@ -13,5 +14,9 @@ std::string theory_label(const std::string& line);
 // The smallest eta for the run's arm where its hand begins, in its grip: `pr` (25), `routh` of the
 // locked system, `routh_compliant` with the proxy on the coupling's spring.
 double eta_limit(const std::string& line, const RunPlan& run);
+
+// That line along x, whose settings a point has otherwise. The plan needs its worlds.
+Series theory_line(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
+                   const std::string& line);
 
 }  // namespace limpid

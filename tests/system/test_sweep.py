@@ -137,19 +137,41 @@ class Tiny(SystemTest):
         self.assertFalse((out / "blocks").exists())
 
 
+# A map of 65 x 65 for each of two laws, of which it needs a part.
+REFINED = """title = "Refined"
+hand = { at = [0.19, 0, -0.035], jump = [0, 0, -0.015] }
+seconds = 0.3
+measure = ["energy_highest", "chatter"]
+block = 10
+axis = [
+  { key = "coupling.kind", values = ["standard", "proposed"] },
+  { key = "hand.stiffness", from = 100, to = 3000, count = 9, scale = "log" },
+  { key = "scene.stiffness", from = 200, to = 5000, count = 9, scale = "log" },
+]
+[refine]
+depth = 3
+measure = "chatter"
+above = 0.02
+"""
+
+
 class Survival(SystemTest):
+    TEXT = LARGE
     plan: Path
     table: bytes  # that all must come to
+    points: int   # of it
 
     @classmethod
     def setUpClass(cls) -> None:
         super().setUpClass()
-        cls.plan = plan_of(cls.directory, LARGE)
+        cls.plan = plan_of(cls.directory, cls.TEXT)
         out = cls.directory / "reference"
         result = limpid("sweep", cls.plan, "--out", out, timeout=300)
         if result.status != 0:
             raise AssertionError(result.err)
         cls.table = (out / "table.h5").read_bytes()
+        with h5py.File(out / "table.h5") as table:
+            cls.points = int(table.attrs["points"])
         random.seed(16)
 
     def gathered(self, out: Path) -> bytes:
@@ -207,7 +229,7 @@ class Survival(SystemTest):
         self.assertEqual(said, "limpid: stopped; the same command goes on from here\n")
         with h5py.File(out / "table.h5") as table:
             done = table["/done"][:] == 1
-            self.assertTrue(0 < done.sum() < 2000)
+            self.assertTrue(0 < done.sum() < self.points)
             self.assertTrue(np.all(np.isfinite(table["/measure/chatter"][:][done])))
 
     def test_a_full_disk_loses_nothing(self) -> None:
@@ -230,6 +252,7 @@ class Survival(SystemTest):
     def test_another_build_is_refused(self) -> None:
         out = self.directory / "build"
         limpid("sweep", self.plan, "--out", out, "--shard", "1/50", timeout=300)
+        before = len(list((out / "blocks").glob("*.h5")))
         other = self.directory / "limpid"
         shutil.copy(LIMPID, other)
         with other.open("ab") as file:
@@ -239,7 +262,7 @@ class Survival(SystemTest):
                                   capture_output=True, text=True)  # fmt: skip
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("made from another build of limpid", done.stderr)
-        self.assertEqual(len(list((out / "blocks").glob("*.h5"))), 2)
+        self.assertEqual(len(list((out / "blocks").glob("*.h5"))), before)
 
     def test_ranks_of_mpirun_some_killed(self) -> None:
         mpirun = shutil.which("mpirun")
@@ -253,7 +276,7 @@ class Survival(SystemTest):
             run = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             while killed < 3 and run.poll() is None:
                 time.sleep(0.02)
-                if len(list(out.glob("blocks/*.h5"))) > 20 * killed:
+                if len(list(out.glob("blocks/*.h5"))) > 5 * killed:
                     if kill_one("--mpi", str(out)):
                         killed += 1
                         break
@@ -289,6 +312,61 @@ class Survival(SystemTest):
         self.assertGreaterEqual(killed, 2)
         self.assertEqual((out / "table.h5").read_bytes(), self.table)
         self.assertGreater(len(list((out / "slurm").glob("*.log"))), 8, "none was submitted again")
+
+
+class RefinedSurvival(Survival):
+    """The same of rounds, each of which follows from the one before."""
+
+    TEXT = REFINED
+
+    def test_shards_and_their_gatherers_come_to_the_same_table(self) -> None:
+        out = self.directory / "rounds"
+        for call in range(20):
+            for i in (3, 1, 2):
+                result = limpid("sweep", self.plan, "--out", out, "--shard", f"{i}/3", timeout=300)
+                self.assertEqual((result.status, result.err), (0, ""))
+                if "round" not in result.out:
+                    break
+                self.assertIn("once all parts are, call them again for the next", result.out)
+            part = limpid("sweep", self.plan, "--out", out, "--gather")
+            if part.status == 0:
+                break
+            self.assertRegex(part.out, r"\d+ of \d+ points of \d+ rounds so far")
+            with h5py.File(out / "table.h5") as table:
+                self.assertEqual(int(table["/done"][:].sum()), table.attrs["done"])
+        self.assertGreater(call, 1)
+        self.assertEqual((out / "table.h5").read_bytes(), self.table)
+
+    def test_it_is_the_map_of_the_full_grid_with_a_part_of_its_points(self) -> None:
+        full = REFINED[:REFINED.index("[refine]")].replace("count = 9", "count = 65")
+        out = self.directory / "full"
+        plan_of(self.directory, full).rename(self.directory / "full.toml")
+        plan_of(self.directory, REFINED)
+        limpid("sweep", self.directory / "full.toml", "--out", out, timeout=300)
+        with h5py.File(out / "table.h5") as grid, \
+                h5py.File(self.directory / "reference" / "table.h5") as table:
+            everything = grid["/measure/chatter"][:]
+            number = table["/point"][:]
+            # A point is the same run, to where the axes' values differ in their last bits.
+            np.testing.assert_allclose(table["/measure/chatter"][:], everything[number], rtol=1e-3,
+                                       atol=1e-6)
+            self.assertLess(len(number), 0.25 * len(everything))
+            self.assertTrue(np.all(np.diff(table["/round"][:].astype(int)) >= 0))
+            # Where it was not refined, all points of the full grid are on the side of those around.
+            side = (everything > 0.02).reshape(2, 65, 65)
+            there = np.zeros(len(everything), bool)
+            there[number] = True
+            there = there.reshape(side.shape)
+            wrong = 0
+            for kind in range(2):
+                for x, y in np.argwhere(~there[kind]):
+                    for step in (2, 4, 8):  # the smallest cell whose corners are all there
+                        a, b = x - x % step, y - y % step
+                        c, d = min(a + step, 64), min(b + step, 64)
+                        if there[kind][[a, a, c, c], [b, d, b, d]].all():
+                            wrong += side[kind, x, y] != side[kind, a, b]
+                            break
+            self.assertLessEqual(wrong, 0.002 * side.size)
 
 
 if __name__ == "__main__":

@@ -45,6 +45,7 @@ class WindowTest(unittest.TestCase):
                             "XDG_CACHE_HOME": str(self.home / "cache")}
         self.states = (self.home / "states").open("w")
         self.addCleanup(self.states.close)
+        self.words: list[str] = []  # on the command line
         self.prepare()
         self.start()
 
@@ -55,7 +56,7 @@ class WindowTest(unittest.TestCase):
         """The program; what it said of its state before is forgotten."""
         self.states.truncate(0)
         self.states.seek(0)
-        self.app = subprocess.Popen([LIMPID, "--print-state"], env=self.environment,
+        self.app = subprocess.Popen([LIMPID, "--print-state", *self.words], env=self.environment,
                                     stdout=self.states)
         self.addCleanup(self.stop, self.app)
         self.wait("the first ticks and frames", lambda s: s["ticks"] > 200 and s["frames"] > 5, 60)

@@ -48,6 +48,7 @@ enum class Action : std::uint8_t {
   toggle_right,
   toggle_plots,
   toggle_experiments,
+  toggle_sweep,
   add_plot,
   layouts,
   presets,

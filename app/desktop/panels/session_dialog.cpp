@@ -61,7 +61,8 @@ fs::path SessionDialog::draw(bool& open) {
   was_shown_ = true;
   fs::path chosen;
   const std::string before = typed_;
-  if (ImGui::InputTextWithHint("##path", "type a path and press Enter; dropping a file works too",
+  if (ImGui::InputTextWithHint("##path",
+                               "a recording, or a sweep's folder; dropping it here works too",
                                &typed_, ImGuiInputTextFlags_EnterReturnsTrue) ||
       accepted()) {
     chosen = expanded(typed_);
@@ -79,8 +80,9 @@ fs::path SessionDialog::draw(bool& open) {
   ImGui::EndPopup();
   std::error_code none;
   if (chosen.empty()) return {};
-  if (!fs::is_regular_file(chosen, none)) {
-    complaint_ = "There is no such file.";
+  if (!fs::is_regular_file(chosen, none) && !fs::is_regular_file(chosen / "table.h5", none)) {
+    complaint_ = fs::is_directory(chosen, none) ? "There is no table.h5 of a sweep in that folder."
+                                                : "There is no such file.";
     return {};
   }
   open = false;

@@ -183,6 +183,12 @@ void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_le
   if (playback.loading()) {
     ImGui::AlignTextToFramePadding();
     ImGui::Text("%s ...", playback.what().c_str());
+    if (playback.loading_part() > 0) {
+      ImGui::SameLine();
+      progress_bar(playback.loading_part(), kProgress * current_scale());
+      ImGui::SameLine();
+      if (button("Cancel", "Stop it; what is there stays.")) playback.cancel_loading();
+    }
   } else if (playback.on()) {
     playback_controls(playback, act);
   } else {

@@ -116,6 +116,7 @@ bool Playback::take_results() {
   bool opened = false;
   if (auto loaded = loading_.take(); loaded && *loaded) {
     rerunning_.cancel();
+    if (!(*loaded)->said.empty()) notices_.say((*loaded)->said, (*loaded)->bad);
     PlayedSession fresh(std::move(**loaded));
     shown_.emplace(std::move(fresh));
     last_ = shown_->file();

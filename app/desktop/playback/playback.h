@@ -19,7 +19,12 @@ class Playback {
   void open_story();
   // A hand's path through this world (all of a plan but the hand), run beside the window.
   void run_hand(const std::filesystem::path& file, RunPlan world);
+  // What some other work makes; nothing where that was cancelled.
+  using Load = Background<std::optional<LoadedSession>>::Work;
+  void load(std::string what, Load work) { loading_.start(std::move(what), std::move(work)); }
   bool loading() const { return loading_.busy(); }
+  double loading_part() const { return loading_.part(); }  // 0 to 1; 0 of what does not tell
+  void cancel_loading() { loading_.ask_to_stop(); }
   const std::string& what() const { return loading_.what(); }  // for people, while loading
   void close();
   // The same of a story that somebody takes over: it goes on here when it is opened again.

@@ -24,6 +24,8 @@ struct LoadedSession {
   MeshModels models;
   History history;
   std::vector<StoryStep> steps = {};  // of the story that it tells; none: it is no story
+  std::string said = {};              // to be told once it is shown; empty: nothing
+  bool bad = false;                   // what is said is something wrong
 };
 
 // A second run of a recording's hand.

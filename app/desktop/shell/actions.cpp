@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "app/desktop/shell/keys.h"
+#include "app/desktop/sweep/sweep_desk.h"
 #include "app/style/number_slider.h"
 
 namespace limpid {
@@ -39,6 +40,14 @@ void toggle(Desktop& desktop, Dialog dialog) {
   desktop.open_dialog(desktop.dialog() == dialog ? Dialog::none : dialog);
 }
 
+void toggle_sweep(Desktop& desktop) {
+  if (desktop.sweep().sweep() != nullptr || desktop.sweep().loading()) {
+    return toggle(desktop, Dialog::sweep);
+  }
+  desktop.notices().say(
+      "No sweep is open. Drop a sweep's folder or its table.h5 here, or open it with Ctrl+O.");
+}
+
 void cut_force(Desktop& desktop) {
   if (desktop.desk().loop().snapshot().arming != Arming::off) {
     desktop.notices().say("Force off. F switches it on again.");
@@ -47,7 +56,7 @@ void cut_force(Desktop& desktop) {
 }
 
 // Closes what is open first: a menu, then typing outside of dialogs (which ImGui ends), the
-// question, the dialog.
+// question, a run that goes on beside the window, the dialog.
 void close_one(Desktop& desktop) {
   const Focus focus = desktop.focus();
   if (focus.popup) {
@@ -56,6 +65,8 @@ void close_one(Desktop& desktop) {
     ImGui::ClosePopupToLevel(level, true);
   } else if (focus.question) {
     desktop.document().stay();
+  } else if (desktop.playback().loading_part() > 0 && desktop.playback().loading()) {
+    desktop.playback().cancel_loading();
   } else if (!focus.text || modal(focus.dialog) || focus.dialog == Dialog::plot) {
     desktop.close_dialog();
   }
@@ -149,6 +160,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::save_and_leave: d.save_and_leave(); break;
     case Action::toggle_help: toggle(d, Dialog::help); break;
     case Action::toggle_experiments: toggle(d, Dialog::experiments); break;
+    case Action::toggle_sweep: toggle_sweep(d); break;
     case Action::add_plot: d.add_plot(); break;
     case Action::layouts: d.open_dialog(Dialog::layouts); break;
     case Action::presets: d.open_dialog(Dialog::presets); break;

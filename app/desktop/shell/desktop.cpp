@@ -7,6 +7,7 @@
 #include "app/base/assets.h"
 #include "app/base/user_dirs.h"
 #include "app/desktop/base/thumbnails.h"
+#include "app/desktop/sweep/sweep_desk.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "app/run/twin_settings.h"
@@ -29,12 +30,15 @@ Desktop::Desktop(Settings settings, const AskForPriority& ask)
                 .close = [this] { close_device(); },
                 .toggle_coupling = [this] { toggle_coupling(); }}),
       playback_(notices_),
+      sweep_(std::make_unique<SweepDesk>(notices_)),
       layouts_(data_dir() / "assets/layouts.toml", user_config_dir() / "layouts.toml"),
       presets_(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
       analysed_(settings_.parameters),
       analysed_twin_(settings_.twin.parameters) {
   desk_.controls().parameters = settings_.parameters;
 }
+
+Desktop::~Desktop() = default;
 
 void Desktop::open_world(const std::string& device, const std::string& tip,
                          const std::string& scene) {
@@ -119,17 +123,7 @@ void Desktop::update(double dt) {
     make_thumbnail(*recorded, desk_.stage(), desk_.row(), desk_.twin_row(), settings_.theme);
     remember_recent(settings_, recorded->string());
   }
-  if (playback_.update(dt)) {
-    const PlayedSession& opened = *playback_.shown();
-    const std::size_t k = opened.row_to_show();
-    const Session& session = opened.player().session();
-    make_thumbnail(opened.file(), shown(), session.row(k),
-                   session.twin ? session.twin->row(k) : std::span<const double>(),
-                   settings_.theme);
-    camera_.frame(shown().picture.bounds());
-    remember_recent(settings_, playback_.last().string());
-    step_ = nullptr;
-  }
+  follow_playback(dt);
   follow_story();
   take_loaded();
   devices_.update();

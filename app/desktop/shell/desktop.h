@@ -20,9 +20,12 @@
 
 namespace limpid {
 
+class SweepDesk;
+
 class Desktop {
  public:
   Desktop(Settings settings, const AskForPriority& ask);
+  ~Desktop();
 
   Settings& settings() { return settings_; }
   Settings settings_to_keep() const;  // for the next start, with whichever arm
@@ -31,6 +34,7 @@ class Desktop {
   Desk& desk() { return desk_; }
   DeviceDesk& devices() { return devices_; }
   Playback& playback() { return playback_; }
+  SweepDesk& sweep() { return *sweep_; }
   Camera& camera() { return camera_; }
   // The view is chosen for the window's size until somebody chooses one.
   bool automatic_view() const { return automatic_view_; }
@@ -98,6 +102,7 @@ class Desktop {
   void open_scene(const std::filesystem::path& file);
   void add_model(const std::filesystem::path& file);
   void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
+  void open_sweep(const std::filesystem::path& table);               // in its map
   void run_hand(const std::filesystem::path& file);
   // Another arm in place of the virtual one, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
@@ -137,6 +142,7 @@ class Desktop {
   void start_recording();
   void follow_parameters();
   void follow_twin();
+  void follow_playback(double dt);
   void follow_story();
   void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
   void show_scene();
@@ -148,6 +154,7 @@ class Desktop {
   Desk desk_;
   DeviceDesk devices_;
   Playback playback_;
+  std::unique_ptr<SweepDesk> sweep_;
   Camera camera_;
   bool automatic_view_ = true;
   const StoryStep* step_ = nullptr;  // of the story, that the camera knows

@@ -1,10 +1,13 @@
-// What the desktop does with files that are dropped on it, or named when it starts.
+// What the window does with files that are dropped on it, or opened otherwise, and with what comes
+// of them.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 
+#include "app/desktop/base/thumbnails.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/desktop/sweep/sweep_desk.h"
 #include "devices/files/scene/model_units.h"
 #include "render/model/model_file.h"
 
@@ -14,11 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 // Earlier ones change what later ones go into.
-enum class DropKind : std::uint8_t { arm, scene, model, session, hand, unknown };
+enum class DropKind : std::uint8_t { arm, scene, model, session, sweep, hand, unknown };
 
 DropKind drop_kind(const fs::path& file) {
   std::error_code none;
   const std::string suffix = small_suffix(file);
+  if (sweep_table_at(file)) return DropKind::sweep;
   if (fs::is_directory(file, none)) return DropKind::unknown;
   if (suffix == ".urdf" || suffix == ".xacro") return DropKind::arm;
   if (suffix == ".toml") return DropKind::scene;
@@ -38,8 +42,8 @@ std::string why_not_opened(const std::vector<fs::path>& files) {
                 names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMost)), ", "));
   if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
   return fmt::format(
-      "{}: not opened. Drop models ({}), scenes (.toml), recordings (.h5), a hand's path (.csv) or "
-      "an arm (.urdf) here.",
+      "{}: not opened. Drop models ({}), scenes (.toml), recordings (.h5), a sweep's folder or "
+      "table, a hand's path (.csv) or an arm (.urdf) here.",
       text, kModelSuffixes);
 }
 
@@ -55,6 +59,7 @@ void Desktop::open_files(const std::vector<fs::path>& files) {
         case DropKind::scene: open_scene(file); break;
         case DropKind::model: add_model(file); break;
         case DropKind::session: playback_.open(file); break;
+        case DropKind::sweep: open_sweep(*sweep_table_at(file)); break;
         case DropKind::hand: run_hand(file); break;
         case DropKind::unknown: unknown.push_back(file); break;
       }
@@ -63,6 +68,30 @@ void Desktop::open_files(const std::vector<fs::path>& files) {
     }
   }
   if (!unknown.empty()) notices_.say(why_not_opened(unknown), true);
+}
+
+void Desktop::open_sweep(const fs::path& table) {
+  std::error_code none;
+  sweep_->open(fs::weakly_canonical(table, none));
+  open_dialog(Dialog::sweep);
+}
+
+// What has been asked for and is there now: a recording, a point of a sweep, a sweep.
+void Desktop::follow_playback(double dt) {
+  if (sweep_->update()) remember_recent(settings_, sweep_->sweep()->file.string());
+  if (!playback_.update(dt)) return;
+  const PlayedSession& opened = *playback_.shown();
+  const std::size_t k = opened.row_to_show();
+  const Session& session = opened.player().session();
+  make_thumbnail(opened.file(), shown(), session.row(k),
+                 session.twin ? session.twin->row(k) : std::span<const double>(), settings_.theme);
+  camera_.frame(shown().picture.bounds());
+  step_ = nullptr;
+  if (playback_.last() != sweep_->last_point()) {
+    remember_recent(settings_, playback_.last().string());
+  } else if (dialog_ == Dialog::sweep) {
+    close_dialog();  // over what has come of its point
+  }
 }
 
 // Along the path as fast as it goes, in the present world; the window plays what came of it.

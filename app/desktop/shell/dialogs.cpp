@@ -2,6 +2,7 @@
 
 #include "app/base/assets.h"
 #include "app/desktop/base/window_layout.h"
+#include "app/desktop/panels/sweep_panel.h"
 #include "app/desktop/panels/unsaved_question.h"
 #include "app/desktop/shell/reading.h"
 
@@ -35,6 +36,14 @@ void Dialogs::draw_experiments() {
   if (trial.empty()) return;
   desktop_.playback().open(trial);
   desktop_.close_dialog();
+}
+
+void Dialogs::draw_sweep() {
+  SweepDesk& sweep = desktop_.sweep();
+  const MapWish wish = draw(Dialog::sweep, [&](bool& open) {
+    return draw_sweep_panel(sweep, desktop_.playback(), open);
+  });
+  if (wish.point) sweep.play(*wish.point, wish.at, desktop_.playback());
 }
 
 void Dialogs::draw_scenes(const Act& act) {
@@ -81,7 +90,7 @@ void Dialogs::draw_paths() {
 void Dialogs::draw_sessions() {
   const fs::path session =
       draw(Dialog::open_session, [this](bool& open) { return session_.draw(open); });
-  if (!session.empty()) desktop_.playback().open(session);
+  if (!session.empty()) desktop_.open_files({session});
   Playback& playback = desktop_.playback();
   const auto video = draw(Dialog::video, [&](bool& open) {
     return video_.draw(open, playback, desktop_.settings().twin_overlaid);

@@ -22,6 +22,7 @@ class Dialogs {
 
   void draw_reading();  // help and the like
   void draw_experiments();
+  void draw_sweep();
   // Those about scenes and files, which are modal.
   void draw_scenes(const Act& act);
   void draw_sessions();

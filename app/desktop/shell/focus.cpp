@@ -18,6 +18,7 @@ const char* name(Dialog dialog) {
     case Dialog::help: return "help";
     case Dialog::about: return "about";
     case Dialog::experiments: return "experiments";
+    case Dialog::sweep: return "sweep";
     case Dialog::plot: return "plot";
     case Dialog::open_session: return "open session";
     case Dialog::gallery: return "gallery";

@@ -13,6 +13,7 @@ enum class Dialog : std::uint8_t {
   help,
   about,
   experiments,
+  sweep,
   plot,
   open_session,
   gallery,

@@ -16,6 +16,7 @@
 #include "app/desktop/panels/twin_panel.h"
 #include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
+#include "app/desktop/sweep/sweep_desk.h"
 #include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
@@ -39,10 +40,12 @@ void Frame::draw() {
   draw_fold_tabs(at);
   part([&] { dialogs_.draw_reading(); });
   part([&] { dialogs_.draw_experiments(); });
+  part([&] { dialogs_.draw_sweep(); });
   part([&] { dialogs_.draw_plot_chooser(at.view); });
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
   part([&] { draw_video_bar(desktop_.playback(), at.view); });
   part([&] {
+    if (desktop_.dialog() == Dialog::sweep) return;  // which it would cover
     if (story_asked_for(desktop_.playback(), settings, at.view)) desktop_.play_story();
   });
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
@@ -118,7 +121,9 @@ bool Frame::differs() {
   bool different = false;
   guard(desktop_.notices(), [&] {
     const PlayedSession* session = desktop_.playback().shown();
-    different = (session != nullptr && session->player().playing()) ||
+    const bool filled = seen_of_sweep_ != desktop_.sweep().revision();
+    seen_of_sweep_ = desktop_.sweep().revision();
+    different = filled || (session != nullptr && session->player().playing()) ||
                 view_.differs(view_scene(), desktop_.camera(), desktop_.settings());
   });
   return different;

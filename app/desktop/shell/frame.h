@@ -58,6 +58,7 @@ class Frame {
   CouplingPanel coupling_;
   AnalysisPanel analysis_;
   Dialogs dialogs_;
+  std::uint64_t seen_of_sweep_ = 0;  // its revision
 };
 
 }  // namespace limpid

@@ -42,7 +42,7 @@ void item(const char* label, const char* keys, Action action, const Act& act, bo
 
 void file_menu(Desktop& d, RecentMenu& recent, const Act& act) {
   if (!ImGui::BeginMenu("File")) return;
-  item("Open session...", "Ctrl+O", Action::open_session, act);
+  item("Open session or sweep...", "Ctrl+O", Action::open_session, act);
   const fs::path chosen = recent.draw(d.settings().recent);
   item("Add model...", "Ctrl+M", Action::add_model, act);
   item("Save scene", "Ctrl+S", Action::save_scene, act);
@@ -150,6 +150,7 @@ void session_menu(Desktop& d, const Act& act) {
   item("Back to live", "Backspace", Action::back_to_live, act, playback.on());
   ImGui::Separator();
   if (ImGui::MenuItem("Experiments of the paper...", "F5")) d.open_dialog(Dialog::experiments);
+  item("Map of the sweep", "F6", Action::toggle_sweep, act);
   ImGui::EndMenu();
 }
 
@@ -166,7 +167,7 @@ void scene_menu(Desktop& d, const Act& act) {
   item("Copy selected object", "Ctrl+D", Action::duplicate_selected, act, any);
   item("Remove selected object", "Delete", Action::remove_selected, act, any);
   ImGui::Separator();
-  ImGui::TextDisabled("Drop models, scenes or recordings on the window.");
+  ImGui::TextDisabled("Drop models, scenes, recordings or sweeps on the window.");
   ImGui::EndMenu();
 }
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/desktop/sweep/sweep_desk.h"
+
 namespace limpid {
 
 namespace {
@@ -26,6 +28,26 @@ double twin_error(const Desktop& d) {
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
   if (!d.twin_row().empty()) channels.values(d.twin_row(), values);
   return values[static_cast<std::size_t>(Channel::error)];
+}
+
+// Null without one; `map`: left, top, right and bottom on the screen [px], where it is shown.
+nlohmann::json state_of(const SweepDesk& desk) {
+  if (desk.sweep() == nullptr) return nullptr;
+  const OpenedSweep& sweep = *desk.sweep();
+  nlohmann::json state{{"file", sweep.file.string()},
+                       {"done", sweep.table.count()},
+                       {"points", sweep.table.points()},
+                       {"measure", sweep.table.columns[desk.choice().column].name},
+                       {"x", sweep.plan->axes[desk.choice().x].name},
+                       {"place", desk.choice().place},
+                       {"drawn", desk.map() != nullptr && desk.map()->choice == desk.choice()}};
+  if (desk.choice().y) state["y"] = sweep.plan->axes[*desk.choice().y].name;
+  if (desk.on_screen) {
+    const auto& [rect, pointed_at] = *desk.on_screen;
+    state["map"] = {rect.min.x, rect.min.y, rect.max.x, rect.max.y};
+    if (pointed_at) state["pointed_at"] = *pointed_at;
+  }
+  return state;
 }
 
 std::string told(Desktop& d) {
@@ -61,7 +83,8 @@ void print_state(Desktop& d, const WindowState& window) {
       "{}, "
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
-      "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}}}\n",
+      "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
+      "\"loading_part\": {:.3f}, \"sweep\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -75,7 +98,8 @@ void print_state(Desktop& d, const WindowState& window) {
       nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(),
       plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), window.width, window.height,
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
-      d.pads().size(), window.frames, window.input_waits);
+      d.pads().size(), window.frames, window.input_waits,
+      d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump());
   std::fflush(stdout);
 }
 

@@ -101,6 +101,7 @@ void Application::run(const std::string& complaint) {
                     file.filename().string()));
   }
   if (!options_.session.empty()) desktop_.playback().open(options_.session);
+  desktop_.open_files(options_.files);
   last_ = glfwGetTime();
   while (!leaving_) {
     if (window_.wait()) {

@@ -4,18 +4,20 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/tick/parameters.h"
 
 namespace limpid {
 
 struct DesktopOptions {
-  std::string device, scene;             // files; empty: as last time
-  std::string tip;                       // a link of the device; empty: as its file has it
-  std::optional<Parameters> parameters;  // default: as last time
-  std::filesystem::path session;         // to play at once
-  bool print_state = false;              // one line of JSON ten times a second
-  double ui_scale = 0;                   // 0: the screen's
+  std::string device, scene;                 // files; empty: as last time
+  std::string tip;                           // a link of the device; empty: as its file has it
+  std::optional<Parameters> parameters;      // default: as last time
+  std::filesystem::path session;             // to play at once
+  std::vector<std::filesystem::path> files;  // to open at once, as if dropped
+  bool print_state = false;                  // one line of JSON ten times a second
+  double ui_scale = 0;                       // 0: the screen's
 };
 
 // Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the

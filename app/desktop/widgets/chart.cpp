@@ -12,6 +12,8 @@
 namespace limpid {
 namespace {
 
+constexpr float kGap = 4;  // beside numbers [px]
+
 double share(const ChartAxis& axis, double value) {
   if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
   return std::log(std::max(value, 1e-300) / axis.low) / std::log(axis.high / axis.low);
@@ -28,6 +30,8 @@ struct Tick {
 
 std::vector<Tick> ticks(const ChartAxis& axis, int at_most) {
   std::vector<Tick> all;
+  for (const auto& [value, word] : axis.words) all.push_back({value, word});
+  if (!all.empty()) return all;
   if (!axis.logarithmic) {
     const Ticks linear = nice_ticks(axis.low, axis.high, at_most);
     for (std::int64_t i = linear.first; i <= linear.last; ++i) {
@@ -56,7 +60,11 @@ Chart::Chart(const std::string& title, const ChartAxis& x, const ChartAxis& y, f
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = font(Face::small)->FontSize;
   outside_ = {at, {at.x + ImGui::GetContentRegionAvail().x, at.y + height * scale}};
-  inside_ = {{at.x + (y.labelled ? 34 * scale : 2), at.y + 1.4f * line},
+  float left = y.labelled ? 34 * scale : 2;
+  for (const auto& [value, word] : y.words) {
+    left = std::max(left, text_size(Face::small, word).x + 2 * kGap);
+  }
+  inside_ = {{at.x + left, at.y + 1.4f * line},
              {outside_.max.x - 6 * scale, outside_.max.y - (x.labelled ? 1.4f * line : 4)}};
   const Palette& colours = current_palette();
   draw_clipped_text(*ImGui::GetWindowDrawList(), Face::small, at, colours.muted, title,
@@ -76,6 +84,16 @@ ImVec2 Chart::place(ChartPoint p) const {
   const double x = std::clamp(share(x_, p.x), -5.0, 6.0), y = std::clamp(share(y_, p.y), -5.0, 6.0);
   return {inside_.min.x + inside_.width() * static_cast<float>(x),
           inside_.max.y - inside_.height() * static_cast<float>(y)};
+}
+
+ChartPoint Chart::at(ImVec2 place) const {
+  const auto value = [](const ChartAxis& axis, float part) {
+    const auto p = static_cast<double>(part);
+    return axis.logarithmic ? axis.low * std::pow(axis.high / axis.low, p)
+                            : axis.low + (axis.high - axis.low) * p;
+  };
+  return {value(x_, (place.x - inside_.min.x) / inside_.width()),
+          value(y_, (inside_.max.y - place.y) / inside_.height())};
 }
 
 void Chart::draw_axes() const {
@@ -102,7 +120,7 @@ void Chart::draw_axes() const {
     }
     if (!y_.labelled) continue;
     const float width = text_size(Face::small, tick.label).x;
-    draw_text(draw, Face::small, {inside_.min.x - width - 4, y - line / 2}, colours.muted,
+    draw_text(draw, Face::small, {inside_.min.x - width - kGap, y - line / 2}, colours.muted,
               tick.label);
   }
 }

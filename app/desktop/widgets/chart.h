@@ -17,7 +17,8 @@ struct ChartPoint {
 struct ChartAxis {
   double low = 0, high = 1;  // low < high; above 0 if logarithmic
   bool logarithmic = false;
-  bool labelled = true;  // with numbers
+  bool labelled = true;                                    // with numbers
+  std::vector<std::pair<double, std::string>> words = {};  // in their place
 };
 
 // Draws into the ImGui window that is open, at its cursor and as wide as there is room.
@@ -29,7 +30,8 @@ class Chart {
   Chart(const Chart&) = delete;
   Chart& operator=(const Chart&) = delete;
 
-  ImVec2 place(ChartPoint p) const;  // on the screen [px]
+  ImVec2 place(ChartPoint p) const;   // on the screen [px]
+  ChartPoint at(ImVec2 place) const;  // the other way round
   const ScreenRect& inside() const { return inside_; }
   void line(const std::vector<ChartPoint>& points, ImU32 colour, float width = 1.8f) const;
   void dashes(const std::vector<ChartPoint>& points, ImU32 colour) const;

@@ -85,15 +85,15 @@ TEST_F(SweepFigures, InLettersFillInAsPointsCome) {
   const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
   MapText map(plan, measured_columns(plan));
   EXPECT_THAT(map.lines()[1], HasSubstr("1 ····"));
-  map.take(0, {0.0, 1.0, 2.0});
-  map.take(5, {4.0});
+  map.take(SweepRows(plan), 0, {0.0, 1.0, 2.0});
+  map.take(SweepRows(plan), 5, {4.0});
   const auto lines = map.lines();
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_THAT(lines[0], HasSubstr("energy"));
   EXPECT_THAT(lines[1], HasSubstr("1 ▓▓██"));
   EXPECT_THAT(lines[2], HasSubstr("0.6 ▒▒··"));
   EXPECT_THAT(lines[3], HasSubstr("0.4 ░░··"));
-  EXPECT_THAT(lines[4], HasSubstr("stiffness 100 to 1e+03"));
+  EXPECT_THAT(lines[4], HasSubstr("stiffness 100 to 1000"));
 }
 
 TEST(SlurmArrays, AreNamedAsSbatchHasThem) {

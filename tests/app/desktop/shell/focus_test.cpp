@@ -22,8 +22,8 @@ TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndView) {
 }
 
 TEST(Focus, WhatIsOnlyReadLeavesTheKeysToTheView) {
-  for (const Dialog dialog :
-       {Dialog::none, Dialog::help, Dialog::about, Dialog::experiments, Dialog::plot}) {
+  for (const Dialog dialog : {Dialog::none, Dialog::help, Dialog::about, Dialog::experiments,
+                              Dialog::sweep, Dialog::plot}) {
     EXPECT_EQ(owner_of({.dialog = dialog}), KeyOwner::view) << name(dialog);
   }
   for (const Dialog dialog : {Dialog::open_session, Dialog::gallery, Dialog::add_model,

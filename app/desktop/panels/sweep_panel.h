@@ -1,0 +1,16 @@
+// The map of a sweep over the window: what of it is shown, its values under the mouse, and its
+// points, to be run again.
+#pragma once
+
+#include "app/desktop/panels/sweep_chart.h"
+
+namespace limpid {
+
+// While `open`, which closing it clears. What is to be played.
+struct MapWish {
+  std::optional<std::uint64_t> point;
+  std::optional<double> at;  // of a boundary's axis
+};
+MapWish draw_sweep_panel(SweepDesk& desk, Playback& playback, bool& open);
+
+}  // namespace limpid

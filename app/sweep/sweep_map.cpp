@@ -1,0 +1,226 @@
+#include "app/sweep/sweep_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "app/sweep/axis_cells.h"
+#include "app/sweep/theory.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDecades = 1000;  // over so much colours go by the logarithm
+constexpr double kRoom = 0.05;     // above and below a curve, of its height
+
+bool sampled(const SweepAxis& axis) { return axis.spread != Spread::grid; }
+
+// Of a boundary's columns those that are values of its axis.
+bool along_boundary(const SweepPlan& plan, std::size_t column) {
+  return plan.boundary && column < 2;
+}
+
+class Making {
+ public:
+  Making(const OpenedSweep& sweep, const MapChoice& choice)
+      : sweep_(sweep), plan_(*sweep.plan), x_(plan_.axes[choice.x]) {
+    map_.choice = choice;
+    if (choice.y) y_ = &plan_.axes[*choice.y];
+    over_samples_ = sampled(x_) || (y_ != nullptr && sampled(*y_));
+    if (y_ == nullptr) {
+      map_.kind = SweepMap::Kind::curve;
+    } else if (over_samples_) {
+      map_.kind = SweepMap::Kind::dots;
+    }
+    const std::uint64_t together = plan_.repeats * (over_samples_ ? 1 : plan_.samples);
+    map_.yes_no = sweep.table.columns[choice.column].unit == "yes/no" && together == 1;
+  }
+
+  SweepMap make() {
+    collect();
+    ranges();
+    if (map_.kind == SweepMap::Kind::cells && map_.yes_no) add_changes();
+    if (map_.kind == SweepMap::Kind::curve && plan_.boundary && map_.choice.column == 0) {
+      add_last_change();
+    }
+    const bool over_eta = y_ != nullptr ? y_->key == "coupling.eta"
+                                        : along_boundary(plan_, map_.choice.column) &&
+                                              plan_.boundary->axis.key == "coupling.eta";
+    if (over_eta && !plan_.worlds.empty() && !map_.spots.empty()) {
+      for (const std::string& line : plan_.figure.theory) {
+        map_.lines.push_back(theory_line(plan_, map_.spots.front().point, x_, line));
+      }
+    }
+    return std::move(map_);
+  }
+
+ private:
+  // The places of a grid's axis from its lowest value up; of a sampled one any.
+  static std::vector<std::size_t> upwards(const SweepAxis* axis) {
+    if (axis == nullptr || sampled(*axis)) return {0};
+    std::vector<std::size_t> places(axis->values.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    std::ranges::stable_sort(places, {}, [&](std::size_t i) { return axis_at(*axis, i); });
+    return places;
+  }
+
+  void collect() {
+    map_.rows = upwards(y_).size();
+    std::vector<std::size_t> place = map_.choice.place;
+    for (const std::size_t ix : upwards(&x_)) {
+      if (!sampled(x_)) place[map_.choice.x] = ix;
+      for (const std::size_t iy : upwards(y_)) {
+        if (y_ != nullptr && !sampled(*y_)) place[*map_.choice.y] = iy;
+        if (!over_samples_) {
+          add_spot(place, 0, plan_.samples);
+        } else {
+          for (std::uint64_t s = 0; s < plan_.samples; ++s) add_spot(place, s, s + 1);
+        }
+      }
+    }
+  }
+
+  // Over all repeats of these samples.
+  void add_spot(const std::vector<std::size_t>& place, std::uint64_t from, std::uint64_t to) {
+    MapSpot spot;
+    spot.point = number_of(plan_, place, from, 0);
+    double sum = 0, finite = 0;
+    for (std::uint64_t s = from; s < to; ++s) {
+      for (std::uint64_t r = 0; r < plan_.repeats; ++r) {
+        const auto row = sweep_.table.rows.row_of(number_of(plan_, place, s, r));
+        if (!row || !sweep_.table.done[*row]) continue;
+        ++spot.count;
+        const double value = sweep_.table.at(*row, map_.choice.column);
+        if (!std::isfinite(value)) continue;
+        sum += value;
+        ++finite;
+      }
+    }
+    double value = finite > 0 ? sum / finite : kNone;
+    if (spot.count == 0 && y_ != nullptr) {
+      if (const auto from_around = sweep_.table.inferred(place, 0, map_.choice.column)) {
+        spot.inferred = true;
+        value = *from_around;
+      }
+    }
+    spot.x = axis_at(x_, sampled(x_) ? from : place[map_.choice.x]);
+    spot.y = y_ == nullptr ? value : axis_at(*y_, sampled(*y_) ? from : place[*map_.choice.y]);
+    spot.cell = {spot.x, spot.x, spot.y, spot.y, value};
+    if (map_.kind == SweepMap::Kind::cells) {
+      std::tie(spot.cell.x_low, spot.cell.x_high) = wide_.around(spot.x);
+      std::tie(spot.cell.y_low, spot.cell.y_high) = high().around(spot.y);
+    }
+    // Between the points of a curve there is nothing to be drawn.
+    if (spot.count > 0 || y_ != nullptr || !plan_.refine) map_.spots.push_back(spot);
+  }
+
+  const AxisCells& high() {
+    if (!high_) high_.emplace(*y_);
+    return *high_;
+  }
+
+  void ranges() {
+    const auto [low, highest] = sweep_.ranges[map_.choice.column];
+    map_.value_range = {low, highest > low ? highest : low + 1};
+    if (map_.yes_no) map_.value_range = {0, 1};
+    map_.log_values = !map_.yes_no && low > 0 && highest > kDecades * low;
+    map_.x_range = wide_.all();
+    if (y_ != nullptr) {
+      map_.y_range = high().all();
+    } else if (along_boundary(plan_, map_.choice.column)) {
+      map_.y_range = {plan_.boundary->axis.values.front(), plan_.boundary->axis.values.back()};
+    } else {
+      const double room = kRoom * (map_.value_range.second - map_.value_range.first);
+      map_.y_range = {map_.value_range.first - room, map_.value_range.second + room};
+    }
+  }
+
+  const MapSpot& spot(std::size_t ix, std::size_t iy, std::size_t rows) const {
+    return map_.spots[ix * rows + iy];
+  }
+
+  // Between cells that are there and differ.
+  void add_changes() {
+    const std::size_t rows = y_->values.size(), columns = x_.values.size();
+    Series line{"changes", kNeutralInk, Series::Style::line, {}};
+    const auto differ = [](const MapSpot& a, const MapSpot& b) {
+      return a.there() && b.there() && a.cell.value != b.cell.value;
+    };
+    const auto add = [&](double x1, double y1, double x2, double y2) {
+      line.points.insert(line.points.end(), {{x1, y1}, {x2, y2}, {kNone, kNone}});
+    };
+    for (std::size_t ix = 0; ix < columns; ++ix) {
+      for (std::size_t iy = 0; iy < rows; ++iy) {
+        const MapSpot& here = spot(ix, iy, rows);
+        const FigureCell& c = here.cell;
+        if (ix + 1 < columns && differ(here, spot(ix + 1, iy, rows))) {
+          add(c.x_high, c.y_low, c.x_high, c.y_high);
+        }
+        if (iy + 1 < rows && differ(here, spot(ix, iy + 1, rows))) {
+          add(c.x_low, c.y_high, c.x_high, c.y_high);
+        }
+      }
+    }
+    if (!line.points.empty()) map_.lines.push_back(std::move(line));
+  }
+
+  // Where a boundary is crossed more than once.
+  void add_last_change() {
+    Series line{"highest change", kProxyInk, Series::Style::dashed, {}};
+    bool other = false;
+    for (const MapSpot& each : map_.spots) {
+      const auto row = sweep_.table.rows.row_of(each.point);
+      if (!row || !sweep_.table.done[*row]) continue;
+      const double last = sweep_.table.at(*row, 1);
+      line.points.push_back({each.x, last});
+      other = other || (std::isfinite(last) && last != sweep_.table.at(*row, 0));
+    }
+    if (other) map_.lines.push_back(std::move(line));
+  }
+
+  const OpenedSweep& sweep_;
+  const SweepPlan& plan_;
+  const SweepAxis& x_;
+  const SweepAxis* y_ = nullptr;
+  AxisCells wide_{x_};
+  std::optional<AxisCells> high_;
+  bool over_samples_ = false;
+  SweepMap map_;
+};
+
+}  // namespace
+
+MapChoice first_choice(const SweepPlan& plan, const SweepTable& table) {
+  MapChoice choice;
+  const auto shown = std::ranges::find(table.columns, plan.figure.measure, &SweepColumn::name);
+  if (shown != table.columns.end()) {
+    choice.column = static_cast<std::size_t>(shown - table.columns.begin());
+  }
+  choice.place.assign(plan.axes.size(), 0);
+  if (const auto x = axis_called(plan, plan.figure.x, {})) choice.x = *x;
+  choice.y = axis_called(plan, plan.figure.y, choice.x);
+  for (std::size_t a = 0; a < plan.axes.size() && !choice.y; ++a) {
+    if (a != choice.x && plan.axes[a].values.size() > 1) choice.y = a;
+  }
+  return mended(plan, choice);
+}
+
+MapChoice mended(const SweepPlan& plan, MapChoice choice) {
+  const std::size_t axes = plan.axes.size();
+  choice.x = std::min(choice.x, axes - 1);
+  if (plan.boundary || axes < 2) choice.y.reset();
+  if (choice.y && (*choice.y >= axes || *choice.y == choice.x)) choice.y = choice.x == 0 ? 1 : 0;
+  choice.place.resize(axes, 0);
+  for (std::size_t a = 0; a < axes; ++a) {
+    choice.place[a] = std::min(choice.place[a], plan.axes[a].values.size() - 1);
+  }
+  return choice;
+}
+
+SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
+  return Making(sweep, mended(*sweep.plan, choice)).make();
+}
+
+}  // namespace limpid
