@@ -17,8 +17,8 @@ void demand(bool holds) {
 void check(const limpid::Material& material) {
   demand(material.stiffness > 0 && std::isfinite(material.stiffness));
   demand(material.damping >= 0 && std::isfinite(material.damping));
-  demand(material.friction_kinetic >= 0 && material.friction_static >= material.friction_kinetic);
-  demand(std::isfinite(material.friction_static));
+  demand(material.friction_kinetic >= 0 && std::isfinite(material.friction_kinetic));
+  demand(material.friction_static >= 0 && std::isfinite(material.friction_static));
 }
 
 void check(const limpid::Scene& scene, int joints) {
