@@ -23,7 +23,9 @@ void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vec
 
 // Around what of the ghost can be seen, and around what the scene hides of it.
 void ScenePainter::draw_ghost_outline(const Ghost& ghost, int mark) const {
-  const auto& [links, color, outline] = ghost;
+  const Links& links = ghost.links;
+  const palette::Rgb& color = ghost.color;
+  const std::vector<float>& outline = ghost.outline;
   glCullFace(GL_FRONT);
   outline_.use();
   // With one sample a pixel a thinner line would come and go.

@@ -175,7 +175,7 @@ void draw_band(const PlotFrame& frame, const Band& band, const History& history,
   const auto at = [&](std::size_t pixel) {
     if (rows[pixel] >= rows[pixel + 1]) return -1;
     const Extent said = history.extent(band.channel, rows[pixel], rows[pixel + 1]);
-    return said.empty() ? -1 : std::min(static_cast<int>(said.high + 0.5f), most);
+    return said.empty() ? -1 : std::min(static_cast<int>(std::lround(said.high)), most);
   };
   float free_from = frame.area.min.x;
   int before = -1;
