@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "devices/files/file_error.h"
+#include "devices/files/file_size_signal.h"
 
 namespace limpid {
 namespace {
@@ -75,6 +76,7 @@ void write_atomically(const fs::path& file, std::span<const unsigned char> bytes
   std::error_code none;
   // What a link points to is replaced, not the link.
   const fs::path target = fs::is_symlink(file, none) ? fs::weakly_canonical(file, none) : file;
+  const NoFileSizeSignal no_signal;
   Draft draft(target);
   if (!draft.write(bytes) || !draft.keep_as(target)) fail(file, errno);
   sync_folder(fs::absolute(target).parent_path());

@@ -249,6 +249,21 @@ class Survival(SystemTest):
         self.assertEqual(result.status, 0, result.err)
         self.assertEqual((out / "table.h5").read_bytes(), self.table)
 
+    def test_past_a_limit_of_the_shell_it_says_so_and_loses_nothing(self) -> None:
+        out = self.directory / "limited"
+        size = (len(self.table) // 1024 + 1) // 2  # [KiB]; room for blocks, none for the table
+        if size < 65:
+            self.skipTest("this table is smaller than what is tried before the work begins")
+        run = ["bash", "-c", f'ulimit -f {size}; exec "$0" "$@"', str(LIMPID), "sweep",
+               str(self.plan), "--out", str(out)]  # fmt: skip
+        said = subprocess.run(run, capture_output=True, text=True, timeout=300)
+        self.assertEqual(said.returncode, 1, said.stderr)
+        self.assertRegex(said.stderr, r"table\.h5: cannot be written: File too large; the same command")
+        self.assertEqual(list(out.rglob("*.new")), [])
+        result = limpid("sweep", self.plan, "--out", out, timeout=300)
+        self.assertEqual(result.status, 0, result.err)
+        self.assertEqual((out / "table.h5").read_bytes(), self.table)
+
     def test_another_build_is_refused(self) -> None:
         out = self.directory / "build"
         limpid("sweep", self.plan, "--out", out, "--shard", "1/50", timeout=300)

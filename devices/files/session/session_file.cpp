@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "devices/files/session/file_size_signal.h"
+#include "devices/files/file_size_signal.h"
 #include "devices/files/session/session_attributes.h"
 #include "devices/files/session/session_models.h"
 #include "devices/files/session/session_names.h"
