@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
@@ -35,6 +38,19 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   }
   behind.desktop.print_state |= before.desktop.print_state;
   return behind;
+}
+
+std::string not_expected(const std::string& word) {
+  return fmt::format("\"{}\": not expected; `limpid --help` lists what is", word);
+}
+
+// A word that is no file was meant as a command.
+void check_session(const std::string& session) {
+  std::error_code none;
+  if (session.find('.') == std::string::npos && !session.empty() &&
+      !std::filesystem::exists(session, none)) {
+    throw UsageError(not_expected(session));
+  }
 }
 
 int open_window(const WindowOptions& options) {
@@ -82,6 +98,8 @@ int play(const WindowOptions& options, const MakeVideo& make_video) {
 
 WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   auto options = std::make_shared<WindowOptions>();
+  // What a double click on a session starts.
+  app.add_option("SESSION.h5", options->session, "a recording to play")->type_name("");
   add(app, *options);
   auto* command =
       app.add_subcommand("play", "the desktop app, playing a recorded session; or its video");
@@ -92,8 +110,12 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   command->footer(
       "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
       "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
-  return {[options] { return open_window(*options); },
+  return {[options] {
+            check_session(options->session);
+            return open_window(*options);
+          },
           [options, played, make_video = std::move(make_video)] {
+            if (!options->session.empty()) throw UsageError(not_expected(options->session));
             return play(both(*options, *played), make_video);
           }};
 }

@@ -147,14 +147,6 @@ void watch_touches(GLFWwindow* window) {
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { Window::touched(w); });
 }
 
-std::string name_of_renderer() {
-  const auto ask =
-      reinterpret_cast<const unsigned char* (*)(unsigned)>(glfwGetProcAddress("glGetString"));
-  constexpr unsigned kRenderer = 0x1F01;  // GL_RENDERER
-  const unsigned char* name = ask != nullptr ? ask(kRenderer) : nullptr;
-  return name != nullptr ? reinterpret_cast<const char*>(name) : "";
-}
-
 }  // namespace
 
 Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
@@ -169,7 +161,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->screen_scale = area.scale;
   impl_->glfw = create_window(options, area);
   impl_->refresh = pacing_refresh(impl_->glfw);
-  impl_->renderer = name_of_renderer();
+  impl_->renderer = renderer_name();
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   watch_touches(impl_->glfw);
   glfwSetKeyCallback(impl_->glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
