@@ -3,8 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <span>
 
+#include "app/base/version.h"
 #include "app/cli/commands.h"
+#include "app/cli/complete.h"
 #include "app/cli/options.h"
 #include "app/make_video.h"
 
@@ -40,13 +43,8 @@ UsageError unexpected(const CLI::App& app) {
                                 fmt::join(words, " "), command));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"Limpid: touch a virtual world and see how transparent the coupling is."};
-  app.name("limpid");
-  app.set_version_flag("--version", "limpid " LIMPID_VERSION);
-  app.require_subcommand(0, 1);
+// Those that open no window, by their names.
+std::map<std::string, Command> declare_commands(CLI::App& app, char** argv) {
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
   commands["experiment"] = declare_experiment(app);
@@ -57,10 +55,24 @@ int main(int argc, char** argv) {
   commands["recover"] = declare_recover(app);
   commands["devices"] = declare_devices(app);
   commands["identify"] = declare_identify(app);
+  commands["doctor"] = declare_doctor(app);
+  commands["share"] = declare_share(app);
   commands["story"] =
       declare_story(app, [argv](const std::string& script, const VideoOptions& options, double) {
         return make_story_video(script, options, argv);
       });
+  return commands;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Limpid: touch a virtual world and see how transparent the coupling is."};
+  app.name("limpid");
+  const std::string version = std::string("limpid ") + program_version();
+  app.set_version_flag("--version", version);
+  app.require_subcommand(0, 1);
+  const auto commands = declare_commands(app, argv);
   const WindowCommands window = declare_window(
       app, [argv](const std::string& session, const VideoOptions& options, double text_scale) {
         return make_video(session, options, text_scale, argv);
@@ -70,14 +82,17 @@ int main(int argc, char** argv) {
       "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
   refuse_empty_values(app);
   for (CLI::App* command : app.get_subcommands({})) {
-    command->set_version_flag("--version", "limpid " LIMPID_VERSION);
+    command->set_version_flag("--version", version);
     refuse_empty_values(*command);
   }
   try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words[0] == "complete") {
+      return print_completions(app, std::span(words).subspan(1));
+    }
     app.parse(argc, argv);
-    const auto chosen = app.get_subcommands();
-    if (chosen.empty()) return window.desktop();
-    const CLI::App& command = *chosen.front();
+    if (app.get_subcommands().empty()) return window.desktop();
+    const CLI::App& command = *app.get_subcommands().front();
     if (command.get_name() == "play") return window.play();
     check_order(app, command);
     return commands.at(command.get_name())();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/gl/glm_door.h"
+#include "render/gl/offscreen.h"
 #include "render/mesh_shapes.h"
 
 namespace limpid {
@@ -25,11 +26,6 @@ std::vector<Drawable> upload_all(const std::vector<Item>& items) {
   for (const Item& item : items)
     out.push_back({std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link});
   return out;
-}
-
-std::string renderer_name() {
-  const GLubyte* name = glGetString(GL_RENDERER);
-  return name ? reinterpret_cast<const char*>(name) : "";
 }
 
 }  // namespace

@@ -8,13 +8,14 @@ namespace fs = std::filesystem;
 
 fs::path data_dir() {
   std::error_code none;
-  const fs::path installed =
-      fs::read_symlink("/proc/self/exe", none).parent_path().parent_path() / "share/limpid";
-  for (const fs::path& dir : {installed, fs::path(LIMPID_SOURCE_DIR)}) {
-    if (fs::exists(dir / "assets/devices/omni.urdf", none)) return dir;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  for (fs::path folder = program; folder.has_relative_path();) {
+    folder = folder.parent_path();
+    const fs::path data = folder / "share/limpid";
+    if (fs::exists(data / "assets/devices/omni.urdf", none)) return fs::canonical(data);
   }
-  throw std::runtime_error("limpid's assets are neither in " + installed.string() + " nor in " +
-                           LIMPID_SOURCE_DIR + "; run `cmake --install` again");
+  throw std::runtime_error("limpid's assets are in no folder share/limpid above " +
+                           program.string() + "; install it again");
 }
 
 fs::path beside_or_own(const fs::path& folder, const std::string& kind, const std::string& name) {

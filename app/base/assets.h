@@ -6,8 +6,9 @@
 
 namespace limpid {
 
-// The folder that holds assets/ and shaders/: installed (PREFIX/share/limpid), or the source tree.
-// Throws std::runtime_error if neither is there.
+// The folder that holds assets/ and shaders/: share/limpid beside one of the folders that this
+// program is in, PREFIX/share/limpid where it is installed; in a build folder a link to the source
+// tree. Throws std::runtime_error if it is not there.
 std::filesystem::path data_dir();
 
 inline std::filesystem::path default_device() { return data_dir() / "assets/devices/omni.urdf"; }

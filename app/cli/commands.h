@@ -23,6 +23,9 @@ Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
 Command declare_identify(CLI::App& app);
+Command declare_doctor(CLI::App& app);
+// Not told of: writes what is installed beside the program, made from the other commands.
+Command declare_share(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);
 // The window: `limpid` without a command, and `limpid play`. The options of the app itself are the
 // window's and hold for both.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
@@ -112,10 +113,14 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   command->footer(
       "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
       "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
-  return {[options] { return open_window(*options); },
-          [options, played, make_video = std::move(make_video)] {
-            return play(both(*options, *played), make_video);
-          }};
+  return {
+      [options] { return open_window(*options); },
+      [options, played, make_video = std::move(make_video)] {
+        if (!options->files.empty()) {
+          throw UsageError(fmt::format("\"{}\": not expected before play", options->files.front()));
+        }
+        return play(both(*options, *played), make_video);
+      }};
 }
 
 }  // namespace limpid

@@ -262,7 +262,8 @@ Command declare_identify(CLI::App& app) {
                                   "unlike its file, drawn by --seed; default: the one in use",
                                   kSimulated));
   options->input.add_world(*command);
-  command->add_option("--out", options->out, "folder for identified.urdf, .json and motion.csv");
+  command->add_option("--out", options->out, "folder for identified.urdf, .json and motion.csv")
+      ->type_name("DIR");
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");
   command->add_option("--range", options->plan.range, "part of each joint's range that is used")

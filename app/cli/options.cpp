@@ -226,6 +226,21 @@ std::string parameter_help() {
   return text;
 }
 
+std::vector<HelpWord> parameter_words() {
+  std::vector<HelpWord> words;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string key = std::string(info.key) + "=";
+    if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+      for (const auto& word : choice->words) words.push_back({key + std::string(word), ""});
+    } else if (std::holds_alternative<bool Parameters::*>(info.field)) {
+      for (const char* word : {"true", "false"}) words.push_back({key + word, ""});
+    } else {
+      words.push_back({key, allowed_values(info)});
+    }
+  }
+  return words;
+}
+
 void require_whole_number(CLI::Option* option) { option->check(whole_number()); }
 
 void require_above_zero(CLI::Option* option, double most, const std::string& unit) {

@@ -55,6 +55,12 @@ MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDoc
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
+// A word of the command line and what it is.
+struct HelpWord {
+  std::string word, about;
+};
+// Every KEY=VALUE where the values are words, else KEY= and what is allowed.
+std::vector<HelpWord> parameter_words();
 
 // The option takes a whole number from 0 on.
 void require_whole_number(CLI::Option* option);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/base/markup.h"
+#include "app/base/version.h"
 #include "app/experiments/experiment.h"
 
 namespace limpid {
@@ -128,7 +129,7 @@ void write_report(const fs::path& dir) {
 {}</tbody></table></section>
 {}</main></body></html>
 )",
-      kStyle, LIMPID_VERSION, fmt::localtime(std::time(nullptr)), passed, pages.size(), contents,
+      kStyle, program_version(), fmt::localtime(std::time(nullptr)), passed, pages.size(), contents,
       sections);
   if (!file.flush()) throw FileError(out.string() + ": could not be written");
 }

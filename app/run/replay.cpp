@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/base/assets.h"
+#include "app/base/version.h"
 #include "app/run/scene_meshes.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
@@ -16,7 +17,7 @@ SessionInfo session_info(const RunPlan& plan) {
   SessionInfo info;
   info.tick = plan.parameters.tick;
   info.dof = plan.arm.dof();
-  info.app_version = LIMPID_VERSION;
+  info.app_version = program_version();
   info.seed = plan.seed;
   info.source = plan.hand.source;
   info.config = config_text(plan.parameters);

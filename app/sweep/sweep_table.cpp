@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "app/base/version.h"
 #include "app/run/run_key.h"
 #include "app/sweep/file_image.h"
 #include "devices/files/atomic_file.h"
@@ -100,7 +101,7 @@ void write_table(const SweepPlan& plan, const SweepTable& table,
   image.text(image.root(), "title", plan.title);
   image.text(image.root(), "plan", plan.text);
   image.text(image.root(), "key", hex(plan.key));
-  image.text(image.root(), "app_version", LIMPID_VERSION);
+  image.text(image.root(), "app_version", program_version());
   image.text(image.root(), "build", hex(build_digest()));
   image.number(image.root(), "points", points);
   image.number(image.root(), "done", table.count());

@@ -89,6 +89,11 @@ OffscreenContext::OffscreenContext(int width, int height) : impl_(std::make_uniq
 
 OffscreenContext::~OffscreenContext() = default;
 
+std::string renderer_name() {
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return name != nullptr ? name : "";
+}
+
 std::vector<unsigned char> read_rgba(int width, int height) {
   const std::size_t row = 4 * static_cast<std::size_t>(width);
   std::vector<unsigned char> rgba(row * static_cast<std::size_t>(height));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace limpid {
@@ -21,6 +22,9 @@ class OffscreenContext {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Who draws for the current context, as OpenGL names it.
+std::string renderer_name();
 
 // The rectangle (0, 0, width, height) of the bound framebuffer, four bytes a pixel, top row
 // first, opaque.

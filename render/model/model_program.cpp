@@ -46,11 +46,10 @@ class Descriptor {
   throw std::runtime_error(name + ": " + one_line(why));
 }
 
-// Beside this program, or where it was built.
+// Beside this program.
 fs::path program() {
   std::error_code none;
-  const fs::path here = fs::read_symlink("/proc/self/exe", none).replace_filename("limpid-model");
-  return fs::exists(here, none) ? here : fs::path(LIMPID_MODEL_PROGRAM);
+  return fs::read_symlink("/proc/self/exe", none).replace_filename("limpid-model");
 }
 
 void write_all(int file, std::span<const unsigned char> bytes, const std::string& name) {

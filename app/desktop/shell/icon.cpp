@@ -1,6 +1,7 @@
 #include "app/desktop/shell/icon.h"
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,23 @@ std::vector<std::uint8_t> icon(int size) {
     }
   }
   return pixels;
+}
+
+std::string icon_svg() {
+  std::string text =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 100\" fill=\"none\" "
+      "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
+  for (const Stroke& stroke : kStrokes) {
+    text += fmt::format("<path stroke=\"#{:02x}{:02x}{:02x}\" stroke-width=\"{:g}\" d=\"",
+                        stroke.rgb.r, stroke.rgb.g, stroke.rgb.b, 200 * stroke.radius);
+    char how = 'M';
+    for (const Point& p : stroke.points) {
+      text += fmt::format("{}{:g} {:g}", how, 100 * p.x, 100 * p.y);
+      how = 'L';
+    }
+    text += "\"/>\n";
+  }
+  return text + "</svg>\n";
 }
 
 void set_icon(GLFWwindow* window) {

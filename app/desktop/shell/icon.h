@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 struct GLFWwindow;
@@ -10,6 +11,8 @@ namespace limpid {
 
 // `size` x `size` pixels of RGBA, from the upper left corner, not multiplied by their opacity.
 std::vector<std::uint8_t> icon(int size);
+// The same as SVG.
+std::string icon_svg();
 // Gives it to the window, in several sizes.
 void set_icon(GLFWwindow* window);
 

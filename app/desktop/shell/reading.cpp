@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/base/version.h"
 #include "app/desktop/shell/keys.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/style/theme.h"
@@ -46,7 +47,7 @@ void draw_about(bool& open) {
   if (!open) return;
   begin_reading("About Limpid", 34, open);
   ImGui::PushFont(font(Face::semibold));
-  ImGui::TextUnformatted("Limpid " LIMPID_VERSION);
+  ImGui::Text("Limpid %s", program_version());
   ImGui::PopFont();
   ImGui::TextWrapped(
       "Touch a virtual world through a haptic device and see, tick by tick, how transparent the "

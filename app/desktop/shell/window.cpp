@@ -134,14 +134,6 @@ void watch_touches(GLFWwindow* window) {
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { Window::touched(w); });
 }
 
-std::string name_of_renderer() {
-  const auto ask =
-      reinterpret_cast<const unsigned char* (*)(unsigned)>(glfwGetProcAddress("glGetString"));
-  constexpr unsigned kRenderer = 0x1F01;  // GL_RENDERER
-  const unsigned char* name = ask != nullptr ? ask(kRenderer) : nullptr;
-  return name != nullptr ? reinterpret_cast<const char*>(name) : "";
-}
-
 }  // namespace
 
 Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
@@ -156,7 +148,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->screen_scale = area.scale;
   impl_->glfw = create_window(options, area);
   impl_->refresh = pacing_refresh(impl_->glfw);
-  impl_->renderer = name_of_renderer();
+  impl_->renderer = renderer_name();
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   watch_touches(impl_->glfw);
   glfwSetDropCallback(impl_->glfw, [](GLFWwindow* w, int count, const char** paths) {

@@ -1,0 +1,151 @@
+#include "app/cli/manual.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include "app/base/version.h"
+#include "app/cli/complete.h"
+
+namespace limpid {
+namespace {
+
+// As roff prints it: '-' is a minus that can be copied, and no line is taken for a request.
+std::string roff(const std::string& text) {
+  std::string out;
+  bool at_start = true;
+  for (const char c : text) {
+    if (at_start && (c == '.' || c == '\'')) out += "\\&";
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else {
+      out += c;
+    }
+    at_start = c == '\n';
+  }
+  return out;
+}
+
+std::string upper(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+std::string full_name(const CLI::App& app, const CLI::App& command, const char* between) {
+  if (&app == &command) return app.get_name();
+  return app.get_name() + between + command.get_name();
+}
+
+// Lines that are tables or broken by hand stay as they are.
+std::string as_it_stands(const std::string& text) {
+  return fmt::format(".nf\n{}\n.fi\n", roff(text));
+}
+
+std::string synopsis(const CLI::App& app, const CLI::App& command) {
+  std::string text =
+      fmt::format("\\fB{}\\fR [\\fIOPTION\\fR]...", roff(full_name(app, command, " ")));
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;
+    const std::string name = fmt::format("\\fI{}\\fR", roff(option->get_name(true)));
+    text += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  return text + "\n";
+}
+
+std::string bonds(const CLI::Option& option) {
+  std::vector<std::string> with, without;
+  for (const CLI::Option* other : option.get_needs()) with.push_back(other->get_name());
+  for (const CLI::Option* other : option.get_excludes()) without.push_back(other->get_name());
+  std::ranges::sort(without);  // their order is that of addresses
+  std::string text;
+  if (!with.empty()) text += fmt::format(" Only with {}.", fmt::join(with, ", "));
+  if (!without.empty()) text += fmt::format(" Not with {}.", fmt::join(without, ", "));
+  return text;
+}
+
+std::string option_entry(const CLI::Option& option) {
+  std::vector<std::string> names;
+  if (option.get_positional()) {
+    names.push_back(fmt::format("\\fI{}\\fR", roff(option.get_name(true))));
+  }
+  for (const std::string& name : option.get_snames()) names.push_back("\\fB\\-" + name + "\\fR");
+  for (const std::string& name : option.get_lnames()) {
+    names.push_back("\\fB\\-\\-" + roff(name) + "\\fR");
+  }
+  std::string head = fmt::format("{}", fmt::join(names, ", "));
+  const std::string value = value_name(option);
+  if (!value.empty() && !option.get_positional()) head += fmt::format(" \\fI{}\\fR", roff(value));
+  return fmt::format(".TP\n{}\n{}\n", head, roff(option.get_description() + bonds(option)));
+}
+
+std::string options(const CLI::App& command) {
+  std::string text;
+  for (const bool positional : {true, false}) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->get_positional() == positional) text += option_entry(*option);
+    }
+  }
+  return text;
+}
+
+std::string commands(const CLI::App& app) {
+  std::string text = ".SH COMMANDS\n";
+  for (const CLI::App* one : shown_commands(app)) {
+    text += fmt::format(".TP\n\\fBlimpid {0}\\fR\n{1}; see \\fBlimpid\\-{0}\\fR(1)\n",
+                        one->get_name(), roff(one->get_description()));
+  }
+  return text;
+}
+
+constexpr const char* kFiles = R"(.SH FILES
+.TP
+\fI~/.config/limpid\fR
+devices, layouts and presets; below \fBXDG_CONFIG_HOME\fR if that is set
+.TP
+\fI~/.local/share/limpid\fR
+sessions; below \fBXDG_DATA_HOME\fR if that is set
+.TP
+\fI~/.cache/limpid\fR
+small pictures of sessions; below \fBXDG_CACHE_HOME\fR if that is set
+)";
+
+std::string see_also(const CLI::App& app, const CLI::App& command) {
+  std::vector<std::string> pages;
+  if (&app != &command) {
+    pages.emplace_back("\\fBlimpid\\fR(1)");
+  } else {
+    for (const CLI::App* one : shown_commands(app)) {
+      pages.push_back(fmt::format("\\fBlimpid\\-{}\\fR(1)", one->get_name()));
+    }
+  }
+  return fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
+}
+
+}  // namespace
+
+std::string manual_page(const CLI::App& app, const CLI::App& command) {
+  const bool whole = &app == &command;
+  std::string about = command.get_description();
+  if (whole) about = about.substr(about.find(": ") + 2);  // its name is said before
+  std::string text =
+      fmt::format(".TH {} 1 \"\" \"Limpid {}\" \"Limpid\"\n",
+                  roff(upper(full_name(app, command, "-"))), roff(program_version()));
+  text += fmt::format(".SH NAME\n{} \\- {}\n", roff(full_name(app, command, "-")), roff(about));
+  text += ".SH SYNOPSIS\n" + synopsis(app, command);
+  if (whole) {
+    text +=
+        fmt::format(".br\n\\fBlimpid\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n{}", commands(app));
+  }
+  text += ".SH OPTIONS\n" + options(command);
+  if (!command.get_footer().empty()) text += ".SH NOTES\n" + as_it_stands(command.get_footer());
+  if (whole) text += kFiles;
+  return text + see_also(app, command);
+}
+
+}  // namespace limpid

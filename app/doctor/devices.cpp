@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "app/base/assets.h"
+#include "app/doctor/doctor.h"
+#include "devices/registry/device_list.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using State = Finding::State;
+
+constexpr const char* kArea = "devices";
+constexpr const char* kRule = "70-limpid.rules";
+
+std::string installed_rule() {
+  std::error_code none;
+  for (const char* folder :
+       {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+    const fs::path file = fs::path(folder) / kRule;
+    if (fs::exists(file, none)) return file.string();
+  }
+  return {};
+}
+
+Finding rule() {
+  const std::string file = installed_rule();
+  if (!file.empty()) return {kArea, "udev rule", State::fine, file, {}, {}};
+  std::string source = fmt::format("assets/udev/{}", kRule);
+  try {
+    source = (data_dir() / source).string();
+  } catch (const std::exception&) {  // said among the files
+  }
+  return {kArea,
+          "udev rule",
+          State::better,
+          "not installed",
+          "only root may talk to HID devices",
+          fmt::format("sudo cp {} /etc/udev/rules.d/ && sudo udevadm control --reload    # then "
+                      "plug in again",
+                      source)};
+}
+
+Finding on_hid() {
+  std::error_code none;
+  std::size_t nodes = 0;
+  for (fs::directory_iterator node("/sys/class/hidraw", none), end; !none && node != end;
+       node.increment(none)) {
+    ++nodes;
+  }
+  if (!none) return {kArea, "HID", State::fine, fmt::format("{} hidraw nodes", nodes), {}, {}};
+  return {kArea,
+          "HID",
+          State::better,
+          "the kernel has no /sys/class/hidraw",
+          "no USB device can be used; those on sockets can",
+          "a kernel with CONFIG_HIDRAW, as Debian's: sudo apt install linux-image-amd64"};
+}
+
+Finding one(const FoundDevice& device) {
+  const std::string what = fmt::format("{} ({})", device.place.name, device.place.id);
+  const std::string kind = fmt::format("{} at {}", device.kind->name, device.place.path);
+  if (device.missing.empty()) return {kArea, what, State::fine, kind, {}, {}};
+  if (access(device.place.path.c_str(), R_OK | W_OK) == 0) {
+    return {kArea, what, State::better, kind, "it is left out", device.missing};
+  }
+  const std::string mend =
+      installed_rule().empty()
+          ? "install the udev rule, and plug it in again"
+          : fmt::format(
+                "plug it in again, at the computer itself and not over ssh; if its number "
+                "is not in {}, add a line for it",
+                installed_rule());
+  return {kArea,
+          what,
+          State::broken,
+          kind + ": " + device.missing.substr(0, device.missing.find(':')),
+          "it cannot be used",
+          mend};
+}
+
+}  // namespace
+
+Findings look_at_devices() {
+  Findings all{rule(), on_hid()};
+  const std::vector<FoundDevice> found = list_devices(kRule);
+  for (const FoundDevice& device : found) all.push_back(one(device));
+  if (found.empty()) {
+    all.push_back({kArea,
+                   "haptic device",
+                   State::fine,
+                   "none is plugged in; the virtual arm is built in",
+                   {},
+                   {}});
+  }
+  return all;
+}
+
+}  // namespace limpid

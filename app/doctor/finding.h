@@ -1,0 +1,26 @@
+// What was looked at on this computer, and what would make it better.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace limpid {
+
+struct Finding {
+  enum class State : std::uint8_t {
+    fine,
+    better,  // all works; something would be better
+    broken,  // something of Limpid does not work here
+  };
+
+  std::string area;  // "real time", "devices", "picture", "files"
+  std::string what;  // that was looked at
+  State state = State::fine;
+  std::string found;
+  std::string cost;  // what is lost by it; empty if all is fine
+  std::string mend;  // a command, or what to do; empty if all is fine
+};
+using Findings = std::vector<Finding>;
+
+}  // namespace limpid

@@ -1,0 +1,59 @@
+# What is installed beside the programs, and the .deb of it all: `cpack` in the build folder.
+set(desktop ${PROJECT_SOURCE_DIR}/assets/desktop)
+set(package ${PROJECT_SOURCE_DIR}/assets/package)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/shaders
+  DESTINATION share/limpid
+  REGEX "/assets/(completions|desktop|package|pictures|python)$" EXCLUDE
+  PATTERN "*.py" EXCLUDE
+  PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/made/icons DESTINATION share)  # see app/CMakeLists.txt
+install(FILES ${desktop}/limpid.desktop DESTINATION share/applications)
+install(FILES ${desktop}/limpid.xml DESTINATION share/mime/packages)
+install(FILES ${desktop}/org.limpid.limpid.metainfo.xml DESTINATION share/metainfo)
+install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.bash
+  DESTINATION share/bash-completion/completions RENAME limpid)
+install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/_limpid
+  DESTINATION share/zsh/vendor-completions)
+install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
+  DESTINATION share/fish/vendor_completions.d)
+install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
+install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
+  DESTINATION share/doc/limpid/examples)
+install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")")
+install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install.cmake)
+
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # what is installed is the program, not the tests
+set(CPACK_GENERATOR DEB)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/cpack.cmake)
+set(CPACK_LIMPID_BUILD ${PROJECT_BINARY_DIR})
+set(CPACK_PACKAGE_NAME limpid)
+set(CPACK_PACKAGE_CONTACT "The Limpid authors <maintainers@limpid.invalid>")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 0limpid1)  # one of Debian's own would be newer
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, fonts-inter, libegl1, libgl1")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, libgl1-mesa-dri, rtkit")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "touch a virtual world through a haptic device
+A haptic device, a small robot arm in the hand, is tied to its avatar in a
+simulated world by a virtual coupling. Limpid runs the usual spring and
+damper, a coupling with a human force observer, and a predictive one, live at
+1 kHz, and shows tick by tick how transparent each of them is.
+
+It works with the mouse alone, and with joysticks that have force feedback,
+the SpaceMouse, and home-made devices. Sessions are recorded, played, run
+again under other settings and made videos; experiments and sweeps run
+without a window.")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
+  ${package}/postinst ${package}/postrm ${package}/conffiles)
+include(CPack)

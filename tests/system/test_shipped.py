@@ -1,0 +1,226 @@
+#!/usr/bin/python3
+"""What is installed, and the package of it, made of the tree as it was built."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import unittest
+from pathlib import Path
+
+import h5py
+
+from support import LIMPID, ROOT, SystemTest, limpid
+
+BUILD = LIMPID.parents[1]
+
+
+def tool(name: str) -> str:
+    path = shutil.which(name)
+    if path is None:
+        raise unittest.SkipTest(f"{name} is not installed")
+    return path
+
+
+class Run(SystemTest):
+    def must(self, *words: str | Path, **how) -> str:
+        done = subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=250, **how)
+        self.assertEqual(done.returncode, 0, f"{words}\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+
+class Package(Run):
+    deb: Path
+    root: Path
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        if "LIMPID_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text():
+            raise unittest.SkipTest("a sanitized build is not shipped")
+        tool("dpkg-shlibdeps")
+        cls.deb = cls.pack("first")
+        cls.root = cls.directory / "root"
+        subprocess.run(["dpkg", "-x", cls.deb, cls.root], check=True)
+
+    @classmethod
+    def pack(cls, name: str, *more: str, umask: int = 0o022) -> Path:
+        out = cls.directory / name
+        done = subprocess.run(["cpack", "--config", BUILD / "CPackConfig.cmake", "-B", out, *more], umask=umask,
+                              cwd=BUILD, capture_output=True, text=True, timeout=250)  # fmt: skip
+        if done.returncode != 0:
+            raise AssertionError(done.stdout + done.stderr)
+        (deb,) = out.glob("*.deb")
+        return deb
+
+    def test_lintian_accepts_it(self) -> None:
+        said = self.must(tool("lintian"), "--allow-root", "--fail-on", "error,warning", "--no-cfg", self.deb)
+        self.assertEqual(said, "")
+
+    def test_its_version_is_the_programs(self) -> None:
+        version = self.must("dpkg-deb", "-f", self.deb, "Version").strip()
+        self.assertEqual(f"limpid {version}".split("-")[0], limpid("--version").out.strip())
+
+    def test_the_same_tree_gives_the_same_bytes(self) -> None:
+        # Packed loosely, which is most of the work saved, by somebody who keeps files to himself.
+        again = self.pack("again", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none", umask=0o077)
+        for part in ("--fsys-tarfile", "--ctrl-tarfile"):
+            first, second = (subprocess.check_output(["dpkg-deb", part, deb]) for deb in (self.deb, again))
+            self.assertEqual(hashlib.sha256(first).digest(), hashlib.sha256(second).digest(), part)
+
+    def test_the_programs_name_no_place_where_they_were_built(self) -> None:
+        for program in (self.root / "usr/libexec/limpid").iterdir():
+            with self.subTest(program.name):
+                for place in {ROOT, BUILD}:
+                    self.assertNotIn(str(place).encode() + b"/", program.read_bytes())
+
+    def test_it_runs_where_it_was_unpacked(self) -> None:
+        program = self.root / "usr/bin/limpid"
+        out = self.out()
+        self.must(program, "run", "--duration", "0.1", "--record", out, "--picture", out.with_suffix(".png"))
+        self.assertTrue(out.with_suffix(".png").exists())
+        doctor = subprocess.run([program, "doctor"], capture_output=True, text=True, timeout=120)
+        assets = re.search(r"assets +(.*)", doctor.stdout)
+        self.assertEqual(assets[1], str((self.root / "usr/share/limpid").resolve()))
+        self.assertIn(str((self.root / "usr/libexec/limpid/limpid-model").resolve()), doctor.stdout)
+
+    def test_there_is_a_manual_page_of_every_command(self) -> None:
+        pages = self.root / "usr/share/man/man1"
+        commands = re.findall(r"^  (\w+)", limpid("--help").out.split("Subcommands:\n")[1], re.M)
+        self.assertGreater(len(commands), 10)
+        self.assertEqual({page.name for page in pages.iterdir()},
+                         {"limpid.1.gz"} | {f"limpid-{command}.1.gz" for command in commands})  # fmt: skip
+        for command in commands:
+            text = gzip.decompress((pages / f"limpid-{command}.1.gz").read_bytes()).decode()
+            text = text.replace("\\", "")
+            for option in re.findall(r"^ +(--[\w-]+)", limpid(command, "--help").out, re.M):
+                self.assertIn(option, text, command)
+
+    def test_the_manual_pages_are_well_formed(self) -> None:
+        man = tool("man")
+        for page in (self.root / "usr/share/man/man1").iterdir():
+            done = subprocess.run([man, "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", page],
+                                  capture_output=True, text=True,
+                                  env=os.environ | {"LC_ALL": "C.UTF-8", "MANROFFSEQ": "", "MANWIDTH": "80"})  # fmt: skip
+            self.assertEqual((done.returncode, done.stderr), (0, ""), page.name)
+
+    def test_every_file_is_there_and_readable_by_all(self) -> None:
+        for name in (
+            "etc/security/limits.d/limpid.conf",
+            "usr/lib/udev/rules.d/70-limpid.rules",
+            "usr/share/applications/limpid.desktop",
+            "usr/share/bash-completion/completions/limpid",
+            "usr/share/doc/limpid/copyright",
+            "usr/share/fish/vendor_completions.d/limpid.fish",
+            "usr/share/icons/hicolor/48x48/apps/limpid.png",
+            "usr/share/icons/hicolor/scalable/apps/limpid.svg",
+            "usr/share/limpid/assets/scenes/table.toml",
+            "usr/share/metainfo/org.limpid.limpid.metainfo.xml",
+            "usr/share/mime/packages/limpid.xml",
+            "usr/share/zsh/vendor-completions/_limpid",
+        ):
+            self.assertTrue((self.root / name).is_file(), name)
+        for path in self.root.rglob("*"):
+            if not path.is_symlink():
+                self.assertEqual(path.stat().st_mode & 0o755, path.stat().st_mode & 0o777, path)
+                self.assertTrue(path.stat().st_mode & 0o044 == 0o044, path)
+
+    def test_desktop_entry_and_app_page_are_valid(self) -> None:
+        share = self.root / "usr/share"
+        self.must(tool("desktop-file-validate"), share / "applications/limpid.desktop")
+        page = share / "metainfo/org.limpid.limpid.metainfo.xml"
+        self.must(tool("appstreamcli"), "validate", "--no-net", "--pedantic", page)
+
+
+class Sessions(Run):
+    """What the desktop takes a file for."""
+
+    def setUp(self) -> None:
+        tool("gio")
+        self.data = self.out("")
+        packages = self.data / "mime/packages"
+        packages.mkdir(parents=True)
+        common = Path("/usr/share/mime/packages/freedesktop.org.xml")
+        if not common.exists():
+            self.skipTest("shared-mime-info is not installed")
+        shutil.copy(common, packages)
+        shutil.copy(ROOT / "assets/desktop/limpid.xml", packages)
+        self.must(tool("update-mime-database"), self.data / "mime")
+
+    def kind(self, file: Path) -> str:
+        environment = os.environ | {"XDG_DATA_HOME": str(self.data), "XDG_DATA_DIRS": str(self.data)}
+        said = self.must("gio", "info", "-a", "standard::content-type", file, env=environment)
+        return said.split("standard::content-type: ")[1].strip()
+
+    def test_sessions_of_all_sorts_are_known(self) -> None:
+        ways = (["run"], ["run", "--twin"], ["run", "--device", ROOT / "assets/devices/planar2.urdf"])
+        for way in ways:
+            out = self.out()
+            self.must(LIMPID, *way, "--duration", "0.1", "--record", out)
+            self.assertEqual(self.kind(out), "application/x-limpid-session", way)
+        for shipped in (ROOT / "assets/sessions").glob("*.h5"):
+            self.assertEqual(self.kind(shipped), "application/x-limpid-session", shipped)
+
+    def test_other_hdf5_is_left_to_others(self) -> None:
+        out = self.out()
+        with h5py.File(out, "w") as file:
+            file["numbers"] = [1, 2, 3]
+        self.assertEqual(self.kind(out), "application/x-hdf")
+
+
+class Version(Run):
+    """In repositories of their own."""
+
+    def setUp(self) -> None:
+        tool("git")
+        self.source = self.out("")
+        (self.source / "tree").mkdir(parents=True)
+        self.source /= "tree"
+        (self.source / "CHANGELOG.md").write_text("")
+
+    def git(self, *words: str) -> str:
+        names = ["-c", "user.name=a", "-c", "user.email=a@b"]
+        return self.must("git", *names, *words, cwd=self.source).strip()
+
+    def commit(self) -> str:
+        if not (self.source / ".git").exists():
+            self.git("init", "-q")
+        self.git("add", "-A")
+        self.git("commit", "-q", "--allow-empty", "-m", "x")
+        return self.git("rev-parse", "--short=7", "HEAD")
+
+    def version(self) -> str:
+        into = self.out("")
+        into.mkdir()
+        self.must("cmake", f"-DSOURCE={self.source}", f"-DINTO={into}", "-DVERSION=1.2.3",
+                  "-P", ROOT / "app/version.cmake")  # fmt: skip
+        return re.search(r"limpid_version (\S+)\)", (into / "version.cmake").read_text())[1]
+
+    def test_commits_since_the_release_are_counted(self) -> None:
+        first = self.commit()
+        self.assertEqual(self.version(), f"1.2.3+1.g{first}")
+        self.git("tag", "v1.2.3")
+        self.assertEqual(self.version(), "1.2.3")
+        self.commit()
+        second = self.commit()
+        self.assertEqual(self.version(), f"1.2.3+2.g{second}")
+
+    def test_changed_files_are_said(self) -> None:
+        first = self.commit()
+        (self.source / "CHANGELOG.md").write_text("more")
+        self.assertEqual(self.version(), f"1.2.3+1.g{first}.changed")
+
+    def test_an_archive_in_somebody_elses_repository_is_a_release(self) -> None:
+        inner = self.source
+        self.source = inner.parent
+        self.commit()
+        self.source = inner
+        self.assertEqual(self.version(), "1.2.3")
+
+
+if __name__ == "__main__":
+    unittest.main()
