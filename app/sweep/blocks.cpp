@@ -110,10 +110,9 @@ fs::path plan_behind(const fs::path& dir) {
   if (fs::is_regular_file(dir / kNote, none)) {
     const std::string said = read_text(dir / kNote, kLongestNote), word = "\nfrom ";
     const std::size_t at = said.find(word);
-    const fs::path plan =
-        at == std::string::npos
-            ? ""
-            : said.substr(at + word.size(), said.find('\n', at + 1) - at - word.size());
+    fs::path plan = at == std::string::npos
+                        ? ""
+                        : said.substr(at + word.size(), said.find('\n', at + 1) - at - word.size());
     if (fs::is_directory(plan.parent_path(), none)) return plan;
   }
   return dir / "plan.toml";

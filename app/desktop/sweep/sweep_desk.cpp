@@ -30,7 +30,7 @@ std::string named(const SweepPlan& plan, std::uint64_t number) {
 
 // Beside the table, or, where nothing can be written, among the user's own sessions.
 fs::path place_for(const fs::path& table, std::uint64_t point, std::optional<double> at) {
-  const fs::path beside = point_file(table.parent_path(), point, at);
+  fs::path beside = point_file(table.parent_path(), point, at);
   const fs::path folder = beside.parent_path();
   std::error_code none;
   const fs::path there = fs::is_directory(folder, none) ? folder : folder.parent_path();
@@ -79,18 +79,20 @@ void SweepDesk::open(const fs::path& table) {
 }
 
 void SweepDesk::look(const fs::path& file, bool anew) {
+  next_look_ = std::chrono::steady_clock::now() + kBetweenLooks;
   const std::shared_ptr<const OpenedSweep> before = anew ? nullptr : sweep_;
   looking_.start(fmt::format("loading {}", file.filename().string()),
                  [file, before, last = changed_](BackgroundProgress&) -> Look {
-                   const Time changed = fs::last_write_time(file);  // an older one looks again
-                   if (before != nullptr && changed == last) return {nullptr, changed};
+                   std::error_code gone;
+                   const Time changed =
+                       fs::last_write_time(file, gone);  // an older one looks again
+                   if (before != nullptr && (gone || changed == last)) return {nullptr, last};
                    return {open_table(file, before.get()), changed};
                  });
 }
 
 bool SweepDesk::take_look() {
   auto found = looking_.take();
-  next_look_ = std::chrono::steady_clock::now() + kBetweenLooks;
   if (!found) return false;
   changed_ = found->changed;
   if (!found->sweep) return false;
