@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "app/run/simulate.h"
@@ -17,7 +18,9 @@ namespace limpid {
 struct SweepWorld {
   std::string device, scene, hand;                  // empty: the default; a hand's points: empty
   SweepWorld with(const SweepWorld& chosen) const;  // what is said there in place of this
-  friend auto operator<=>(const SweepWorld&, const SweepWorld&) = default;
+  friend bool operator<(const SweepWorld& a, const SweepWorld& b) {
+    return std::tie(a.device, a.scene, a.hand) < std::tie(b.device, b.scene, b.hand);
+  }
 };
 
 // A value of an axis that has names instead of numbers.

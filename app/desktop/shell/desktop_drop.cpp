@@ -34,6 +34,7 @@ DropKind drop_kind(const fs::path& file) {
 
 std::string why_not_opened(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const fs::path& file : files) names.push_back(file.filename().string());
   constexpr std::size_t kMost = 4;
   std::string text = fmt::format(
