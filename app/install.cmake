@@ -1,24 +1,24 @@
 # What has to be packed while it is installed, and what belongs to the system alone.
 # SOURCE, BUILD: the folders.
-set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+set(made ${BUILD}/made)
 
-file(MAKE_DIRECTORY ${prefix}/bin)
-file(CREATE_LINK ../libexec/limpid/limpid ${prefix}/bin/limpid SYMBOLIC)
+# By way of the build folder: what is copied from there gets the permissions that all have.
+file(CREATE_LINK ../libexec/limpid/limpid ${made}/limpid SYMBOLIC)
+file(INSTALL ${made}/limpid DESTINATION ${CMAKE_INSTALL_PREFIX}/bin)
 
 # Without the time or the name of the file, so that the same text gives the same bytes.
-function(pack file into)
-  cmake_path(GET into PARENT_PATH folder)
-  file(MAKE_DIRECTORY ${folder})
-  execute_process(COMMAND gzip -9nc ${file} OUTPUT_FILE ${into} COMMAND_ERROR_IS_FATAL ANY)
-  file(CHMOD ${into} PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+function(pack file folder name)
+  execute_process(COMMAND gzip -9nc ${file} OUTPUT_FILE ${made}/${name}.gz
+    COMMAND_ERROR_IS_FATAL ANY)
+  file(INSTALL ${made}/${name}.gz DESTINATION ${CMAKE_INSTALL_PREFIX}/share/${folder})
 endfunction()
 
-file(GLOB pages ${BUILD}/made/man/man1/*.1)
+file(GLOB pages ${made}/man/man1/*.1)
 foreach(page ${pages})
   cmake_path(GET page FILENAME name)
-  pack(${page} ${prefix}/share/man/man1/${name}.gz)
+  pack(${page} man/man1 ${name})
 endforeach()
-pack(${SOURCE}/CHANGELOG.md ${prefix}/share/doc/limpid/changelog.gz)
+pack(${SOURCE}/CHANGELOG.md doc/limpid changelog)
 
 if(CMAKE_INSTALL_PREFIX STREQUAL /usr)
   file(INSTALL ${SOURCE}/assets/udev/70-limpid.rules DESTINATION /usr/lib/udev/rules.d)
@@ -27,11 +27,11 @@ if(CMAKE_INSTALL_PREFIX STREQUAL /usr)
   include(${BUILD}/version/version.cmake)
   execute_process(COMMAND date -uR -d @${limpid_epoch} OUTPUT_VARIABLE date
     OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-  file(WRITE ${BUILD}/changelog "limpid (${limpid_version}-0limpid1) unstable; urgency=medium
+  file(WRITE ${made}/changelog "limpid (${limpid_version}-0limpid1) unstable; urgency=medium
 
   * See changelog.gz.
 
  -- The Limpid authors <maintainers@limpid.invalid>  ${date}
 ")
-  pack(${BUILD}/changelog ${prefix}/share/doc/limpid/changelog.Debian.gz)
+  pack(${made}/changelog doc/limpid changelog.Debian)
 endif()

@@ -15,6 +15,7 @@ finish() {
 trap finish EXIT
 
 say() { echo "clean root: $*"; }
+# grep reads to the end: who is left alone by it has failed, for pipefail.
 fail() { say "FAILED: $*" >&2; exit 1; }
 # Without anything of this computer's environment.
 inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 ${DISPLAY_INSIDE:+DISPLAY=$DISPLAY_INSIDE} chroot "$root" "$@"; }
@@ -46,7 +47,7 @@ quiet_apt install -y /tmp/limpid.deb
 inside limpid --version
 inside getent group realtime >/dev/null || fail "no group realtime"
 [ -f "$root/etc/security/limits.d/limpid.conf" ] || fail "no limits"
-inside man limpid-run | grep -q -- --record || fail "no manual page"
+inside man limpid-run | grep -e --record >/dev/null || fail "no manual page"
 status=0
 inside limpid doctor >"$place/doctor" || status=$?
 cat "$place/doctor"
@@ -55,7 +56,7 @@ inside limpid run --duration 0.2 --record /tmp/one.h5 --picture /tmp/one.png >/d
 inside limpid play /tmp/one.h5 --video /tmp/one.gif --size 320x180 >/dev/null || fail "no video"
 [ "$(inside gio info -a standard::content-type /tmp/one.h5 | sed -n 's/.*content-type: //p')" = \
   application/x-limpid-session ] || fail "a session is not known as one"
-inside gio mime application/x-limpid-session | grep -q limpid.desktop || fail "nothing opens a session"
+inside gio mime application/x-limpid-session | grep limpid.desktop >/dev/null || fail "nothing opens a session"
 
 say "started as the menu does"
 command=$(sed -n 's/^Exec=//p' "$root/usr/share/applications/limpid.desktop")

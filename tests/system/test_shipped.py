@@ -157,7 +157,9 @@ class Sessions(Run):
         return said.split("standard::content-type: ")[1].strip()
 
     def test_sessions_of_all_sorts_are_known(self) -> None:
-        ways = (["run"], ["run", "--twin"], ["run", "--device", ROOT / "assets/devices/planar2.urdf"])
+        ways = (["run"], ["run", "--twin"], ["run", "--device", ROOT / "assets/devices/planar2.urdf"],
+                ["run", "--scene", ROOT / "assets/scenes/gears.toml",
+                 "--hand", ROOT / "assets/hands/gears.csv"])  # fmt: skip
         for way in ways:
             out = self.out()
             self.must(LIMPID, *way, "--duration", "0.1", "--record", out)
