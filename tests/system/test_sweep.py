@@ -268,7 +268,8 @@ class Survival(SystemTest):
         out = self.directory / "build"
         limpid("sweep", self.plan, "--out", out, "--shard", "1/50", timeout=300)
         before = len(list((out / "blocks").glob("*.h5")))
-        other = self.directory / "limpid"
+        other = LIMPID.with_name("limpid-of-another-build")  # beside it, where its files are found
+        self.addCleanup(other.unlink)
         shutil.copy(LIMPID, other)
         with other.open("ab") as file:
             file.write(b"\0")
