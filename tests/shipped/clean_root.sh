@@ -18,7 +18,8 @@ say() { echo "clean root: $*"; }
 # grep reads to the end: who is left alone by it has failed, for pipefail.
 fail() { say "FAILED: $*" >&2; exit 1; }
 # Without anything of this computer's environment.
-inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 ${DISPLAY_INSIDE:+DISPLAY=$DISPLAY_INSIDE} chroot "$root" "$@"; }
+alone=(env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8)
+inside() { "${alone[@]}" chroot "$root" "$@"; }
 quiet_apt() { DEBIAN_FRONTEND=noninteractive inside apt-get -qq -o Dpkg::Use-Pty=0 "$@" >"$place/apt.log" 2>&1 || { cat "$place/apt.log"; fail "apt-get $*"; }; }
 # What there is, but for what any package leaves behind.
 files() { (cd "$root" && find . -path ./proc -prune -o -path ./tmp -prune -o -path ./var/cache -prune -o -path ./var/log -prune -o -path ./var/lib/apt -prune -o -path ./var/lib/dpkg -prune -o -print | sort); }
@@ -67,7 +68,8 @@ display=:$(cat "$place/display")
 mkdir -p "$root/tmp/.X11-unix"
 mount --bind /tmp/.X11-unix "$root/tmp/.X11-unix"
 for file in "" /tmp/one.h5; do
-  DISPLAY_INSIDE=$display inside ${command/\%f/$file} --print-state >"$place/state" 2>"$place/said" &
+  # shellcheck disable=SC2086  # the entry's words
+  "${alone[@]}" DISPLAY="$display" chroot "$root" ${command/\%f/$file} --print-state >"$place/state" 2>"$place/said" &
   started=$!
   window=$(DISPLAY=$display timeout 60 xdotool search --sync --onlyvisible --name '^Limpid' | head -1) || true
   [ -n "$window" ] || { cat "$place/said"; fail "no window of '$command'"; }
