@@ -10,13 +10,13 @@ SESSION = ASSETS / "sessions" / "table.h5"
 
 
 class BeforeTheCommand(WindowTest):
-    words = ("--print-state", "--ui-scale", "1.5", "--eta", "0.77", "--set", "coupling.k_vc=8",
-             "play", SESSION, "--set", "observer.alpha=0.02", "--eta", "0.66")  # fmt: skip
+    SAID = ("--print-state", "--ui-scale", "1.5", "--eta", "0.77", "--set", "coupling.k_vc=8",
+            "play", SESSION, "--set", "observer.alpha=0.02", "--eta", "0.66")  # fmt: skip
 
     def start(self) -> None:
         self.states.truncate(0)
         self.states.seek(0)
-        self.app = subprocess.Popen([LIMPID, *self.words], env=self.environment,
+        self.app = subprocess.Popen([LIMPID, *self.SAID], env=self.environment,
                                     stdout=self.states)  # fmt: skip
         self.addCleanup(self.stop, self.app)
 
