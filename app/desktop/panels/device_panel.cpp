@@ -109,14 +109,13 @@ void knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
     read_out("delay", "not measured", {}, "limpid identify finds it.");
     return;
   }
-  const int ticks = static_cast<int>(std::lround(notes.delay / p.tick));
   read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
            "From a reading to the torque that answers it, beyond the tick.");
-  if (p.delay == ticks) return;
-  if (ImGui::Button(
-          fmt::format("Reckon with {} tick{} of delay", ticks, ticks == 1 ? "" : "s").c_str())) {
-    p.delay = ticks;
-  }
+  const Parameters with = reckoning_with(p, notes.delay);
+  if (with.delay == p.delay) return;
+  const std::string text =
+      fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
+  if (ImGui::Button(text.c_str())) p = with;
   tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
 }
 
@@ -229,12 +228,19 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
 
 }  // namespace
 
+Parameters reckoning_with(Parameters p, double delay) {
+  set_parameter_number(p, *find_parameter("model.delay"), delay / p.tick);
+  return p;
+}
+
 void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads,
                        Parameters& p) {
   choices(devices, pads);
   status(devices, desk.loop());
-  if (!devices.hub().in_use().empty()) knowledge(devices, desk, p);
-  if (!devices.hub().in_use().empty()) adjustments(devices, desk);
+  if (!devices.hub().in_use().empty()) {
+    knowledge(devices, desk, p);
+    adjustments(devices, desk);
+  }
   ImGui::Separator();
 }
 

@@ -11,6 +11,10 @@ struct PadChoice {
   std::string& chosen;           // the one that leads the hand; empty: the mouse alone
 };
 
+// The predictive law then reckons with a delay [s] that was measured, in whole ticks, as many as it
+// can.
+Parameters reckoning_with(Parameters p, double delay);
+
 void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
 
 }  // namespace limpid
