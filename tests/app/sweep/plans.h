@@ -1,10 +1,12 @@
-// Plans of a test's own.
+// Plans of a test's own, and what comes of them.
 #pragma once
 
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "app/sweep/sweep_plan.h"
+#include "app/sweep/sweep_work.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid::test {
@@ -13,6 +15,22 @@ inline SweepPlan sweep_plan(const TempDir& dir, const std::string& text) {
   const std::filesystem::path file = dir / "plan.toml";
   std::ofstream(file) << text;
   return read_sweep_plan(file);
+}
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The table's bytes, of all blocks that are there; whether these are all.
+inline std::string gathered(const SweepPlan& plan, const std::filesystem::path& out,
+                            bool& complete) {
+  const SweepFolder folder(plan, out);
+  SweepBook book(plan, folder, false);
+  book.gather();
+  book.write();
+  complete = book.complete();
+  return bytes_of(folder.table());
 }
 
 // Fast: a few ticks a point.

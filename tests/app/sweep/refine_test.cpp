@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include "app/sweep/open_table.h"
@@ -27,11 +26,6 @@ axis = [ { key = "coupling.kind", values = ["standard", "predictive"] },
 [refine]
 depth = 3
 )";
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class Refining : public testing::Test {
  protected:
@@ -199,14 +193,7 @@ x = "stiffness"
     }
     return calls;
   }
-  std::string gathered(const fs::path& out) {
-    const SweepFolder folder(plan_, out);
-    SweepBook book(plan_, folder, false);
-    book.gather();
-    book.write();
-    complete_ = book.complete();
-    return bytes_of(folder.table());
-  }
+  std::string gathered(const fs::path& out) { return test::gathered(plan_, out, complete_); }
 
   test::TempDir dir_;
   SweepPlan plan_ = test::sweep_plan(dir_, kPlan);

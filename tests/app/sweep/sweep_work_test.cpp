@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "devices/files/file_error.h"
 #include "tests/app/sweep/plans.h"
@@ -18,11 +17,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class SweepWork : public testing::Test {
  protected:
   bool work(const fs::path& out, SweepShare share, const TakeBlock& take = {}) {
@@ -30,14 +24,7 @@ class SweepWork : public testing::Test {
     return work_off(plan_, rows_, folder, share, stop_, done_, take);
   }
   // The table's bytes.
-  std::string gathered(const fs::path& out) {
-    const SweepFolder folder(plan_, out);
-    SweepBook book(plan_, folder, false);
-    book.gather();
-    book.write();
-    complete_ = book.complete();
-    return bytes_of(folder.table());
-  }
+  std::string gathered(const fs::path& out) { return test::gathered(plan_, out, complete_); }
   std::string reference() {
     work(dir_ / "reference", {.threads = 1});
     return gathered(dir_ / "reference");
@@ -91,7 +78,7 @@ TEST_F(SweepWork, DoesDamagedAndCutBlocksAgain) {
   const std::string table = reference();
   const SweepFolder folder(plan_, dir_ / "reference");
   for (const std::uint64_t block : {1u, 2u}) {
-    std::string bytes = bytes_of(folder.file(rows_.block(block)));
+    std::string bytes = test::bytes_of(folder.file(rows_.block(block)));
     // A value of the block, found by its bits.
     double value = folder.read(rows_.block(block))->front();
     const auto at = bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value));
