@@ -78,8 +78,8 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
   menu_button_ = {{heading.max.x, min.y}, {outer.max.x, menu ? min.y + line : min.y}};
   const float title_end = draw_title(list, heading, scale);
   const float title_bottom = min.y + line;
-  const float legend =
-      legend_.place(heading, title_end, title_bottom, kLeastHeight * scale, spec_, scale);
+  const ScreenRect beside{{title_end, min.y}, {heading.max.x, title_bottom}};
+  const float legend = legend_.place({outer, beside, kLeastHeight * scale}, spec_, scale);
   const ImVec2 label = text_size(Face::small, "\u221200.00");
   const AxisMap y{y_.limits, spec_.y.log};
   float margin = over_time() && spec_.end_labels ? end_label_width() : 0;
@@ -168,7 +168,10 @@ void Plot::draw_inside(const PlotFrame& frame, const History& history, const Plo
     draw_mark_lines(frame, history);
   }
   draw_curves(frame, history);
-  if (over_time()) draw_mark_labels(frame, history, traces_, mouse);
+  if (over_time()) {
+    draw_band_names(frame, spec_, history, rows_);
+    draw_mark_labels(frame, history, traces_, mouse);
+  }
   draw_thresholds(frame, spec_);
   if (over_time() && group.playback()) {
     draw_playback(frame, *group.playback(), drag_ == Drag::playback);

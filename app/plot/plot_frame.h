@@ -61,9 +61,12 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
 
 // Grid, labels and unit scaling of both axes; `time_offset` is subtracted from the labels [s].
 void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset);
-// Tints the spec's bands: once `rows` are those of the frame's pixels.
+// Tints the spec's bands behind the curves, and says over them what they are: once `rows` are those
+// of the frame's pixels.
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows);
+void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                     const std::vector<SampleIndex>& rows);
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
 // Behind the curves a line wherever something was changed, and over them what it was, where they
 // leave room.

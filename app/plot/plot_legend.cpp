@@ -16,6 +16,14 @@ void draw_swatch(const PlotFrame& frame, const ScreenRect& entry, const Curve& c
   frame.list.AddRectFilled({entry.min.x, y - s}, {entry.min.x + kSwatch * s, y + s}, rgba, s);
 }
 
+// Without the words that a label shares with the one before it.
+std::string without_shared_words(const std::string& label, const std::string& before) {
+  const auto differs = std::ranges::mismatch(label, before).in1;
+  const auto same = static_cast<std::size_t>(differs - label.begin());
+  const std::size_t space = label.rfind(' ', same > 0 ? same - 1 : 0);
+  return space == std::string::npos || same == 0 ? label : label.substr(space + 1);
+}
+
 }  // namespace
 
 float PlotLegend::sample_width(float scale) const { return samples_ ? (kSwatch + 5) * scale : 0; }
@@ -26,12 +34,16 @@ ImVec2 PlotLegend::lay_out(const PlotSpec& spec, bool hidden_too, float width, f
   const float height = text_size(Face::small, "0").y + 2 * scale;
   ImVec2 at{0, 0};
   float widest = 0;
+  std::string before;
   for (std::size_t i = 0; i < spec.curves.size(); ++i) {
     if (!hidden_too && !spec.curves[i].visible) continue;
-    const float text = text_size(Face::small, spec.curves[i].label).x;
-    const float entry = sample_width(scale) + text;
+    const std::string& whole = spec.curves[i].label;
+    std::string label = samples_ ? whole : without_shared_words(whole, before);
+    before = whole;
+    const float entry = sample_width(scale) + text_size(Face::small, label).x;
     if (at.x > 0 && at.x + entry > width) at = {0, at.y + height};
-    entries_.push_back({{at, {at.x + entry, at.y + height}}, static_cast<int>(i)});
+    const ScreenRect box{at, {at.x + entry, at.y + height}};
+    entries_.push_back({box, static_cast<int>(i), std::move(label)});
     widest = std::max(widest, at.x + entry);
     at.x += entry + kApart * scale;
   }
@@ -44,15 +56,15 @@ void PlotLegend::move_entries(ImVec2 by) {
   }
 }
 
-float PlotLegend::place(const ScreenRect& outer, float title_end, float title_bottom,
-                        float least_height, const PlotSpec& spec, float scale) {
+float PlotLegend::place(const Room& room, const PlotSpec& spec, float scale) {
   entries_.clear();
   if (spec.curves.empty()) return 0;
+  const ScreenRect& outer = room.outer;
   const float left = outer.min.x + 2 * scale, right = outer.max.x - 6 * scale;
-  const float beside = right - title_end - 16 * scale;
+  const float beside = room.beside.width() - 22 * scale;
   const float line = text_size(Face::small, "0").y + 2 * scale;
-  const float most =
-      std::max(1.0f, std::floor((outer.max.y - title_bottom - least_height) / line)) * line;
+  const float under = outer.max.y - room.beside.max.y - room.least_height;
+  const float most = std::max(1.0f, std::floor(under / line)) * line;
   struct Style {
     bool hidden_too, samples;
   };
@@ -60,13 +72,13 @@ float PlotLegend::place(const ScreenRect& outer, float title_end, float title_bo
     samples_ = style.samples;
     ImVec2 size = lay_out(spec, style.hidden_too, 1e6f, scale);
     if (size.x < beside) {
-      move_entries({right - size.x, title_bottom - size.y});
+      move_entries({room.beside.max.x - 6 * scale - size.x, room.beside.max.y - size.y});
       return 0;
     }
     size = lay_out(spec, style.hidden_too, right - left, scale);
     if (size.y > most + 1 && style.samples) continue;
     std::erase_if(entries_, [&](const Entry& e) { return e.box.max.y > most + 1; });
-    move_entries({left, title_bottom});
+    move_entries({left, room.beside.max.y});
     return std::min(size.y, most);
   }
   return 0;
@@ -88,7 +100,7 @@ void PlotLegend::draw(const PlotFrame& frame, const PlotSpec& spec, int hovered)
                                         : ink(frame.palette, curve.ink, curve.shade);
     draw_text(frame.list, Face::small,
               {e.box.min.x + sample_width(frame.scale), e.box.min.y + frame.scale},
-              curve.visible ? text : mix(text, frame.palette.panel, 0.6f), curve.label);
+              curve.visible ? text : mix(text, frame.palette.panel, 0.6f), e.label);
   }
 }
 

@@ -9,12 +9,16 @@ namespace limpid {
 
 class PlotLegend {
  public:
-  // Beside the title, from `title_end` to the right end of `outer`, where there is room; else on
-  // lines of its own under the title's `title_bottom`, as many as leave `least_height` for the
-  // curves, but one at least: what is hidden goes without a name first, then names are in their
-  // curves' colours without a sample. Returns how much height it takes under the title.
-  float place(const ScreenRect& outer, float title_end, float title_bottom, float least_height,
-              const PlotSpec& spec, float scale);
+  struct Room {
+    ScreenRect outer;    // of the plot
+    ScreenRect beside;   // the title, on its line
+    float least_height;  // of the curves
+  };
+  // Beside the title where there is room; else on lines of its own under it, as many as leave the
+  // curves their height, but one at least: what is hidden goes without a name first, then names
+  // are in their curves' colours without a sample and without the run's name that stands before
+  // them. Returns how much height it takes under the title.
+  float place(const Room& room, const PlotSpec& spec, float scale);
 
   // Curve under the mouse, -1 for none.
   int curve_at(ImVec2 mouse) const;
@@ -25,6 +29,7 @@ class PlotLegend {
   struct Entry {
     ScreenRect box;
     int curve;
+    std::string label;
   };
   ImVec2 lay_out(const PlotSpec& spec, bool hidden_too, float width, float scale);
   float sample_width(float scale) const;

@@ -168,36 +168,52 @@ void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<
 
 namespace {
 
-// One stretch after the other in which the band's channel says the same, as it does at its end.
-void draw_band(const PlotFrame& frame, const Band& band, const History& history,
-               const std::vector<SampleIndex>& rows) {
+// One stretch after the other in which the band's channel says the same, as it does at its end:
+// what it says, and from where to where.
+template <class Draw>
+void for_stretches(const PlotFrame& frame, const Band& band, const History& history,
+                   const std::vector<SampleIndex>& rows, Draw&& draw) {
   const auto most = static_cast<int>(band.names.size()) - 1;
   const auto at = [&](std::size_t pixel) {
     if (rows[pixel] >= rows[pixel + 1]) return -1;
     const Extent said = history.extent(band.channel, rows[pixel], rows[pixel + 1]);
     return said.empty() ? -1 : std::min(static_cast<int>(std::lround(said.high)), most);
   };
-  float free_from = frame.area.min.x;
-  int before = -1;
   for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
     const int now = at(pixel);
     if (now < 0) continue;
     const float left = frame.area.min.x + static_cast<float>(pixel);
     while (pixel + 2 < rows.size() && at(pixel + 1) == now) ++pixel;
-    const float right = frame.area.min.x + static_cast<float>(pixel) + 1;
-    const float tint = band.tint * static_cast<float>(now) / static_cast<float>(std::max(1, most));
-    frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
-                             colour(frame.palette.accent, tint));
+    draw(now, left, frame.area.min.x + static_cast<float>(pixel) + 1);
+  }
+}
+
+void draw_names(const PlotFrame& frame, const Band& band, const History& history,
+                const std::vector<SampleIndex>& rows) {
+  float free_from = frame.area.min.x;
+  int before = -1;
+  for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
     const std::string& name = band.names[static_cast<std::size_t>(now)];
     const ImVec2 label = text_size(Face::small, name);
     const float x = std::min(left, frame.area.max.x - label.x - 6 * frame.scale) + 2 * frame.scale;
-    if (name.empty() || std::exchange(before, now) == now || x < free_from) continue;
+    if (name.empty() || std::exchange(before, now) == now || x < free_from) return;
     // Where the plot is low, names would fill it.
-    if (frame.area.height() < 6 * label.y) continue;
+    if (frame.area.height() < 6 * label.y) return;
     // A moment under another law is a line without a name.
-    if (!band.names.front().empty() && right - left < label.x) continue;
-    draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.75f);
+    if (!band.names.front().empty() && right - left < label.x) return;
+    draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.85f);
     free_from = x + label.x + 12 * frame.scale;
+  });
+}
+
+template <class Draw>
+void for_bands(const PlotSpec& spec, const History& history, const std::vector<SampleIndex>& rows,
+               Draw&& draw) {
+  if (history.empty()) return;
+  for (const Band& band : spec.bands) {
+    const Extent said = history.extent(band.channel, rows.front(), rows.back());
+    const bool changes = said.low < said.high;
+    if (changes || band.names.front().empty()) draw(band);
   }
 }
 
@@ -205,12 +221,19 @@ void draw_band(const PlotFrame& frame, const Band& band, const History& history,
 
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows) {
-  if (history.empty()) return;
-  for (const Band& band : spec.bands) {
-    const Extent said = history.extent(band.channel, rows.front(), rows.back());
-    const bool changes = said.low < said.high;
-    if (changes || band.names.front().empty()) draw_band(frame, band, history, rows);
-  }
+  for_bands(spec, history, rows, [&](const Band& band) {
+    const auto most = static_cast<float>(std::max<std::size_t>(2, band.names.size()) - 1);
+    for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
+      frame.list.AddRectFilled(
+          {left, frame.area.min.y}, {right, frame.area.max.y},
+          colour(frame.palette.accent, band.tint * static_cast<float>(now) / most));
+    });
+  });
+}
+
+void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                     const std::vector<SampleIndex>& rows) {
+  for_bands(spec, history, rows, [&](const Band& band) { draw_names(frame, band, history, rows); });
 }
 
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {

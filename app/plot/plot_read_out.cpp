@@ -194,6 +194,22 @@ std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
   return found;
 }
 
+namespace {
+
+// Of sorted lines as many as there is room for: those go first that say what a neighbour says.
+void leave_room(std::vector<Line>& lines, float most) {
+  while (static_cast<float>(lines.size()) > most) {
+    auto closest = lines.begin() + 1;
+    for (auto line = closest; line != lines.end(); ++line) {
+      const auto apart = [](auto at) { return at->at.y - (at - 1)->at.y; };
+      if (apart(line) < apart(closest)) closest = line;
+    }
+    lines.erase(closest);
+  }
+}
+
+}  // namespace
+
 float end_label_width() { return text_size(Face::small, "\u22120.000").x + 6 * current_scale(); }
 
 void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history) {
@@ -202,6 +218,7 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
   const SampleIndex row = history.nearest(frame.window.stop());
   const int exponent =
       common_exponent(frame.y.low() * spec.y.factor, frame.y.high() * spec.y.factor);
+  const float height = text_size(Face::small, "0").y;
   std::vector<Line> lines;
   for (const Curve& curve : spec.curves) {
     const auto value = static_cast<double>(history.value(curve.channel, row));
@@ -213,8 +230,8 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
                      {0, frame.y_of(value)}});
   }
   std::ranges::sort(lines, {}, [](const Line& line) { return line.at.y; });
+  leave_room(lines, std::max(1.0f, std::floor(frame.area.height() / height)));
   // From the top each stands below the one before, then from the bottom each above the next.
-  const float height = text_size(Face::small, "0").y;
   float free = frame.area.min.y;
   for (Line& line : lines) {
     line.at.y = std::max(line.at.y - 0.5f * height, free);

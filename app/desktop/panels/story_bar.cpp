@@ -7,9 +7,11 @@
 
 namespace limpid {
 
-bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view) {
+bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
+                     bool hinted) {
   if (settings.hint_seen || playback.on() || playback.loading()) return false;
-  const float above = 8 * font(Face::semibold)->FontSize;  // the hint's lines
+  // Above the hint's lines, or the tab that folds the plots.
+  const float above = (hinted ? 8 : 1.5f) * font(Face::semibold)->FontSize;
   ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, view.max.y - above}, ImGuiCond_Always,
                           {0.5f, 1});
   ImGui::Begin("story", nullptr,

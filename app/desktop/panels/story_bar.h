@@ -7,8 +7,10 @@
 
 namespace limpid {
 
-// A button over the hint of a first start; true when it is pressed.
-bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view);
+// A button of a first start, over its hint; true when it is pressed.
+// `hinted`: there is one.
+bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
+                     bool hinted);
 // Somebody reaches into the picture of a story: the hand is theirs.
 bool story_taken_over(const Playback& playback, ScreenRect view);
 

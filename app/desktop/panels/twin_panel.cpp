@@ -41,9 +41,10 @@ void cell(const std::string& text, bool muted = false) {
   ImGui::PopStyleColor();
 }
 
-// The second over the first, where that says something.
+// The second over the first, where that says something: not of a gain and a loss.
 std::string ratio(double a, double b, double least) {
-  return std::abs(a) > least && std::abs(b) > least ? "\xC3\x97" + three_digits(b / a) : "";
+  return a * b > 0 && std::min(std::abs(a), std::abs(b)) > least ? "\xC3\x97" + three_digits(b / a)
+                                                                 : "";
 }
 
 }  // namespace

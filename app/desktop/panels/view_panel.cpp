@@ -23,8 +23,29 @@ ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
   return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
 }
 
-void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
-                      const std::optional<ScreenRect>& lens, ImDrawList& list) {
+// How far from the arm's links, drawn as lines from joint to joint, a place is at least [px].
+float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVec2 place) {
+  float nearest = 1e9f;
+  std::optional<ImVec2> last;
+  const auto reach = [&](const Vec3& joint) {
+    const auto pixel = camera.project(joint);
+    if (!pixel) return;
+    const ImVec2 end = at(rect, *pixel), start = last.value_or(end);
+    last = end;
+    const float x = end.x - start.x, y = end.y - start.y;
+    const float along = (place.x - start.x) * x + (place.y - start.y) * y;
+    const float part = std::clamp(along / std::max(1.0f, x * x + y * y), 0.0f, 1.0f);
+    nearest =
+        std::min(nearest, std::hypot(place.x - start.x - part * x, place.y - start.y - part * y));
+  };
+  for (const Pose& link : arm.links) reach(link.translation());
+  if (last) reach(arm.tip);
+  return nearest;
+}
+
+// Lengths along the far edge, where they cover nothing.
+void draw_grid_labels(const Bounds& grid, const ViewState& view, const Camera& camera,
+                      ScreenRect rect, const std::optional<ScreenRect>& lens, ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
@@ -40,9 +61,13 @@ void draw_grid_labels(const Bounds& grid, const Camera& camera, ScreenRect rect,
       return lens && lens->contains({place.x + along, place.y + 0.5f * em});
     };
     const bool crowded = std::hypot(place.x - last.x, place.y - last.y) < 4.5f * em;
-    const std::string text = fmt::format("{} cm", cm);
-    const bool cut = place.x + small->CalcTextSizeA(em, 1e9f, 0, text.c_str()).x > edge;
-    if (crowded || cut || hidden(0) || hidden(3 * em)) continue;
+    const std::string text = fmt::format("{}{} cm", cm < 0 ? "\u2212" : "", std::abs(cm));
+    const float wide = small->CalcTextSizeA(em, 1e9f, 0, text.c_str()).x;
+    const bool cut = place.x + wide > edge || legend_box(rect).contains(place);
+    const ImVec2 middle(place.x + 0.5f * wide, place.y + 0.5f * em);
+    const bool over = std::min(apart_from(view.device, camera, rect, middle),
+                               apart_from(view.proxy, camera, rect, middle)) < 0.5f * wide + em;
+    if (crowded || cut || over || hidden(0) || hidden(3 * em)) continue;
     list.AddText(small, em, place, colour(colours.muted, 0.9f), text.c_str());
     last = place;
   }
@@ -199,7 +224,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (scene.selected) draw_outline(*scene.selected, camera, rect, list);
   list.PushClipRect(rect.min, rect.max);
   if (settings.show_grid) {
-    draw_grid_labels(scene.stage.picture.grid(), camera, rect, magnifier_.rect(), list);
+    draw_grid_labels(scene.stage.picture.grid(), view, camera, rect, magnifier_.rect(), list);
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
   magnifier_.draw_frame(view, camera, list);

@@ -46,7 +46,8 @@ void Frame::draw() {
   part([&] { draw_video_bar(desktop_.playback(), at.view); });
   part([&] {
     if (desktop_.dialog() == Dialog::sweep) return;  // which it would cover
-    if (story_asked_for(desktop_.playback(), settings, at.view)) desktop_.play_story();
+    const bool hinted = desktop_.twin_row().empty();
+    if (story_asked_for(desktop_.playback(), settings, at.view, hinted)) desktop_.play_story();
   });
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   part([&] { dialogs_.draw_scenes(act_); });

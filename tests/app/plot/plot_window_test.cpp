@@ -86,7 +86,7 @@ TEST_F(APlot, NamesItsVisibleCurvesAboveThemInEverySize) {
       PlotLegend legend;
       const ScreenRect outer{{0, 0}, size};
       const float title_bottom = 20;
-      const float height = legend.place(outer, 100, title_bottom, 84, spec, 1);
+      const float height = legend.place({outer, {{100, 0}, {size.x, title_bottom}}, 84}, spec, 1);
       const Found found = names(legend, size);
       for (const int curve : {0, 1, 2}) {
         EXPECT_TRUE(found.curves.contains(curve)) << curve << " at " << size.x;
@@ -95,6 +95,45 @@ TEST_F(APlot, NamesItsVisibleCurvesAboveThemInEverySize) {
       EXPECT_GE(size.y - title_bottom - height, 60) << "and they keep their room";
     });
   }
+}
+
+TEST_F(APlot, NamesBothRunsOfATwinInALineThatIsTooShortForTheirWholeNames) {
+  PlotSpec spec = energy();
+  const std::vector<std::string> labels = {"standard |f1|", "standard |f2|", "predictive |f1|",
+                                           "predictive |f2|"};
+  spec.curves.clear();
+  for (const std::string& label : labels) spec.curves.push_back({.label = label});
+  frame([&] {
+    PlotLegend legend;
+    const auto width = [](const std::string& label) { return text_size(Face::small, label).x; };
+    const float narrow = width(labels[0]) + width("|f2|") + width(labels[2]) + width("|f2|") + 60;
+    ASSERT_LT(narrow, width(labels[0]) + width(labels[1]) + width(labels[2]) + width(labels[3]));
+    legend.place({{{0, 0}, {narrow, 100}}, {{80, 0}, {narrow, 20}}, 84}, spec, 1);
+    EXPECT_EQ(names(legend, {narrow, 100}).curves, (std::set{0, 1, 2, 3}));
+  });
+}
+
+TEST_F(APlot, WritesNoMoreValuesAtTheEndsThanThereIsRoomFor) {
+  PlotSpec spec = energy();
+  spec.end_labels = true;
+  spec.curves.clear();
+  for (int i = 0; i < 4; ++i) spec.curves.push_back({.channel = i, .label = "curve"});
+  History history({.channels = 4});
+  for (int k = 0; k < 100; ++k) history.append(1e-3 * k, std::array{1.0, 1.01, 1.02, 5.0});
+  frame([&] {
+    const float line = text_size(Face::small, "0").y;
+    const ScreenRect area{{60, 100}, {200, 100 + 2.5f * line}};
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const PlotFrame in{list, current_palette(), 1,           {{0, 60}, {300, 200}},
+                       area, {1e-3, 0, 140},    {{0, 0.14}}, {{0, 6}}};
+    const int before = list.VtxBuffer.Size;
+    draw_end_labels(in, spec, history);
+    EXPECT_GT(list.VtxBuffer.Size, before);
+    for (int i = before; i < list.VtxBuffer.Size; ++i) {
+      EXPECT_GE(list.VtxBuffer[i].pos.y, area.min.y - 1) << "over the legend";
+      EXPECT_LE(list.VtxBuffer[i].pos.y, area.max.y + 1);
+    }
+  });
 }
 
 }  // namespace
