@@ -66,14 +66,14 @@ std::unique_ptr<mjModel, Free> load(const std::string& xml) {
 
 }  // namespace
 
-std::optional<SampleTimes> mujoco_steps(const ArmDescription& arm, const Scene& scene,
-                                        const Eigen::VectorXd& x, int steps) {
+std::optional<Samples> mujoco_steps(const ArmDescription& arm, const Scene& scene,
+                                    const Eigen::VectorXd& x, int steps) {
   const auto model = load(mjcf(arm, scene.planes.front()));
   const std::unique_ptr<mjData, Free> data(mj_makeData(model.get()));
   std::copy_n(x.data(), x.size(), data->qpos);
   data->xfrc_applied[6 * (model->nbody - 1) + 2] = -1;  // [N]
   for (int k = 0; k < steps / 10; ++k) mj_step(model.get(), data.get());
-  SampleTimes times(static_cast<std::size_t>(steps));
+  Samples times(static_cast<std::size_t>(steps));
   int touching = 0;
   for (int k = 0; k < steps; ++k) {
     times.time([&] { mj_step(model.get(), data.get()); });

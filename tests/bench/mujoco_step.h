@@ -3,15 +3,15 @@
 
 #include <optional>
 
+#include "app/bench/samples.h"
 #include "core/dynamics/arm_description.h"
 #include "core/touch/scene.h"
-#include "tests/bench/sample_times.h"
 
 namespace limpid::bench {
 
 // `steps` steps of 1 ms from posture x, the tip pulled down with 1 N; nothing where the benchmark
 // was built without MuJoCo.
-std::optional<SampleTimes> mujoco_steps(const ArmDescription& arm, const Scene& scene,
-                                        const Eigen::VectorXd& x, int steps);
+std::optional<Samples> mujoco_steps(const ArmDescription& arm, const Scene& scene,
+                                    const Eigen::VectorXd& x, int steps);
 
 }  // namespace limpid::bench

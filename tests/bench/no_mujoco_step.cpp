@@ -2,8 +2,8 @@
 
 namespace limpid::bench {
 
-std::optional<SampleTimes> mujoco_steps(const ArmDescription&, const Scene&, const Eigen::VectorXd&,
-                                        int) {
+std::optional<Samples> mujoco_steps(const ArmDescription&, const Scene&, const Eigen::VectorXd&,
+                                    int) {
   return std::nullopt;
 }
 

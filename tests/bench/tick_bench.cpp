@@ -1,25 +1,16 @@
-// How long one tick of 1 ms takes: the controller alone, with the virtual arm, and a whole run that
-// is recorded. Medians and p99 are the program's, p99.9 and longest the machine's.
+// The controller and the virtual arm beside MuJoCo's step of the same arm, as `limpid bench` times
+// them; or only their ticks, for counting instructions.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <array>
 #include <cstdlib>
-#include <ctime>
-#include <filesystem>
 #include <string_view>
 
-#include "app/base/assets.h"
-#include "app/run/recorder.h"
-#include "app/run/simulate.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
-#include "devices/files/scene/scene_file.h"
-#include "devices/virtual_arm.h"
-#include "tests/bench/bench_arm.h"
+#include "app/bench/bench.h"
+#include "app/bench/mesh_stroke.h"
+#include "app/bench/pressed.h"
 #include "tests/bench/mujoco_step.h"
-#include "tests/bench/sample_times.h"
 
 namespace limpid::bench {
 namespace {
@@ -27,175 +18,74 @@ namespace {
 constexpr int kTicks = 20000;
 
 constexpr const char* kHelp =
-    "usage: tick_bench [--callgrind [TICKS]]\n"
+    "usage: tick_bench [--callgrind LAW [TICKS]] [--callgrind-mesh TRIANGLES [TICKS]]\n"
     "\n"
     "Prints a table of times. With --callgrind it only runs TICKS (1000) ticks of the controller\n"
-    "and the virtual arm, n = 3, in contact, for counting instructions:\n"
+    "under a law and of the virtual arm, n = 3, in contact, for counting instructions; with\n"
+    "--callgrind-mesh a tip of 5 mm strokes over a body of about so many triangles:\n"
     "\n"
-    "  valgrind --tool=callgrind --toggle-collect='limpid::Tick<3>::run(*' tick_bench --callgrind\n"
+    "  valgrind --tool=callgrind --toggle-collect='limpid::Tick<3>::run(*' \\\n"
+    "      tick_bench --callgrind proposed\n"
     "  valgrind --tool=callgrind --toggle-collect='limpid::VirtualArm<3>::live(*' \\\n"
-    "      tick_bench --callgrind\n"
+    "      tick_bench --callgrind proposed\n"
     "\n"
     "and divide what it collected by TICKS.\n";
 
-// A controller and an arm whose hand circles slowly with the tip pressed against a plane.
-template <int N>
-class Pressed {
- public:
-  Pressed(const ArmDescription& arm, const Eigen::VectorXd& x)
-      : tip_(tip_of(arm, x)),
-        tick_(arm, plane_over(tip_)),
-        arm_(arm),
-        row_(static_cast<std::size_t>(tick_.layout().stride())) {
-    tick_.start(p_, Start<N>::at_rest(x));
-    arm_.place(x, Vec<N>::Zero(x.size()), tip_);
-  }
-
-  const Vec<N>& control() {
-    const Reading<N> reading = arm_.read(p_.encoder_step);
-    return tick_.run(p_, reading, ForceWish::as_it_is, row_);
-  }
-  void live(const Vec<N>& torque) {
-    const double angle = 1e-3 * k_++;
-    arm_.live(p_, torque, {tip_ + 0.01 * Vec3(std::cos(angle) - 1, std::sin(angle), -0.1), 1});
-  }
-  bool touches() const { return !tick_.proxy().f().isZero(0); }
-  bool diverged() const { return tick_.diverged(); }
-
- private:
-  Parameters p_;
-  Vec3 tip_;
-  Tick<N> tick_;
-  VirtualArm<N> arm_;
-  std::vector<double> row_;
-  int k_ = 0;
-};
-
-struct TickTimes {
-  SampleTimes control{kTicks}, live{kTicks};
-};
-
-template <int N>
-TickTimes time_ticks(const ArmDescription& arm, const Eigen::VectorXd& x) {
-  Pressed<N> pressed(arm, x);
-  TickTimes times;
-  int touching = 0;
-  const Vec<N>* torque = nullptr;
-  for (int k = 0; k < kTicks; ++k) {
-    times.control.time([&] { torque = &pressed.control(); });
-    times.live.time([&] { pressed.live(*torque); });
-    touching += pressed.touches();
-  }
-  if (touching < kTicks * 9 / 10 || pressed.diverged()) {
-    fmt::print("  (touched in {:.0f} % of the ticks{})\n", 100.0 * touching / kTicks,
-               pressed.diverged() ? ", went unstable" : "");
-  }
-  return times;
-}
-
+// What `limpid bench` says of the same, over MuJoCo's step.
 void print_chain(int joints) {
   const ArmDescription arm = chain(joints);
   const Eigen::VectorXd x = bent(arm);
-  const auto mujoco = mujoco_steps(arm, plane_over(tip_of(arm, x)), x, kTicks);
-  const SampleTimes* yardstick = mujoco ? &*mujoco : nullptr;
-  const TickTimes ours = joints == 3 ? time_ticks<3>(arm, x) : time_ticks<kAnyDof>(arm, x);
   const std::string n = fmt::format("n = {}: ", joints);
-  if (mujoco) fmt::print("{}", table_line(n + "mj_step", *mujoco, nullptr));
-  fmt::print("{}", table_line(n + "controller", ours.control, yardstick));
-  fmt::print("{}", table_line(n + "virtual arm, 20 substeps", ours.live, yardstick));
+  const auto steps = mujoco_steps(arm, plane_over(tip_of(arm, x)), x, kTicks);
+  const Line mujoco = steps ? line_of("mj_step", n + "mj_step", *steps) : Line{};
+  if (steps) fmt::print("{}", table_line(mujoco));
+  const std::string ids[] = {fmt::format("tick/{}", joints), fmt::format("arm/{}", joints)};
+  for (const std::string& id : ids) {
+    const Report report = measure({.ticks = kTicks, .only = id}, [](double, const std::string&) {});
+    for (Line line : report.lines) {
+      if (line.id == "yardstick") continue;
+      line.ratio = steps ? std::optional(line.median / mujoco.median) : std::nullopt;
+      fmt::print("{}", table_line(line));
+    }
+  }
 }
 
-RunPlan touching_the_table() {
-  RunPlan plan;
-  plan.arm = read_urdf(default_device());
-  plan.document = read_scene(default_scene(), plan.arm);
-  plan.hand = read_hand(default_hand());
-  plan.rows = 60000;
-  return plan;
+int count(std::string_view law, int ticks) {
+  for (const CouplingKind kind :
+       {CouplingKind::standard, CouplingKind::proposed, CouplingKind::predictive}) {
+    if (info(kind).key != law) continue;
+    Pressed<3> pressed(chain(3), kind);
+    for (int k = 0; k < ticks; ++k) pressed.live(pressed.control());
+    fmt::print("{} ticks, {}touching at the end\n", ticks, pressed.touches() ? "" : "not ");
+    return pressed.touches() ? 0 : 1;
+  }
+  fmt::print(stderr, "{}: no law\n", law);
+  return 2;
 }
 
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
-
-// Of the calling thread alone [s].
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-template <class Work>
-void report(const char* what, const RunPlan& plan, Work&& work) {
-  const auto rows = static_cast<double>(plan.rows);
-  const auto began = Clock::now();
-  const double processor = processor_time();
-  work();
-  const double took = Seconds(Clock::now() - began).count();
-  fmt::print("{:<34}{:>9.2f} us a tick ({:.2f} of its thread), {:.0f} times real time\n", what,
-             1e6 * took / rows, 1e6 * (processor_time() - processor) / rows,
-             rows * plan.parameters.tick / took);
-}
-
-// The whole of `limpid run --record`.
-void print_recorded_run() {
-  const RunPlan plan = touching_the_table();
-  SessionInfo info;
-  info.tick = plan.parameters.tick;
-  info.dof = plan.arm.dof();
-  info.config = config_text(plan.parameters);
-  info.device_urdf = plan.arm.urdf;
-  info.scene = plan.document.toml;
-  const std::filesystem::path out = std::filesystem::temp_directory_path() / "limpid_tick_bench.h5";
-
-  std::vector<double> rows(plan.rows * static_cast<std::size_t>(RowLayout(info.dof).stride()));
-  report("headless run", plan, [&] {
-    auto next = rows.begin();
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
-      next = std::ranges::copy(row, next).out;
-      return true;
-    });
-  });
-  report("headless run, recorded", plan, [&] {
-    Recorder recorder(out, info, plan.parameters, true, Recorder::kWaitingRoom);
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
-      return recorder.push_waiting(row);
-    });
-    recorder.finish();
-  });
-  report("writing the file alone", plan, [&] {
-    SessionWriter writer(out, info, true);
-    writer.append(rows);
-    writer.close();
-  });
-  std::filesystem::remove(out);
-}
-
-int count(int ticks) {
-  const ArmDescription arm = chain(3);
-  Pressed<3> pressed(arm, bent(arm));
-  for (int k = 0; k < ticks; ++k) pressed.live(pressed.control());
-  fmt::print("{} ticks, {}touching at the end\n", ticks, pressed.touches() ? "" : "not ");
-  return 0;
-}
-
-void print_table() {
-  fmt::print("{}", table_head());
-  for (const int joints : {3, 7, 15, 30}) print_chain(joints);
-  const RunPlan plan = touching_the_table();
-  const Eigen::VectorXd x = rest_pose(plan.arm);
-  const TickTimes omni = time_ticks<3>(plan.arm, x);
-  fmt::print("{}", table_line("built-in arm: controller", omni.control, nullptr));
-  fmt::print("{}", table_line("       virtual arm, 20 substeps", omni.live, nullptr));
-  print_recorded_run();
+int count_on_mesh(std::size_t triangles, int ticks) {
+  const StrokePlace place;
+  Stroke stroke(place, 0.005, place.on_mesh(bumpy_body(triangles), 0.005, false));
+  for (int k = 0; k < ticks; ++k) {
+    stroke.move();
+    stroke.control();
+  }
+  fmt::print("{} ticks, {}touching at the end\n", ticks, stroke.touches() ? "" : "not ");
+  return stroke.touches() ? 0 : 1;
 }
 
 int main_of(int argc, char** argv) {
+  const std::string_view option = argc > 1 ? argv[1] : "";
+  const int ticks = argc > 3 ? std::max(1, std::atoi(argv[3])) : 1000;
   if (argc == 1) {
-    print_table();
+    fmt::print("{}", table_head());
+    for (const int joints : {3, 7, 15, 30}) print_chain(joints);
     return 0;
   }
-  const std::string_view option = argv[1];
-  if (option == "--callgrind") return count(argc > 2 ? std::max(1, std::atoi(argv[2])) : 1000);
+  if (option == "--callgrind" && argc > 2) return count(argv[2], ticks);
+  if (option == "--callgrind-mesh" && argc > 2) {
+    return count_on_mesh(static_cast<std::size_t>(std::max(8, std::atoi(argv[2]))), ticks);
+  }
   fmt::print("{}", kHelp);
   return option == "--help" ? 0 : 2;
 }

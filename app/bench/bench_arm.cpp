@@ -1,4 +1,4 @@
-#include "tests/bench/bench_arm.h"
+#include "app/bench/bench_arm.h"
 
 #include <cmath>
 

@@ -1,0 +1,227 @@
+#include "app/bench/bench.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "app/base/version.h"
+#include "app/bench/instruction_counter.h"
+#include "app/bench/mesh_stroke.h"
+#include "app/bench/pressed.h"
+#include "app/bench/recorded_run.h"
+#include "core/realtime/clock.h"
+
+namespace limpid::bench {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kWakes = 2000;
+
+// A fixed piece of arithmetic: what it takes is the processor's.
+Line yardstick(int times) {
+  Eigen::Matrix<double, 24, 24> matrix;
+  for (int i = 0; i < 24; ++i) {
+    for (int j = 0; j < 24; ++j) matrix(i, j) = i == j ? 30 : std::cos(i * j);
+  }
+  Samples taken(static_cast<std::size_t>(times));
+  double sum = 0;
+  for (int k = 0; k < times; ++k) {
+    matrix(k % 24, k % 24) = 30 + 1e-3 * k;
+    taken.time([&] { sum += matrix.llt().matrixL()(23, 23); });
+  }
+  if (!(sum > 0)) throw std::runtime_error("the yardstick is broken");
+  return line_of("yardstick", "yardstick: Cholesky of 24 rows", taken);
+}
+
+// How late an ordinary thread wakes up, as cyclictest has it.
+Line wakes() {
+  const MonotonicTime time;
+  Samples late(kWakes);
+  nanoseconds due = time.now();
+  for (int k = 0; k < kWakes; ++k) {
+    due += 1ms;
+    time.sleep_until(due);
+    late.add(1e6 * in_seconds(time.now() - due));
+  }
+  return line_of("wake", "waking up after 1 ms, late by", late);
+}
+
+// Of a line that is not what it says.
+std::string remark(bool diverged, int touching, int ticks) {
+  if (diverged) return ", unstable";
+  if (touching >= ticks * 9 / 10) return "";
+  return fmt::format(", touching {:.0f} %", 100.0 * touching / ticks);
+}
+
+template <int N>
+Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind law, bool of_arm) {
+  Pressed<N> pressed(chain(joints), law);
+  Samples taken(static_cast<std::size_t>(wishes.ticks));
+  InstructionCounter counter;
+  const Vec<N>* torque = nullptr;
+  const auto control = [&] { torque = &pressed.control(); };
+  const auto live = [&] { pressed.live(*torque); };
+  int touching = 0;
+  for (int k = 0; k < wishes.ticks; ++k) {
+    // Counted apart: asking the system around every tick would be in its time.
+    if (of_arm) {
+      control();
+      k % 2 ? counter.count(live) : taken.time(live);
+    } else {
+      k % 2 ? counter.count(control) : taken.time(control);
+      live();
+    }
+    touching += pressed.touches();
+  }
+  const std::string id =
+      of_arm ? fmt::format("arm/{}", joints) : fmt::format("tick/{}/{}", joints, info(law).key);
+  const std::string name = of_arm
+                               ? fmt::format("virtual arm and hand, n = {}", joints)
+                               : fmt::format("tick in contact, n = {}, {}", joints, info(law).key);
+  Line line = line_of(id, name + remark(pressed.diverged(), touching, wishes.ticks), taken, &unit);
+  if (const auto counted = counter.total()) {
+    line.instructions = static_cast<double>(*counted) / (wishes.ticks / 2);
+  }
+  return line;
+}
+
+Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind law, bool of_arm) {
+  return joints == 3 ? pressing<3>(wishes, unit, joints, law, of_arm)
+                     : pressing<kAnyDof>(wishes, unit, joints, law, of_arm);
+}
+
+// Embree's query alone at the places of a stroke, and the tick there.
+Line bare_query(const Wishes& wishes, const std::shared_ptr<const TriangleMesh>& shape,
+                const std::string& id, const std::string& what) {
+  const StrokePlace place;
+  constexpr double kTip = 0.005;
+  Stroke stroke(place, kTip, place.on_mesh(shape, kTip, false));
+  Samples taken(static_cast<std::size_t>(wishes.ticks));
+  MeshPoint nearest;
+  for (int k = 0; k < wishes.ticks; ++k) {
+    stroke.move();
+    const Vec3 at = stroke.tip() - place.middle;
+    taken.time([&] { shape->nearest(at, 2 * kTip, nearest.triangle, nearest); });
+  }
+  return line_of(id, what, taken);
+}
+
+Line stroking(const Wishes& wishes, const std::shared_ptr<const TriangleMesh>& shape, double tip,
+              const Line& query, const std::string& id, const std::string& what) {
+  const StrokePlace place;
+  Stroke stroke(place, tip, place.on_mesh(shape, tip, false));
+  Samples taken(static_cast<std::size_t>(wishes.ticks));
+  int touching = 0;
+  for (int k = 0; k < wishes.ticks; ++k) {
+    stroke.move();
+    taken.time([&] { stroke.control(); });
+    touching += stroke.touches();
+  }
+  return line_of(id, what + remark(stroke.diverged(), touching, wishes.ticks), taken, &query);
+}
+
+// What is measured, in turn.
+struct Piece {
+  std::string id;
+  std::function<void(Report&)> measure;
+};
+
+void add_ticks(std::vector<Piece>& all, const Wishes& wishes, const Line& unit) {
+  const auto add = [&](int joints, CouplingKind law) {
+    all.push_back({fmt::format("tick/{}/{}", joints, info(law).key),
+                   [&wishes, &unit, joints, law](Report& report) {
+                     report.lines.push_back(pressing(wishes, unit, joints, law, false));
+                   }});
+  };
+  add(3, CouplingKind::standard);
+  for (const int joints : {3, 7, 15, 30}) {
+    add(joints, CouplingKind::proposed);
+    add(joints, CouplingKind::predictive);
+  }
+  for (const int joints : {3, 7, 15, 30}) {
+    all.push_back({fmt::format("arm/{}", joints), [&wishes, &unit, joints](Report& report) {
+                     report.lines.push_back(
+                         pressing(wishes, unit, joints, CouplingKind::proposed, true));
+                   }});
+  }
+}
+
+void add_meshes(std::vector<Piece>& all, const Wishes& wishes) {
+  for (const int thousands : {1, 10, 100, 1000}) {
+    const std::string id = fmt::format("mesh/{}k", thousands);
+    all.push_back({id, [&wishes, id, thousands](Report& report) {
+                     const auto shape = bumpy_body(1000 * static_cast<std::size_t>(thousands));
+                     const std::string size = fmt::format("{} triangles", 1000 * thousands);
+                     Samples built(1);
+                     built.add(1e6 * shape->build_seconds());
+                     report.lines.push_back(line_of(id + "/build", size + ": search tree", built));
+                     const Line query =
+                         bare_query(wishes, shape, id + "/query", size + ": nearest point");
+                     report.lines.push_back(query);
+                     for (const int mm : {1, 5}) {
+                       report.lines.push_back(
+                           stroking(wishes, shape, 1e-3 * mm, query, fmt::format("{}/{}mm", id, mm),
+                                    fmt::format("{}: tick, tip of {} mm", size, mm)));
+                     }
+                   }});
+  }
+}
+
+std::vector<Piece> pieces(const Wishes& wishes, const Line& unit) {
+  std::vector<Piece> all;
+  all.push_back({"wake", [](Report& report) { report.lines.push_back(wakes()); }});
+  add_ticks(all, wishes, unit);
+  add_meshes(all, wishes);
+  all.push_back({"run", [&unit](Report& report) {
+                   for (Line& line : recorded_runs(unit)) report.lines.push_back(std::move(line));
+                 }});
+  return all;
+}
+
+// "tick" and "tick/3" stand for all below.
+void keep_only(std::vector<Piece>& all, const std::string& only) {
+  std::string known;
+  for (const Piece& piece : all) known += (known.empty() ? "" : ", ") + piece.id;
+  std::erase_if(all, [&](const Piece& p) { return !(p.id + "/").starts_with(only + "/"); });
+  if (!all.empty()) return;
+  throw std::invalid_argument(fmt::format("\"{}\": needed: one of {}", only, known));
+}
+
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+Report measure(const Wishes& wishes, const std::function<void(double, const std::string&)>& done) {
+  Report report{.program = program_version(),
+                .date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
+                .machine = this_machine()};
+  const Line unit = yardstick(wishes.ticks);
+  report.lines.push_back(unit);
+  std::vector<Piece> all = pieces(wishes, unit);
+  if (!wishes.only.empty()) keep_only(all, wishes.only);
+  double asleep = 0;
+  const MonotonicTime time;
+  const nanoseconds began = time.now();
+  const double worked = processor_seconds();
+  for (std::size_t i = 0; i < all.size() && !wishes.stop.stop_requested(); ++i) {
+    done(static_cast<double>(i) / static_cast<double>(all.size()), all[i].id);
+    all[i].measure(report);
+    if (all[i].id == "wake") asleep = 1e-3 * kWakes;
+  }
+  done(1, "");
+  const double took = in_seconds(time.now() - began) - asleep;
+  if (took > 0.1) report.share = std::min(1.0, (processor_seconds() - worked) / took);
+  return report;
+}
+
+}  // namespace limpid::bench

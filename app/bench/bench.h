@@ -1,0 +1,65 @@
+// How fast the parts of the program are here, in times, ratios and instructions.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "app/bench/samples.h"
+
+namespace limpid::bench {
+
+// What one thing took.
+struct Line {
+  std::string id;    // "tick/3/proposed": for scripts; stays the same from version to version
+  std::string what;  // for people
+  std::string unit;  // of the figures: "us", or "us a tick"
+  double median = 0, p99 = 0, p999 = 0, largest = 0;
+  std::string of = {};                      // the id of the line that `ratio` is of, if any
+  std::optional<double> ratio = {};         // of the medians [-]
+  std::optional<double> instructions = {};  // each time; nothing where they cannot be counted
+  std::optional<double> real_time = {};     // of a run: how many times faster than life [-]
+};
+
+struct Machine {
+  std::string processor;  // as it calls itself
+  int processors = 0;
+  std::string kernel;
+  std::string compiler;
+  std::string threads;  // what the system grants the haptic thread
+  bool counts = false;  // can instructions be counted?
+};
+Machine this_machine();
+
+struct Report {
+  std::string program;  // its version
+  std::string date;     // when it was measured, UTC: 2026-01-31T12:00:00Z
+  Machine machine = {};
+  double share = 1;  // of a processor that the measuring thread had: below 0.95 others were busy
+  std::vector<Line> lines = {};
+};
+
+struct Wishes {
+  int ticks = 20000;          // of each kind of tick
+  std::string only = {};      // this id, or those below it: "tick", "tick/3"; empty: all
+  std::stop_token stop = {};  // ends between two lines
+};
+
+// Measures; `done` hears what share is done and what comes next. Errors: std::invalid_argument
+// where nothing matches `only`, std::runtime_error where a file cannot be written.
+Report measure(const Wishes& wishes, const std::function<void(double, const std::string&)>& done);
+
+// A table, and one JSON object.
+std::string text_of(const Report& report);
+std::string json_of(const Report& report);
+
+// One line of the table, and its head: for other tables like it.
+std::string table_head();
+std::string table_line(const Line& line);
+// Of times; with the ratio to another line's, if there is one.
+Line line_of(std::string id, std::string what, const Samples& times,
+             const Line* yardstick = nullptr);
+
+}  // namespace limpid::bench

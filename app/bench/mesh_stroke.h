@@ -1,0 +1,53 @@
+// A tip that strokes over a bumpy body: a mesh of a thousand to a million triangles, or a plane.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/bench/bench_arm.h"
+#include "core/tick/tick.h"
+#include "core/touch/triangle_mesh.h"
+
+namespace limpid::bench {
+
+// A body with bumps of a centimetre and ripples of a millimetre, 5 cm in radius.
+std::shared_ptr<const TriangleMesh> bumpy_body(std::size_t triangles);
+
+// Where the arm, the body and its substitute are.
+struct StrokePlace {
+  ArmDescription arm = chain(3);
+  Vec3 middle = tip_of(arm, bent(arm)) * 0.75 + Vec3(0.05, 0, 0);
+
+  // `capsule`: the last link touches as well, but for what the tip reaches in with.
+  Scene on_mesh(std::shared_ptr<const TriangleMesh> shape, double tip_radius, bool capsule) const;
+  Scene on_plane(double tip_radius, bool capsule) const;
+};
+
+// The tip is led over the surface of the body, pressed in: figures of 3 cm over the front, at 0.05
+// to 0.15 m/s, in from outside.
+class Stroke {
+ public:
+  // Errors: std::runtime_error where the arm does not reach the body.
+  Stroke(const StrokePlace& place, double tip_radius, const Scene& scene);
+
+  // The device's tip goes to the next place; the encoders are exact.
+  void move();
+  void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, ForceWish::as_it_is, row_); }
+  Vec3 tip() const { return target(k_); }
+  bool touches() const { return !tick_.proxy().f().isZero(0); }
+  bool diverged() const { return tick_.diverged(); }
+
+ private:
+  Vec3 target(int k) const;
+
+  Parameters p_;
+  Vec3 middle_;
+  double reach_;
+  ArmDescription arm_;
+  Tick<3> tick_;
+  std::vector<double> row_;
+  Vec<3> x_;
+  int k_ = 0;
+};
+
+}  // namespace limpid::bench
