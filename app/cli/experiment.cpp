@@ -1,5 +1,3 @@
-#include "app/experiments/experiment.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,9 +6,12 @@
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
+#include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
+#include "app/experiments/live.h"
+#include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
 namespace {
@@ -24,6 +25,8 @@ struct ExperimentOptions {
   std::string out;
   std::uint64_t seed = 0;
   unsigned threads = 0;
+  LiveOptions live;
+  InputOptions input;  // of a live one
 };
 
 std::vector<const Experiment*> chosen(const std::string& name) {
@@ -38,8 +41,8 @@ std::vector<const Experiment*> chosen(const std::string& name) {
   throw UsageError(fmt::format("\"{}\" is not an experiment; allowed: {}", name, names));
 }
 
-void print(const Experiment& experiment, const Outcome& outcome) {
-  fmt::print("{}: {}\n", experiment.name, outcome.passed() ? "passed" : "FAILED");
+void print(const std::string& name, const Outcome& outcome) {
+  fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
   for (const Check& c : outcome.checks) {
     fmt::print("  {}  {}: {:.4g}, bound {:.4g}\n", c.passed ? "ok  " : "FAIL", c.what, c.value,
                c.bound);
@@ -48,12 +51,12 @@ void print(const Experiment& experiment, const Outcome& outcome) {
 }
 
 // In words, with the experiment they are of. One without checks promises nothing.
-void note_failures(const Experiment& experiment, const Outcome& outcome,
+void note_failures(const std::string& name, const Outcome& outcome,
                    std::vector<std::string>& failed) {
   for (const Check& c : outcome.checks) {
-    if (!c.passed) failed.push_back(fmt::format("{}: {}", experiment.name, c.what));
+    if (!c.passed) failed.push_back(fmt::format("{}: {}", name, c.what));
   }
-  if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", experiment.name));
+  if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", name));
 }
 
 Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOptions& options,
@@ -69,24 +72,7 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOp
                                 .progress = [&](double part) { progress.at(100 * part); }});
 }
 
-int run(const ExperimentOptions& options) {
-  const std::vector<const Experiment*> wanted = chosen(options.name);
-  prepare_out(options.out);
-  catch_interrupts();
-  std::vector<std::string> failed;  // checks
-  try {
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const Outcome outcome = carry_out_with_progress(*wanted[i], options, i, wanted.size());
-      print(*wanted[i], outcome);
-      note_failures(*wanted[i], outcome, failed);
-      write_report(options.out);
-    }
-  } catch (const Cancelled&) {
-    fmt::print(stderr, "limpid: stopped; the same command goes on from here\n");
-    return 1;
-  } catch (const FileError& e) {  // of this run's own making, no bad input
-    throw std::runtime_error(e.what());
-  }
+int finish(const ExperimentOptions& options, const std::vector<std::string>& failed) {
   fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
   if (!failed.empty()) {
     fmt::print(stderr, "limpid: {} failed: {}\n", failed.size() == 1 ? "a check" : "checks",
@@ -95,11 +81,90 @@ int run(const ExperimentOptions& options) {
   return failed.empty() ? 0 : 1;
 }
 
+int run(const ExperimentOptions& options) {
+  const std::vector<const Experiment*> wanted = chosen(options.name);
+  prepare_out(options.out);
+  catch_interrupts();
+  std::vector<std::string> failed;  // checks
+  try {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const Outcome outcome = carry_out_with_progress(*wanted[i], options, i, wanted.size());
+      print(wanted[i]->name, outcome);
+      note_failures(wanted[i]->name, outcome, failed);
+      write_report(options.out);
+    }
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "limpid: stopped; the same command goes on from here\n");
+    return 1;
+  } catch (const FileError& e) {  // of this run's own making, no bad input
+    throw std::runtime_error(e.what());
+  }
+  return finish(options, failed);
+}
+
+// What a live experiment has a hand do, recorded in the experiment's folder.
+LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
+  LiveLaboratory lab{bench.plan().arm, bench.plan().document, bench.plan().parameters, {}, {}};
+  lab.run = [&bench, folder](const LiveTrial& trial) {
+    fs::create_directories(folder);
+    const LiveTask task{trial.instruction, trial.seconds, folder / (trial.name + ".h5"), true};
+    if (!bench.carry_out(task, trial.parameters)) throw Cancelled();
+    return read_session(task.out);
+  };
+  lab.stiffen = [&bench](double stiffness) {
+    SceneDocument document = bench.plan().document;
+    Scene& scene = document.scene;
+    for (auto& each : scene.planes) each.material.stiffness = stiffness;
+    for (auto& each : scene.spheres) each.material.stiffness = stiffness;
+    for (auto& each : scene.boxes) each.material.stiffness = stiffness;
+    for (auto& each : scene.meshes) each.material.stiffness = stiffness;
+    document.toml = scene_text(document, bench.plan().arm);
+    bench.touch(document);
+  };
+  return lab;
+}
+
+std::vector<const LiveExperiment*> chosen_live(const std::string& name) {
+  std::vector<const LiveExperiment*> all;
+  std::string names = "all";
+  for (const LiveExperiment& e : live_experiments()) {
+    all.push_back(&e);
+    names += fmt::format(", {}", e.name);
+  }
+  if (name == "all") return all;
+  if (const LiveExperiment* one = find_live_experiment(name)) return {one};
+  throw UsageError(fmt::format("\"{}\": not beside --live; allowed: {}", name, names));
+}
+
+int run_live(const ExperimentOptions& options) {
+  const std::vector<const LiveExperiment*> wanted = chosen_live(options.name);
+  prepare_out(options.out);
+  LiveBench bench(options.live, options.input);
+  std::vector<std::string> failed;  // checks
+  try {
+    for (const LiveExperiment* one : wanted) {
+      LiveLaboratory lab = laboratory_of(bench, fs::path(options.out) / live_name(*one));
+      const Outcome outcome = carry_out(*one, lab, options.out);
+      print(live_name(*one), outcome);
+      note_failures(live_name(*one), outcome, failed);
+      write_report(options.out);
+    }
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "limpid: stopped\n");
+    return 1;
+  }
+  return finish(options, failed);
+}
+
 std::string experiment_help() {
   std::string text = "Experiments:\n";
   for (const Experiment& e : experiments()) text += fmt::format("  {:<14} {}\n", e.name, e.about);
+  text += "  all            one after the other\n\nWith --live, in your hand:\n";
+  for (const LiveExperiment& e : live_experiments()) {
+    text += fmt::format("  {:<14} {}\n", e.name, e.about);
+  }
   return text +
-         "  all            one after the other\n\n"
+         "\n"
          "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
          "the trials. Called again with the same DIR it goes on where it was stopped; trials of\n"
          "another version of the program, or of other inputs, are run again.\n"
@@ -121,8 +186,11 @@ Command declare_experiment(CLI::App& app) {
   command->add_option("--threads", options->threads, "default: one a core")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));
+  options->live.add(*command);
+  options->input.add_world(*command);
+  options->input.add_parameters(*command);
   command->footer(experiment_help());
-  return [options] { return run(*options); };
+  return [options] { return options->live.device ? run_live(*options) : run(*options); };
 }
 
 }  // namespace limpid

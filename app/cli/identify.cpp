@@ -10,6 +10,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
+#include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
@@ -49,24 +50,6 @@ Vec3 gravity_of(const std::string& text) {
       fmt::format("--gravity {}: needed: none, or X,Y,Z in m/s^2 in the frame of the "
                   "arm's base, as 0,0,-9.81",
                   text));
-}
-
-std::unique_ptr<Device> opened(const IdentifyOptions& options, DeviceHub& hub) {
-  hub.take(DeviceHub::look());
-  std::string id = options.device.empty() ? hub.in_use() : options.device;
-  if (id.empty() && hub.found().size() == 1) id = hub.found().front().place.id;
-  if (id.empty()) {
-    throw UsageError(fmt::format(
-        "no device is chosen; `limpid devices` lists their ids, and \"{}\" tries it without one",
-        kSimulated));
-  }
-  hub.use(id);
-  if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", id));
-  if (hub.needs_check()) {
-    throw UsageError(fmt::format("{}: its axes must be checked first, in the window's Device panel",
-                                 hub.present()->place.name));
-  }
-  return hub.opening()();
 }
 
 void ask_to_begin(const IdentifyOptions& options, const Device& device, double seconds) {
@@ -213,7 +196,8 @@ int identify_device(IdentifyOptions options) {
         unlike(guess, options.seed, 0.03),
         Unlikeness{.gravity = gravity, .encoder_step = 1e-4, .delay = 2});
   } else {
-    device = opened(options, hub);
+    device = open_device(options.device, hub,
+                         fmt::format(", and \"{}\" tries it without one", kSimulated));
     options.plan = within(options.plan, hub.notes(hub.in_use()).limits);
     if (options.input.device.empty()) guess = hub.arm_for(device->traits(), guess);
   }

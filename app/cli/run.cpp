@@ -13,6 +13,7 @@
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/cli/progress.h"
+#include "app/cli/run_live.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
@@ -31,6 +32,7 @@ struct RunOptions {
   bool force = false;
   bool realtime = false;
   std::optional<std::vector<std::string>> twin;  // key=value
+  LiveOptions live;
 };
 
 // What goes wrong from here on is a failed run, no bad input.
@@ -163,7 +165,17 @@ void say_about(const RunPlan& plan) {
   }
 }
 
+int live(const RunOptions& options) {
+  for (const auto& [given, what] : {std::pair(!options.input.hand.empty(), "--hand"),
+                                    std::pair(options.twin.has_value(), "--twin")}) {
+    if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
+  }
+  if (!options.picture.empty()) check_picture(options.picture);
+  return run_live({options.live, options.input, options.record, options.picture, options.force});
+}
+
 int run(const RunOptions& options) {
+  if (options.live.device) return live(options);
   RunPlan plan = make_plan(options.input);
   say_about(plan);
   if (options.twin) plan.twin = make_twin(plan.parameters, *options.twin);
@@ -215,6 +227,7 @@ Command declare_run(CLI::App& app) {
       ->type_name("[KEY=VALUE ...]")
       ->expected(0, -1)
       ->trigger_on_parse(false);
+  options->live.add(*command);
   options->input.add_world(*command);
   options->input.add_hand(*command);
   options->input.add_parameters(*command);

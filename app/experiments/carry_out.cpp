@@ -74,14 +74,20 @@ const Experiment* find_experiment(const std::string& name) {
   return nullptr;
 }
 
+void write_outcome(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& dir) {
+  std::filesystem::create_directories(dir);
+  write_figure_data(outcome.figure, dir / (name + ".csv"));
+  draw_figure(outcome.figure, dir, name);
+  // Last, so that a verdict says that everything else is there.
+  write_verdict(name, outcome, dir / (name + ".json"));
+}
+
 Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options) {
   std::filesystem::create_directories(options.dir);
   Laboratory lab(experiment.name, options);
   Outcome outcome = experiment.run(lab);
-  write_figure_data(outcome.figure, options.dir / (std::string(experiment.name) + ".csv"));
-  draw_figure(outcome.figure, options.dir, experiment.name);
-  // Last, so that a verdict says that everything else is there.
-  write_verdict(experiment.name, outcome, options.dir / (std::string(experiment.name) + ".json"));
+  write_outcome(experiment.name, outcome, options.dir);
   return outcome;
 }
 

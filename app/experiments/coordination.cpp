@@ -5,31 +5,13 @@
 #include <array>
 #include <cmath>
 
-#include "app/experiments/series.h"
+#include "app/experiments/contact_series.h"
 
 namespace limpid {
 namespace {
 
 constexpr const char* kJointNames[] = {"Turret", "Shoulder", "Elbow"};
-constexpr double kTouching = 1e-6;        // |f2| above this is contact [N m]
-constexpr std::size_t kScatterStep = 12;  // rows a dot
 constexpr double kInertiaErrors[] = {0.5, 2};
-
-double contact_torque(const Session& s, std::size_t k) {
-  return vector_at(s, k, Column::contact_torque).norm();
-}
-
-// |x_E| against |f2| at every `step`th row in contact, both in SI.
-std::vector<FigurePoint> in_contact(const Session& s, std::size_t step) {
-  std::vector<FigurePoint> points;
-  for (std::size_t k = 0; k < s.size(); k += step) {
-    const double f2 = contact_torque(s, k);
-    if (f2 > kTouching) points.push_back({f2, coordination_error(s, k).norm()});
-  }
-  return points;
-}
-
-double slope(const Session& s) { return slope_through_origin(in_contact(s, 1)); }
 
 double largest_error(const Session& s) {
   double largest = 0;
@@ -37,23 +19,6 @@ double largest_error(const Session& s) {
     largest = std::max(largest, coordination_error(s, k).norm());
   }
   return largest;
-}
-
-// Contacts that last and that some time without contact precedes.
-int lasting_contacts(const Session& s) {
-  constexpr std::size_t kLasting = 100;  // rows
-  int count = 0;
-  std::size_t run = 0, pause = kLasting;
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    if (contact_torque(s, k) > kTouching) {
-      if (++run == kLasting && pause >= kLasting) ++count;
-      if (run == kLasting) pause = 0;
-    } else {
-      run = 0;
-      ++pause;
-    }
-  }
-  return count;
 }
 
 FigurePanel joint_panel(const Session& s, std::size_t joint, const std::string& coupling) {
@@ -68,32 +33,11 @@ FigurePanel joint_panel(const Session& s, std::size_t joint, const std::string& 
   return panel;
 }
 
-Series error_over_time(const Session& s, const std::string& label, const char* color) {
-  return over_time(s, label, color, Series::Style::line,
-                   [&](auto k) { return 1e3 * coordination_error(s, k).norm(); });
-}
-
 Series added_error(const Session& s, const Session& right, const std::string& label,
                    const char* color) {
   return over_time(s, label, color, Series::Style::line, [&](auto k) {
     return 1e6 * (coordination_error(s, k).norm() - coordination_error(right, k).norm());
   });
-}
-
-void add_scatter(FigurePanel& panel, const Session& s, const std::string& label,
-                 const char* color) {
-  Series dots{"", color, Series::Style::points, in_contact(s, kScatterStep)};
-  double reach = 0;
-  for (FigurePoint& p : dots.points) {
-    reach = std::max(reach, p.x);
-    p.y *= 1e3;
-  }
-  const double rise = slope(s);
-  panel.series.push_back(std::move(dots));
-  panel.series.push_back({fmt::format("{}: {:.3g} mrad/(N m)", label, 1e3 * rise),
-                          color,
-                          Series::Style::line,
-                          {{0, 0}, {reach, 1e3 * rise * reach}}});
 }
 
 std::vector<Trial> all_trials(const Parameters& standard, const Parameters& proposed) {
@@ -137,8 +81,8 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed)
   FigurePanel scatter{.title = "Coordination error against contact torque",
                       .x_label = "contact torque |f2| [N m]",
                       .y_label = "error |x1 - x2| [mrad]"};
-  add_scatter(scatter, a, "standard", kStandardInk);
-  add_scatter(scatter, b, "proposed", kProposedInk);
+  add_contact_scatter(scatter, a, "standard", kStandardInk);
+  add_contact_scatter(scatter, b, "proposed", kProposedInk);
   FigurePanel wrong{.title = "Proposed: what a wrong inertia in the model adds to the error",
                     .x_label = "time [s]",
                     .y_label = "change of the error [μrad]"};
@@ -156,8 +100,9 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
       at_least("contacts made with the standard coupling", lasting_contacts(a), 6),
       at_least("contacts made with the proposed coupling", lasting_contacts(b), 6),
       at_most("slope of the error, standard coupling, over 1/k_vc, off 1 by at most",
-              std::abs(slope(a) / ideal - 1), 0.02),
-      at_most("slope of the error, proposed over standard coupling", slope(b) / slope(a), 0.01),
+              std::abs(contact_slope(a) / ideal - 1), 0.02),
+      at_most("slope of the error, proposed over standard coupling",
+              contact_slope(b) / contact_slope(a), 0.01),
       at_most("largest error, proposed over standard coupling", largest_error(b) / largest_error(a),
               0.1),
   };
@@ -172,7 +117,7 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
         fmt::format("slope of the error with the model's inertia times {}, over that of the "
                     "standard coupling",
                     kInertiaErrors[i]),
-        slope(s) / slope(a), 0.01));
+        contact_slope(s) / contact_slope(a), 0.01));
   }
   return checks;
 }

@@ -107,6 +107,10 @@ struct Experiment {
 std::span<const Experiment> experiments();
 const Experiment* find_experiment(const std::string& name);
 
+// Writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError.
+void write_outcome(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& dir);
+
 // Runs one and writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError, Cancelled,
 // std::runtime_error.
 Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options);

@@ -8,7 +8,7 @@
 
 #include "app/base/markup.h"
 #include "app/base/version.h"
-#include "app/experiments/experiment.h"
+#include "app/experiments/live.h"
 
 namespace limpid {
 namespace {
@@ -66,12 +66,14 @@ struct Page {
 
 std::vector<Page> pages_in(const fs::path& dir) {
   std::vector<Page> pages;
-  for (const Experiment& e : experiments()) {
-    std::ifstream file(dir / (std::string(e.name) + ".json"));
-    if (!file) continue;
+  const auto add = [&](const std::string& name, const char* about) {
+    std::ifstream file(dir / (name + ".json"));
+    if (!file) return;
     json found = json::parse(file, nullptr, false);
-    if (found.is_object() && found.contains("checks")) pages.push_back({e.name, e.about, found});
-  }
+    if (found.is_object() && found.contains("checks")) pages.push_back({name, about, found});
+  };
+  for (const Experiment& e : experiments()) add(e.name, e.about);
+  for (const LiveExperiment& e : live_experiments()) add(live_name(e), e.about);
   return pages;
 }
 

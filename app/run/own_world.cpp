@@ -34,6 +34,10 @@ std::filesystem::path default_scene(const ArmDescription& arm) {
   return data_dir() / "assets/scenes/free.toml";
 }
 
+std::filesystem::path scene_of_device(const ArmDescription& arm) {
+  return arm.dof() == 2 ? data_dir() / "assets/devices/joystick.toml" : default_scene(arm);
+}
+
 SmallPath small_path(const ArmDescription& description) {
   const Arm<kAnyDof> arm(description);
   const Eigen::VectorXd rest = rest_pose(description);

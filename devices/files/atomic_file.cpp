@@ -27,6 +27,25 @@ std::string this_process() {
   return fmt::format("{}.{}", host.data(), ::getpid());
 }
 
+bool write_all(int descriptor, std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+// A pipe or a device, as /dev/stdout: another file in its place would be the end of it.
+void write_into(const fs::path& file, std::span<const unsigned char> bytes) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(file, errno);
+  const int code = write_all(descriptor, bytes) ? 0 : errno;
+  ::close(descriptor);
+  if (code != 0) fail(file, code);
+}
+
 // A new file that is gone again unless it is kept.
 class Draft {
  public:
@@ -43,13 +62,7 @@ class Draft {
   Draft& operator=(const Draft&) = delete;
 
   bool write(std::span<const unsigned char> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-    return ::fsync(descriptor_) == 0;
+    return write_all(descriptor_, bytes) && ::fsync(descriptor_) == 0;
   }
   bool keep_as(const fs::path& file) {
     kept_ = ::rename(path_.c_str(), file.c_str()) == 0;
@@ -77,6 +90,7 @@ void write_atomically(const fs::path& file, std::span<const unsigned char> bytes
   // What a link points to is replaced, not the link.
   const fs::path target = fs::is_symlink(file, none) ? fs::weakly_canonical(file, none) : file;
   const NoFileSizeSignal no_signal;
+  if (fs::is_other(target, none)) return write_into(target, bytes);
   Draft draft(target);
   if (!draft.write(bytes) || !draft.keep_as(target)) fail(file, errno);
   sync_folder(fs::absolute(target).parent_path());

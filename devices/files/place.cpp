@@ -62,6 +62,10 @@ void check_place(const fs::path& out, bool force) {
   if (fs::is_directory(out, error)) {
     throw FileError(fmt::format("{}: is a directory", out.string()));
   }
+  if (fs::exists(out, error) && !fs::is_regular_file(out, error)) {
+    throw FileError(
+        fmt::format("{}: is no ordinary file, and would be replaced by one", out.string()));
+  }
   if (!force && fs::exists(out, error)) {
     throw FileError(fmt::format("{}: exists; --force overwrites it", out.string()));
   }

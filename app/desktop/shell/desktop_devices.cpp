@@ -1,22 +1,12 @@
 // What the desktop does when devices come and go.
 #include "app/base/assets.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/run/own_world.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid {
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path own_scene(const ArmDescription& arm) {
-  const fs::path assets = data_dir() / "assets";
-  return arm.dof() == 2 ? assets / "devices/joystick.toml" : assets / "scenes/free.toml";
-}
-
-}  // namespace
-
 void Desktop::open_device(std::unique_ptr<Device> device) {
   devices_.plugged();
   const DeviceTraits& traits = device->traits();
@@ -55,7 +45,7 @@ void Desktop::change_arm(const ArmDescription& arm, std::unique_ptr<Device> devi
                 !document_.editor().dirty());
   }
   document_.put_aside();
-  const fs::path file = own_scene(arm);
+  const std::filesystem::path file = scene_of_device(arm);
   document_.set_file(file.string());
   open(arm, read_scene(file, arm), {}, std::move(device));
 }

@@ -1,0 +1,167 @@
+#include "app/cli/live_bench.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "app/base/interrupt.h"
+#include "app/cli/progress.h"
+#include "app/live/rtkit.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/own_world.h"
+#include "app/run/replay.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kGlance = 0.05;           // at what is typed, while the loop goes on [s]
+constexpr double kLongestWait = 20;        // for the force to come on [s]
+constexpr double kMostWithoutForce = 0.1;  // of a task
+constexpr double kBreath = 1;              // before a task that nobody is asked about [s]
+
+bool line_typed() {
+  pollfd in{STDIN_FILENO, POLLIN, 0};
+  if (poll(&in, 1, 0) <= 0) return false;
+  std::string line;
+  if (!std::getline(std::cin, line)) throw UsageError("not begun");
+  return true;
+}
+
+AskForPriority rtkit() {
+  return [](pid_t thread, int priority) { return ask_rtkit(thread, priority, nullptr); };
+}
+
+}  // namespace
+
+void LiveOptions::add(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--live", [this](const std::string& id) { device = id; },
+          "a real device and your hand on it, not a path: its id, as `limpid devices` lists it; "
+          "default: the one in use")
+      ->type_name("[ID]")
+      ->expected(0, 1);
+  command.add_flag("--yes", yes, "with --live: begin without asking");
+}
+
+std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
+                                    const std::string& otherwise) {
+  hub.take(DeviceHub::look());
+  std::string wanted = id.empty() ? hub.in_use() : id;
+  if (wanted.empty() && hub.found().size() == 1) wanted = hub.found().front().place.id;
+  if (wanted.empty()) {
+    throw UsageError("no device is chosen; `limpid devices` lists their ids" + otherwise);
+  }
+  hub.use(wanted);
+  if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", wanted));
+  if (hub.needs_check()) {
+    throw UsageError(fmt::format("{}: its axes must be checked first, in the window's Device panel",
+                                 hub.present()->place.name));
+  }
+  return hub.opening()();
+}
+
+LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
+  if (!yes_ && isatty(STDIN_FILENO) == 0) {
+    throw UsageError("nobody can be asked whether it may push; needed: --yes, or a terminal");
+  }
+  DeviceHub hub(device_book_file(), rtkit());
+  std::unique_ptr<Device> device = open_device(*options.device, hub, "");
+  const DeviceTraits& traits = device->traits();
+  name_ = traits.name;
+  if (!traits.pushes) throw UsageError(name_ + ": has no motors");
+  plan_.arm = hub.arm_for(traits, arm_of(input));
+  const std::filesystem::path scene =
+      input.scene.empty() ? scene_of_device(plan_.arm) : std::filesystem::path(input.scene);
+  plan_.document = read_scene(scene, plan_.arm);
+  plan_.models = build_meshes(plan_.document);
+  plan_.parameters = make_parameters(input, plan_.arm);
+  plan_.hand.source = "device";
+  limits_ = hub.notes(hub.in_use()).limits;
+  catch_interrupts();
+  run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), rtkit());
+}
+
+void LiveBench::touch(const SceneDocument& document) {
+  plan_.document = document;
+  run_->touch(document.scene);
+}
+
+// The loop goes on meanwhile, without force.
+bool LiveBench::ask(const std::string& instruction) {
+  fmt::print("{}\n", instruction);
+  if (yes_) return run_->pass(kBreath, interrupted);
+  fmt::print("{} will push. Enter begins, Ctrl-C ends: ", name_);
+  std::fflush(stdout);
+  while (!line_typed()) {
+    if (!run_->pass(kGlance, interrupted)) return false;
+  }
+  return true;
+}
+
+bool LiveBench::await_force() {
+  run_->arm();
+  std::string said;
+  for (double waited = 0; waited < kLongestWait; waited += kGlance) {
+    if (!run_->pass(kGlance, interrupted)) return false;
+    const ForceState state = run_->now().force_state;
+    if (state == ForceState::on) return true;
+    if (const std::string why = explain(state); why != said && waited > 0.5) {
+      fmt::print(stderr, "limpid: waiting for force: {}\n", said = why);
+    }
+  }
+  throw std::runtime_error(fmt::format("{}: gets no force: {}", name_, said));
+}
+
+std::unique_ptr<Recorder> LiveBench::recorder(const LiveTask& task, const Parameters& p) const {
+  RunPlan plan = plan_;
+  plan.parameters = p;
+  SessionInfo info = session_info(plan);
+  info.safety = limits_text(limits_);
+  return std::make_unique<Recorder>(task.out, info, p, task.force, Recorder::kLiveRoom);
+}
+
+bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveRun::Row& row) {
+  // Before the hand is asked for anything.
+  auto recording = task.out.empty() ? nullptr : recorder(task, p);
+  run_->set(p);
+  double without_force = 0;  // [s]
+  ForceState why = ForceState::on;
+  bool whole = ask(task.instruction) && await_force();
+  if (recording) {
+    whole ? run_->record(std::move(recording)) : recording->finish();
+  }
+  if (whole) {
+    Progress progress({.title = "live", .whole = task.seconds, .unit = "s", .rate = ""});
+    double time = 0;
+    const RowLayout layout(plan_.arm.dof());
+    whole = run_->pass(task.seconds, interrupted, [&](std::span<const double> tick) {
+      progress.at(time += p.tick);
+      const double state = layout.in(tick, Column::force_state)[0];
+      if (state != 0) {
+        without_force += p.tick;
+        why = static_cast<ForceState>(state);
+      }
+      if (row) row(tick);
+    });
+  }
+  run_->cut();
+  if (const std::uint64_t lost = run_->finish_recording(); lost > 0) {
+    throw std::runtime_error(
+        fmt::format("{} ticks found no room and are missing from {}", lost, task.out.string()));
+  }
+  if (whole && run_->now().diverged) throw std::runtime_error("the coupling became unstable");
+  if (whole && without_force > 0) {
+    fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", without_force, explain(why));
+    if (without_force > task.seconds * kMostWithoutForce) {
+      throw std::runtime_error("too long to say anything of the coupling; once more");
+    }
+  }
+  return whole;
+}
+
+}  // namespace limpid

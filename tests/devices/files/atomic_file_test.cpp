@@ -1,0 +1,60 @@
+#include "devices/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <thread>
+
+#include "devices/files/file_error.h"
+#include "devices/files/place.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::span<const unsigned char> bytes(std::string_view text) {
+  return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
+}
+
+// As /dev/stdout and /dev/null are for whoever may replace them.
+TEST(AtomicFile, WritesIntoAPipeInsteadOfReplacingIt) {
+  const test::TempDir dir;
+  const fs::path pipe = dir / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::string got;
+  std::jthread reader([&] {
+    const int in = open(pipe.c_str(), O_RDONLY);
+    std::array<char, 64> some{};
+    for (ssize_t n = 0; (n = read(in, some.data(), some.size())) > 0;) {
+      got.append(some.data(), static_cast<std::size_t>(n));
+    }
+    close(in);
+  });
+  write_atomically(pipe, bytes("what was asked for"));
+  reader.join();
+  EXPECT_EQ(got, "what was asked for");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(AtomicFile, SaysThatADeviceTakesNoMore) {
+  try {
+    write_atomically("/dev/full", bytes("anything"));
+    FAIL() << "nothing fits there";
+  } catch (const FileError& e) {
+    EXPECT_NE(std::string(e.what()).find("/dev/full"), std::string::npos);
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(Place, IsNeverThatOfADevice) {
+  EXPECT_THROW(check_place("/dev/full", true), FileError);
+  EXPECT_THROW(check_place("/dev/full", false), FileError);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,28 @@
+"""A device on a socket that is moved as a recorded one was, whatever its motors do.
+
+usage: replaying_device.py NAME SESSION.h5
+"""
+import sys
+import time
+from pathlib import Path
+
+import h5py
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "assets" / "python"))
+from limpid_device import LimpidDevice  # noqa: E402
+
+
+def main(name: str, session: str) -> None:
+    with h5py.File(session) as file:
+        path = file["device/position"][...].tolist()
+    path += path[::-1]  # without a jump, for ever
+    device = LimpidDevice(name, [-1, -1.735, 0.15], [1, 0.165, 2.9916], [0.64, 0.64, 0.45])
+    begun = time.monotonic()
+    while True:
+        k = int(1e3 * (time.monotonic() - begun))
+        device.exchange(path[k % len(path)])
+        time.sleep(max(0.0, begun + 1e-3 * (k + 1) - time.monotonic()))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
