@@ -52,8 +52,9 @@ Vec3 gravity_of(const std::string& text) {
 }
 
 std::unique_ptr<Device> opened(const IdentifyOptions& options, DeviceHub& hub) {
-  hub.take(DeviceHub::look());
   std::string id = options.device.empty() ? hub.in_use() : options.device;
+  if (const std::string named = device_named(id); !named.empty()) id = named;
+  hub.take(DeviceHub::look(id));
   if (id.empty() && hub.found().size() == 1) id = hub.found().front().place.id;
   if (id.empty()) {
     throw UsageError(fmt::format(
@@ -61,6 +62,7 @@ std::unique_ptr<Device> opened(const IdentifyOptions& options, DeviceHub& hub) {
         kSimulated));
   }
   hub.use(id);
+  hub.take(hub.found());
   if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", id));
   if (hub.needs_check()) {
     throw UsageError(fmt::format("{}: its axes must be checked first, in the window's Device panel",
