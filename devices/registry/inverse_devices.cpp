@@ -43,7 +43,7 @@ std::unique_ptr<Device> open_inverse(const FoundDevice& found, const PidSettings
 FoundDevice entry(const InverseName& name, bool only, const std::string& missing) {
   const std::string place = name.address.text();
   const std::string which = only || name.id.empty() ? "" : " " + name.id;
-  return {{fmt::format("Haply Inverse3{} (service at {})", which, place), name.text(), place},
+  return {{fmt::format("Haply Inverse3{} ({})", which, place), name.text(), place},
           &kKind,
           missing,
           open_inverse};

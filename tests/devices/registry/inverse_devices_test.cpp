@@ -41,7 +41,7 @@ TEST(InverseDevices, AreThoseOfTheService) {
   const std::string place = service.address().text();
   auto found = list_inverse_devices({}, service.address());
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].place.name, "Haply Inverse3 (service at " + place + ")");
+  EXPECT_EQ(found[0].place.name, "Haply Inverse3 (" + place + ")");
   EXPECT_EQ(found[0].place.id, "inverse3:049D@" + place);
   EXPECT_EQ(found[0].missing, "");
   service.tell("devices 049D 04BA");
@@ -49,7 +49,7 @@ TEST(InverseDevices, AreThoseOfTheService) {
   service.wait_for("messages 0");  // looking says nothing
   found = list_inverse_devices({}, service.address());
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[1].place.name, "Haply Inverse3 04BA (service at " + place + ")");
+  EXPECT_EQ(found[1].place.name, "Haply Inverse3 04BA (" + place + ")");
 }
 
 TEST(InverseDevices, ThatAreWantedAndNotThereAreListedWithWhatTheyLack) {
