@@ -117,6 +117,7 @@ class Session:
         self.service, self.connection = service, connection
         self.bytes, self.open, self.spoke = b"", False, False
         self.answers: list[float] = []  # when they are due
+        self.busy_until = 0.0
 
     def send(self, kind: int, payload: bytes) -> None:
         size = len(payload)
@@ -177,7 +178,9 @@ class Session:
                     say("session")
                 self.spoke = True
                 self.service.take(payload.decode())
-                self.answers.append(time.monotonic() + self.service.delay)
+                # One after the other: a queue before a slow service grows.
+                self.busy_until = max(self.busy_until, time.monotonic()) + self.service.delay
+                self.answers.append(self.busy_until)
 
     def answer(self) -> None:
         while self.answers and self.answers[0] <= time.monotonic():
