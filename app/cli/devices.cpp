@@ -31,9 +31,10 @@ Command declare_devices(CLI::App& app) {
       "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "
       "(devices/hid/protocols/raw_protocol.h),\nalso programs that do so on a socket, "
-      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), "
-      "and the Inverse3s of a Haply Inverse Service at localhost:10001\n(of one elsewhere: `limpid "
-      "--device inverse3[:ID][@HOST[:PORT]]`, `limpid identify inverse3...`).");
+      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
+      "a "
+      "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
+      "inverse3:ID@HOST:PORT.");
   return devices;
 }
 

@@ -59,7 +59,9 @@ class Dynamics(unittest.TestCase):
 
     def test_a_turning_slide_has_the_inertia_and_coriolis_matrix_of_polar_coordinates(self) -> None:
         m = 0.3
-        link = '<link name="{0}"><inertial><mass value="{1}"/></inertial></link>'
+        link = (
+            '<link name="{0}"><inertial><mass value="{1}"/><inertia/></inertial></link>'
+        )
         joint = (
             '<joint name="{0}" type="{1}"><parent link="{2}"/><child link="{3}"/>'
             '<axis xyz="{4}"/></joint>'
