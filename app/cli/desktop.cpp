@@ -49,7 +49,8 @@ int open_window(const WindowOptions& options) {
   ArmDescription arm;
   SceneDocument document;
   read_world(input, arm, document);
-  desktop.device = input.device;
+  desktop.in_use = device_named(input.device);
+  if (desktop.in_use.empty()) desktop.device = input.device;
   desktop.tip = input.tip;
   desktop.scene = input.scene;
   const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||

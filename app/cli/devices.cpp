@@ -13,7 +13,7 @@ int devices() {
       "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
       "the mouse or a recorded hand\n");
   DeviceHub hub(device_book_file(), {});
-  hub.take(DeviceHub::look());
+  hub.take(DeviceHub::look(hub.in_use()));
   for (const FoundDevice& found : hub.found()) {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
@@ -31,7 +31,10 @@ Command declare_devices(CLI::App& app) {
       "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "
       "(devices/hid/protocols/raw_protocol.h),\nalso programs that do so on a socket, "
-      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py).");
+      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
+      "a "
+      "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
+      "inverse3:ID@HOST:PORT.");
   return devices;
 }
 

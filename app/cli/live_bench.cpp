@@ -50,13 +50,15 @@ void LiveOptions::add(CLI::App& command) {
 
 std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
                                     const std::string& otherwise) {
-  hub.take(DeviceHub::look());
   std::string wanted = id.empty() ? hub.in_use() : id;
+  if (const std::string named = device_named(wanted); !named.empty()) wanted = named;
+  hub.take(DeviceHub::look(wanted));
   if (wanted.empty() && hub.found().size() == 1) wanted = hub.found().front().place.id;
   if (wanted.empty()) {
     throw UsageError("no device is chosen; `limpid devices` lists their ids" + otherwise);
   }
   hub.use(wanted);
+  hub.take(hub.found());
   if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", wanted));
   if (hub.needs_check()) {
     throw UsageError(fmt::format("{}: its axes must be checked first, in the window's Device panel",

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "app/base/assets.h"
+#include "app/device/device_hub.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "app/run/reach_check.h"
@@ -83,7 +84,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     plan.parameters.tick = chosen.tick;
   }
   if (!options.device.empty()) {
-    plan.arm = read_urdf(options.device, options.tip);
+    plan.arm = arm_of(options);
     if (options.scene.empty()) {  // its joints and links may have other names here
       plan.document = parse_scene(session.info.scene, options.hand + " (scene)",
                                   data_dir() / "assets/scenes", plan.arm, session.info.models);
@@ -123,7 +124,10 @@ void InputOptions::add_parameters(CLI::App& command) {
 }
 
 void InputOptions::add_world(CLI::App& command) {
-  command.add_option("--device", device, "the arm; default: the built-in Omni-like one")
+  command
+      .add_option("--device", device,
+                  "the arm; default: the built-in Omni-like one. inverse3[:ID][@HOST[:PORT]]: the "
+                  "Inverse3 of a Haply Inverse Service in the window, elsewhere an arm like it")
       ->type_name("FILE.urdf");
   command
       .add_option("--tip", tip,
@@ -178,9 +182,19 @@ Parameters make_parameters(const InputOptions& options, const ArmDescription& ar
   return make_parameters(options, fitted(arm, make_parameters(options)));
 }
 
+std::string device_named(const std::string& words) {
+  try {
+    return DeviceHub::id_of(words);
+  } catch (const std::exception& e) {
+    throw UsageError(e.what());
+  }
+}
+
 ArmDescription arm_of(const InputOptions& options) {
-  return read_urdf(options.device.empty() ? default_device().string() : options.device,
-                   options.tip);
+  std::string file = options.device;
+  if (file.empty()) file = default_device().string();
+  if (!device_named(file).empty()) file = (data_dir() / "assets/devices/inverse3.urdf").string();
+  return read_urdf(file, options.tip);
 }
 
 MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {

@@ -48,7 +48,10 @@ RunPlan make_plan(const InputOptions& options);
 Parameters make_parameters(const InputOptions& options, Parameters base = {});
 // The same over those that suit the arm.
 Parameters make_parameters(const InputOptions& options, const ArmDescription& arm);
-// The device alone.
+// The id of the real device that is named where an arm's file could be; empty: none is. Errors:
+// UsageError.
+std::string device_named(const std::string& words);
+// The arm alone; of a real device that is named, the built-in one that is like it.
 ArmDescription arm_of(const InputOptions& options);
 // Device and scene alone; by default a scene that the device can reach.
 MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);

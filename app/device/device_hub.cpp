@@ -14,11 +14,25 @@
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
 #include "devices/hid/hid_error.h"
+#include "devices/registry/inverse_devices.h"
 
 namespace limpid {
 namespace {
 
 constexpr std::chrono::milliseconds kFirstReading{200};
+
+// A book can hold anything.
+std::optional<InverseName> inverse_name_in(const std::string& id) {
+  try {
+    return inverse_name(id);
+  } catch (const HidError&) {
+    return std::nullopt;
+  }
+}
+
+bool alike(const ArmDescription& one, const ArmDescription& other) {
+  return std::ranges::equal(one.joints, other.joints, {}, &Joint::kind, &Joint::kind);
+}
 
 // Another arm in its place would be one that nobody has measured: it is for people to say so.
 ArmDescription identified(const std::string& file) {
@@ -37,6 +51,11 @@ ArmDescription identified(const std::string& file) {
 ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
   if (const std::string file = known().arm; !file.empty()) arm = identified(file);
+  const FoundDevice* device = DeviceHub::present();
+  if (device != nullptr && *device->kind->arm != '\0') {
+    const ArmDescription own = read_urdf(data_dir() / "assets/devices" / device->kind->arm);
+    if (!alike(arm, own)) arm = own;
+  }
   if (arm.dof() != traits.dof) {
     constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
     const auto k = static_cast<std::size_t>(traits.dof - 1);
@@ -56,8 +75,28 @@ ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescripti
 DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
     : file_(std::move(file)), ask_(std::move(ask)), book_(load_device_book(file_, complaint_)) {}
 
-std::vector<FoundDevice> DeviceHub::look() {
-  return list_devices(data_dir() / "assets/udev/70-limpid.rules");
+std::vector<FoundDevice> DeviceHub::look(const std::string& wanted, bool services) {
+  return list_devices({data_dir() / "assets/udev/70-limpid.rules", wanted, services});
+}
+
+void DeviceHub::take(std::vector<FoundDevice> found, bool services) {
+  for (const FoundDevice& before : found_) {
+    if (!services && before.kind->service) found.push_back(before);
+  }
+  found_ = std::move(found);
+  // Whoever asked for the first that a service has means that one from now on.
+  const auto wanted = inverse_name_in(book_.in_use);
+  if (!wanted || !wanted->id.empty()) return;
+  for (const FoundDevice& each : found_) {
+    const auto name = inverse_name_in(each.place.id);
+    if (!name || name->id.empty() || name->address != wanted->address) continue;
+    return use(each.place.id);
+  }
+}
+
+std::string DeviceHub::id_of(const std::string& words) {
+  const auto name = inverse_name(words);
+  return name ? name->text() : std::string();
 }
 
 const FoundDevice* DeviceHub::present() const {

@@ -19,10 +19,16 @@ class DeviceHub {
   // `file`: of the book. `ask`: for the devices' own threads.
   DeviceHub(std::filesystem::path file, AskForPriority ask);
 
-  // What is plugged in. Reads a few files of the kernel's: not for every frame.
-  static std::vector<FoundDevice> look();
-  void take(std::vector<FoundDevice> found) { found_ = std::move(found); }
+  // What is plugged in. Reads a few files of the kernel's: not for every frame. `wanted` and
+  // `services`: see DeviceSearch.
+  static std::vector<FoundDevice> look(const std::string& wanted = {}, bool services = true);
+  // Without services, those of before stay.
+  void take(std::vector<FoundDevice> found, bool services = true);
   const std::vector<FoundDevice>& found() const { return found_; }
+
+  // Of an Inverse3, which has an id with words left out: the whole of it; of others nothing. Throws
+  // HidError, see inverse_name().
+  static std::string id_of(const std::string& words);
 
   const std::string& in_use() const { return book_.in_use; }  // id; empty: the virtual arm
   // What is plugged in of it; null: nothing.

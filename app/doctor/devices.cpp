@@ -86,7 +86,7 @@ Finding one(const FoundDevice& device) {
 
 Findings look_at_devices() {
   Findings all{rule(), on_hid()};
-  const std::vector<FoundDevice> found = list_devices(kRule);
+  const std::vector<FoundDevice> found = list_devices({.udev_rule = kRule});
   for (const FoundDevice& device : found) all.push_back(one(device));
   if (found.empty()) {
     all.push_back({kArea,

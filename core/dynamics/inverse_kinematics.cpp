@@ -72,14 +72,32 @@ std::optional<Eigen::VectorXd> inverse_kinematics(const ArmDescription& descript
 }
 
 double reach(const ArmDescription& arm) {
-  double length = arm.tip.translation().norm();
-  for (const Joint& joint : arm.joints) {
-    const double most = std::max(std::abs(joint.lower), std::abs(joint.upper));
-    if (joint.kind == Joint::Kind::prismatic && std::isfinite(most)) length += kSlideUnit * most;
+  double length = 0;
+  // From one joint that turns to the next: slides between keep their directions, they span a box.
+  Vec3 least = Vec3::Zero(), most = Vec3::Zero();
+  Mat3 turned = Mat3::Identity();
+  const auto add = [&](const Vec3& one, const Vec3& other) {
+    least += (turned * one).cwiseMin(turned * other);
+    most += (turned * one).cwiseMax(turned * other);
+  };
+  const auto end = [&] {
+    length += least.cwiseAbs().cwiseMax(most.cwiseAbs()).norm();
+    least.setZero();
+    most.setZero();
+    turned.setIdentity();
+  };
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const Joint& joint = arm.joints[i];
+    if (i > 0) add(joint.origin.translation(), joint.origin.translation());
+    turned = turned * joint.origin.linear();
+    if (joint.kind == Joint::Kind::revolute) {
+      end();
+    } else if (std::isfinite(joint.lower) && std::isfinite(joint.upper)) {
+      add(kSlideUnit * joint.lower * joint.axis, kSlideUnit * joint.upper * joint.axis);
+    }
   }
-  for (std::size_t i = 1; i < arm.joints.size(); ++i) {
-    length += arm.joints[i].origin.translation().norm();
-  }
+  add(arm.tip.translation(), arm.tip.translation());
+  end();
   return length;
 }
 

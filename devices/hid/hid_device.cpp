@@ -44,7 +44,13 @@ void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexc
     if (sched_getscheduler(0) == SCHED_IDLE) {
       throw HidError("its thread would run behind all others: whoever opened it had stepped back");
     }
-    if (traits_.pushes && !path_.empty()) guardian.emplace(path_, protocol_->stop_reports());
+    const std::vector<Report>& stop = protocol_->stop_reports();
+    if (traits_.pushes && !path_.empty()) {
+      guardian.emplace(path_, stop);
+    } else if (traits_.pushes) {
+      const LastWords words = transport_->last_words(stop);
+      if (words.descriptor >= 0) guardian.emplace(words.descriptor, words.bytes);
+    }
     guarded.set_value();
   } catch (...) {
     guarded.set_exception(std::current_exception());

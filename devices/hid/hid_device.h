@@ -20,7 +20,7 @@ namespace limpid {
 struct HidPlace {
   std::string name;
   std::string id;    // vendor:product:serial
-  std::string path;  // of the hidraw node; empty: no guardian
+  std::string path;  // of the hidraw node; empty: the transport knows how to guard it, if at all
 };
 
 class HidDevice final : public Device {

@@ -89,7 +89,7 @@ class HidExchange {
   std::atomic<std::uint64_t> unusable_{0};
 
   // Of the I/O thread.
-  std::array<std::uint8_t, HidTransport::kMaxReport> buffer_{};
+  std::array<std::uint8_t, HidTransport::kMaxMessage> buffer_{};
   Arrival arrival_;
   SendReport deliver_;
   nanoseconds sent_{};

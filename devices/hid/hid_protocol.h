@@ -14,7 +14,6 @@ namespace limpid {
 
 using std::chrono::nanoseconds;
 
-using Report = std::vector<std::uint8_t>;  // as in hid_transport.h, its id first
 using SendReport = std::function<void(std::span<const std::uint8_t>)>;
 
 enum class Decoded : std::uint8_t {

@@ -10,10 +10,21 @@
 
 namespace limpid {
 
+using Report = std::vector<std::uint8_t>;
+
+// How a process that has nothing else can still say something: the descriptor, its own, and what it
+// writes there. None: -1.
+struct LastWords {
+  int descriptor = -1;
+  std::vector<Report> bytes;
+};
+
 class HidTransport {
  public:
-  // No report of the kernel's is longer.
+  // No report of the kernel's is longer,
   static constexpr std::size_t kMaxReport = 4096 + 1;
+  // and no message that takes the place of one.
+  static constexpr std::size_t kMaxMessage = 32 * 1024;
 
   virtual ~HidTransport() = default;
 
@@ -30,6 +41,10 @@ class HidTransport {
   // Asks for an input report, given empty but for its id. Does not wait: the answer, if there ever
   // is one, comes as one of read()'s. Asking again meanwhile changes nothing.
   virtual void ask(std::span<const std::uint8_t> question) noexcept = 0;
+
+  // For a guardian, where the end of this process does not itself take the force away: these
+  // reports over the same connection.
+  virtual LastWords last_words(std::span<const Report>) { return {}; }
 
   virtual const std::vector<std::uint8_t>& report_descriptor() const = 0;
   // USB's number for the maker; 0 where there is none.

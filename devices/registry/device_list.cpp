@@ -2,25 +2,37 @@
 
 #include <iterator>
 
+#include "devices/hid/hid_error.h"
 #include "devices/registry/hid_devices.h"
+#include "devices/registry/inverse_devices.h"
 #include "devices/registry/socket_devices.h"
 
 namespace limpid {
 namespace {
 
+std::vector<FoundDevice> of_services(const DeviceSearch& search) {
+  if (!search.services) return {};
+  try {
+    return list_inverse_devices(inverse_name(search.wanted));
+  } catch (const HidError&) {  // a name that nobody could have given it
+    return list_inverse_devices({});
+  }
+}
+
 // Each way by which devices come in, in the order of the list.
-using ListDevices = std::vector<FoundDevice> (*)(const std::filesystem::path& udev_rule);
+using ListDevices = std::vector<FoundDevice> (*)(const DeviceSearch& search);
 constexpr ListDevices kWaysIn[] = {
-    [](const std::filesystem::path& udev_rule) { return list_hid_devices(udev_rule); },
-    [](const std::filesystem::path&) { return list_socket_devices(socket_folder()); },
+    [](const DeviceSearch& search) { return list_hid_devices(search.udev_rule); },
+    [](const DeviceSearch&) { return list_socket_devices(socket_folder()); },
+    of_services,
 };
 
 }  // namespace
 
-std::vector<FoundDevice> list_devices(const std::filesystem::path& udev_rule) {
+std::vector<FoundDevice> list_devices(const DeviceSearch& search) {
   std::vector<FoundDevice> all;
   for (const ListDevices list : kWaysIn) {
-    auto found = list(udev_rule);
+    auto found = list(search);
     all.insert(all.end(), std::make_move_iterator(found.begin()),
                std::make_move_iterator(found.end()));
   }

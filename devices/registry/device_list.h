@@ -22,9 +22,15 @@ struct FoundDevice {
                                   const AskForPriority& ask) = nullptr;
 };
 
-// All that there are now. `udev_rule`: the file assets/udev/70-limpid.rules, for the message about
-// permissions.
-std::vector<FoundDevice> list_devices(const std::filesystem::path& udev_rule);
+// What is looked for, and where.
+struct DeviceSearch {
+  std::filesystem::path udev_rule = {};  // assets/udev/70-limpid.rules, for messages on permissions
+  std::string wanted = {};               // id of the device in use, if it says where to look for it
+  bool services = true;                  // also asks programs; not for every second
+};
+
+// All that there are now.
+std::vector<FoundDevice> list_devices(const DeviceSearch& search);
 
 // Connects to it. Throws HidError. `settings` matter to uncalibrated devices only.
 std::unique_ptr<Device> open_device(const FoundDevice& found, const PidSettings& settings = {},

@@ -17,7 +17,7 @@ struct HidRoots {
   std::filesystem::path dev = "/dev";
 };
 
-// `udev_rule` as in list_devices(). Sorted by path. Devices that cannot be read or understood are
+// `udev_rule` as in DeviceSearch. Sorted by path. Devices that cannot be read or understood are
 // left out.
 std::vector<FoundDevice> list_hid_devices(const std::filesystem::path& udev_rule,
                                           const HidRoots& roots = {});

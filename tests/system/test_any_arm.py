@@ -9,7 +9,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from support import SystemTest, limpid
+from support import ASSETS, SystemTest, limpid
 
 _LAWS = ("standard", "proposed", "predictive")
 
@@ -124,6 +124,13 @@ class AnyArm(SystemTest):
                     self.assertTrue(np.all(np.isfinite(x)))
                     self.assertGreater(np.ptp(x, axis=0).max(), 1e-3)
                     self.assertLess(energy.max(), 1e-6 + 1e-3 * abs(energy.min()))
+
+    def test_three_slides_keep_to_every_law_as_the_verifier_has_it(self) -> None:
+        arm = ASSETS / "devices" / "inverse3.urdf"
+        for law in _LAWS:
+            with self.subTest(law=law):
+                session = self.run_and_read("--device", arm, "--coupling", law)
+                self.assert_verified(session)
 
     def test_a_recording_has_its_arm_without_any_file(self) -> None:
         arm = self.write("gone.urdf", INDUSTRIAL)

@@ -57,6 +57,34 @@ class Dynamics(unittest.TestCase):
         np.testing.assert_allclose(inertia(chain, x), expected, rtol=1e-13)
         np.testing.assert_allclose(coriolis(chain, x, v), textbook, atol=1e-15)
 
+    def test_a_turning_slide_has_the_inertia_and_coriolis_matrix_of_polar_coordinates(self) -> None:
+        m = 0.3
+        link = (
+            '<link name="{0}"><inertial><mass value="{1}"/><inertia/></inertial></link>'
+        )
+        joint = (
+            '<joint name="{0}" type="{1}"><parent link="{2}"/><child link="{3}"/>'
+            '<axis xyz="{4}"/></joint>'
+        )
+        chain = parse_chain(
+            '<robot name="polar"><link name="base"/>'
+            + link.format("turret", 0) + link.format("ball", m)
+            + joint.format("turn", "revolute", "base", "turret", "0 0 1")
+            + joint.format("out", "prismatic", "turret", "ball", "1 0 0") + "</robot>"
+        )
+        x, v = _GENERAL.normal(size=(2, 9, 2))
+        r, rdot, w = 0.1 * x[:, 1], 0.1 * v[:, 1], v[:, 0]  # [m, m/s, rad/s]
+        zero = np.zeros(9)
+        expected = np.stack([m * r * r, zero, zero, zero + m * 0.01], axis=1).reshape(9, 2, 2)
+        force = np.stack([2 * m * r * rdot * w, -0.1 * m * r * w * w], axis=1)
+        np.testing.assert_allclose(inertia(chain, x), expected, atol=1e-15)
+        np.testing.assert_allclose(
+            np.einsum("rij,rj->ri", coriolis(chain, x, v), v), force, atol=1e-14
+        )
+        np.testing.assert_allclose(
+            tip_position(chain, x), np.stack([r * np.cos(x[:, 0]), r * np.sin(x[:, 0]), zero], 1)
+        )
+
     def test_mdot_minus_2c_is_skew_and_c_v_is_lagranges_force(self) -> None:
         for dof in (1, 3, 7):
             chain = parse_chain(arms.arm_urdf(dof))

@@ -61,7 +61,7 @@ std::unique_ptr<Model> make_model(double effort = kEffort) {
 inline FoundDevice find_device(std::string_view kind) {
   std::vector<FoundDevice> found;
   wait_until([&] {
-    found = list_devices("rules");
+    found = list_devices({.udev_rule = "rules"});
     std::erase_if(found, [&](const FoundDevice& one) { return one.kind->key != kind; });
     return !found.empty();
   });

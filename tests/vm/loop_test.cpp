@@ -14,7 +14,7 @@ TEST(Devices, AreListedWithTheirNamesAndKinds) {
   PidJoystickModel joystick;
   RawDeviceModel raw;
   const UhidDevice a(mouse), b(joystick), c(raw);
-  const auto found = list_devices("rules");
+  const auto found = list_devices({.udev_rule = "rules"});
   ASSERT_EQ(found.size(), 3u);
   const auto has = [&](std::string_view kind, const char* name, const char* id) {
     return std::ranges::any_of(found, [&](const FoundDevice& one) {

@@ -7,9 +7,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};   // between two looks at what is plugged in
-constexpr milliseconds kRetry{3000};  // after a device could not be opened
-constexpr milliseconds kSettle{500};  // until the loop shows whether a new device answers
+constexpr milliseconds kLook{1000};      // between two looks at what is plugged in
+constexpr milliseconds kServices{5000};  // between two questions to the programs that have devices
+constexpr milliseconds kRetry{3000};     // after a device could not be opened
+constexpr milliseconds kSettle{500};     // until the loop shows whether a new device answers
 
 }  // namespace
 
@@ -43,10 +44,15 @@ bool DeviceDesk::must_wait() const {
 }
 
 void DeviceDesk::look() {
-  if (auto found = take_ready(looking_)) hub_.take(std::move(*found));
-  if (looking_.valid() || Clock::now() < look_at_) return;
-  looking_ = desk_.device_errands().run([] { return DeviceHub::look(); });
-  look_at_ = Clock::now() + kLook;
+  if (auto found = take_ready(looking_)) hub_.take(std::move(*found), asking_services_);
+  const auto now = Clock::now();
+  if (looking_.valid() || now < look_at_) return;
+  asking_services_ = now >= services_at_;
+  if (asking_services_) services_at_ = now + kServices;
+  looking_ = desk_.device_errands().run([wanted = hub_.in_use(), services = asking_services_] {
+    return DeviceHub::look(wanted, services);
+  });
+  look_at_ = now + kLook;
 }
 
 void DeviceDesk::watch() {
@@ -141,7 +147,7 @@ void DeviceDesk::use(const std::string& id) {
   hub_.use(id);
   cancel_check();
   problem_.clear();
-  retry_at_ = {};
+  retry_at_ = services_at_ = {};
   requests_.close();
   save();
 }

@@ -72,10 +72,11 @@ class DeviceDesk {
   DeviceHub hub_;
   DeviceRequests requests_;
   std::string problem_;
-  Clock::time_point look_at_{}, retry_at_{}, plugged_at_{};
+  Clock::time_point look_at_{}, services_at_{}, retry_at_{}, plugged_at_{};
   ButtonPresses buttons_;
   Arming arming_ = Arming::off;  // at the last frame
   std::future<std::vector<FoundDevice>> looking_;
+  bool asking_services_ = false;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;
   std::future<AxisCheck> check_;

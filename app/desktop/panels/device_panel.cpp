@@ -7,6 +7,7 @@
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "core/dynamics/arm_description.h"
 
 namespace limpid {
 namespace {
@@ -119,11 +120,11 @@ void knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
   tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
 }
 
-// A joint: where it is, which way round, how far, and its zero.
-bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
+// A joint of the arm, or of a cap, which has none: where it is, which way round, how far, its zero.
+bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* joint) {
   bool changed = false;
   ImGui::PushID(static_cast<int>(i));
-  if (!joint) {  // of a cap: part of its full deflection
+  if (joint == nullptr) {  // part of the cap's full deflection
     ImGui::Text("axis %zu  %+5.2f", i + 1, angle);
     ImGui::SameLine(8.5f * ImGui::GetFontSize());
     changed = ImGui::Checkbox("invert", &axis.inverted);
@@ -131,7 +132,9 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, bool joint) {
     return changed;
   }
   ImGui::AlignTextToFramePadding();
-  ImGui::Text("axis %zu  %+7.2f\xC2\xB0", i + 1, angle * kDegrees);
+  const bool slides = joint->kind == Joint::Kind::prismatic;
+  ImGui::Text(slides ? "axis %zu  %+7.1f mm" : "axis %zu  %+7.2f\xC2\xB0", i + 1,
+              angle * (slides ? 1e3 * kSlideUnit : kDegrees));
   ImGui::SameLine(8.5f * ImGui::GetFontSize());
   changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
   tooltip("Turns the axis round, its torque with it.");
@@ -207,12 +210,13 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
   if (found == nullptr || !desk.loop().device_plugged()) return;
   DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
   const DeviceReading& reading = desk.loop().snapshot().reading;
-  const auto joints =
-      static_cast<std::size_t>(desk.loop().device_in_place() ? desk.stage().arm().dof() : 6);
+  const std::vector<Joint>& of_arm = desk.stage().arm().joints;
+  const bool in_place = desk.loop().device_in_place();
+  const std::size_t joints = in_place ? of_arm.size() : 6;
   notes.axes.resize(std::max(notes.axes.size(), joints));
   bool changed = false;
   for (std::size_t i = 0; i < joints; ++i) {
-    changed = axis_row(notes.axes[i], i, reading.x[i], desk.loop().device_in_place()) || changed;
+    changed = axis_row(notes.axes[i], i, reading.x[i], in_place ? &of_arm[i] : nullptr) || changed;
   }
   if (found->kind->uncalibrated) {
     const auto reverse = notes.pid.reverse;

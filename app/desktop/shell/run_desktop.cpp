@@ -85,6 +85,7 @@ void Application::open() {
   desktop_.automatic_quality() = AutoQuality(Quality::automatic_level(window_.renderer()));
   desktop_.open_last_world(options_.device, options_.tip, options_.scene,
                            options_.parameters.has_value());
+  if (!options_.in_use.empty()) desktop_.devices().use(options_.in_use);
 }
 
 void Application::run(const std::string& complaint) {

@@ -12,6 +12,7 @@ namespace limpid {
 
 struct DesktopOptions {
   std::string device, scene;                 // files; empty: as last time
+  std::string in_use;                        // id of a real device; empty: as last time
   std::string tip;                           // a link of the device; empty: as its file has it
   std::optional<Parameters> parameters;      // default: as last time
   std::filesystem::path session;             // to play at once

@@ -19,6 +19,8 @@ struct DeviceKind {
   const char* use = "";       // for people: what it is good for
   bool leads_hand = false;    // of the virtual arm; else it takes the arm's place
   bool uncalibrated = false;  // only its owner knows its PidSettings, and its axes must be checked
+  const char* arm = "";       // file of its own arm, in assets/devices; none: any with its joints
+  bool service = false;       // found by asking a program, which is not to be done all the time
 };
 
 struct HidProtocolEntry {

@@ -291,6 +291,28 @@ TEST(Arm, ThatTurnsASlideIsTheTextbooks) {
   EXPECT_NEAR(reach(description), 0.45, 1e-15);
 }
 
+// The farthest corner of the box that they span, not the sum of its edges.
+TEST(Arm, OfSlidesAcrossEachOtherReachesAsFarAsTheirBox) {
+  ArmDescription description;
+  for (int i = 0; i < 3; ++i) {
+    Joint joint;
+    joint.kind = Joint::Kind::prismatic;
+    joint.axis = Vec3::Unit(i);
+    joint.lower = -1;
+    joint.upper = 2 + i;
+    joint.origin.translation() = Vec3(0.1, 0, 0);  // of the first: where the arm stands
+    description.joints.push_back(joint);
+  }
+  EXPECT_NEAR(reach(description), Vec3(0.1 + 0.1 + 0.2, 0.3, 0.4).norm(), 1e-15);
+  description.joints[1].origin.linear() =
+      Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();  // turns what comes after alike
+  EXPECT_NEAR(reach(description),
+              Vec3(0.4, 0.3 * std::cos(0.3) + 0.1 * std::sin(0.3),
+                   0.3 * std::sin(0.3) + 0.4 * std::cos(0.3))
+                  .norm(),
+              1e-15);
+}
+
 TEST(RestPose, IsTheMiddleOfTheLimits) {
   ArmDescription arm = random_arm(2, 1);
   arm.joints[1].lower = -0.4;

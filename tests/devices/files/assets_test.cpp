@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/dynamics/arm.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/hand/hand_file.h"
 #include "devices/files/scene/scene_file.h"
@@ -37,6 +38,8 @@ Vec3 rest(const ArmDescription& arm) {
   }
   return q;
 }
+
+Vec3 rest_tip() { return tip_at(rest(omni())); }
 
 TEST(Omni, HasTheGeometryOfItsClosedForm) {
   const ArmDescription arm = omni();
@@ -110,6 +113,29 @@ TEST(Planar2, BendsInThePlane) {
   const ArmDescription arm = read_urdf(test::assets() / "devices/planar2.urdf");
   ASSERT_EQ(arm.dof(), 2);
   for (const Joint& joint : arm.joints) EXPECT_EQ(joint.axis, Vec3::UnitZ());
+}
+
+// The service's axes: to the right, away from the user, who sits ahead of the origin, and up.
+TEST(Inverse3, HasTheCursorOfItsServiceForJointsAndFeelsAlikeInAllDirections) {
+  const ArmDescription description = read_urdf(test::assets() / "devices/inverse3.urdf");
+  ASSERT_EQ(description.dof(), 3);
+  EXPECT_TRUE(description.warnings.empty());
+  const Arm<3> arm(description);
+  const Vec3 middle(0, -0.12, 0.16);  // [m]
+  EXPECT_LT((rest(description) * kSlideUnit - middle).norm(), 1e-12);
+  const Vec3 place = arm.tip_at(middle / kSlideUnit);
+  EXPECT_LT((place - rest_tip()).norm(), 0.002) << "where the scenes are";
+  for (const Vec3& cursor : {Vec3(0.1, -0.2, 0.02), Vec3(-0.2, 0, 0.3)}) {
+    const Vec3 moved = cursor - middle;
+    const Vec3 tip = arm.tip_at(cursor / kSlideUnit);
+    EXPECT_LT((tip - place - Vec3(-moved.y(), moved.x(), moved.z())).norm(), 1e-12);
+  }
+  double mass = 0;
+  for (std::size_t i = 3; i-- > 0;) {
+    mass += description.links[i].mass;
+    EXPECT_NEAR(mass, 0.149, 0.0011) << "what slide " << i << " moves [kg]";
+    EXPECT_NEAR(description.joints[i].effort / kSlideUnit, 4, 1e-12);
+  }
 }
 
 TEST(Scenes, AllReadWithTheOmni) {

@@ -95,7 +95,7 @@ TEST_F(ASocketDevice, IsListedWhileItsProgramRuns) {
   EXPECT_EQ(found.place.name, "springs");
   EXPECT_EQ(found.place.id, "socket:springs");
   EXPECT_EQ(found.missing, "");
-  const auto all = list_devices("rules");  // whatever else is plugged in here
+  const auto all = list_devices({.udev_rule = "rules"});  // whatever else is plugged in here
   EXPECT_EQ(std::ranges::count(all, found.place.id, [](const auto& one) { return one.place.id; }),
             1);
   kill_client();

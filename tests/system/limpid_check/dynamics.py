@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .urdf import Array, Chain
+from .urdf import SLIDE_UNIT, Array, Chain
 
 Field = NDArray[Any]  # float64, or complex128 inside a complex step
 
@@ -43,6 +43,13 @@ def _frames(chain: Chain, x: Field) -> tuple[list[Field], list[Field], list[Fiel
     for i, joint in enumerate(chain.joints):
         origin = origin + rotation @ joint.origin.translation
         fixed = _rotate(rotation, joint.origin.rotation)
+        axes.append(fixed @ joint.axis)
+        if joint.slides:
+            rotation = fixed
+            origin = origin + SLIDE_UNIT * x[:, i, None] * axes[i]
+            rotations.append(rotation)
+            origins.append(origin)
+            continue
         # Rodrigues: R(x) = I + sin(x) [a] + (1 - cos(x)) [a]^2
         cross = _skew(joint.axis)
         sine, versine = np.sin(x[:, i]), 1 - np.cos(x[:, i])
@@ -54,7 +61,6 @@ def _frames(chain: Chain, x: Field) -> tuple[list[Field], list[Field], list[Fiel
         rotation = _rotate(fixed, turn)
         rotations.append(rotation)
         origins.append(origin)
-        axes.append(fixed @ joint.axis)
     return rotations, origins, axes
 
 
@@ -68,7 +74,11 @@ def tip_jacobian(chain: Chain, x: Array) -> Array:
     """Translational Jacobian (rows, 3, n) of the tip [m/rad]."""
     _, origins, axes = _frames(chain, x)
     tip = tip_position(chain, x)
-    return np.stack([np.cross(a, tip - o) for a, o in zip(axes, origins)], axis=-1)
+    columns = [
+        SLIDE_UNIT * a if joint.slides else np.cross(a, tip - o)
+        for joint, a, o in zip(chain.joints, axes, origins)
+    ]
+    return np.stack(columns, axis=-1)
 
 
 def _inertia_factor(inertia: Array) -> Array:
@@ -90,6 +100,9 @@ def _inertia(chain: Chain, x: Field) -> Field:
         top = slice(6 * b, 6 * b + 3)
         bottom = slice(6 * b + 3, 6 * b + 6)
         for i in range(body.joint + 1):
+            if chain.joints[i].slides:
+                blocks[:, top, i] = np.sqrt(body.mass) * SLIDE_UNIT * axes[i]
+                continue
             arm = np.sqrt(body.mass) * (centre - origins[i])
             blocks[:, top, i] = np.cross(axes[i], arm)
             blocks[:, bottom, i] = np.einsum("rij,rj->ri", to_body, axes[i])

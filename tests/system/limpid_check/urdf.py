@@ -1,7 +1,7 @@
-"""A serial chain of revolute joints, read from URDF text.
+"""A serial chain of revolute and prismatic joints, read from URDF text.
 
 Nothing is merged: every link with an inertia stays a body of its own, fixed to the moving frame
-that carries it. All lengths in metres, angles in radians.
+that carries it. All lengths in metres, angles in radians; a slide has 0.1 m where a joint has 1 rad.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+SLIDE_UNIT = 0.1  # travel of a slide per unit of its coordinate [m]
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Joint:
     name: str
     origin: Transform  # joint frame at zero angle, in the previous moving frame
     axis: Array  # unit, in the joint frame
+    slides: bool
     damping: float  # b_d [N m s/rad]
     friction: float  # Coulomb [N m]
     effort: float  # torque limit [N m]
@@ -97,18 +100,21 @@ def _joint(element: ElementTree.Element, origin: Transform) -> Joint:
     axis = _numbers("1 0 0" if axis_element is None else axis_element.get("xyz", "1 0 0"))
     own = {} if dynamics is None else dynamics.attrib
     effort = "inf" if limit is None else limit.get("effort", "inf")
+    slides = element.get("type") == "prismatic"
+    unit = SLIDE_UNIT if slides else 1
     return Joint(
         name=element.get("name", ""),
         origin=origin,
         axis=axis / np.linalg.norm(axis),
-        damping=float(own.get("damping", "0")),
-        friction=float(own.get("friction", "0")),
-        effort=float(effort),
+        slides=slides,
+        damping=float(own.get("damping", "0")) * unit**2,
+        friction=float(own.get("friction", "0")) * unit,
+        effort=float(effort) * unit,
     )
 
 
 def parse_chain(text: str) -> Chain:
-    """The chain in a URDF text. Raises ValueError for anything but a chain of rotary joints."""
+    """The chain in a URDF text. Raises ValueError for anything but a chain of such joints."""
     root = ElementTree.fromstring(text)
     links = {link.get("name"): link for link in root.findall("link")}
     following = {}
@@ -134,7 +140,7 @@ def parse_chain(text: str) -> Chain:
         element, link = following[link]
         frame = frame.then(_origin(element))
         kind = element.get("type")
-        if kind in ("revolute", "continuous"):
+        if kind in ("revolute", "continuous", "prismatic"):
             joints.append(_joint(element, frame))
             frame = Transform()
         elif kind != "fixed":

@@ -1,0 +1,161 @@
+"""The Inverse3 by way of a stand-in of its maker's service: listed, named, and pushed in the window."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+from support import ASSETS, LIMPID, ROOT, limpid
+from window import WindowTest
+
+PROGRAM = ROOT / "tests" / "support" / "inverse_service.py"
+ON_TABLE = "move 0 -0.12 0.115"  # half a centimetre below the table top of the scene
+
+
+class Service:
+    """The stand-in, and what it has said."""
+
+    def __init__(self, port: str = "0") -> None:
+        self.process = subprocess.Popen(["/usr/bin/python3", PROGRAM, port], text=True, bufsize=1,
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.lines: list[str] = []
+        self.listener = threading.Thread(target=self._listen, daemon=True)
+        self.listener.start()
+        self.port = self.wait(lambda line: line.startswith("port ")).split()[1]
+        self.name = f"inverse3@127.0.0.1:{self.port}"
+
+    def _listen(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.lines.append(line.strip())
+
+    def tell(self, order: str) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.write(order + "\n")
+
+    def wait(self, wanted, seconds: float = 60) -> str:
+        """The first line that is wanted; what came before it is forgotten."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            for i, line in enumerate(list(self.lines)):
+                if wanted(line):
+                    del self.lines[: i + 1]
+                    return line
+            time.sleep(0.01)
+        raise AssertionError(f"the service has not said it, but {self.lines[-5:]}")
+
+    def wait_for_all_so_far(self) -> None:
+        """What was said up to now is forgotten."""
+        self.tell("count")
+        self.wait(lambda line: line.startswith("messages"))
+
+    def pushes(self) -> list[str]:
+        lines = list(self.lines)
+        return [line for line in lines if line.startswith("force ") and line != "force 0 0 0"]
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+
+def lifts(line: str) -> bool:
+    """A force upward."""
+    words = line.split()
+    return words[0] == "force" and float(words[3]) > 0
+
+
+class Named(unittest.TestCase):
+    def test_is_listed_where_the_device_in_use_says_that_its_service_is(self) -> None:
+        service = Service()
+        with tempfile.TemporaryDirectory() as home:
+            book = Path(home, "limpid", "devices.toml")
+            book.parent.mkdir()
+            book.write_text(f'in_use = "{service.name}"\n')
+            environment = {**os.environ, "XDG_CONFIG_HOME": home}
+            listed = subprocess.run([str(LIMPID), "devices"], env=environment, text=True,
+                                    capture_output=True, timeout=60)
+            self.assertIn(f"Haply Inverse3 (127.0.0.1:{service.port})\n"
+                          f"  Haply Inverse3, inverse3:049D@127.0.0.1:{service.port}", listed.stdout)
+            self.assertIn(", in use", listed.stdout)
+            service.end()
+            gone = subprocess.run([str(LIMPID), "devices"], env=environment, text=True,
+                                  capture_output=True, timeout=60)
+            self.assertIn("no Haply Inverse Service at", gone.stdout)
+            words = ["identify", service.name, "--out", str(Path(home, "out"))]
+            refused = subprocess.run([str(LIMPID), *words], env=environment, text=True,
+                                     capture_output=True, timeout=60)
+            self.assertNotEqual(refused.returncode, 0)
+            self.assertIn("no Haply Inverse Service at", refused.stderr)
+
+    def test_names_an_arm_like_it_where_nothing_is_connected(self) -> None:
+        run = limpid("run", "--device", "inverse3", "--duration", "0.1")
+        self.assertEqual(run.status, 0, run.err)
+        for wrong in ("inverse3:", "inverse3@", "inverse3@desk:0"):
+            refused = limpid("run", "--device", wrong)
+            self.assertEqual(refused.status, 2, refused.err)
+            self.assertIn("inverse3[:ID][@HOST[:PORT]]", refused.err)
+
+
+class InTheWindow(WindowTest):
+    LAW = None
+
+    def prepare(self) -> None:
+        self.service = Service()
+        self.addCleanup(self.service.end)
+        self.words = ["--device", self.service.name,
+                      "--scene", str(ASSETS / "scenes" / "table.toml")]
+
+    def wait_in_the_loop(self) -> None:
+        self.wait("the device in the loop", lambda s: s["arm"] == "inverse3", 60)
+        self.service.wait(lambda line: line == "session")
+
+    def arm_until_it_lifts(self) -> None:
+        """More than once where the machine is busy: 5 ms without a reading take the force away."""
+        end = time.monotonic() + 60
+        while not any(lifts(line) for line in self.service.lines) and time.monotonic() < end:
+            if not self.state()["force"]:
+                self.key("f")
+            time.sleep(1)  # a state is not older
+        self.service.wait(lifts)
+
+    def check_without_force(self, why: str) -> None:
+        self.wait("the force to be off", lambda s: not s["force"])
+        self.service.wait_for_all_so_far()
+        self.go_on(0.3)
+        self.assertEqual(self.service.pushes(), [], why)
+
+    def test_pushes_only_while_it_is_armed_and_starts_anew_without_force(self) -> None:
+        self.wait_in_the_loop()
+        self.wait_for_notice("F arms the force")
+        self.service.tell(ON_TABLE)
+        self.wait("contact", lambda s: s["contact"] > 0)
+        self.check_without_force("not armed")
+        self.arm_until_it_lifts()
+        self.key("Escape")
+        self.service.wait(lambda line: line == "force 0 0 0")
+        self.check_without_force("cut")
+        self.arm_until_it_lifts()
+        self.service.tell("drop")
+        self.service.wait(lambda line: line == "end")
+        self.wait_for_notice("The device is gone")
+        self.service.wait(lambda line: line == "session")
+        self.wait("contact again", lambda s: s["contact"] > 0)
+        self.check_without_force("not armed again")
+        self.arm_until_it_lifts()
+        self.service.tell("silent")
+        self.check_without_force("no readings")
+        self.service.tell("answer")
+        self.check_without_force("not armed since the silence")
+        self.arm_until_it_lifts()
+        self.app.terminate()
+        self.service.wait(lambda line: line == "force 0 0 0")
+        self.service.wait(lambda line: line == "end")
+
+
+if __name__ == "__main__":
+    unittest.main()
