@@ -1,0 +1,93 @@
+"""A real device, here a program that plays one, in commands that lead a hand."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from support import ASSETS, LIMPID, Result, limpid
+
+DEVICE = Path(__file__).with_name("replaying_device.py")
+
+
+class Live(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (self.folder / "limpid").mkdir(mode=0o700)
+        self.enterContext(mock.patch.dict("os.environ", XDG_RUNTIME_DIR=str(self.folder),
+                                          XDG_CONFIG_HOME=str(self.folder / "config")))
+
+    def plug(self) -> subprocess.Popen:
+        """Moves as a hand moved one that pressed onto the table."""
+        session = self.folder / "pressing.h5"
+        limpid("run", "--hand", ASSETS / "hands/touch.csv", "--record", session)
+        device = subprocess.Popen([sys.executable, DEVICE, "replay", session])
+        self.addCleanup(device.wait)
+        self.addCleanup(device.kill)
+        for _ in range(600):
+            if "replay" in limpid("devices").out:
+                return device
+            time.sleep(0.1)
+        self.fail("the device is not listed")
+
+    def on_time(self, result: Result) -> Result:
+        """The device is a Python program: it may be late, and has no force then."""
+        if "gave no reading" in result.err or "loop stood still" in result.err:
+            self.skipTest("too busy here for a device in Python: " + result.err.strip())
+        return result
+
+    def test_refuses_what_cannot_be(self) -> None:
+        for words, said in (
+                (("--yes",), "no device is chosen"),
+                (("nothing", "--yes"), "nothing: is not connected"),
+                ((), "nobody can be asked"),
+                (("--yes", "--hand", "x.csv"), "--hand: not beside --live"),
+                (("--yes", "--twin"), "--twin: not beside --live")):
+            with self.subTest(words=words):
+                result = limpid("run", "--live", *words)
+                self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+                self.assertIn(said, result.err)
+        result = limpid("experiment", "spectrum", "--live", "--yes", "--out", self.folder / "out")
+        self.assertEqual(result.status, 2)
+        self.assertIn("coordination, inertia, passivity, zwidth", result.err)
+
+    def test_runs_and_records(self) -> None:
+        self.plug()
+        out = self.folder / "live.h5"
+        result = self.on_time(limpid("run", "--live", "--yes", "--duration", "2", "--record", out))
+        self.assertEqual(result.status, 0, result.err)
+        self.assertIn("device", limpid("info", out).out)
+
+    def test_coordination_has_a_figure_and_a_verdict(self) -> None:
+        self.plug()
+        out = self.folder / "out"
+        result = self.on_time(limpid("experiment", "coordination", "--live", "socket:replay",
+                                     "--yes", "--out", out))
+        for name in ("live-coordination.png", "live-coordination.json", "report.html",
+                     "live-coordination/standard.h5", "live-coordination/proposed.h5"):
+            self.assertTrue((out / name).exists(), name + ": " + result.err)
+        self.assertIn("slope of the error", result.out)
+
+    def test_ends_when_the_device_is_pulled_out_or_on_ctrl_c(self) -> None:
+        for what in ("pulled out", "Ctrl-C"):
+            device = self.plug()
+            run = subprocess.Popen([LIMPID, "run", "--live", "--yes", "--duration", "60"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            time.sleep(3)
+            if what == "Ctrl-C":
+                run.send_signal(signal.SIGINT)
+            else:
+                device.kill()
+            _, said = run.communicate(timeout=60)
+            self.assertIn(run.returncode, (0, 1), said)
+            self.assertRegex(said, "stopped|is gone" if what == "Ctrl-C" else "is gone|no reading")
+
+
+if __name__ == "__main__":
+    unittest.main()
