@@ -21,6 +21,7 @@ namespace {
 constexpr double kGlance = 0.05;           // at what is typed, while the loop goes on [s]
 constexpr double kLongestWait = 20;        // for the force to come on [s]
 constexpr double kMostWithoutForce = 0.1;  // of a task
+constexpr double kWorthSaying = 0.005;     // [s]
 constexpr double kBreath = 1;              // before a task that nobody is asked about [s]
 
 bool line_typed() {
@@ -157,7 +158,7 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
         fmt::format("{} ticks found no room and are missing from {}", lost, task.out.string()));
   }
   if (whole && run_->now().diverged) throw std::runtime_error("the coupling became unstable");
-  if (whole && without_force > 0) {
+  if (whole && without_force > kWorthSaying) {
     fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", without_force, explain(why));
     if (without_force > task.seconds * kMostWithoutForce) {
       throw std::runtime_error("too long to say anything of the coupling; once more");
