@@ -75,17 +75,39 @@ Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
   return D;
 }
 
+// A symmetric positive-definite matrix, whose lower triangle alone is read, made ready for several
+// right sides.
+template <int N>
+class SymmetricFactor {
+ public:
+  SymmetricFactor() = default;
+  explicit SymmetricFactor(const Mat<N>& A) { compute(A); }
+  void compute(const Mat<N>& A) {
+    if constexpr (N == 3) {
+      factor_ = inverse_symmetric(A);
+    } else {
+      factor_ = cholesky<N>(A);
+    }
+  }
+  template <class B>
+  auto solve(const B& b) const -> typename B::PlainObject {
+    if constexpr (N == 3) {
+      return factor_ * b;
+    } else {
+      typename B::PlainObject x = factor_.template triangularView<Eigen::Lower>().solve(b);
+      factor_.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
+      return x;
+    }
+  }
+
+ private:
+  Mat<N> factor_;  // L, or the inverse
+};
+
 // A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
 template <int N, class B>
 auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
-  if constexpr (N == 3) {
-    return inverse_symmetric(A) * b;
-  } else {
-    const Mat<N> L = cholesky<N>(A);
-    typename B::PlainObject x = L.template triangularView<Eigen::Lower>().solve(b);
-    L.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
-    return x;
-  }
+  return SymmetricFactor<N>(A).solve(b);
 }
 
 // A regular matrix made ready for several right sides.

@@ -76,7 +76,7 @@ class Proxy {
   std::unique_ptr<Contacts<N>> contacts_;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
-  typename Arm<N>::Bodies bodies_;
+  typename Arm<N>::template Bodies<double> bodies_;
   Vec<N> x_, v_, nu_;
   Mat<N> M_, C_, L_, S_;
   Vec<N> tau_, f_, vbar_;
