@@ -27,13 +27,14 @@ namespace {
 constexpr int kTicks = 20000;
 
 constexpr const char* kHelp =
-    "usage: tick_bench [--callgrind [TICKS]]\n"
+    "usage: tick_bench [--callgrind [TICKS [JOINTS [COUPLING]]]]\n"
     "\n"
     "Prints a table of times. With --callgrind it only runs TICKS (1000) ticks of the controller\n"
-    "and the virtual arm, n = 3, in contact, for counting instructions:\n"
+    "and the virtual arm in contact, of JOINTS (3) joints under COUPLING (proposed), for counting\n"
+    "instructions:\n"
     "\n"
-    "  valgrind --tool=callgrind --toggle-collect='limpid::Tick<3>::run(*' tick_bench --callgrind\n"
-    "  valgrind --tool=callgrind --toggle-collect='limpid::VirtualArm<3>::live(*' \\\n"
+    "  valgrind --tool=callgrind --toggle-collect='limpid::Tick<*>::run(*' tick_bench --callgrind\n"
+    "  valgrind --tool=callgrind --toggle-collect='limpid::VirtualArm<*>::live(*' \\\n"
     "      tick_bench --callgrind\n"
     "\n"
     "and divide what it collected by TICKS.\n";
@@ -42,8 +43,9 @@ constexpr const char* kHelp =
 template <int N>
 class Pressed {
  public:
-  Pressed(const ArmDescription& arm, const Eigen::VectorXd& x)
-      : tip_(tip_of(arm, x)),
+  Pressed(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p = {})
+      : p_(p),
+        tip_(tip_of(arm, x)),
         tick_(arm, plane_over(tip_)),
         arm_(arm),
         row_(static_cast<std::size_t>(tick_.layout().stride())) {
@@ -170,9 +172,10 @@ void print_recorded_run() {
   std::filesystem::remove(out);
 }
 
-int count(int ticks) {
-  const ArmDescription arm = chain(3);
-  Pressed<3> pressed(arm, bent(arm));
+template <int N>
+int count(int ticks, int joints, const Parameters& p) {
+  const ArmDescription arm = chain(joints);
+  Pressed<N> pressed(arm, bent(arm), p);
   for (int k = 0; k < ticks; ++k) pressed.live(pressed.control());
   fmt::print("{} ticks, {}touching at the end\n", ticks, pressed.touches() ? "" : "not ");
   return 0;
@@ -195,7 +198,13 @@ int main_of(int argc, char** argv) {
     return 0;
   }
   const std::string_view option = argv[1];
-  if (option == "--callgrind") return count(argc > 2 ? std::max(1, std::atoi(argv[2])) : 1000);
+  if (option == "--callgrind") {
+    const int ticks = argc > 2 ? std::max(1, std::atoi(argv[2])) : 1000;
+    const int joints = argc > 3 ? std::clamp(std::atoi(argv[3]), 1, kMaxDof) : 3;
+    Parameters p;
+    if (argc > 4) set_parameter(p, "coupling.kind", std::string(argv[4]));
+    return joints == 3 ? count<3>(ticks, joints, p) : count<kAnyDof>(ticks, joints, p);
+  }
   fmt::print("{}", kHelp);
   return option == "--help" ? 0 : 2;
 }
