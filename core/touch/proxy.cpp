@@ -79,10 +79,10 @@ void Proxy<N>::update_skew() {
   const Mat<N> Ldot = cholesky_rate<N>(L_, C_ + C_.transpose());
   const Eigen::Index n = C_.rows();
   S_ = C_;
+  const auto column = [&](Eigen::Index k) { return L_.col(k).data(); };
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index k = 0; k <= j; ++k) {
-      for (Eigen::Index i = j + 1; i < n; ++i) S_(i, j) -= L_(i, k) * Ldot(j, k);
-    }
+    const auto factor = [&](Eigen::Index k) { return Ldot(j, k); };
+    take_off<N>(j + 1, column, factor, j + 1, n, S_.col(j).data());
     S_(j, j) = 0;
     for (Eigen::Index i = j + 1; i < n; ++i) S_(j, i) = -S_(i, j);
   }
@@ -130,12 +130,12 @@ void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
 // at the midpoint.
 template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
-  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
+  // (2/T M + S + damping + share K T/2) vbar = 2/T L nu + constant + share f2,
   // f2 - K T/2 vbar the contacts' force.
   Mat<N> A = impedance(T);
   A.diagonal().array() += drive.damping;
   Vec<N> b = momentum(T) + drive.constant;
-  contacts_->add_to(A, b, T, drive.from_f2);
+  contacts_->add_to(A, b, T, drive.share, M_);
   vbar_ = solve<N>(A, b);
   return contacts_->push(vbar_, T, f_);
 }

@@ -9,13 +9,13 @@
 namespace limpid {
 
 // What acts on the proxy over one tick, with vbar = (x_k+1 - x_k) / T unknown:
-//     tau = constant - damping vbar + from_f2 f2,
-// and the contacts' f2 besides.
+//     tau + f2 = constant - damping vbar + share f2,
+// f2 the contacts' torque.
 template <int N>
 struct ProxyDrive {
   Vec<N> constant;  // [N m]
   double damping;   // b_v + b_vc + k_vc T / 2 [N m s/rad]
-  Mat<N> from_f2;   // [-]
+  ContactShare<N> share{};
 };
 
 // Non-iterative passive integration. With M2 = L L^T and nu = L^T v the motion (6) reads
