@@ -120,8 +120,9 @@ VirtualArm<N>::Stride::Stride(const Drive& drive, const Look& at, const Vec<N>& 
 
 // What friction and stops add to A and b around the middle of a substep; false: nothing.
 template <int N>
-bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x, const Vec<N>& v, Mat<N>& A,
-                           Vec<N>& b) const {
+[[gnu::always_inline]] inline bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x,
+                                                         const Vec<N>& v, Mat<N>& A,
+                                                         Vec<N>& b) const {
   const Drive& d = stride.d;
   const Vec<N> middle = x + d.h / 2 * v;
   bool free = !d.rubs;
@@ -148,7 +149,8 @@ bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x, const Vec<N>& 
 // A substep whose middle is at t from the tick's start. All is taken there as v would have it; dv,
 // which is returned, then corrects: x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
 template <int N>
-Vec<N> VirtualArm<N>::step(Stride& stride, double t, Vec<N>& x, Vec<N>& v) const {
+[[gnu::always_inline]] inline Vec<N> VirtualArm<N>::step(Stride& stride, double t, Vec<N>& x,
+                                                         Vec<N>& v) const {
   const Drive& d = stride.d;
   const Jacobian<N>& J = stride.look.J;
   Vec3 force = d.stiffness * (d.target + t * d.target_rate - stride.tip) + d.grip * d.target_rate -

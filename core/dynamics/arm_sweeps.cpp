@@ -8,8 +8,8 @@ namespace {
 // Half the rate of a body's inertia about O, moving with (w, u):
 //     Idot / 2 = 1/2 ([w]x I - I [w]x) + (u.mc) 1 - 1/2 (mc u^T + u mc^T).
 template <class S>
-Symmetric3<S> half_rate(const Symmetric3<S>& I, const Vec3Of<S>& mc, const Vec3Of<S>& w,
-                        const Vec3Of<S>& u) {
+[[gnu::always_inline]] inline Symmetric3<S> half_rate(const Symmetric3<S>& I, const Vec3Of<S>& mc,
+                                                      const Vec3Of<S>& w, const Vec3Of<S>& u) {
   const S x = u.x() * mc.x(), y = u.y() * mc.y(), z = u.z() * mc.z();
   return {
       w.y() * I.xz - w.z() * I.xy + y + z,
@@ -25,8 +25,9 @@ Symmetric3<S> half_rate(const Symmetric3<S>& I, const Vec3Of<S>& mc, const Vec3O
 
 template <int N>
 template <class S>
-void Arm<N>::turn(const JointModel& joint, const S& sin, const S& cos, const Mat3Of<S>& before,
-                  Mat3Of<S>& R, Vec3Of<S>& axis) {
+[[gnu::always_inline]] inline void Arm<N>::turn(const JointModel& joint, const S& sin, const S& cos,
+                                                const Mat3Of<S>& before, Mat3Of<S>& R,
+                                                Vec3Of<S>& axis) {
   const S s = S(joint.sign) * sin, c = cos;
   Mat3Of<S> product;
   if (joint.shifted) product.noalias() = before * joint.R0.template cast<S>();
@@ -67,7 +68,8 @@ void Arm<N>::frames(const AnglesOf<S>& angles, FramesOf<S>& f) const {
 
 template <int N>
 template <class S>
-void Arm<N>::place_link(const FramesOf<S>& f, std::size_t i, Bodies<S>& bodies) const {
+[[gnu::always_inline]] inline void Arm<N>::place_link(const FramesOf<S>& f, std::size_t i,
+                                                      Bodies<S>& bodies) const {
   const LinkModel& link = links_[i];
   const Vec3Of<S> c = f.p[i] + f.R[i] * link.com.template cast<S>();
   const Vec3Of<S> g = f.R[i] * link.g.template cast<S>();
