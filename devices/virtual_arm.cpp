@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/solve.h"
 #include "core/math/subnormals.h"
 
 namespace limpid {
 namespace {
 
-// Substeps that share one look at where the arm is and how heavy, at their middle: it moves by
-// less than a milliradian meanwhile, and the error is of its square.
-constexpr int kShare = 2;
+constexpr int kShare = 5;                // substeps that share a look
+constexpr double kFar = 0.05;            // looks this far apart say nothing of what comes [rad]
 constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
 constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
 
@@ -38,6 +36,12 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
   v_ = v;
   target_ = target;
   hand_torque_ = Vec<N>::Zero(x.size());
+  for (Look& look : looks_) {
+    look.x = x;
+    look.v = v;
+    look.angles = arm_.angles(x);
+  }
+  look(true);
 }
 
 template <int N>
@@ -49,82 +53,170 @@ Reading<N> VirtualArm<N>::read(double encoder_step) const {
   return reading;
 }
 
-// The joints' own resistance around the middle of a substep: damping, friction, stops.
 template <int N>
-typename VirtualArm<N>::Resistance VirtualArm<N>::resistance(const Vec<N>& b_d,
-                                                             const Vec<N>& friction,
-                                                             const Vec<N>& x_mid) const {
-  Resistance r{Vec<N>::Zero(x_.size()), b_d, Vec<N>::Zero(x_.size())};
-  for (Eigen::Index i = 0; i < x_.size(); ++i) {
-    if (friction[i] > 0) r.damping[i] += friction[i] / std::max(std::abs(v_[i]), kStictionSpeed);
-    const double beyond = std::max(x_mid[i] - upper_[i], 0.0) + std::min(x_mid[i] - lower_[i], 0.0);
-    if (beyond != 0) {
-      r.stiffness[i] = effort_[i] / kStopDepth;
-      r.torque[i] = -r.stiffness[i] * beyond;
-      r.damping[i] += std::sqrt(r.stiffness[i] * M_(i, i));
-    }
+typename VirtualArm<N>::Drive VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
+                                                   const HandInput& hand) const {
+  Drive d{p.tick / p.substeps,
+          hand.grip * p.hand_stiffness,
+          hand.grip * p.hand_damping,
+          hand.grip * p.hand_mass_at_tip,
+          target_,
+          (hand.target - target_) / p.tick,
+          torque,
+          resolve<N>(p.damping, damping_),
+          resolve<N>(p.friction, friction_),
+          false};
+  d.rubs = d.friction.maxCoeff() > 0;
+  if (!hand.torque.empty()) d.torque += Eigen::Map<const Vec<N>>(hand.torque.data(), torque.size());
+  return d;
+}
+
+// What the arm is like at both places.
+template <int N>
+void VirtualArm<N>::look(bool drift) {
+  const Look &one = looks_[0], &two = looks_[1];
+  const int last = arm_.dof() - 1;
+  const VecOf<N, Pair> v = paired<N>(one.v, two.v);
+  typename Arm<N>::template FramesOf<Pair> frames;
+  typename Arm<N>::template Bodies<Pair> bodies;
+  MatOf<N, Pair> M;
+  VecOf<N, Pair> Cv;
+  JacobianOf<N, Pair> J;
+  arm_.frames(
+      {paired<N>(one.angles.sin, two.angles.sin), paired<N>(one.angles.cos, two.angles.cos)},
+      frames);
+  arm_.inertia(frames, bodies, M);
+  arm_.bias(frames, bodies, v, Cv);
+  const Vec3Of<Pair> tip = arm_.tip(frames);
+  arm_.point_jacobian(frames, last, tip, J);
+  Vec3Of<Pair> Jdot_v = Vec3Of<Pair>::Zero();
+  if (drift) Jdot_v = arm_.point_drift(frames, last, tip, v);
+  for (int i = 0; i < 2; ++i) {
+    Look& look = looks_[static_cast<std::size_t>(i)];
+    take(M, i, look.M);
+    take(Cv, i, look.Cv);
+    take(tip, i, look.tip);
+    take(J, i, look.J);
+    take(Jdot_v, i, look.drift);
   }
-  return r;
+}
+
+template <int N>
+VirtualArm<N>::Stride::Stride(const Drive& drive, const Look& at, const Vec<N>& x, const Vec<N>& v)
+    : d(drive), look(at), A(at.M), torque(drive.torque - at.Cv) {
+  const double h = d.h;
+  along_rate = d.grip + h / 2 * d.stiffness;
+  answer = d.grip / 2 + h / 4 * d.stiffness + d.mass / h;
+  A *= 1 / h;
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    const Vec3 held = answer * look.J.col(j);
+    for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += look.J.col(i).dot(held);
+    A(j, j) += d.damping[j] / 2;
+  }
+  A_factor.compute(A);
+  tip = look.tip + look.J * (x - look.x);
+  tip_rate = look.J * v;
+}
+
+// What friction and stops add to A and b around the middle of a substep; false: nothing.
+template <int N>
+[[gnu::always_inline]] inline bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x,
+                                                         const Vec<N>& v, Mat<N>& A,
+                                                         Vec<N>& b) const {
+  const Drive& d = stride.d;
+  const Vec<N> middle = x + d.h / 2 * v;
+  bool free = !d.rubs;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    free = free && middle[i] >= lower_[i] && middle[i] <= upper_[i];
+  }
+  if (free) return false;
+  A = stride.A;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double beyond =
+        std::max(middle[i] - upper_[i], 0.0) + std::min(middle[i] - lower_[i], 0.0);
+    double damping = 0, stiffness = 0;
+    if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(v[i]), kStictionSpeed);
+    if (beyond != 0) {
+      stiffness = effort_[i] / kStopDepth;
+      damping += std::sqrt(stiffness * stride.look.M(i, i));
+    }
+    b[i] -= stiffness * beyond + damping * v[i];
+    A(i, i) += damping / 2 + d.h / 4 * stiffness;
+  }
+  return true;
+}
+
+// A substep whose middle is at t from the tick's start. All is taken there as v would have it; dv,
+// which is returned, then corrects: x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
+template <int N>
+[[gnu::always_inline]] inline Vec<N> VirtualArm<N>::step(Stride& stride, double t, Vec<N>& x,
+                                                         Vec<N>& v) const {
+  const Drive& d = stride.d;
+  const Jacobian<N>& J = stride.look.J;
+  Vec3 force = d.stiffness * (d.target + t * d.target_rate - stride.tip) + d.grip * d.target_rate -
+               stride.along_rate * stride.tip_rate;
+  if (d.mass > 0) force -= d.mass * stride.look.drift;
+  Vec<N> b = stride.torque - d.damping.cwiseProduct(v);
+  b.noalias() += J.transpose() * force;
+  Mat<N> A;
+  const Vec<N> dv =
+      resist(stride, x, v, A, b) ? solve_symmetric<N>(A, b) : stride.A_factor.solve(b);
+  const Vec3 move = J * dv;
+  stride.force += force - stride.answer * move;
+  stride.tip += d.h * (stride.tip_rate + 0.5 * move);
+  stride.tip_rate += move;
+  x += d.h * (v + 0.5 * dv);
+  v += dv;
+  return dv;
+}
+
+// Looks at where the arm will be on average over so many substeps from s on, and over as many after
+// them. It gets there in two big steps, by what the last two looks would have become.
+template <int N>
+void VirtualArm<N>::look_ahead(const Drive& d, int s, int share) {
+  Drive big = d;
+  big.h = share * d.h;
+  Look before = looks_[1];
+  // From the middle of the last share to that of the next two, in shares.
+  const bool near = (before.x - looks_[0].x).cwiseAbs().maxCoeff() < kFar;
+  const double on = near ? 1.5 : 0;
+  before.M += on * (before.M - looks_[0].M);
+  before.Cv += on * (before.Cv - looks_[0].Cv);
+  before.J += on * (before.J - looks_[0].J);
+  Stride stride(big, before, x_, v_);
+  Vec<N> x = x_, v = v_;
+  for (int i = 0; i < 2; ++i) {
+    Look& look = looks_[static_cast<std::size_t>(i)];
+    look.x = x;
+    look.v = v;
+    const Vec<N> dv = step(stride, (s + (i + 0.5) * share) * d.h, x, v);
+    look.x += big.h / 2 * (look.v + dv / 3);
+    look.v += dv / 2;
+    look.angles = arm_.turned(before.angles, look.x - before.x);
+  }
+  look(d.mass > 0);
 }
 
 template <int N>
 void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
   const NoSubnormals fast_at_rest;
-  const double h = p.tick / p.substeps;
-  const double k_h = hand.grip * p.hand_stiffness;
-  const double b_h = hand.grip * p.hand_damping;
-  const double mass = hand.grip * p.hand_mass_at_tip;
-  const Vec<N> b_d = resolve<N>(p.damping, damping_);
-  const Vec<N> friction = resolve<N>(p.friction, friction_);
-  const Vec3 target_rate = (hand.target - target_) / p.tick;
-  const double grip_damping = h / 2 * b_h + h * h / 4 * k_h;  // of the substep's midpoint
-  const Vec<N> x_start = x_;
-  Vec<N> pushed = Vec<N>::Zero(x_.size());
-  if (!hand.torque.empty()) pushed = Eigen::Map<const Vec<N>>(hand.torque.data(), x_.size());
-  Vec<N> x_model = x_;
-  Vec<N> dv = Vec<N>::Zero(x_.size());
-  Vec3 tip_model = Vec3::Zero(), drift = Vec3::Zero();
-  const typename Arm<N>::Angles start = arm_.angles(x_start);
+  const Drive d = drive(p, torque, hand);
+  looks_[1].angles = arm_.angles(looks_[1].x);  // anew each tick: turned ones drift
   hand_torque_.setZero();
-  for (int s = 0; s < p.substeps; ++s) {
-    if (s % kShare == 0) {
-      const int ahead = std::min(kShare, p.substeps - s);
-      x_model = x_ + ahead * h / 2 * v_;
-      arm_.frames(arm_.turned(start, x_model - x_start), frames_);
-      arm_.inertia_bias(frames_, v_ + 0.5 * ahead * dv, M_, Cv_);
-      tip_model = arm_.tip(frames_);
-      arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);
-      if (mass > 0) {
-        drift = arm_.point_drift(frames_, arm_.dof() - 1, tip_model, v_ + 0.5 * ahead * dv);
-      }
+  for (int s = 0; s < p.substeps;) {
+    const int share = std::min(kShare, (p.substeps - s + 1) / 2);
+    look_ahead(d, s, share);
+    for (const Look& look : looks_) {
+      const int next = std::min(s + share, p.substeps);
+      Stride stride(d, look, x_, v_);
+      for (; s < next; ++s) step(stride, (s + 0.5) * d.h, x_, v_);
+      hand_torque_.noalias() += look.J.transpose() * stride.force;
     }
-    // Everything at the middle of the substep as v would have it; dv then corrects:
-    // x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
-    const Vec<N> x_mid = x_ + h / 2 * v_;
-    const Vec3 tip = tip_model + J_ * (x_mid - x_model);
-    const Vec3 target = target_ + (s + 0.5) * h * target_rate;
-    const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_) - mass * drift;
-    const Resistance r = resistance(b_d, friction, x_mid);
-
-    // A is symmetric: its lower triangle is enough.
-    Mat<N> A = M_;
-    for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      const Vec3 pulled = (grip_damping + mass) * J_.col(j);
-      for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += J_.col(i).dot(pulled);
-      A(j, j) += h / 2 * r.damping[j] + h * h / 4 * r.stiffness[j];
-    }
-    Vec<N> b = torque + pushed - Cv_ + r.torque - r.damping.cwiseProduct(v_);
-    b.noalias() += J_.transpose() * pull;
-    b *= h;
-    dv = solve_symmetric<N>(A, b);
-
-    const Vec3 force = pull - (b_h / 2 + h / 4 * k_h + mass / h) * (J_ * dv);
-    hand_torque_.noalias() += J_.transpose() * force;
-    x_ += h * (v_ + 0.5 * dv);
-    v_ += dv;
   }
   hand_torque_ /= p.substeps;
-  hand_torque_ += pushed;
+  if (!hand.torque.empty()) {
+    hand_torque_ += Eigen::Map<const Vec<N>>(hand.torque.data(), x_.size());
+  }
   target_ = hand.target;
 }
 

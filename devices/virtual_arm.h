@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/dynamics/arm.h"
+#include "core/math/solve.h"
 #include "core/tick/parameters.h"
 #include "core/tick/tick.h"
 #include "devices/device.h"
@@ -13,7 +14,9 @@ namespace limpid {
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
 // at the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor
 // torque held: linearly implicit midpoint rule, second order and without numerical damping, stable
-// for every grip.
+// for every grip. Several substeps share one look at where the arm is and how heavy, taken where it
+// is on average over them, x + S v/2 + S dv/6, v + dv/2 if v changes by dv in S seconds: what
+// changes evenly then makes no error, and what is left is of second order in the arm's way in S.
 template <int N>
 class VirtualArm {
  public:
@@ -32,21 +35,49 @@ class VirtualArm {
   const Vec<N>& hand_torque() const { return hand_torque_; }
 
  private:
-  struct Resistance {
-    Vec<N> torque;     // at v = 0 [N m]
-    Vec<N> damping;    // [N m s/rad]
-    Vec<N> stiffness;  // [N m/rad]
+  // What acts over a tick, and the substep that it is taken in.
+  struct Drive {
+    double h;                      // [s]
+    double stiffness, grip, mass;  // of the hand at the tip [N/m, N s/m, kg]
+    Vec3 target, target_rate;      // of the hand, at the tick's start [m, m/s]
+    Vec<N> torque;                 // of motors and hand [N m]
+    Vec<N> damping, friction;      // of the joints [N m s/rad, N m]
+    bool rubs;                     // some joint has friction
   };
-  Resistance resistance(const Vec<N>& b_d, const Vec<N>& friction, const Vec<N>& x_mid) const;
+  // Where the arm was looked at, and what it was like.
+  struct Look {
+    Vec<N> x, v;
+    typename Arm<N>::Angles angles;
+    Mat<N> M;
+    Vec<N> Cv;
+    Vec3 tip, drift;
+    Jacobian<N> J;  // of the tip
+  };
+  // Substeps under one look, ready to be taken.
+  struct Stride {
+    Stride(const Drive& d, const Look& look, const Vec<N>& x, const Vec<N>& v);
+
+    const Drive& d;
+    const Look& look;
+    Mat<N> A;  // A dv = torque at a substep's middle, were v to stay; lower triangle
+    SymmetricFactor<N> A_factor;
+    Vec<N> torque;              // of motors and hand, less C v [N m]
+    double along_rate, answer;  // what the hand makes of the tip's velocity and its change [N s/m]
+    Vec3 tip, tip_rate;         // as the look has them [m, m/s]
+    Vec3 force = Vec3::Zero();  // of the hand, sum over the substeps [N]
+  };
+
+  Drive drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
+  void look(bool drift);
+  void look_ahead(const Drive& d, int s, int share);
+  bool resist(const Stride& stride, const Vec<N>& x, const Vec<N>& v, Mat<N>& A, Vec<N>& b) const;
+  Vec<N> step(Stride& stride, double t, Vec<N>& x, Vec<N>& v) const;
 
   Arm<N> arm_;
   Vec<N> damping_, friction_, effort_, lower_, upper_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
-  typename Arm<N>::Frames frames_;
-  Mat<N> M_;
-  Vec<N> Cv_;
-  Jacobian<N> J_;
+  std::array<Look, 2> looks_;  // the newest two
 };
 
 // The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.

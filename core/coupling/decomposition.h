@@ -18,23 +18,37 @@ struct Dynamics {
 //     phi    = M_L^-1 M2,  M_L = M1 + M2
 //     phidot = M_L^-1 (M2dot - M_Ldot phi)
 //     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = C2^T - (C1 + C2)^T phi = -C_EL^T
+// As products with vectors, which cost n^2; laws that solve with the matrices ask for those.
 template <int N>
-struct Decomposition {
-  Mat<N> M_L;         // locked inertia [kg m^2]
-  Mat<N> phi;         // (7) [-]
-  Vec<N> v_L, v_E;    // (8) locked and shape velocity [rad/s]
-  Mat<N> C_LE, C_EL;  // (11) [kg m^2/s]
+class Decomposition {
+ public:
+  Decomposition(const Dynamics<N>& device, const Dynamics<N>& proxy)
+      : M_L(device.M + proxy.M),
+        M_L_factor(M_L),
+        C_L(device.C + proxy.C),
+        M2(proxy.M),
+        C2(proxy.C),
+        v_E(device.v - proxy.v),
+        phi_v_E(times_phi(v_E)),
+        v_L(device.v - phi_v_E) {}
 
-  Decomposition(const Dynamics<N>& device, const Dynamics<N>& proxy) {
-    M_L = device.M + proxy.M;
-    phi = solve_symmetric<N>(M_L, proxy.M);
-    v_E = device.v - proxy.v;
-    v_L = device.v - phi * v_E;
-    const Mat<N> C_L = device.C + proxy.C;
-    C_LE = proxy.C.transpose();
-    C_LE.noalias() -= C_L.transpose() * phi;
-    C_EL = -C_LE.transpose();
+  // phi v and phi^T f, (7).
+  Vec<N> times_phi(const Vec<N>& v) const { return M_L_factor.solve((M2 * v).eval()); }
+  Vec<N> times_phi_T(const Vec<N>& f) const { return M2 * M_L_factor.solve(f); }
+  // C_LE v_E, (11) [N m].
+  Vec<N> shape_torque() const { return C2.transpose() * v_E - C_L.transpose() * phi_v_E; }
+
+  Mat<N> phi() const { return M_L_factor.solve(M2); }
+  Mat<N> C_LE(const Mat<N>& phi) const {
+    Mat<N> C = C2.transpose();
+    C.noalias() -= C_L.transpose() * phi;
+    return C;
   }
+
+  Mat<N> M_L;  // locked inertia [kg m^2]
+  SymmetricFactor<N> M_L_factor;
+  Mat<N> C_L, M2, C2;        // C1 + C2; of the proxy
+  Vec<N> v_E, phi_v_E, v_L;  // (8) shape and locked velocity [rad/s]
 };
 
 }  // namespace limpid

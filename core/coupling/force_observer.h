@@ -55,15 +55,13 @@ class ForceObserver {
                          const Vec<N>& b_d) {
     const Vec<N> tau = 0.5 * (tau_ + tau_before_ - b_d.cwiseProduct(v + v_));
     const Vec<N> error = M * (v - v_) / T + C * v - tau - f1_hat_;  // d - f1_hat
-    // f1_hat += (1 - E) error, with M (1 - E) = (A M + A^2 M / 2) E and so
-    // (M + a + a^2 M^-1 / 2) (1 - E) = a + a^2 M^-1 / 2, a = T alpha.
+    // f1_hat += (1 - E) error, 1 - E = (A + A^2/2)(1 + A + A^2/2)^-1: in fractions, with a = T
+    // alpha, B = M + a/2, it is a Re (B - i a/2)^-1 = a (B + (a/2)^2 B^-1)^-1.
     const double a = T * alpha;
-    const Eigen::Index n = v.size();
-    const Mat<N> a_identity = a * Mat<N>::Identity(n, n);
-    const Mat<N> gain = a_identity + 0.5 * a * solve_symmetric<N>(M, a_identity);
-    const Mat<N> whole = M + gain;
-    const Vec<N> drive = gain * error;
-    f1_hat_ += solve_symmetric<N>(whole, drive);
+    Mat<N> B = M;
+    B.diagonal().array() += a / 2;
+    B += a * a / 4 * SymmetricFactor<N>(B).inverse();
+    f1_hat_ += solve_symmetric<N>(B, Vec<N>(a * error));
     v_ = v;
     return f1_hat_;
   }

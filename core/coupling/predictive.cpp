@@ -56,16 +56,17 @@ struct PredictiveLaw::Of<N>::Solve {
         const Vec<N>& s0, const Vec<N>& f1_hat, double c, double g_f) {
     const Eigen::Index n = s0.size();
     const Mat<N> I = Mat<N>::Identity(n, n);
-    const Mat<N> phi_T = d.phi.transpose();
-    const Mat<N> locked_w = d.C_EL - d.C_EL * d.phi;
-    const Mat<N> locked_u = d.C_EL * d.phi;
-    const Mat<N> shaped = network.damps() ? Mat<N>(d.C_LE - network.damping()) : d.C_LE;
+    const Mat<N> phi = d.phi(), phi_T = phi.transpose();
+    const Mat<N> C_LE = d.C_LE(phi);
+    const Mat<N> locked_u = -C_LE.transpose() * phi;
+    const Mat<N> locked_w = -C_LE.transpose() - locked_u;
+    const Mat<N> shaped = network.damps() ? Mat<N>(C_LE - network.damping()) : C_LE;
     const Vec<N> phi_f1 = phi_T * f1_hat;
     const Vec<N> phi_u = phi_T * network.force();
     const Mat<N> phi_shaped = phi_T * shaped;
-    const Mat<N> phi_C = phi_T * d.C_LE;
+    const Mat<N> phi_C = phi_T * C_LE;
     tE = {-s0 - phi_f1, locked_w - c * I, locked_u + c * I};
-    tL = {network.force() - phi_u, shaped - phi_shaped, phi_C - d.C_LE};
+    tL = {network.force() - phi_u, shaped - phi_shaped, phi_C - C_LE};
     tL.on_w.diagonal() -= b_w;
     tau2 = {s0 + phi_u + phi_f1, c * I - locked_w + phi_shaped, -c * I - locked_u - phi_C};
     tE_f2 = g_f * I - phi_T;

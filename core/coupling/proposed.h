@@ -6,21 +6,16 @@
 
 namespace limpid {
 
-// (14)-(15), with f1 as it was observed [N m].
+// (14)-(15), with f1 as it was observed [N m]; holds on to d. What is common to both is worked out
+// once: tau1 + tau2 = C_LE v_E + (1 - eta)/eta f1.
 template <int N>
 Feedforward<N> feedforward(double eta, const Decomposition<N>& d, const Vec<N>& f1_hat) {
-  const Eigen::Index n = f1_hat.size();
+  const Vec<N> shape = d.shape_torque();
   Feedforward<N> ff;
-  const Mat<N> I = Mat<N>::Identity(n, n);
-  const Mat<N> phi_T = d.phi.transpose();
-  const Vec<N> locked = d.C_EL * d.v_L;
-  const Vec<N> shape = d.C_LE * d.v_E;
-  const Vec<N> phi_f1 = phi_T * f1_hat / eta;
-  const Vec<N> phi_shape = phi_T * shape;
-  ff.tau1 = locked + shape - phi_shape + (1 - eta) / eta * f1_hat - phi_f1;  // (14)
-  ff.tau2 = -locked + phi_shape + phi_f1;                                    // (15)
-  ff.from_f2_1 = (I - phi_T) / eta;  // (1 - eta)/eta I - phi^T/eta + I
-  ff.from_f2_2 = phi_T / eta - I;
+  ff.tau2 = d.C2 * d.v_L + d.times_phi_T(shape + f1_hat / eta - d.C_L * d.v_L);  // (15)
+  ff.tau1 = shape + (1 - eta) / eta * f1_hat - ff.tau2;                          // (14)
+  ff.on_device = {1 / eta, -1 / eta, &d.M_L_factor};  // (1 - eta)/eta I - phi^T/eta + I
+  ff.on_proxy = {0, 1 / eta, &d.M_L_factor};
   return ff;
 }
 

@@ -12,9 +12,10 @@ Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>
               Proxy<N>& proxy) {
   const Vec<N> x2 = proxy.x();
   const ProxyDrive<N> drive{p.b_vc * in.v1 - p.k_vc * (x2 - in.x1) + ff.tau2,
-                            p.b_v + p.b_vc + p.k_vc * in.T / 2, ff.from_f2_2};
+                            p.b_v + p.b_vc + p.k_vc * in.T / 2, ff.on_proxy};
   proxy.advance(in.T, drive);
-  return -p.b_vc * (in.v1 - in.vbar2) - p.k_vc * (in.x1 - x2) + ff.tau1 + ff.from_f2_1 * proxy.f();
+  return -p.b_vc * (in.v1 - in.vbar2) - p.k_vc * (in.x1 - x2) + ff.tau1 +
+         ff.on_device.of(proxy.f(), proxy.M());
 }
 
 template Vec<3> couple(const SpringDamper&, const LawInput<3>&, const Feedforward<3>&, Proxy<3>&);

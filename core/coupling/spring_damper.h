@@ -7,6 +7,7 @@
 
 #include "core/coupling/law.h"
 #include "core/coupling/setting.h"
+#include "core/touch/contacts.h"
 
 namespace limpid {
 
@@ -33,16 +34,14 @@ struct SpringDamper {
 inline constexpr std::array kPaperSliders{"coupling.eta", "observer.alpha", "coupling.k_vc",
                                           "coupling.b_vc", "coupling.b_v"};
 
-// What (14)-(15) add to (1)-(2). The contact torque f2 is known only once the proxy has stepped,
-// so its share stays a matrix: tau1 += tau1 + from_f2_1 f2, tau2 += tau2 + from_f2_2 f2.
+// What (14)-(15) add to (1)-(2): without the contact torque f2, and of it, which is known only once
+// the proxy has stepped. The proxy's share counts the f2 that acts on it anyway.
 template <int N>
 struct Feedforward {
-  Vec<N> tau1, tau2;            // [N m]
-  Mat<N> from_f2_1, from_f2_2;  // [-]
+  Vec<N> tau1, tau2;  // [N m]
+  ContactShare<N> on_device{0}, on_proxy{1};
 
-  static Feedforward none(Eigen::Index n) {
-    return {Vec<N>::Zero(n), Vec<N>::Zero(n), Mat<N>::Zero(n, n), Mat<N>::Zero(n, n)};
-  }
+  static Feedforward none(Eigen::Index n) { return {Vec<N>::Zero(n), Vec<N>::Zero(n)}; }
 };
 
 // Steps the proxy, (4), with the springs and dampers of (2) at the midpoint; returns the torque on

@@ -28,27 +28,30 @@ namespace limpid {
 template <int N>
 class Arm {
  public:
-  // Where the links are at a configuration x.
-  struct Frames {
-    std::array<Mat3, kCapacity<N>> R;  // link axes in the base frame
-    std::array<Vec3, kCapacity<N>> p;  // link origins [m]
-    std::array<Vec3, kCapacity<N>> a;  // joint axes, unit; 0 of slides
-    std::array<Vec3, kCapacity<N>> o;  // velocity of O for unit rate [m]
+  // Where the links are at a configuration x. S: double, or Pair for two configurations at a time.
+  template <class S>
+  struct FramesOf {
+    std::array<Mat3Of<S>, kCapacity<N>> R;  // link axes in the base frame
+    std::array<Vec3Of<S>, kCapacity<N>> p;  // link origins [m]
+    std::array<Vec3Of<S>, kCapacity<N>> a;  // joint axes, unit; 0 of slides
+    std::array<Vec3Of<S>, kCapacity<N>> o;  // velocity of O for unit rate [m]
   };
+  using Frames = FramesOf<double>;
 
   // A rigid body about O: mass, first moment, inertia.
+  template <class S>
   struct Body {
-    double m = 0;
-    Vec3 mc = Vec3::Zero();
-    Symmetric3 I;
+    S m = 0;
+    Vec3Of<S> mc = Vec3Of<S>::Zero();
+    Symmetric3<S> I;
   };
   // What is moved there.
+  template <class S>
   struct Bodies {
-    std::array<Body, kCapacity<N>> link;
-    std::array<Vec3, kCapacity<N>> c;              // centres of mass of the links [m]
-    std::array<Vec3, kCapacity<N>> g, e;           // their inertia about it is d 1 + g g^T + e e^T
-    std::array<Body, kCapacity<N>> outer;          // link j and all beyond it as one
-    std::array<Vec3, kCapacity<N>> moment, force;  // momentum of outer[j] while joint j turns at 1
+    std::array<Body<S>, kCapacity<N>> link;
+    std::array<Body<S>, kCapacity<N>> outer;  // link j and all beyond it as one
+    // Momentum of outer[j] while joint j turns at 1.
+    std::array<Vec3Of<S>, kCapacity<N>> moment, force;
   };
 
   // Precondition: 1 to 32 joints, and exactly N unless N is kAnyDof.
@@ -61,13 +64,16 @@ class Arm {
 
   // Sines and cosines of a configuration, and of one further on by dx: to round-off, and for small
   // steps without asking for sines again. Of a slide: its coordinate in the place of the sine.
-  struct Angles {
-    Vec<N> sin, cos;
+  template <class S>
+  struct AnglesOf {
+    VecOf<N, S> sin, cos;
   };
+  using Angles = AnglesOf<double>;
   Angles angles(const Vec<N>& x) const;
   Angles turned(const Angles& angles, const Vec<N>& dx) const;
 
-  void frames(const Angles& angles, Frames& f) const;
+  template <class S>
+  void frames(const AnglesOf<S>& angles, FramesOf<S>& f) const;
   void frames(const Vec<N>& x, Frames& f) const { frames(angles(x), f); }
 
   // M(x) [kg m^2].
@@ -78,24 +84,40 @@ class Arm {
   void inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const;
 
   // The same in two steps, for who learns v only from M.
-  void inertia(const Frames& f, Bodies& bodies, Mat<N>& M) const;
-  void coriolis(const Frames& f, const Bodies& bodies, const Vec<N>& v, Mat<N>& C) const;
-  void bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const;
+  template <class S>
+  void inertia(const FramesOf<S>& f, Bodies<S>& bodies, MatOf<N, S>& M) const;
+  template <class S>
+  void coriolis(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, S>& v,
+                MatOf<N, S>& C) const;
+  template <class S>
+  void bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, S>& v,
+            VecOf<N, S>& Cv) const;
 
-  Vec3 tip(const Frames& f) const { return point(f, dof() - 1, tip_); }
+  // One of two configurations.
+  void take(const FramesOf<Pair>& both, int which, Frames& one) const;
+
+  template <class S>
+  Vec3Of<S> tip(const FramesOf<S>& f) const {
+    return point(f, dof() - 1, tip_);
+  }
   Vec3 tip_at(const Vec<N>& x) const {
     Frames f;
     frames(x, f);
     return tip(f);
   }
-  static Vec3 point(const Frames& f, int link, const Vec3& in_link) {
+  template <class S>
+  static Vec3Of<S> point(const FramesOf<S>& f, int link, const Vec3& in_link) {
     const auto i = static_cast<std::size_t>(link);
-    return f.p[i] + f.R[i] * in_link;
+    return f.p[i] + f.R[i] * in_link.cast<S>();
   }
   // Velocity of a point fixed to `link`, now at `world`, per joint rate [m]; J is 3 x n.
-  void point_jacobian(const Frames& f, int link, const Vec3& world, Jacobian<N>& J) const;
+  template <class S>
+  void point_jacobian(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
+                      JacobianOf<N, S>& J) const;
   // Acceleration of that point at constant joint rates, Jdot v [m/s^2].
-  Vec3 point_drift(const Frames& f, int link, const Vec3& world, const Vec<N>& v) const;
+  template <class S>
+  Vec3Of<S> point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
+                        const VecOf<N, S>& v) const;
 
  private:
   // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
@@ -119,12 +141,13 @@ class Arm {
 
   std::size_t size() const { return static_cast<std::size_t>(dof()); }
   static JointModel model(const Joint& joint);
-  static void turn(const JointModel& joint, double sin, double cos, const Mat3& before, Mat3& R,
-                   Vec3& axis);
-  void place_link(const Frames& f, std::size_t i, Bodies& bodies) const;
+  template <class S>
+  static void turn(const JointModel& joint, const S& sin, const S& cos, const Mat3Of<S>& before,
+                   Mat3Of<S>& R, Vec3Of<S>& axis);
+  template <class S>
+  void place_link(const FramesOf<S>& f, std::size_t i, Bodies<S>& bodies) const;
 
   int dof_;
-  bool slides_ = false;  // some joint does
   std::array<JointModel, kCapacity<N>> joints_;
   std::array<LinkModel, kCapacity<N>> links_;
   Vec3 tip_;

@@ -38,19 +38,38 @@ inline Mat3 inverse_symmetric(const Mat3& A) {
   return inverse;
 }
 
+// x -= sum of columns[k] * factors[k], in rows from `first` on; of many, four columns at a time.
+template <int N, class Column, class Factor>
+[[gnu::always_inline]] inline void take_off(Eigen::Index columns, const Column& column,
+                                            const Factor& factor, Eigen::Index first,
+                                            Eigen::Index rows, double* __restrict x) {
+  Eigen::Index k = 0;
+  for (; N == kAnyDof && k + 4 <= columns; k += 4) {
+    const double *a = column(k), *b = column(k + 1), *c = column(k + 2), *d = column(k + 3);
+    const double fa = factor(k), fb = factor(k + 1), fc = factor(k + 2), fd = factor(k + 3);
+    for (Eigen::Index i = first; i < rows; ++i) {
+      x[i] -= (a[i] * fa + b[i] * fb) + (c[i] * fc + d[i] * fd);
+    }
+  }
+  for (; k < columns; ++k) {
+    const double* a = column(k);
+    const double fa = factor(k);
+    for (Eigen::Index i = first; i < rows; ++i) x[i] -= a[i] * fa;
+  }
+}
+
 // The lower Cholesky factor, A = L L^T, of a symmetric positive-definite A, whose lower triangle
 // alone is read.
 template <int N>
 Mat<N> cholesky(const Mat<N>& A) {
   const Eigen::Index n = A.rows();
-  Mat<N> L = Mat<N>::Zero(n, n);
+  Mat<N> L = A;
+  const auto column = [&](Eigen::Index k) { return L.col(k).data(); };
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j; i < n; ++i) L(i, j) = A(i, j);
-    for (Eigen::Index k = 0; k < j; ++k) {
-      const double l = L(j, k);
-      for (Eigen::Index i = j; i < n; ++i) L(i, j) -= L(i, k) * l;
-    }
+    take_off<N>(
+        j, column, [&](Eigen::Index k) { return L(j, k); }, j, n, L.col(j).data());
     const double scale = 1 / std::sqrt(L(j, j));
+    for (Eigen::Index i = 0; i < j; ++i) L(i, j) = 0;
     for (Eigen::Index i = j; i < n; ++i) L(i, j) *= scale;
   }
   return L;
@@ -60,32 +79,77 @@ Mat<N> cholesky(const Mat<N>& A) {
 template <int N>
 Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
   const Eigen::Index n = L.rows();
-  Mat<N> D = Mat<N>::Zero(n, n);  // Ldot
+  Mat<N> D = Adot;  // Ldot
+  const auto column = [&](Eigen::Index k) { return (k % 2 ? L : D).col(k / 2).data(); };
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j; i < n; ++i) D(i, j) = Adot(i, j);
-    for (Eigen::Index k = 0; k < j; ++k) {
-      const double l = L(j, k), d = D(j, k);
-      for (Eigen::Index i = j; i < n; ++i) D(i, j) -= D(i, k) * l + L(i, k) * d;
-    }
+    const auto factor = [&](Eigen::Index k) { return (k % 2 ? D : L)(j, k / 2); };
+    take_off<N>(2 * j, column, factor, j, n, D.col(j).data());
     const double scale = 1 / L(j, j);
     D(j, j) *= 0.5 * scale;
     const double d = D(j, j);
+    for (Eigen::Index i = 0; i < j; ++i) D(i, j) = 0;
     for (Eigen::Index i = j + 1; i < n; ++i) D(i, j) = (D(i, j) - L(i, j) * d) * scale;
   }
   return D;
 }
 
+// A symmetric positive-definite matrix, whose lower triangle alone is read, made ready for several
+// right sides.
+template <int N>
+class SymmetricFactor {
+ public:
+  SymmetricFactor() = default;
+  explicit SymmetricFactor(const Mat<N>& A) { compute(A); }
+  void compute(const Mat<N>& A) {
+    if constexpr (N == 3) {
+      factor_ = inverse_symmetric(A);
+    } else {
+      factor_ = cholesky<N>(A);
+    }
+  }
+  template <class B>
+  auto solve(const B& b) const -> typename B::PlainObject {
+    if constexpr (N == 3) {
+      return factor_ * b;
+    } else {
+      typename B::PlainObject x = factor_.template triangularView<Eigen::Lower>().solve(b);
+      factor_.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
+      return x;
+    }
+  }
+
+  Mat<N> inverse() const {
+    if constexpr (N == 3) {
+      return factor_;
+    } else {
+      // From the last column on: X L = L^-T, which is nothing below its diagonal.
+      const Eigen::Index n = factor_.rows();
+      Mat<N> X = Mat<N>::Zero(n, n);
+      for (Eigen::Index j = n; j-- > 0;) {
+        const auto column = [&](Eigen::Index k) { return X.col(j + 1 + k).data(); };
+        const auto factor = [&](Eigen::Index k) { return factor_(j + 1 + k, j); };
+        take_off<N>(n - j - 1, column, factor, j + 1, n, X.col(j).data());
+        const double scale = 1 / factor_(j, j);
+        X(j, j) = scale;
+        for (Eigen::Index i = j + 1; i < n; ++i) {
+          X(i, j) *= scale;
+          X(j, i) = X(i, j);
+          X(j, j) -= X(i, j) * factor_(i, j);
+        }
+        X(j, j) *= scale;
+      }
+      return X;
+    }
+  }
+
+ private:
+  Mat<N> factor_;  // L, or the inverse
+};
+
 // A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
 template <int N, class B>
 auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
-  if constexpr (N == 3) {
-    return inverse_symmetric(A) * b;
-  } else {
-    const Mat<N> L = cholesky<N>(A);
-    typename B::PlainObject x = L.template triangularView<Eigen::Lower>().solve(b);
-    L.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
-    return x;
-  }
+  return SymmetricFactor<N>(A).solve(b);
 }
 
 // A regular matrix made ready for several right sides.

@@ -90,8 +90,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
       {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
   fresh_law_ = false;
   device_.v = at.v;
-  arm_.frames(at.x, frames_);
-  arm_.inertia_coriolis(frames_, device_.v, device_.M, device_.C);
+  proxy_.catch_up_beside(at.x, at.v, frames_, device_.M, device_.C);
   device_.M *= p.inertia_error;
   device_.C *= p.inertia_error;
   const Vec<N>& v1 = velocity_.raw();

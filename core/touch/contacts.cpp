@@ -167,10 +167,11 @@ void Contacts<N>::aim(MeshContact<N>& contact) {
 }
 
 template <int N>
-void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const Mat<N>& from_f2) const {
+void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const ContactShare<N>& share,
+                         const Mat<N>& M2) const {
   const auto spring = [&](const Material& material, double depth, const Vec<N>& gradient) {
-    Vec<N> answer = material.stiffness * gradient;  // of tau2 + f2 to a deeper contact, negative
-    answer += from_f2 * answer.eval();
+    // Of tau2 + f2 to a deeper contact, negative.
+    const Vec<N> answer = material.stiffness * share.of(gradient, M2);
     A.noalias() += (0.5 * T) * answer * gradient.transpose();
     b -= depth * answer;
   };

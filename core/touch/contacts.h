@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/dynamics/arm.h"
+#include "core/math/solve.h"
 #include "core/touch/mesh_touch.h"
 #include "core/touch/scene.h"
 
@@ -68,6 +69,19 @@ struct ContactForce {
   Vec3 force = Vec3::Zero();  // [N]
 };
 
+// What comes of the contacts' torque f2 on the proxy, with what a law makes of it besides:
+//     direct f2 + shared M2 M_L^-1 f2.
+template <int N>
+struct ContactShare {
+  double direct = 1, shared = 0;
+  const SymmetricFactor<N>* M_L = nullptr;  // where shared is not 0
+
+  Vec<N> of(const Vec<N>& f2, const Mat<N>& M2) const {
+    if (shared == 0) return direct * f2;
+    return direct * f2 + shared * (M2 * M_L->solve(f2));
+  }
+};
+
 // Finds what is near enough to touch within a tick, and keeps account of what does. Storage for
 // every pair of an obstacle and a probe is set aside beforehand.
 template <int N>
@@ -86,8 +100,8 @@ class Contacts {
   bool recoverable() const;
 
   // The contacts' part in the midpoint step (Proxy): with those thought to push,
-  //     A += (1 + from_f2) K T/2 G G^T,   b -= (1 + from_f2) K depth G,   G the gradients.
-  void add_to(Mat<N>& A, Vec<N>& b, double T, const Mat<N>& from_f2) const;
+  //     A += share K T/2 G G^T,   b -= share K depth G,   G the gradients.
+  void add_to(Mat<N>& A, Vec<N>& b, double T, const ContactShare<N>& share, const Mat<N>& M2) const;
   // The forces at the midpoint of a step with this velocity, their torque f2, and whether those
   // thought to push are those that do.
   bool push(const Vec<N>& vbar, double T, Vec<N>& f2);

@@ -17,16 +17,17 @@ template <int N>
 void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
   ratio_ = ratio;
   x_ = x;
-  tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
-  update_inertia();
-  nu_ = L_.transpose() * v;
   v_ = v;  // to the last bit: a recording's first row is a starting point
-  update_skew();
+  tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
+  behind_ = false;
+  catch_up();
+  nu_ = L_.transpose() * v;
   contacts_->place(arm_, frames_, x_);
 }
 
 template <int N>
 void Proxy<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
+  if (behind_) catch_up();
   contacts->place(arm_, frames_, x_);
   contacts->take_over(*contacts_);
   contacts_.swap(contacts);
@@ -35,48 +36,72 @@ void Proxy<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
 template <int N>
 void Proxy<N>::set_ratio(double ratio) {
   if (ratio == ratio_) return;
+  if (behind_) catch_up();
   nu_ *= std::sqrt(ratio / ratio_);
   ratio_ = ratio;
-  update_inertia();
-  update_velocity();
+  catch_up();
 }
 
-// M and L where it now is.
 template <int N>
-void Proxy<N>::update_inertia() {
-  arm_.frames(x_, frames_);
-  arm_.inertia(frames_, bodies_, M_);
+void Proxy<N>::catch_up() {
+  typename Arm<N>::Frames frames;
+  Mat<N> M, C;
+  catch_up_beside(x_, v_, frames, M, C);
+}
+
+template <int N>
+void Proxy<N>::catch_up_beside(const Vec<N>& x, const Vec<N>& v, typename Arm<N>::Frames& frames,
+                               Mat<N>& M, Mat<N>& C) {
+  typename Arm<N>::template FramesOf<Pair> f;
+  typename Arm<N>::template Bodies<Pair> bodies;
+  MatOf<N, Pair> both;
+  const typename Arm<N>::Angles one = arm_.angles(x), two = arm_.angles(x_);
+  arm_.frames({paired<N>(one.sin, two.sin), paired<N>(one.cos, two.cos)}, f);
+  arm_.take(f, 0, frames);
+  arm_.take(f, 1, frames_);
+  arm_.inertia(f, bodies, both);
+  take(both, 0, M);
+  take(both, 1, M_);
   M_ *= ratio_;
   L_ = cholesky<N>(M_);
+  if (behind_) v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  behind_ = false;
+  arm_.coriolis(f, bodies, paired<N>(v, v_), both);
+  take(both, 0, C);
+  take(both, 1, C_);
+  C_ *= ratio_;
+  update_skew();
 }
 
-// C, and S = C - L Ldot^T, where Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew: half of it says
-// all.
+// S = C - L Ldot^T, where Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew: half of it says all.
 template <int N>
 void Proxy<N>::update_skew() {
-  arm_.coriolis(frames_, bodies_, v_, C_);
-  C_ *= ratio_;
   const Mat<N> Ldot = cholesky_rate<N>(L_, C_ + C_.transpose());
   const Eigen::Index n = C_.rows();
   S_ = C_;
+  const auto column = [&](Eigen::Index k) { return L_.col(k).data(); };
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index k = 0; k <= j; ++k) {
-      for (Eigen::Index i = j + 1; i < n; ++i) S_(i, j) -= L_(i, k) * Ldot(j, k);
-    }
+    const auto factor = [&](Eigen::Index k) { return Ldot(j, k); };
+    take_off<N>(j + 1, column, factor, j + 1, n, S_.col(j).data());
     S_(j, j) = 0;
     for (Eigen::Index i = j + 1; i < n; ++i) S_(j, i) = -S_(i, j);
   }
 }
 
-// The velocity of nu where it now is.
 template <int N>
-void Proxy<N>::update_velocity() {
-  v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
-  update_skew();
+Vec<N> Proxy<N>::v() const {
+  if (!behind_) return v_;
+  typename Arm<N>::Frames f;
+  Mat<N> M;
+  arm_.frames(x_, f);
+  arm_.inertia(f, M);
+  M *= ratio_;
+  return cholesky<N>(M).transpose().template triangularView<Eigen::Upper>().solve(nu_);
 }
 
 template <int N>
 void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
+  if (behind_) catch_up();
   look(T);
   // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
   // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
@@ -98,20 +123,19 @@ void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
   const Vec<N> impulse = L_ * (nu_ - nu_before) / T;
   tau_ = impulse + S_ * vbar_ - f_;
   x_ += T * vbar_;
-  update_inertia();
-  update_velocity();
+  behind_ = true;
 }
 
 // Solves for vbar with the contacts now thought to touch. True if they are the ones that are deep
 // at the midpoint.
 template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
-  // (2/T M + S + damping + (1 + from_f2) K T/2) vbar = 2/T L nu + constant + (1 + from_f2) f2,
+  // (2/T M + S + damping + share K T/2) vbar = 2/T L nu + constant + share f2,
   // f2 - K T/2 vbar the contacts' force.
   Mat<N> A = impedance(T);
   A.diagonal().array() += drive.damping;
   Vec<N> b = momentum(T) + drive.constant;
-  contacts_->add_to(A, b, T, drive.from_f2);
+  contacts_->add_to(A, b, T, drive.share, M_);
   vbar_ = solve<N>(A, b);
   return contacts_->push(vbar_, T, f_);
 }

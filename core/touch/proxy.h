@@ -9,13 +9,13 @@
 namespace limpid {
 
 // What acts on the proxy over one tick, with vbar = (x_k+1 - x_k) / T unknown:
-//     tau = constant - damping vbar + from_f2 f2,
-// and the contacts' f2 besides.
+//     tau + f2 = constant - damping vbar + share f2,
+// f2 the contacts' torque.
 template <int N>
 struct ProxyDrive {
   Vec<N> constant;  // [N m]
   double damping;   // b_v + b_vc + k_vc T / 2 [N m s/rad]
-  Mat<N> from_f2;   // [-]
+  ContactShare<N> share{};
 };
 
 // Non-iterative passive integration. With M2 = L L^T and nu = L^T v the motion (6) reads
@@ -35,6 +35,13 @@ class Proxy {
   // A changed ratio keeps the velocity.
   void set_ratio(double ratio);
 
+  // M, C and v where it now is; after a step, before anything else is asked or done but for x(),
+  // v() and what is said of the last tick.
+  void catch_up();
+  // The same, and in the same sweeps the frames, M and C of another arm of this make at x and v.
+  void catch_up_beside(const Vec<N>& x, const Vec<N>& v, typename Arm<N>::Frames& frames, Mat<N>& M,
+                       Mat<N>& C);
+
   // One tick of length T [s].
   void advance(double T, const ProxyDrive<N>& drive);
 
@@ -48,7 +55,7 @@ class Proxy {
   Contacts<N>& contacts() { return *contacts_; }
 
   const Vec<N>& x() const { return x_; }
-  const Vec<N>& v() const { return v_; }
+  Vec<N> v() const;
   const Mat<N>& M() const { return M_; }
   const Mat<N>& C() const { return C_; }
   double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }    // [J]
@@ -67,8 +74,6 @@ class Proxy {
   void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
  private:
-  void update_inertia();
-  void update_velocity();
   void update_skew();
   bool solve_step(double T, const ProxyDrive<N>& drive);
 
@@ -76,7 +81,7 @@ class Proxy {
   std::unique_ptr<Contacts<N>> contacts_;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
-  typename Arm<N>::Bodies bodies_;
+  bool behind_ = false;  // of what catch_up() brings
   Vec<N> x_, v_, nu_;
   Mat<N> M_, C_, L_, S_;
   Vec<N> tau_, f_, vbar_;

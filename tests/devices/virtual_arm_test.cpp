@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -103,6 +104,86 @@ TEST(VirtualArm, ConvergesWithTheSquareOfItsSubsteps) {
     const double coarse = (after(10) - exact).norm(), fine = (after(20) - exact).norm();
     EXPECT_LT(fine, coarse / 3) << n;  // a quarter
     EXPECT_LT(fine, 1e-4) << n;
+  }
+}
+
+// The same arm by Runge and Kutta's fourth-order method at 100 kHz.
+class ReferenceArm {
+ public:
+  ReferenceArm(const ArmDescription& description, const Vector& x, const Vec3& target)
+      : arm_(description), x_(x), v_(Vector::Zero(x.size())), target_(target) {}
+
+  void live(const Parameters& p, const Vector& torque, const Vec3& target) {
+    constexpr int kSteps = 100;
+    const double h = p.tick / kSteps;
+    const Vec3 rate = (target - target_) / p.tick;
+    const auto a = [&](double t, const Vector& x, const Vector& v) {
+      return acceleration(p, torque, target_ + t * rate, rate, x, v);
+    };
+    for (int i = 0; i < kSteps; ++i) {
+      const double t = i * h;
+      const Vector a1 = a(t, x_, v_);
+      const Vector v2 = v_ + h / 2 * a1, a2 = a(t + h / 2, x_ + h / 2 * v_, v2);
+      const Vector v3 = v_ + h / 2 * a2, a3 = a(t + h / 2, x_ + h / 2 * v2, v3);
+      const Vector v4 = v_ + h * a3, a4 = a(t + h, x_ + h * v3, v4);
+      x_ += h / 6 * (v_ + 2 * v2 + 2 * v3 + v4);
+      v_ += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    target_ = target;
+  }
+  const Vector& x() const { return x_; }
+  const Vector& v() const { return v_; }
+
+ private:
+  Vector acceleration(const Parameters& p, const Vector& torque, const Vec3& target,
+                      const Vec3& rate, const Vector& x, const Vector& v) const {
+    Arm<kAnyDof>::Frames f;
+    Mat<kAnyDof> M;
+    Vector Cv;
+    Jacobian<kAnyDof> J;
+    arm_.frames(x, f);
+    arm_.inertia_bias(f, v, M, Cv);
+    arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
+    const Vec3 pull = p.hand_stiffness * (target - arm_.tip(f)) + p.hand_damping * (rate - J * v);
+    const Vector whole = torque - Cv - p.damping * v + J.transpose() * pull;
+    return Eigen::MatrixXd(M).ldlt().solve(Eigen::VectorXd(whole));
+  }
+
+  Arm<kAnyDof> arm_;
+  Vector x_, v_;
+  Vec3 target_;
+};
+
+TEST(VirtualArm, MovesAsAFineIntegrationDoesToAThousandthOfAnEncodersStep) {
+  constexpr double kStep = 4e-4;  // of the paper's arm [rad]
+  for (const int n : {2, 3, 7}) {
+    for (const double grip : {0.0, 300.0, 1500.0}) {
+      const ArmDescription description = random_arm(n, 137);
+      Random random(138);
+      const Vector x = random.vector(n, 1);
+      Parameters p;
+      p.hand_stiffness = grip;
+      p.hand_damping = grip / 150;
+      p.damping = 0.012;
+      AnyArm arm(description);
+      arm.place(x, Vector::Zero(n), Vec3::Zero());
+      const Vec3 start = arm.tip();
+      arm.place(x, Vector::Zero(n), start);
+      ReferenceArm reference(description, x, start);
+      double fastest = 0, furthest = 0;
+      for (int k = 0; k < 300; ++k) {
+        const double t = 1e-3 * k;
+        Vector torque(n);  // another one every 20 ms, as from contacts
+        for (int i = 0; i < n; ++i) torque[i] = 0.02 * std::sin(11.0 * (k / 20) + i);
+        const Vec3 target = start + 0.01 * Vec3(std::sin(12 * t), std::sin(17 * t), 0);
+        arm.live(p, torque, {target, 1});
+        reference.live(p, torque, target);
+        fastest = std::max(fastest, reference.v().cwiseAbs().maxCoeff());
+        furthest = std::max(furthest, (arm.x() - reference.x()).cwiseAbs().maxCoeff());
+      }
+      EXPECT_GT(fastest, 1) << n;
+      EXPECT_LT(furthest, kStep / 1000) << n << " joints, grip " << grip << ", " << fastest;
+    }
   }
 }
 

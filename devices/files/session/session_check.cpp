@@ -29,20 +29,38 @@ std::vector<std::optional<Column>> columns_in(const std::string& paths) {
   return columns;
 }
 
+// Takes a row's values of one column into its sum.
+void stir(const RowLayout& layout, const double* row, const ColumnInfo& column,
+          std::uint64_t& sum) {
+  const double* values = row + layout.offset(column.column);
+  for (int i = 0; i < layout.width(column.column); ++i) {
+    const double x = column.byte ? static_cast<std::uint8_t>(values[i]) : values[i];  // as stored
+    sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
+    sum ^= sum >> 32;
+  }
+}
+
 }  // namespace
 
 std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column) {
   const auto stride = static_cast<std::size_t>(layout.stride());
-  const bool byte = kColumnInfo[static_cast<std::size_t>(column)].byte;
+  const ColumnInfo& info = kColumnInfo[static_cast<std::size_t>(column)];
   std::uint64_t sum = rows.size() / stride;
+  for (std::size_t at = 0; at < rows.size(); at += stride) stir(layout, &rows[at], info, sum);
+  return sum;
+}
+
+std::array<std::uint64_t, kColumns> column_sums(const RowLayout& layout,
+                                                std::span<const double> rows) {
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  std::array<std::uint64_t, kColumns> sums;
+  sums.fill(rows.size() / stride);
   for (std::size_t at = 0; at < rows.size(); at += stride) {
-    for (const double value : layout.in(rows.subspan(at, stride), column)) {
-      const double x = byte ? static_cast<std::uint8_t>(value) : value;  // as it is stored
-      sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
-      sum ^= sum >> 32;
+    for (const ColumnInfo& column : kColumnInfo) {
+      stir(layout, &rows[at], column, sums[static_cast<std::size_t>(column.column)]);
     }
   }
-  return sum;
+  return sums;
 }
 
 std::string check_columns() {

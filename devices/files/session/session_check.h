@@ -6,6 +6,7 @@
 // of other programs, and of the first edition, have none.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -23,6 +24,9 @@ inline constexpr const char* kCheckColumns = "columns";
 // Over the values of `rows` in that column: h <- (h ^ bits) * odd, and a shift. Each step can be
 // undone, so a single value that changes always changes the sum.
 std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column);
+// Of all columns, going through the rows once: several times faster than one after the other.
+std::array<std::uint64_t, kColumns> column_sums(const RowLayout& layout,
+                                                std::span<const double> rows);
 
 // The columns in the order of their sums.
 std::string check_columns();

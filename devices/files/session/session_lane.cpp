@@ -101,6 +101,7 @@ void SessionLane::flush() {
   write_changes();
   const std::uint64_t count = pending_rows();
   if (count == 0) return;
+  sort_columns(count);
   for (auto column = kColumnInfo.rbegin(); column != kColumnInfo.rend(); ++column) {
     write_column(*column, count);
   }
@@ -110,32 +111,39 @@ void SessionLane::flush() {
 }
 
 void SessionLane::write_check() {
-  std::array<std::uint64_t, kColumns> sums;
-  for (const ColumnInfo& column : kColumnInfo) {
-    sums[column_index(column.column)] = column_sum(layout_, pending_, column.column);
-  }
+  const auto sums = column_sums(layout_, pending_);
   append_to(sums_, flushed_sums_, 1, kColumns, H5T_NATIVE_UINT64, sums.data(), path_);
   ++flushed_sums_;
 }
 
-void SessionLane::write_column(const ColumnInfo& column, std::uint64_t count) {
+// Rows as columns, one behind the other.
+void SessionLane::sort_columns(std::uint64_t count) {
   const auto stride = static_cast<std::size_t>(layout_.stride());
-  const std::span<const double> rows(pending_);
-  numbers_.clear();
-  for (std::size_t at = 0; at < rows.size(); at += stride) {
-    const auto values = layout_.in(rows.subspan(at, stride), column.column);
-    numbers_.insert(numbers_.end(), values.begin(), values.end());
+  by_column_.resize(pending_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const double* row = pending_.data() + k * stride;
+    for (const ColumnInfo& column : kColumnInfo) {
+      const auto at = static_cast<std::size_t>(layout_.offset(column.column));
+      const auto width = static_cast<std::size_t>(layout_.width(column.column));
+      double* to = by_column_.data() + at * count + k * width;
+      for (std::size_t i = 0; i < width; ++i) to[i] = row[at + i];
+    }
   }
+}
+
+void SessionLane::write_column(const ColumnInfo& column, std::uint64_t count) {
+  const auto at = static_cast<std::size_t>(layout_.offset(column.column));
+  const auto width = static_cast<std::size_t>(layout_.width(column.column));
+  const std::span<const double> numbers(by_column_.data() + at * count, width * count);
   if (column.byte) {
-    bytes_.resize(numbers_.size());
-    std::transform(numbers_.begin(), numbers_.end(), bytes_.begin(),
+    bytes_.resize(numbers.size());
+    std::transform(numbers.begin(), numbers.end(), bytes_.begin(),
                    [](double x) { return static_cast<std::uint8_t>(x); });
   }
-  const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers_.data();
+  const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers.data();
   const auto zero = [](double x) { return std::bit_cast<std::uint64_t>(x) == 0; };
-  if (sparse(column) && std::ranges::all_of(numbers_, zero)) data = nullptr;
-  append_to(columns_[column_index(column.column)], flushed_rows_, count,
-            static_cast<hsize_t>(layout_.width(column.column)),
+  if (sparse(column) && std::ranges::all_of(numbers, zero)) data = nullptr;
+  append_to(columns_[column_index(column.column)], flushed_rows_, count, width,
             column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);
 }
 

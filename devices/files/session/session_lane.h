@@ -41,6 +41,7 @@ class SessionLane {
   void create_column(hid_t group, const ColumnInfo& column);
   void create_events(hid_t group);
   void create_check(hid_t group);
+  void sort_columns(std::uint64_t count);
   void write_column(const ColumnInfo& column, std::uint64_t count);
   void write_changes();
   void write_check();
@@ -53,7 +54,7 @@ class SessionLane {
   std::uint64_t flushed_sums_ = 0;
   std::vector<double> pending_;         // rows of the block that is not full yet
   std::vector<SettingChange> changes_;  // not written yet
-  std::vector<double> numbers_;         // one column of that block
+  std::vector<double> by_column_;       // that block, a column behind the other
   std::vector<std::uint8_t> bytes_;
   std::array<hdf5::Dataset, kColumns> columns_;
   hdf5::Dataset event_row_;

@@ -104,15 +104,17 @@ TEST_P(CouplingOfJoints, ProposedAddsFourteenAndFifteen) {
   const Random2 r(n, 71);
   for (const double eta : {0.3, 0.6, 1.0, 5.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
+    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
     const Matrix I = Matrix::Identity(n, n);
     const Matrix phi_T = (r.two.M * (r.one.M + r.two.M).inverse()).eval();  // M symmetric
     const Vector sum = r.f1 + r.f2;
-    const Vector tau1 = d.C_EL * d.v_L + (I - phi_T) * d.C_LE * d.v_E +
+    const Vector tau1 = C_EL * d.v_L + (I - phi_T) * C_LE * d.v_E +
                         ((1 - eta) / eta * I - phi_T / eta) * sum + r.f2;
-    const Vector tau2 = -d.C_EL * d.v_L + phi_T * d.C_LE * d.v_E + phi_T / eta * sum - r.f2;
-    EXPECT_LT((ff.tau1 + ff.from_f2_1 * r.f2 - tau1).norm(), 1e-12 * (1 + tau1.norm()));
-    EXPECT_LT((ff.tau2 + ff.from_f2_2 * r.f2 - tau2).norm(), 1e-12 * (1 + tau2.norm()));
+    const Vector tau2 = -C_EL * d.v_L + phi_T * C_LE * d.v_E + phi_T / eta * sum - r.f2;
+    EXPECT_LT((ff.tau1 + ff.on_device.of(r.f2, r.two.M) - tau1).norm(), 1e-12 * (1 + tau1.norm()));
+    EXPECT_LT((ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2 - tau2).norm(),
+              1e-12 * (1 + tau2.norm()));
   }
 }
 
@@ -123,9 +125,11 @@ TEST_P(CouplingOfJoints, ProposedScalesWhatReachesTheLockedSystem) {
   const Random2 r(n, 72);
   for (const double eta : {0.5, 1.0, 3.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
+    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
-    const Vector both = ff.tau1 + ff.from_f2_1 * r.f2 + ff.tau2 + ff.from_f2_2 * r.f2;
-    const Vector wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + d.C_LE * d.v_E;
+    const Vector both =
+        ff.tau1 + ff.on_device.of(r.f2, r.two.M) + ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2;
+    const Vector wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + C_LE * d.v_E;
     EXPECT_LT((both - wanted).norm(), 1e-12 * (1 + wanted.norm()));
   }
 }
@@ -137,12 +141,13 @@ TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
   const Random2 r(n, 73);
   for (const double eta : {0.5, 1.0, 3.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
+    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
-    const Vector tau1 = ff.tau1 + ff.from_f2_1 * r.f2;
-    const Vector tau2 = ff.tau2 + ff.from_f2_2 * r.f2;
-    const Vector f_E = d.phi.transpose() * (r.f1 + r.f2) - r.f2;
-    const Vector shape = d.phi.transpose() * (tau1 + tau2) - tau2 + f_E;
-    EXPECT_LT((shape - d.C_EL * d.v_L).norm(), 1e-12 * (1 + f_E.norm()));
+    const Vector tau1 = ff.tau1 + ff.on_device.of(r.f2, r.two.M);
+    const Vector tau2 = ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2;
+    const Vector f_E = phi.transpose() * (r.f1 + r.f2) - r.f2;
+    const Vector shape = phi.transpose() * (tau1 + tau2) - tau2 + f_E;
+    EXPECT_LT((shape - C_EL * d.v_L).norm(), 1e-12 * (1 + f_E.norm()));
   }
 }
 
@@ -155,8 +160,8 @@ TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
   const Decomposition<kAnyDof> d(r.one, r.two);
   const auto ff = feedforward<kAnyDof>(1, d, Vec<kAnyDof>::Zero(n));
   EXPECT_LT(ff.tau1.norm() + ff.tau2.norm(), 1e-15);
-  const Vector device = ff.from_f2_1 * r.f2;
-  const Vector proxy = r.f2 + ff.from_f2_2 * r.f2;
+  const Vector device = ff.on_device.of(r.f2, r.two.M);
+  const Vector proxy = ff.on_proxy.of(r.f2, r.two.M);
   EXPECT_LT((device + proxy - r.f2).norm(), 1e-13);
   // Both then accelerate alike.
   const Vector a1 = r.one.M.inverse() * device, a2 = r.two.M.inverse() * proxy;

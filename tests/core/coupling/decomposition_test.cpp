@@ -46,7 +46,13 @@ Matrix block_diagonal(const Matrix& A, const Matrix& B) {
 class DecompositionOfJoints : public testing::TestWithParam<int> {
  protected:
   int n() const { return GetParam(); }
-  Decomposition<kAnyDof> at(double t) const {
+  // With its matrices written out.
+  struct Whole : Decomposition<kAnyDof> {
+    Whole(const Dynamics<kAnyDof>& device, const Dynamics<kAnyDof>& proxy)
+        : Decomposition(device, proxy) {}
+    Matrix phi = Decomposition::phi(), C_LE = Decomposition::C_LE(phi), C_EL = -C_LE.transpose();
+  };
+  Whole at(double t) const {
     return {dynamics(arm_, x1_ + t * v1_, v1_, 1), dynamics(arm_, x2_ + t * v2_, v2_, kRatio)};
   }
 
@@ -62,7 +68,7 @@ class DecompositionOfJoints : public testing::TestWithParam<int> {
 INSTANTIATE_TEST_SUITE_P(Arms, DecompositionOfJoints, testing::Values(1, 2, 3, 7, 32));
 
 TEST_P(DecompositionOfJoints, SplitsTheVelocities) {
-  const Decomposition<kAnyDof> d = at(0);
+  const Whole d = at(0);
   const Vector momentum = device_.M * v1_ + proxy_.M * v2_;
   EXPECT_LT((d.v_E - (v1_ - v2_)).norm(), 1e-14);
   EXPECT_LT((d.M_L * d.v_L - momentum).norm(), 1e-13 * size_);
@@ -73,7 +79,7 @@ TEST_P(DecompositionOfJoints, SplitsTheVelocities) {
 }
 
 TEST_P(DecompositionOfJoints, MakesTheInertiaBlockDiagonal) {
-  const Decomposition<kAnyDof> d = at(0);
+  const Whole d = at(0);
   const Matrix S = s_inverse(d.phi);
   const Matrix M = S.transpose() * block_diagonal(device_.M, proxy_.M) * S;
   EXPECT_LT((M.topLeftCorner(n(), n()) - d.M_L).norm(), 1e-13 * M.norm());
@@ -89,17 +95,25 @@ TEST_P(DecompositionOfJoints, HasTheCoriolisBlocksOfElevenMultipliedOut) {
   const Matrix S = S_at(0);
   const Matrix C = S.transpose() * (block_diagonal(device_.M, proxy_.M) * Sdot +
                                     block_diagonal(device_.C, proxy_.C) * S);
-  const Decomposition<kAnyDof> d = at(0);
+  const Whole d = at(0);
   EXPECT_LT((C.topRightCorner(n(), n()) - d.C_LE).norm(), 1e-8 * size_);
   EXPECT_LT((C.bottomLeftCorner(n(), n()) - d.C_EL).norm(), 1e-8 * size_);
 }
 
 TEST_P(DecompositionOfJoints, HasItsTwoCouplingBlocksSkewToEachOther) {
-  const Decomposition<kAnyDof> d = at(0);
+  const Whole d = at(0);
   const Matrix I = Matrix::Identity(n(), n());
   const Matrix C_EL = d.phi.transpose() * device_.C + (d.phi.transpose() - I) * proxy_.C;
   EXPECT_LT((d.C_EL + d.C_LE.transpose()).norm(), 1e-15 * size_);
   EXPECT_LT((d.C_EL - C_EL).norm(), 1e-12 * size_);
+}
+
+TEST_P(DecompositionOfJoints, MultipliesVectorsAsItsMatricesDo) {
+  const Whole d = at(0);
+  const Vector y = random_.vector(n(), 1);
+  EXPECT_LT((d.times_phi(y) - d.phi * y).norm(), 1e-12);
+  EXPECT_LT((d.times_phi_T(y) - d.phi.transpose() * y).norm(), 1e-12);
+  EXPECT_LT((d.shape_torque() - d.C_LE * d.v_E).norm(), 1e-12 * size_);
 }
 
 TEST(Decomposition, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
@@ -109,9 +123,9 @@ TEST(Decomposition, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   const auto two = dynamics(arm, random.vector(3, 2), random.vector(3, 3), 0.01);
   const Decomposition<kAnyDof> any(one, two);
   const Decomposition<3> fixed({one.M, one.C, one.v}, {two.M, two.C, two.v});
-  EXPECT_LT((fixed.phi - any.phi).norm(), 1e-13);
+  EXPECT_LT((fixed.phi() - any.phi()).norm(), 1e-13);
   EXPECT_LT((fixed.v_L - any.v_L).norm(), 1e-12);
-  EXPECT_LT((fixed.C_LE - any.C_LE).norm(), 1e-13 * one.C.norm());
+  EXPECT_LT((fixed.C_LE(fixed.phi()) - any.C_LE(any.phi())).norm(), 1e-13 * one.C.norm());
 }
 
 }  // namespace

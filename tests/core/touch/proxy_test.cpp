@@ -16,7 +16,7 @@ using test::random_arm;
 using AnyProxy = Proxy<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 
-ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0, Mat<kAnyDof>::Zero(n, n)}; }
+ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0}; }
 
 class ProxyOfJoints : public testing::TestWithParam<std::tuple<int, double, double>> {
  protected:
@@ -58,6 +58,7 @@ TEST_P(ProxyOfJoints, KeepsItsEnergyForAThousandFreeSteps) {
   for (int k = 0; k < 1000; ++k) {
     proxy.advance(T(), no_drive(n()));
     ASSERT_NEAR(proxy.kinetic_energy(), energy, 1e-12 * energy) << "step " << k;
+    proxy.catch_up();
     ASSERT_NEAR(0.5 * proxy.v().dot(proxy.M() * proxy.v()), energy, 1e-9 * energy);
   }
 }
@@ -167,8 +168,8 @@ TEST(Proxy, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   any.place(x, v, 0.1);
   for (int k = 0; k < 100; ++k) {
     const Eigen::VectorXd constant = random.vector(3, 1e-3);
-    fixed.advance(0.001, {constant, 0.01, Mat<3>::Zero()});
-    any.advance(0.001, {constant, 0.01, Mat<kAnyDof>::Zero(3, 3)});
+    fixed.advance(0.001, {constant, 0.01});
+    any.advance(0.001, {constant, 0.01});
     ASSERT_LT((fixed.x() - any.x()).norm(), 1e-12);
     ASSERT_LT((fixed.v() - any.v()).norm(), 1e-10);
   }
