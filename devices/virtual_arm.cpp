@@ -18,17 +18,17 @@ constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's 
 }  // namespace
 
 template <int N>
-VirtualArm<N>::VirtualArm(const ArmDescription& arm) : arm_(arm) {
+VirtualArm<N>::VirtualArm(const ArmDescription& arm)
+    : arm_(arm),
+      damping_(of_joints<N>(arm, &Joint::damping)),
+      friction_(of_joints<N>(arm, &Joint::friction)),
+      effort_(of_joints<N>(arm, &Joint::effort)),
+      lower_(of_joints<N>(arm, &Joint::lower)),
+      upper_(of_joints<N>(arm, &Joint::upper)),
+      spring_(of_joints<N>(arm, &Joint::spring)),
+      offset_(of_joints<N>(arm, &Joint::offset)),
+      gravity_(arm.gravity) {
   const int n = arm.dof();
-  damping_ = friction_ = effort_ = lower_ = upper_ = Vec<N>::Zero(n);
-  for (int i = 0; i < n; ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    damping_[i] = joint.damping;
-    friction_[i] = joint.friction;
-    effort_[i] = joint.effort;
-    lower_[i] = joint.lower;
-    upper_[i] = joint.upper;
-  }
   place(Vec<N>::Zero(n), Vec<N>::Zero(n), Vec3::Zero());
 }
 
@@ -49,19 +49,24 @@ Reading<N> VirtualArm<N>::read(double encoder_step) const {
   return reading;
 }
 
-// The joints' own resistance around the middle of a substep: damping, friction, stops.
+// The joints' own resistance around the middle of a substep: damping, friction, springs, stops.
 template <int N>
 typename VirtualArm<N>::Resistance VirtualArm<N>::resistance(const Vec<N>& b_d,
-                                                             const Vec<N>& friction,
+                                                             const Vec<N>& friction, bool springy,
                                                              const Vec<N>& x_mid) const {
   Resistance r{Vec<N>::Zero(x_.size()), b_d, Vec<N>::Zero(x_.size())};
+  if (springy) {
+    r.stiffness = spring_;
+    r.torque = -spring_.cwiseProduct(x_mid) - offset_;
+  }
   for (Eigen::Index i = 0; i < x_.size(); ++i) {
     if (friction[i] > 0) r.damping[i] += friction[i] / std::max(std::abs(v_[i]), kStictionSpeed);
     const double beyond = std::max(x_mid[i] - upper_[i], 0.0) + std::min(x_mid[i] - lower_[i], 0.0);
     if (beyond != 0) {
-      r.stiffness[i] = effort_[i] / kStopDepth;
-      r.torque[i] = -r.stiffness[i] * beyond;
-      r.damping[i] += std::sqrt(r.stiffness[i] * M_(i, i));
+      const double stop = effort_[i] / kStopDepth;
+      r.stiffness[i] += stop;
+      r.torque[i] -= stop * beyond;
+      r.damping[i] += std::sqrt(stop * M_(i, i));
     }
   }
   return r;
@@ -92,6 +97,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
       x_model = x_ + ahead * h / 2 * v_;
       arm_.frames(arm_.turned(start, x_model - x_start), frames_);
       arm_.inertia_bias(frames_, v_ + 0.5 * ahead * dv, M_, Cv_);
+      if (p.weighs) Cv_ += arm_.weight(frames_, gravity_of(p.down, gravity_));
       tip_model = arm_.tip(frames_);
       arm_.point_jacobian(frames_, arm_.dof() - 1, tip_model, J_);
       if (mass > 0) {
@@ -104,7 +110,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     const Vec3 tip = tip_model + J_ * (x_mid - x_model);
     const Vec3 target = target_ + (s + 0.5) * h * target_rate;
     const Vec3 pull = k_h * (target - tip) + b_h * (target_rate - J_ * v_) - mass * drift;
-    const Resistance r = resistance(b_d, friction, x_mid);
+    const Resistance r = resistance(b_d, friction, p.springy, x_mid);
 
     // A is symmetric: its lower triangle is enough.
     Mat<N> A = M_;
@@ -123,8 +129,7 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
     x_ += h * (v_ + 0.5 * dv);
     v_ += dv;
   }
-  hand_torque_ /= p.substeps;
-  hand_torque_ += pushed;
+  hand_torque_ = hand_torque_ / p.substeps + pushed;
   target_ = hand.target;
 }
 

@@ -11,9 +11,9 @@
 namespace limpid {
 
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
-// at the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor
-// torque held: linearly implicit midpoint rule, second order and without numerical damping, stable
-// for every grip.
+// at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated
+// in substeps of the tick with the motor torque held: linearly implicit midpoint rule, second order
+// and without numerical damping, stable for every grip.
 template <int N>
 class VirtualArm {
  public:
@@ -37,10 +37,12 @@ class VirtualArm {
     Vec<N> damping;    // [N m s/rad]
     Vec<N> stiffness;  // [N m/rad]
   };
-  Resistance resistance(const Vec<N>& b_d, const Vec<N>& friction, const Vec<N>& x_mid) const;
+  Resistance resistance(const Vec<N>& b_d, const Vec<N>& friction, bool springy,
+                        const Vec<N>& x_mid) const;
 
   Arm<N> arm_;
-  Vec<N> damping_, friction_, effort_, lower_, upper_;
+  Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
+  Vec3 gravity_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
   typename Arm<N>::Frames frames_;

@@ -82,6 +82,10 @@ class Arm {
   void coriolis(const Frames& f, const Bodies& bodies, const Vec<N>& v, Mat<N>& C) const;
   void bias(const Frames& f, const Bodies& bodies, const Vec<N>& v, Vec<N>& Cv) const;
 
+  // Torque of the motors that holds the links' weight: the slope of its potential [N m]. Gravity in
+  // the base's frame [m/s^2].
+  Vec<N> weight(const Frames& f, const Vec3& gravity) const;
+
   Vec3 tip(const Frames& f) const { return point(f, dof() - 1, tip_); }
   Vec3 tip_at(const Vec<N>& x) const {
     Frames f;
@@ -132,6 +136,14 @@ class Arm {
 
 extern template class Arm<3>;
 extern template class Arm<kAnyDof>;
+
+// A number of every joint.
+template <int N>
+Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
+  Vec<N> values = Vec<N>::Zero(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) values[i] = arm.joints[static_cast<std::size_t>(i)].*field;
+  return values;
+}
 
 // The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
 // tip a direction in which it cannot move, as an arm stretched out has [rad].
