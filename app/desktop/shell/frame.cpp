@@ -152,7 +152,7 @@ void Frame::draw_coupling(ScreenRect rect) {
     draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited,
               desktop_.settings().twin_overlaid);
   }
-  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, real ? nullptr : &shown.arm());
+  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, shown.arm(), real);
   ImGui::End();
 }
 
