@@ -36,7 +36,11 @@ ArmDescription identified(const std::string& file) {
 
 ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
-  if (const std::string file = known().arm; !file.empty()) arm = identified(file);
+  const DeviceNotes notes = known();
+  if (!notes.arm.empty()) {
+    arm = identified(notes.arm);
+    if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
+  }
   if (arm.dof() != traits.dof) {
     constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
     const auto k = static_cast<std::size_t>(traits.dof - 1);
@@ -112,6 +116,7 @@ std::string DeviceHub::remember_arm(const std::string& urdf, double delay) {
 void DeviceHub::forget_arm() {
   notes(book_.in_use).arm.clear();
   notes(book_.in_use).delay = DeviceNotes{}.delay;
+  notes(book_.in_use).compensation = {};
 }
 
 bool DeviceHub::needs_check() const {

@@ -178,6 +178,11 @@ void Frame::draw_side(ScreenRect rect) {
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
     draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad}, parameters);
+    if (!desk.loop().device_in_place()) {
+      draw_parameters(
+          parameters, shown.arm(),
+          {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
+    }
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
