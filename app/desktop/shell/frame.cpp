@@ -195,7 +195,14 @@ void Frame::draw_side(ScreenRect rect) {
     const Scene& scene = session ? session->document().scene : desktop_.document().scene();
     analysis_.draw(desktop_.edited(), shown.arm(), scene, pose, settings.band);
   }
-  if (section("Timing", true)) draw_timing(desk.loop(), quality_text(), window_.frame_time());
+  if (section("Timing", true)) {
+    draw_timing(desk.loop(), quality_text(), window_.frame_time());
+    if (desk.loop().device_in_place()) {
+      device_timing_.draw(desk.loop().device_pace(), desk.stage().arm(), parameters,
+                          desktop_.document().scene(),
+                          desk.loop().layout().in(desk.row(), Column::device_position));
+    }
+  }
   ImGui::End();
 }
 
