@@ -16,17 +16,17 @@ constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's 
 }  // namespace
 
 template <int N>
-VirtualArm<N>::VirtualArm(const ArmDescription& arm) : arm_(arm) {
+VirtualArm<N>::VirtualArm(const ArmDescription& arm)
+    : arm_(arm),
+      damping_(of_joints<N>(arm, &Joint::damping)),
+      friction_(of_joints<N>(arm, &Joint::friction)),
+      effort_(of_joints<N>(arm, &Joint::effort)),
+      lower_(of_joints<N>(arm, &Joint::lower)),
+      upper_(of_joints<N>(arm, &Joint::upper)),
+      spring_(of_joints<N>(arm, &Joint::spring)),
+      offset_(of_joints<N>(arm, &Joint::offset)),
+      gravity_(arm.gravity) {
   const int n = arm.dof();
-  damping_ = friction_ = effort_ = lower_ = upper_ = Vec<N>::Zero(n);
-  for (int i = 0; i < n; ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    damping_[i] = joint.damping;
-    friction_[i] = joint.friction;
-    effort_[i] = joint.effort;
-    lower_[i] = joint.lower;
-    upper_[i] = joint.upper;
-  }
   place(Vec<N>::Zero(n), Vec<N>::Zero(n), Vec3::Zero());
 }
 
@@ -41,7 +41,7 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
     look.v = v;
     look.angles = arm_.angles(x);
   }
-  look(true);
+  look(true, std::nullopt);
 }
 
 template <int N>
@@ -65,7 +65,9 @@ typename VirtualArm<N>::Drive VirtualArm<N>::drive(const Parameters& p, const Ve
           torque,
           resolve<N>(p.damping, damping_),
           resolve<N>(p.friction, friction_),
-          false};
+          false,
+          p.springy,
+          p.weighs ? std::optional(gravity_of(p.down, gravity_)) : std::nullopt};
   d.rubs = d.friction.maxCoeff() > 0;
   if (!hand.torque.empty()) d.torque += Eigen::Map<const Vec<N>>(hand.torque.data(), torque.size());
   return d;
@@ -73,7 +75,7 @@ typename VirtualArm<N>::Drive VirtualArm<N>::drive(const Parameters& p, const Ve
 
 // What the arm is like at both places.
 template <int N>
-void VirtualArm<N>::look(bool drift) {
+void VirtualArm<N>::look(bool drift, const std::optional<Vec3>& gravity) {
   const Look &one = looks_[0], &two = looks_[1];
   const int last = arm_.dof() - 1;
   const VecOf<N, Pair> v = paired<N>(one.v, two.v);
@@ -95,6 +97,11 @@ void VirtualArm<N>::look(bool drift) {
     Look& look = looks_[static_cast<std::size_t>(i)];
     take(M, i, look.M);
     take(Cv, i, look.Cv);
+    if (gravity) {
+      typename Arm<N>::Frames own;
+      arm_.take(frames, i, own);
+      look.Cv += arm_.weight(own, *gravity);
+    }
     take(tip, i, look.tip);
     take(J, i, look.J);
     take(Jdot_v, i, look.drift);
@@ -118,14 +125,14 @@ VirtualArm<N>::Stride::Stride(const Drive& drive, const Look& at, const Vec<N>& 
   tip_rate = look.J * v;
 }
 
-// What friction and stops add to A and b around the middle of a substep; false: nothing.
+// What friction, springs and stops add to A and b around the middle of a substep; false: nothing.
 template <int N>
 [[gnu::always_inline]] inline bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x,
                                                          const Vec<N>& v, Mat<N>& A,
                                                          Vec<N>& b) const {
   const Drive& d = stride.d;
   const Vec<N> middle = x + d.h / 2 * v;
-  bool free = !d.rubs;
+  bool free = !d.rubs && !d.springy;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     free = free && middle[i] >= lower_[i] && middle[i] <= upper_[i];
   }
@@ -136,6 +143,10 @@ template <int N>
         std::max(middle[i] - upper_[i], 0.0) + std::min(middle[i] - lower_[i], 0.0);
     double damping = 0, stiffness = 0;
     if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(v[i]), kStictionSpeed);
+    if (d.springy) {
+      b[i] -= spring_[i] * middle[i] + offset_[i];
+      A(i, i) += d.h / 4 * spring_[i];
+    }
     if (beyond != 0) {
       stiffness = effort_[i] / kStopDepth;
       damping += std::sqrt(stiffness * stride.look.M(i, i));
@@ -194,7 +205,7 @@ void VirtualArm<N>::look_ahead(const Drive& d, int s, int share) {
     look.v += dv / 2;
     look.angles = arm_.turned(before.angles, look.x - before.x);
   }
-  look(d.mass > 0);
+  look(d.mass > 0, d.gravity);
 }
 
 template <int N>

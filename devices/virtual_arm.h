@@ -1,6 +1,7 @@
 // The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/dynamics/arm.h"
@@ -12,11 +13,12 @@
 namespace limpid {
 
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
-// at the tip; gravity counts as compensated. Integrated in substeps of the tick with the motor
-// torque held: linearly implicit midpoint rule, second order and without numerical damping, stable
-// for every grip. Several substeps share one look at where the arm is and how heavy, taken where it
-// is on average over them, x + S v/2 + S dv/6, v + dv/2 if v changes by dv in S seconds: what
-// changes evenly then makes no error, and what is left is of second order in the arm's way in S.
+// at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated
+// in substeps of the tick with the motor torque held: linearly implicit midpoint rule, second order
+// and without numerical damping, stable for every grip. Several substeps share one look at where
+// the arm is and how heavy, taken where it is on average over them, x + S v/2 + S dv/6, v + dv/2 if
+// v changes by dv in S seconds: what changes evenly then makes no error, and what is left is of
+// second order in the arm's way in S.
 template <int N>
 class VirtualArm {
  public:
@@ -42,7 +44,8 @@ class VirtualArm {
     Vec3 target, target_rate;      // of the hand, at the tick's start [m, m/s]
     Vec<N> torque;                 // of motors and hand [N m]
     Vec<N> damping, friction;      // of the joints [N m s/rad, N m]
-    bool rubs;                     // some joint has friction
+    bool rubs, springy;            // some joint has friction; springs pull
+    std::optional<Vec3> gravity;   // of links that weigh something [m/s^2]
   };
   // Where the arm was looked at, and what it was like.
   struct Look {
@@ -68,13 +71,14 @@ class VirtualArm {
   };
 
   Drive drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
-  void look(bool drift);
+  void look(bool drift, const std::optional<Vec3>& gravity);
   void look_ahead(const Drive& d, int s, int share);
   bool resist(const Stride& stride, const Vec<N>& x, const Vec<N>& v, Mat<N>& A, Vec<N>& b) const;
   Vec<N> step(Stride& stride, double t, Vec<N>& x, Vec<N>& v) const;
 
   Arm<N> arm_;
-  Vec<N> damping_, friction_, effort_, lower_, upper_;
+  Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
+  Vec3 gravity_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
   std::array<Look, 2> looks_;  // the newest two

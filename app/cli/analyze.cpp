@@ -19,10 +19,11 @@ struct AnalyzeOptions {
   bool json = false;
 };
 
-void print(const Analysis& a, const Parameters& p) {
+void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   const auto list = [](const std::vector<double>& values) {
     return fmt::format("{:.4g}", fmt::join(values, ", "));
   };
+  fmt::print("rests on                   {}\n", basis_text(arm, p));
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
   fmt::print("damping b = b_d + b_v      {:.4g} N m s/rad\n", a.b);
@@ -45,8 +46,10 @@ void print(const TipLimits& tip, const Parameters& p) {
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", kLawKeys[i], tip.walls[i].stiffness,
                tip.walls[i].bound);
   }
-  fmt::print("stiffest wall, in any hand {:>6.0f} N/m  no linear law is passive beyond 2 b_d/T\n",
-             tip.every_hand);
+  fmt::print(
+      "stiffest wall, in any hand {:>6.0f} N/m  no linear law is passive beyond b_d/(T/2 + "
+      "delay)\n",
+      tip.every_hand);
   if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
   fmt::print("\nfelt in free motion     ");
   for (const char* key : kLawKeys) fmt::print(" {:>20}", key);
@@ -91,7 +94,7 @@ int analyze_command(const AnalyzeOptions& options) {
       options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, rest_pose(arm), p, w_b);
   const TipLimits tip = tip_limits(arm, rest_pose(arm), p, document.scene);
   if (!options.json) {
-    print(a, p);
+    print(a, arm, p);
     if (!options.mass) print(tip, p);
     return 0;
   }
@@ -102,6 +105,8 @@ int analyze_command(const AnalyzeOptions& options) {
                         {"proxy_margin", a.condition3.proxy_margin},
                         {"holds", a.condition3.holds}};
   json["passive"] = a.passive;
+  json["delay"] = a.delay;
+  json["measured"] = a.measured;
   if (!options.mass) json["tip"] = as_json(tip, p);
   fmt::print("{}\n", json.dump(2));
   return 0;

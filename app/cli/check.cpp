@@ -61,6 +61,7 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
   report.facts.push_back(fit.empty() ? "gains        the paper's suit it"
                                      : "gains        fitted: " + fit);
   const Analysis a = analyze(arm, rest, p, std::nullopt);
+  report.facts.push_back("             for " + basis_text(arm, p));
   report.facts.push_back(
       fmt::format("             condition (3) {}; eta from {:.2f} on is passive (25)",
                   a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
@@ -68,6 +69,8 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
     report.warnings.push_back(
         "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
         "leave them to be fitted");
+    const std::string late = fit_text(fitted(arm, p, a.delay));
+    if (a.delay > 0) report.warnings.back() += "; what holds with its delay: " + late;
   }
 }
 

@@ -14,6 +14,7 @@
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
+#include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
 #include "app/device/identify_run.h"
 #include "app/device/urdf_writer.h"
@@ -190,11 +191,11 @@ int identify_device(IdentifyOptions options) {
   DeviceHub hub(device_book_file(), {});
   const std::string in_use = hub.in_use();
   const bool simulated = options.device == kSimulated;
+  const ArmDescription truth = unlike(guess, options.seed, 0.03);
+  const Unlikeness bench = drawn_bench(guess, options.seed, gravity);
   std::unique_ptr<Device> device;
   if (simulated) {
-    device = std::make_unique<UnlikeDevice>(
-        unlike(guess, options.seed, 0.03),
-        Unlikeness{.gravity = gravity, .encoder_step = 1e-4, .delay = 2});
+    device = std::make_unique<UnlikeDevice>(truth, bench);
   } else {
     device = open_device(options.device, hub,
                          fmt::format(", and \"{}\" tries it without one", kSimulated));
@@ -220,11 +221,13 @@ int identify_device(IdentifyOptions options) {
   }
   const Identified found = identify(guess, run.record, {.gravity = gravity});
   const std::string name = device->traits().name;
-  write(out / "identified.json", as_json(found, run, name).dump(2) + "\n");
+  ordered_json json = as_json(found, run, name);
   const std::string urdf =
       urdf_text(found.arm, fmt::format("identified by limpid on {}, from {}", name, guess.name));
   write(out / "identified.urdf", urdf);
   print(found, guess, run);
+  if (simulated) json["rehearsal"] = rehearse_and_print(truth, bench, guess, found.arm);
+  write(out / "identified.json", json.dump(2) + "\n");
   fmt::print("arm: {}\n", (out / "identified.urdf").string());
   if (simulated) return 0;
   if (const std::string wrong = hub.remember_arm(urdf, found.delay.value); !wrong.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "app/base/user_dirs.h"
@@ -17,6 +18,23 @@ namespace fs = std::filesystem;
 void take(const toml::table& t, const char* key, double least, double most, double& value) {
   const auto found = t[key].value<double>();
   if (found && *found >= least && *found <= most) value = *found;
+}
+
+CompensationSettings read_compensation(const toml::table& t) {
+  CompensationSettings c;
+  c.holds_weight = t["gravity"].value_or(false);
+  c.holds_springs = t["springs"].value_or(false);
+  take(t, "friction", 0, CompensationSettings::kMostShare, c.friction_share);
+  const auto down = std::ranges::find(kDowns, t["down"].value_or(std::string(kDowns[0])));
+  if (down != kDowns.end()) c.down = static_cast<Down>(down - kDowns.begin());
+  return c;
+}
+
+toml::table write_compensation(const CompensationSettings& c) {
+  return toml::table{{"gravity", c.holds_weight},
+                     {"down", kDowns[static_cast<std::size_t>(c.down)]},
+                     {"friction", c.friction_share},
+                     {"springs", c.holds_springs}};
 }
 
 DeviceNotes read_notes(const toml::table& t) {
@@ -35,6 +53,9 @@ DeviceNotes read_notes(const toml::table& t) {
   notes.checked = t["checked"].value_or(false);
   notes.arm = t["arm"].value_or(std::string());
   take(t, "delay", 0, 1, notes.delay);
+  if (const toml::table* forces = t["compensation"].as_table()) {
+    notes.compensation = read_compensation(*forces);
+  }
   if (const toml::array* axes = t["axis"].as_array()) {
     for (const toml::node& node : *axes) {
       AxisAdjustment& axis = notes.axes.emplace_back();
@@ -68,6 +89,7 @@ toml::table write_notes(const DeviceNotes& notes) {
                     {"limits", write_limits(notes.limits)},
                     {"checked", notes.checked},
                     {"arm", notes.arm},
+                    {"compensation", write_compensation(notes.compensation)},
                     {"axis", axes}};
   if (notes.delay >= 0) table.insert("delay", notes.delay);
   return table;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/tick/compensation.h"
 #include "core/tick/safety.h"
 #include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
@@ -22,6 +23,7 @@ struct DeviceNotes {
   std::string arm;                   // URDF of what it was identified as; empty: it was not
   double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
                       // [s]; below 0: not known
+  CompensationSettings compensation;  // of its own forces, while it is in the loop
 };
 
 // Takes in what a check that is done has found of a joystick with the settings noted here; the

@@ -50,7 +50,11 @@ ArmDescription identified(const std::string& file) {
 
 ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   ArmDescription arm = present;
-  if (const std::string file = known().arm; !file.empty()) arm = identified(file);
+  const DeviceNotes notes = known();
+  if (!notes.arm.empty()) {
+    arm = identified(notes.arm);
+    if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
+  }
   const FoundDevice* device = DeviceHub::present();
   if (device != nullptr && *device->kind->arm != '\0') {
     const ArmDescription own = read_urdf(data_dir() / "assets/devices" / device->kind->arm);
@@ -151,6 +155,7 @@ std::string DeviceHub::remember_arm(const std::string& urdf, double delay) {
 void DeviceHub::forget_arm() {
   notes(book_.in_use).arm.clear();
   notes(book_.in_use).delay = DeviceNotes{}.delay;
+  notes(book_.in_use).compensation = {};
 }
 
 bool DeviceHub::needs_check() const {

@@ -47,6 +47,7 @@ class DeviceHub {
   // From now on the device in use is this arm with this delay [s]; once saved. Returns what went
   // wrong, empty if nothing did.
   std::string remember_arm(const std::string& urdf, double delay);
+  // Takes it for its file's again, and nothing of its forces off the hand.
   void forget_arm();
   // Its axes must be checked and were not yet: it may not push.
   bool needs_check() const;

@@ -76,6 +76,20 @@ std::string joint_text(const Joint& joint, const std::string& parent, const std:
       joint.damping / (unit * unit), joint.friction / unit);
 }
 
+// What the format has no words for, see urdf_own.h.
+std::string own(const ArmDescription& arm) {
+  std::string springs;
+  for (const Joint& joint : arm.joints) {
+    if (joint.spring == 0 && joint.offset == 0) continue;
+    const double unit = joint.kind == Joint::Kind::prismatic ? kSlideUnit : 1;
+    springs += fmt::format("    <spring joint=\"{}\" stiffness=\"{}\" offset=\"{}\"/>\n",
+                           escaped(joint.name), joint.spring / (unit * unit), joint.offset / unit);
+  }
+  const std::string delay = arm.delay ? fmt::format(" delay=\"{}\"", *arm.delay) : "";
+  return fmt::format("  <limpid gravity=\"{}\"{}>\n{}  </limpid>\n", numbers(arm.gravity), delay,
+                     springs);
+}
+
 }  // namespace
 
 std::string urdf_text(const ArmDescription& arm, const std::string& remark) {
@@ -94,9 +108,9 @@ std::string urdf_text(const ArmDescription& arm, const std::string& remark) {
   }
   out += fmt::format(
       "  <joint name=\"to_tip\" type=\"fixed\">\n    {}\n    <parent link=\"{}\"/>\n"
-      "    <child link=\"tip\"/>\n  </joint>\n  <link name=\"tip\"/>\n</robot>\n",
+      "    <child link=\"tip\"/>\n  </joint>\n  <link name=\"tip\"/>\n",
       origin(arm.tip), parent);
-  return out;
+  return out + own(arm) + "</robot>\n";
 }
 
 }  // namespace limpid

@@ -1,4 +1,5 @@
-// How stiff a wall each coupling renders well: against eta, tick, encoders and the hand's mass.
+// How stiff a wall each coupling renders well: against eta, tick, encoders, the hand's mass and the
+// device's delay.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@ constexpr double kEtas[] = {0.2, 0.3, 0.45, 0.6, 0.8, 1, 2, 4};
 constexpr double kTicks[] = {0.00025, 0.0005, 0.001, 0.002};               // [s]
 constexpr double kSteps[] = {1e-5, 3e-5, 1e-4, 1.5e-4, 2e-4, 5e-4, 1e-3};  // [rad]
 constexpr double kMasses[] = {0.02, 0.05, 0.1, 0.2, 0.5, 1};               // [kg]
+constexpr double kDelays[] = {0, 1, 2, 3, 4, 6};                           // [ticks]
 
 // A boundary to be found: one point for each value of what its panel varies.
 struct Curve {
@@ -51,7 +53,10 @@ std::vector<Curve> all_curves() {
           curve(3, "predictive", kPredictiveInk, exact, &TapSetting::hand_mass, kMasses),
           curve(3, "predictive, one predictor", kEnergyInk, unprepared, &TapSetting::hand_mass,
                 kMasses),
-          curve(3, "proposed", kProposedInk, paper, &TapSetting::hand_mass, kMasses)};
+          curve(3, "proposed", kProposedInk, paper, &TapSetting::hand_mass, kMasses),
+          curve(4, "predictive, delay known", kPredictiveInk, exact, &TapSetting::delay, kDelays),
+          curve(4, quantised, kPredictiveTint, fine, &TapSetting::delay, kDelays),
+          curve(4, "proposed", kProposedInk, paper, &TapSetting::delay, kDelays)};
 }
 
 // What theory says, in the hand of the benches.
@@ -62,12 +67,13 @@ struct Theory {
     const Parameters p;
     return {.T = T, .k_vc = p.k_vc, .b_v = p.b_v, .hand_damping = TapBench::kGripDamping};
   }
-  double proposed(double eta, double T) const {
+  double proposed(double eta, double T, double delay = 0) const {
     WallSetting s = setting(T);
     s.eta = eta;
+    s.delay = delay;
     return proposed_wall(tip, s);
   }
-  double any_linear(double T) const { return every_hands_wall(tip, T); }
+  double any_linear(double T, double delay = 0) const { return every_hands_wall(tip, T, delay); }
   double mistaken(double mass, double T) const {
     WallSetting s = setting(T);
     s.hand_mass = mass;
@@ -76,12 +82,13 @@ struct Theory {
 };
 
 template <class Value>
-Series theory(const std::string& label, const char* ink, double from, double to,
-              const Value& value) {
+Series theory(const std::string& label, const char* ink, double from, double to, const Value& value,
+              bool even = false) {
   Series line{label, ink, Series::Style::dashed, {}};
   constexpr int kPoints = 60;
   for (int i = 0; i <= kPoints; ++i) {
-    const double x = from * std::pow(to / from, static_cast<double>(i) / kPoints);
+    const double part = static_cast<double>(i) / kPoints;
+    const double x = even ? from + part * (to - from) : from * std::pow(to / from, part);
     line.points.push_back({x, value(x)});
   }
   return line;
@@ -104,7 +111,9 @@ std::vector<FigurePanel> empty_panels() {
       panel("Against the tick, eta = 1", "tick [ms]", 0.1, 10),
       panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
       panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
-            1.1)};
+            1.1),
+      panel("Against the device's delay, eta = 1", "delay [ms]", -0.2, 6.2)};
+  panels[4].log_x = false;
   panels[0].series = {theory("proposed: damping over lag", kProposedInk, 0.2, 4,
                              [&](double eta) { return law.proposed(eta, T); }),
                       theory("passive in every hand, any linear law", kNeutralInk, 0.2, 4,
@@ -115,6 +124,12 @@ std::vector<FigurePanel> empty_panels() {
                              [&](double ms) { return law.any_linear(1e-3 * ms); })};
   panels[3].series = {theory("one predictor: what its error gives away", kEnergyInk, 0.02, 1,
                              [&](double m) { return law.mistaken(m, T); })};
+  panels[4].series = {theory(
+                          "proposed: damping over lag", kProposedInk, 0, 6,
+                          [&](double ms) { return law.proposed(1, T, 1e-3 * ms); }, true),
+                      theory(
+                          "passive in every hand, any linear law", kNeutralInk, 0, 6,
+                          [&](double ms) { return law.any_linear(T, 1e-3 * ms); }, true)};
   return panels;
 }
 
@@ -154,7 +169,7 @@ Found find_all(Laboratory& lab) {
 }
 
 std::vector<FigurePanel> draw(const Found& found) {
-  constexpr double kScale[] = {1, 1e3, 1e3, 1};  // of each panel's axis
+  constexpr double kScale[] = {1, 1e3, 1e3, 1, 1};  // of each panel's axis
   std::vector<FigurePanel> panels = empty_panels();
   for (std::size_t i = 0; i < found.curves.size(); ++i) {
     const Curve& c = found.curves[i];

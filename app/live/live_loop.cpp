@@ -100,6 +100,7 @@ void LiveLoop::take_in() {
   if (Plug* plug = plugs_.take()) {
     if (plug_ != nullptr && plug_->device) plug_->device->stop();
     if (in_place_) rig_->plug(plug->device.get());
+    pace_.start();
     plugs_.give_back(std::exchange(plug_, plug));
   }
 }
@@ -185,8 +186,12 @@ void LiveLoop::tick(const TickTiming& timing) {
     recording_to_->changed(twin_.parameters(), kTwinLane);
   }
   rig_->step(parameters_, input, row_);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-  compute_ = took.count();
+  const auto ended = std::chrono::steady_clock::now();
+  compute_ = std::chrono::duration<double>(ended - began).count();
+  if (in_place_ && rig_->device_reading(guide_)) {
+    pace_.note(guide_.count, guide_.age,
+               std::chrono::duration<double>(ended.time_since_epoch()).count());
+  }
   publish(timing);
 }
 

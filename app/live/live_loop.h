@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/live/device_pace.h"
 #include "app/live/twin.h"
 #include "app/run/recorder.h"
 #include "core/realtime/hand_over.h"
@@ -132,6 +133,8 @@ class LiveLoop {
 
   LoopStatus status() const { return thread_.status(); }
   const HapticThread& thread() const { return thread_; }
+  // Of the device in the arm's place.
+  const DevicePace& device_pace() const { return pace_; }
 
  private:
   void tick(const TickTiming& timing);                                  // the loop's
@@ -173,6 +176,7 @@ class LiveLoop {
   Plug* plug_ = nullptr;
   DeviceReading guide_;
   bool connected_ = false;
+  DevicePace pace_;
   MouseHand hand_;
   GuidedHand guided_;
   bool led_ = false;  // by the guide, since it was last touched

@@ -1,5 +1,7 @@
 #include "app/run/analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +18,21 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
   return b_d;
 }
 
+double device_delay(const ArmDescription& arm, const Parameters& p) {
+  const double known = arm.delay ? *arm.delay : p.delay * p.tick;
+  // The virtual arm has whole ticks: rounded they are the measured one.
+  const double simulated = p.device_delay * p.tick;
+  return simulated > known + p.tick / 2 ? simulated : known;
+}
+
+std::string basis_text(const ArmDescription& arm, const Parameters& p) {
+  const std::string delay = fmt::format("a delay of {:.1f} ms", 1e3 * device_delay(arm, p));
+  const char* const b_d = std::isnan(p.damping) ? "damping" : "damping as set";
+  if (arm.delay) return fmt::format("inertia, {} and {}, measured", b_d, delay);
+  return fmt::format("inertia and {} as its file has them, {}", b_d,
+                     p.delay + p.device_delay > 0 ? delay + " as set" : "no delay: assumed");
+}
+
 ArmAt arm_at(const ArmDescription& description, const Eigen::VectorXd& x) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames frames;
@@ -30,8 +47,9 @@ ArmAt arm_at(const ArmDescription& description, const Eigen::VectorXd& x) {
 namespace {
 
 // All but the grip.
-Analysis of_modes(std::vector<LockedMode> modes, const Eigen::VectorXd& b_d, const Parameters& p,
+Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, const Parameters& p,
                   std::optional<double> w_b) {
+  const Eigen::VectorXd b_d = device_damping(arm, p);
   Analysis a;
   a.b = b_d.minCoeff() + p.b_v;
   for (const LockedMode& mode : modes) {
@@ -41,7 +59,10 @@ Analysis of_modes(std::vector<LockedMode> modes, const Eigen::VectorXd& b_d, con
     if (w_b) a.eta_min_band = std::max(a.eta_min_band.value_or(0), eta_min_band(mode, *w_b));
   }
   a.modes = std::move(modes);
-  a.condition3 = condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())));
+  a.delay = device_delay(arm, p);
+  a.measured = arm.delay.has_value() && std::isnan(p.damping);
+  a.condition3 =
+      condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())), a.delay);
   a.passive = p.eta >= a.eta_min;
   return a;
 }
@@ -65,7 +86,7 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
 Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  std::optional<double> w_b) {
   const Held held = held_at(arm, x, p);
-  Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), device_damping(arm, p), p, w_b);
+  Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), arm, p, w_b);
   a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
   return a;
 }
@@ -79,9 +100,8 @@ std::vector<std::complex<double>> handle_poles(const ArmDescription& arm, const 
 
 Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
                  std::optional<double> w_b) {
-  const Eigen::VectorXd b_d = device_damping(arm, p);
-  const LockedMode mode{mass, b_d.minCoeff() + p.b_v, p.alpha};
-  Analysis a = of_modes({mode}, b_d, p, w_b);
+  const LockedMode mode{mass, device_damping(arm, p).minCoeff() + p.b_v, p.alpha};
+  Analysis a = of_modes({mode}, arm, p, w_b);
   a.eta_min_grip = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
   return a;
 }

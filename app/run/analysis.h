@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/coupling/spring_damper.h"
@@ -19,12 +20,21 @@ struct Analysis {
   double eta_min = 0;                  // (25), the worst mode
   std::optional<double> eta_min_band;  // where only frequencies up to w_b count
   double eta_min_grip = 0;             // Routh, for hand.stiffness and hand.damping
+  double delay = 0;                    // that (3) reckons with [s]
+  bool measured = false;               // inertia, damping and delay were, of the device itself
   Condition3 condition3;
   bool passive = false;  // eta >= eta_min
 };
 
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
+
+// From a reading to the torque that answers it, beyond the tick [s]: as the arm was measured, else
+// as model.delay or the virtual arm's device.delay say.
+double device_delay(const ArmDescription& arm, const Parameters& p);
+
+// What the figures rest on, for people: "inertia, damping and a delay of 2.1 ms, measured".
+std::string basis_text(const ArmDescription& arm, const Parameters& p);
 
 // An arm at rest at configuration x [rad].
 struct ArmAt {

@@ -16,6 +16,7 @@ constexpr double kPaperDamping = 0.012;  // b_d [N m s/rad]
 constexpr double kAmple = 5;             // times the paper's: stiffer gains are worth it then
 // The built-in arm's b_d over the geometric mean of its inertia's modes at rest [1/s].
 constexpr double kRate = 50;
+constexpr double kLeastMeasured = 1e-3;  // gains need some damping to go by [N m s/rad]
 constexpr double kSpread = 100;  // heaviest mode over the one that the damping is for, at most
 
 // Rounded to two digits, downwards or upwards.
@@ -55,23 +56,36 @@ bool same(const Parameters& a, const Parameters& b, const char* key) {
 
 }  // namespace
 
-Parameters fitted(const ArmDescription& arm, const Parameters& chosen) {
+Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double delay) {
   Parameters p;
   double b_d = device_damping(arm, p).minCoeff();
   const bool suits =
-      condition3(p, p.tick, std::span(&b_d, 1)).holds && b_d <= kAmple * kPaperDamping;
+      condition3(p, p.tick, std::span(&b_d, 1), delay).holds && b_d <= kAmple * kPaperDamping;
   if (suits) return p;
   if (chosen.damping > 0) {
     p.damping = b_d = chosen.damping;
+  } else if (arm.delay) {  // measured: no damping is none
+    b_d = std::max(b_d, kLeastMeasured);
   } else if (!(b_d > 0)) {
     set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
   set(p, "coupling.b_vc", down(b_d / 12));
-  set(p, "coupling.k_vc", down((b_d - 2 * p.b_vc) / chosen.tick));
-  set(p, "coupling.b_v", up(std::max(b_d, p.k_vc * chosen.tick / 2)));
+  set(p, "coupling.k_vc", down((b_d - 2 * p.b_vc) / (chosen.tick + 1.5 * delay)));
+  set(p, "coupling.b_v", up(std::max(b_d, p.k_vc * (chosen.tick + delay) / 2)));
   set(p, "observer.alpha", down(35.0 / 12 * b_d));
   return p;
+}
+
+CompensationSettings suggested_compensation(const ArmDescription& arm) {
+  CompensationSettings c;
+  if (!arm.delay) return c;
+  c.holds_weight = !arm.gravity.isZero();
+  for (const Joint& joint : arm.joints) {
+    if (joint.friction > 0) c.friction_share = CompensationSettings::kUsualShare;
+    c.holds_springs = c.holds_springs || joint.spring != 0 || joint.offset != 0;
+  }
+  return c;
 }
 
 std::string fit_text(const Parameters& own) {

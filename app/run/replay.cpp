@@ -77,6 +77,23 @@ Parameters with_changed(Parameters twin, const Parameters& began, const Paramete
   return twin;
 }
 
+// What the motors held of a real device's own forces the virtual arm in its place has.
+void give_forces(RunPlan& plan) {
+  plan.parameters.weighs = plan.parameters.holds_weight;
+  plan.parameters.springy = plan.parameters.holds_springs;
+  std::vector<SettingChange> changes;
+  for (const SettingChange& change : plan.changes) {
+    changes.push_back(change);
+    for (const char* force : {"gravity", "springs"}) {
+      const std::string key = std::string("model.") + force;
+      if (change.key() != key) continue;
+      changes.push_back(
+          {change.row, std::string("device.") + force + change.setting.substr(key.size())});
+    }
+  }
+  plan.changes = std::move(changes);
+}
+
 }  // namespace
 
 RunPlan replay(const Session& session, const std::string& where, const Parameters& chosen) {
@@ -104,6 +121,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   }
 
   plan.changes = changes_again(session, where, session_parameters(session, where), chosen);
+  if (!measured) give_forces(plan);
   if (session.twin) {
     const Session& twin = *session.twin;
     const Parameters own = session_parameters(twin, where + " (twin)");

@@ -39,8 +39,10 @@ TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const 
   if (p.hand_mass_at_tip > p.hand_mass) {
     bound(mistaken_wall(l.tip, s) / 2, "a hand that is heavier than the predictor takes it for");
   }
-  if (p.device_delay != p.delay) {
-    bound(kUnknownDelay, "a delay that is not known, as measured: see model.delay");
+  if (std::abs(l.delay - p.delay * p.tick) > p.tick / 2 * (1 + 1e-9)) {
+    bound(kUnknownDelay,
+          fmt::format("a delay of {:.1f} ms that it does not reckon with: model.delay is {}",
+                      1e3 * l.delay, p.delay));
   }
   return wall;
 }
@@ -66,9 +68,10 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const Vec3 n = least_damped(arm.J, b_d);
 
   TipLimits l;
+  l.delay = device_delay(description, p);
   l.tip = tip_along(arm.J, arm.M, b_d, n);
   const double lever2 = l.tip.lever2;
-  const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip};
+  const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip, l.delay};
   const auto at = [&l](CouplingKind kind) -> TipLimits::Wall& {
     return l.walls[static_cast<std::size_t>(kind)];
   };
@@ -76,7 +79,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   at(CouplingKind::proposed) = {proposed_wall(l.tip, s),
                                 "the damping there is against the lag of the contact"};
   at(CouplingKind::predictive) = predictive_wall(l, s, p);
-  l.every_hand = every_hands_wall(l.tip, p.tick);
+  l.every_hand = every_hands_wall(l.tip, p.tick, l.delay);
   l.scene = stiffest(scene);
   l.felt = {(1 + p.inertia_ratio) * l.tip.mass,
             l.tip.damping,
@@ -87,6 +90,15 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             0};
   l.w_f = p.alpha / lever2 / l.felt.m;
   return l;
+}
+
+TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                        const Scene& scene) {
+  ArmDescription prompt = arm;
+  prompt.delay = 0;
+  Parameters q = p;
+  q.delay = q.device_delay = 0;
+  return tip_limits(prompt, x, q, scene);
 }
 
 FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind, double f) {

@@ -16,6 +16,7 @@ namespace limpid {
 // Along the direction in which the arm's own dampers hold the tip least.
 struct TipLimits {
   TipAlong tip;
+  double delay = 0;  // of the device, that walls are reckoned with [s]
   // Of each coupling, in the order of the laws: the stiffest wall that it renders well, or that can
   // be felt through it [N/m], and what bounds it.
   struct Wall {
@@ -32,6 +33,10 @@ struct TipLimits {
 // At configuration x [rad].
 TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                      const Scene& scene);
+
+// The same if the device's torque answered its readings at once.
+TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                        const Scene& scene);
 
 // What is felt in free motion at f [Hz].
 struct FeltAtTip {

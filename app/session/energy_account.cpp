@@ -24,7 +24,9 @@ void EnergyAccount::follow(const History& history, SampleIndex end) {
     }
     looked_until_ = time;
     const auto value = [&](Channel c) { return history.value(static_cast<int>(c), next_); };
-    take(time, static_cast<double>(value(Channel::energy_total)), value(Channel::limited) > 0.5f);
+    const double energy = static_cast<double>(value(Channel::energy_total)) -
+                          static_cast<double>(value(Channel::energy_compensation));
+    take(time, energy, value(Channel::limited) > 0.5f);
   }
 }
 

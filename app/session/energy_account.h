@@ -13,6 +13,7 @@ namespace limpid {
 //   one who bends a spring does. What E_c gains within kSettling after a change is the change's.
 // - A motor at its limit gives another torque than the coupling asks for. What E_c gains meanwhile
 //   is the limit's.
+// - What the motors give for the device's own weight, springs and friction the device takes.
 //
 // What is left is the coupling's own: while it is passive it stays below zero. What it gave before
 // the last change is forgiven: the setting that gave it is gone.
@@ -24,7 +25,8 @@ class EnergyAccount {
   // `end` lies before them. The history has the channels of TraceChannels.
   void follow(const History& history, SampleIndex end);
 
-  double total() const { return total_; }                    // E_c [J]
+  // E_c, without what was for the device's own forces [J].
+  double total() const { return total_; }
   double by_changes() const { return changes_; }             // [J]
   double by_limits() const { return limits_; }               // [J]
   double own() const { return without_limits() - limits_; }  // [J]

@@ -30,6 +30,9 @@ std::vector<ChannelInfo> first_channels(int dof) {
        "E_c with the device's own damping", energy},
       {"energy/controller_commanded", "Energy", "controller, commanded", "E_c commanded", "J",
        "E_c of motors and proxy", energy, 0.5f, true, true},
+      {"energy/compensation", "Energy", "for the device's own forces", "compensation", "J",
+       "what of E_c the motors gave for weight, springs and friction of the device", energy, 0.3f,
+       true, true},
       {"hand/torque_norm", "Hand", "torque, |f1|", "|f1|", "N m",
        "what the hand puts on the device; of a real device the observer's estimate", hand},
       {"hand/torque_estimate_norm", "Hand", "torque as observed, |f1_hat|", "|f1| estimate", "N m",
@@ -129,7 +132,8 @@ bool TraceChannels::limited(std::span<const double> row, int joint) const {
   const auto j = static_cast<std::size_t>(joint);
   if (j >= limits_.size()) return false;
   const double given = std::abs(layout_.in(row, Column::motor_torque)[j]);
-  const double asked = std::abs(layout_.in(row, Column::commanded_torque)[j]);
+  const double asked = std::abs(layout_.in(row, Column::commanded_torque)[j] +
+                                layout_.in(row, Column::compensation_torque)[j]);
   // A law that knows the limit asks for no more than that.
   return given >= limits_[j] * (1 - 1e-9) && asked >= given * (1 - 1e-9);
 }
@@ -145,6 +149,7 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::error, norm(joints.first(x1.size())));
   put(Channel::energy_total, at(Column::energy_total)[0]);
   put(Channel::energy_commanded, at(Column::energy_commanded)[0]);
+  put(Channel::energy_compensation, at(Column::energy_compensation)[0]);
   put(Channel::human, norm(layout_.human_torque(row)));
   put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
   put(Channel::contact, norm(at(Column::contact_torque)));

@@ -21,6 +21,7 @@ enum class Channel : std::uint8_t {
   error,         // |x_E| [rad]
   energy_total,  // [J]
   energy_commanded,
+  energy_compensation,
   human,           // |f1| [N m]
   human_estimate,  // |f1_hat|
   contact,         // |f2|

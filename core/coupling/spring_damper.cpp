@@ -22,10 +22,10 @@ template Vec<3> couple(const SpringDamper&, const LawInput<3>&, const Feedforwar
 template Vec<kAnyDof> couple(const SpringDamper&, const LawInput<kAnyDof>&,
                              const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
 
-Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d) {
+Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d, double delay) {
   const double least = *std::ranges::min_element(b_d);
-  const double device_needs = 2 * p.b_vc + p.k_vc * T;
-  const double proxy_needs = p.k_vc * T / 2;
+  const double device_needs = 2 * p.b_vc + p.k_vc * (T + 1.5 * delay);
+  const double proxy_needs = p.k_vc * (T + delay) / 2;
   Condition3 c;
   c.device_margin = least - device_needs;
   c.proxy_margin = p.b_v - proxy_needs;

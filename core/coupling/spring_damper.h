@@ -50,13 +50,22 @@ template <int N>
 Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
               Proxy<N>& proxy);
 
-// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2.
+// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2; and where the
+// torque answers its reading a delay t_d late, b_d >= 2 b_vc + k_vc (T + 3/2 t_d) and
+// b_v >= k_vc (T + t_d) / 2.
+//
+// Of d ticks' delay the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is at
+// most
+//     k_vc sum_j |dx1_k (dx1_k-j - dx2_k-j)| <= k_vc d (3/2 dx1^2 + 1/2 dx2^2),
+// summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is made so
+// too.
 struct Condition3 {
-  double device_margin = 0;  // b_d - 2 b_vc - k_vc T, at the joint with the least [N m s/rad]
-  double proxy_margin = 0;   // b_v - k_vc T / 2 [N m s/rad]
+  double device_margin = 0;  // b_d less what is needed, at the joint with the least [N m s/rad]
+  double proxy_margin = 0;   // b_v less what is needed [N m s/rad]
   bool holds = false;        // to round-off: the paper's own gains stand on the edge
 };
-// b_d: of every joint [N m s/rad]; T [s].
-Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d);
+// b_d: of every joint [N m s/rad]; T, the delay [s].
+Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
+                      double delay = 0);
 
 }  // namespace limpid

@@ -96,6 +96,10 @@ class Arm {
   // One of two configurations.
   void take(const FramesOf<Pair>& both, int which, Frames& one) const;
 
+  // Torque of the motors that holds the links' weight: the slope of its potential [N m]. Gravity in
+  // the base's frame [m/s^2].
+  Vec<N> weight(const Frames& f, const Vec3& gravity) const;
+
   template <class S>
   Vec3Of<S> tip(const FramesOf<S>& f) const {
     return point(f, dof() - 1, tip_);
@@ -155,6 +159,14 @@ class Arm {
 
 extern template class Arm<3>;
 extern template class Arm<kAnyDof>;
+
+// A number of every joint.
+template <int N>
+Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
+  Vec<N> values = Vec<N>::Zero(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) values[i] = arm.joints[static_cast<std::size_t>(i)].*field;
+  return values;
+}
 
 // The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
 // tip a direction in which it cannot move, as an arm stretched out has [rad].

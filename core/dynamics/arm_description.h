@@ -31,6 +31,8 @@ struct Joint {
   double effort = 0;                                        // torque limit [N m]
   double damping = 0;                                       // viscous, b_d [N m s/rad]
   double friction = 0;                                      // Coulomb [N m]
+  // What pulls at it in every pose: -(spring x + offset) [N m/rad, N m].
+  double spring = 0, offset = 0;
 };
 
 struct Link {
@@ -67,6 +69,10 @@ struct ArmDescription {
   std::vector<Link> links;      // n, link i is moved by joint i; its frame is that of joint i
   Pose tip = Pose::Identity();  // in the last link's frame
   std::string tip_link;         // the file's link that it is the origin of
+  Vec3 gravity{0, 0, -9.81};    // in the base's frame, as the arm stands [m/s^2]
+  // Of the device that this arm was identified from, from a reading to the torque that answers it,
+  // beyond the tick [s]. An arm without it was not identified: its numbers are its file's.
+  std::optional<double> delay;
   std::vector<NamedFrame> frames;
   std::vector<Visual> visuals;
   std::string urdf;                   // the text it came from

@@ -21,10 +21,12 @@ Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d) {
 
 double proposed_wall(const TipAlong& tip, const WallSetting& s) {
   const double b = tip.damping + (s.b_v + s.k_vc * s.T / 2) / tip.lever2 + s.hand_damping;
-  return s.eta * b / (s.T / 2 + s.b_v / s.k_vc);
+  return s.eta * b / (s.T / 2 + s.b_v / s.k_vc + s.delay);
 }
 
-double every_hands_wall(const TipAlong& tip, double T) { return 2 * tip.damping / T; }
+double every_hands_wall(const TipAlong& tip, double T, double delay) {
+  return tip.damping / (T / 2 + delay);
+}
 
 double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
   if (s.hand_mass <= 0) return std::numeric_limits<double>::infinity();

@@ -27,13 +27,15 @@ struct WallSetting {
   double eta = 1;
   double hand_damping = 0;  // [N s/m]
   double hand_mass = 0;     // [kg]
+  double delay = 0;         // from a reading to the torque that answers it, beyond the tick [s]
 };
 
 // Stiffest wall [N/m] of the proposed coupling: the damping there is against the lag of its
-// contact, half a tick and b_v/k_vc.
+// contact, half a tick, b_v/k_vc and the device's delay.
 double proposed_wall(const TipAlong& tip, const WallSetting& s);
-// Stiffest wall that any linear law can render and be passive in every hand (Colgate): 2 b_d / T.
-double every_hands_wall(const TipAlong& tip, double T);
+// Stiffest wall that any linear law can render and be passive in every hand (Colgate), its torque a
+// delay late: b_d / (T/2 + delay).
+double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
 // Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand, by
 // the energy that its error gives away. Infinite without a mass.
 double mistaken_wall(const TipAlong& tip, const WallSetting& s);

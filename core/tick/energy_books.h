@@ -9,10 +9,11 @@ namespace limpid {
 // see. Total: with the device's own damping, -b_d/T dx1 . dx1 a tick.
 template <int N>
 struct EnergyBooks {
-  double commanded = 0;  // [J]
-  double total = 0;      // [J]
-  double port = 0;       // of motors and own damping alone: what the human was given [J]
-  double contact = 0;    // work of the contacts on the proxy [J]
+  double commanded = 0;     // [J]
+  double total = 0;         // [J]
+  double port = 0;          // of motors and own damping alone: what the human was given [J]
+  double compensation = 0;  // of commanded, what the motors gave for the device's own forces [J]
+  double contact = 0;       // work of the contacts on the proxy [J]
 
   // tau1 the motor torque held over the tick, dx the motion over it, b_d the device's damping.
   void add(const Vec<N>& tau1, const Vec<N>& dx1, const Vec<N>& tau2, const Vec<N>& dx2,

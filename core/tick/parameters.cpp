@@ -46,9 +46,16 @@ constexpr std::array kOthers{
     ParameterInfo{"device.torque_limit", "torque limit", &P::torque_limit, "N m", 1e-6, 1e4, 0.01,
                   5, true, true,
                   "Largest torque of every motor (section 3.1); default: the arm's file."},
+    ParameterInfo{"device.gravity", "weight", &P::weighs, "-", 0, 1, 0, 1, false, true,
+                  "The virtual arm has the weight of its file and would fall; off: as if a "
+                  "counterweight held it. model.gravity has the motors hold it."},
+    ParameterInfo{"device.springs", "springs", &P::springy, "-", 0, 1, 0, 1, false, true,
+                  "The virtual arm has the springs of its file, as one that was identified has; "
+                  "model.springs has the motors hold against them."},
 };
 
-constexpr auto kTable = joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers);
+constexpr auto kTable = joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers,
+                               CompensationSettings::settings<P>());
 
 std::string number(double x) {
   std::array<char, 40> text{};

@@ -13,6 +13,7 @@
 
 #include "core/coupling/force_observer.h"
 #include "core/coupling/laws.h"
+#include "core/tick/compensation.h"
 
 namespace limpid {
 
@@ -21,7 +22,7 @@ inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 
 inline constexpr int kMostDelay = 20;  // of a device [ticks]
 
-struct Parameters : LawSettings, ObserverSettings {
+struct Parameters : LawSettings, ObserverSettings, CompensationSettings {
   CouplingKind kind = CouplingKind::proposed;
   double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
   double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]
@@ -35,6 +36,8 @@ struct Parameters : LawSettings, ObserverSettings {
   double friction = kFromArm;      // Coulomb, every joint [N m]
   double damping = kFromArm;       // b_d, every joint [N m s/rad]
   double torque_limit = kFromArm;  // every joint [N m]
+  bool weighs = false;             // the virtual arm, as its file says; else it counts as held
+  bool springy = false;            // it has the springs of its file
 
   friend bool operator==(const Parameters& a, const Parameters& b);
 };

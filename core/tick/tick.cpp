@@ -8,12 +8,8 @@
 namespace limpid {
 namespace {
 
-template <int N>
-Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
-  Vec<N> values = Vec<N>::Zero(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) values[i] = arm.joints[static_cast<std::size_t>(i)].*field;
-  return values;
-}
+// The least of a motor's limit that is left to the law, whatever the arm weighs.
+constexpr double kLeastForLaw = 0.1;
 
 }  // namespace
 
@@ -23,9 +19,11 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
       arm_(arm),
       arm_damping_(of_joints<N>(arm, &Joint::damping)),
       arm_limit_(of_joints<N>(arm, &Joint::effort)),
+      arm_friction_(of_joints<N>(arm, &Joint::friction)),
       velocity_(arm.dof()),
       observer_(arm.dof()),
       proxy_(arm, scene),
+      compensation_(arm),
       motors_(arm.dof()),
       safety_(arm),
       J_(Jacobian<N>::Zero(3, arm.dof())) {
@@ -46,10 +44,11 @@ void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   proxy_.place(start.x2, start.v2, p.inertia_ratio);
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
+  compensation_.start(p);
   books_ = {};
   x1_before_ = start.x1;
   f1_hat_ = start.f1_hat;
-  tau1_ = vbar2_ = zero;
+  tau1_ = vbar2_ = loads_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
   coupling_.start({start.x1, start.v1, start.f1_hat});
@@ -79,11 +78,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
 
   // The device, (5), as the controller believes it to be.
   const bool goes_on = k_ > 0 && !in.health.gap;
-  if (goes_on) {
-    velocity_.update(in.measured, T, p.velocity, p.encoder_step);
-  } else {
-    velocity_.reset(in.measured);
-  }
+  if (goes_on) velocity_.update(in.measured, T, p.velocity, p.encoder_step);
+  if (!goes_on) velocity_.reset(in.measured);
   if (p.kind != kind_) switch_law(p.kind, in.measured);
   const Whereabouts<N> at = coupling_.locate(
       p.kind, p,
@@ -104,22 +100,33 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   x2_ = proxy_.x();
   v2_ = proxy_.v();
   kinetic_ = proxy_.kinetic_energy();
+  const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured, v1,     device_,      f1_hat_, vbar2_,        T, frames_, b_d_,
-                        b_d_sure,    limit_, gate_.gain(), p.tick,  p.encoder_step};
+  const LawInput<N> now{in.measured, v1,   device_,      f1_hat_, vbar2_,        T, frames_, b_d_,
+                        b_d_sure,    left, gate_.gain(), p.tick,  p.encoder_step};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
   vbar2_ = proxy_.vbar();
 
-  diverged_ = diverged_ || !command_.allFinite();
+  diverged_ = diverged_ || !(command_ + loads_).allFinite();
   pass_on(p, in, wish, put_out, T);
-  observer_.applied(p.anti_windup ? tau1_ : command_);
-  coupling_.applied(p.kind, tau1_);
+  // The device's own forces are no hand's, and what the motors give for them not the law's.
+  observer_.applied(p.anti_windup ? Vec<N>(tau1_ - loads_) : command_);
+  coupling_.applied(p.kind, tau1_ - loads_);
   write_row(p, in, row);
   x1_before_ = in.x;
   ++k_;
   return tau1_;
+}
+
+// What the motors are to give for the device's own forces; returns what of them is left to the law.
+// A real device has the friction that was found of it, whatever the virtual arm is given.
+template <int N>
+Vec<N> Tick<N>::own_forces(const Parameters& p, bool guarded, const Whereabouts<N>& at, double T) {
+  const Vec<N> friction = guarded ? arm_friction_ : resolve<N>(p.friction, arm_friction_);
+  loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
+  return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 
 // Nobody knows what the device did meanwhile, but that it was without torque: it starts as one
@@ -129,7 +136,9 @@ void Tick<N>::begin_after_gap(const Reading<N>& in) {
   velocity_.reset(in.measured);
   f1_hat_.setZero();
   observer_.reset(f1_hat_, f1_hat_);
+  compensation_.rest();
   tau1_.setZero();
+  loads_.setZero();
   motors_.start();
   coupling_.start({in.measured, f1_hat_, f1_hat_});
   x1_before_ = in.x;
@@ -156,8 +165,9 @@ void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish,
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool limited = in.health.guarded && !diverged_;
-  tau1_ = motors_.pass(limited ? safety_.within_tip_force(command_, J_) : command_, limit_,
-                       gate_.gain(), dt, limited ? SafetyLimits::kSlew : 0);
+  const Vec<N> all = command_ + loads_;
+  tau1_ = motors_.pass(limited ? safety_.within_tip_force(all, J_) : all, limit_, gate_.gain(), dt,
+                       limited ? SafetyLimits::kSlew : 0);
 }
 
 template <int N>
@@ -165,6 +175,7 @@ void Tick<N>::close_books(const Reading<N>& in, double T) {
   const Vec<N> dx1 = in.x - x1_before_;
   const Vec<N> dx2 = proxy_.x() - x2_;
   books_.add(in.acted ? *in.acted : tau1_, dx1, proxy_.tau(), dx2, b_d_, T);
+  books_.compensation += gate_.gain() * loads_.dot(dx1);
   books_.add_contact(proxy_.f(), dx2);
 }
 
@@ -186,6 +197,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   put(Column::proxy_torque, proxy_.tau());
   put(Column::contact_torque, proxy_.f());
   put(Column::hand_torque_estimate, f1_hat_);
+  put(Column::compensation_torque, loads_);
   set(Column::force_wanted, gate_.armed() ? 1 : 0);
   set(Column::force_state, static_cast<double>(gate_.why()));
   set(Column::kind, static_cast<double>(p.kind));
@@ -198,6 +210,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::energy_port, books_.port);
   set(Column::energy_total, books_.total);
   set(Column::energy_commanded, books_.commanded);
+  set(Column::energy_compensation, books_.compensation);
   set(Column::proxy_kinetic, kinetic_);
   set(Column::contact_potential, potential_);
   set(Column::contact_gain, books_.contact_gain(potential_, first_potential_));

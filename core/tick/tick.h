@@ -8,6 +8,7 @@
 #include "core/coupling/force_observer.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/velocity_estimator.h"
+#include "core/tick/compensation.h"
 #include "core/tick/energy_books.h"
 #include "core/tick/motor_stage.h"
 #include "core/tick/parameters.h"
@@ -70,7 +71,8 @@ class Tick {
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.
   bool steady() const {
-    return gate_.steady() && motors_.steady() && proxy_.contacts().recoverable();
+    return gate_.steady() && motors_.steady() && compensation_.steady() &&
+           proxy_.contacts().recoverable();
   }
   // The command was not finite: the loop is unstable, force is off.
   bool diverged() const { return diverged_; }
@@ -79,6 +81,7 @@ class Tick {
 
  private:
   void begin_after_gap(const Reading<N>& in);
+  Vec<N> own_forces(const Parameters& p, bool guarded, const Whereabouts<N>& at, double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
   void close_books(const Reading<N>& in, double T);
@@ -87,13 +90,14 @@ class Tick {
 
   RowLayout layout_;
   Arm<N> arm_;
-  Vec<N> arm_damping_, arm_limit_;  // of the arm's file
+  Vec<N> arm_damping_, arm_limit_, arm_friction_;  // of the arm's file
   typename Arm<N>::Frames frames_;
   Dynamics<N> device_;
   VelocityEstimator<N> velocity_;
   ForceObserver<N> observer_;
   Proxy<N> proxy_;
   Coupling<N> coupling_;
+  Compensation<N> compensation_;
   MotorStage<N> motors_;
   Safety<N> safety_;
   ForceGate gate_;
@@ -101,7 +105,7 @@ class Tick {
   EnergyBooks<N> books_;
 
   // At the present tick's start, for the row:
-  Vec<N> x2_, v2_, f1_hat_, command_;
+  Vec<N> x2_, v2_, f1_hat_, command_, loads_;
   double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
   // Of the last tick, for the books and for the delayed terms of (1):
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;

@@ -223,7 +223,11 @@ class Fit {
       set_parameters(out.arm.links[J_], z.segment<kLinkParameters>(kLinkParameters * j));
       out.arm.joints[J_].damping = std::max(0.0, joint.viscous.value);
       out.arm.joints[J_].friction = std::max(0.0, joint.coulomb.value);
+      out.arm.joints[J_].spring = joint.spring.value;  // with the weight it may be below 0
+      out.arm.joints[J_].offset = joint.offset.value;
     }
+    out.arm.gravity = settings_.gravity;
+    out.arm.delay = delay_;
     out.delay = {delay_, delay_deviation()};
     return out;
   }

@@ -28,7 +28,7 @@ struct JointFinding {
 };
 
 struct Identified {
-  ArmDescription arm;  // the guess with what was found in it
+  ArmDescription arm;  // the guess with what was found in it, gravity as it was said to be
   std::vector<JointFinding> joints;
   Eigen::VectorXd middle;  // where inertia and gravity are given [rad]
   Found delay;             // from a reading to the torque that answers it, beyond the tick [s]

@@ -1,5 +1,6 @@
 #include "devices/identify/unlike_device.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -40,26 +41,66 @@ ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_fri
   return arm;
 }
 
+Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gravity) {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  Drawn drawn(seed + 1000003);  // other numbers than the arm's
+  const double cells = drawn.between(0, 1) < 0.5 ? 1 << 10 : 1 << 16;
+  double widest = 0;
+  for (const Joint& joint : file.joints) {
+    const double range = joint.upper - joint.lower;
+    widest = std::max(widest, std::isfinite(range) ? range : kTurn);
+  }
+  Unlikeness bench{.gravity = gravity, .encoder_step = widest / cells};
+  bench.delay = 1 + static_cast<int>(drawn.between(0, 3.999));
+  bench.spring = bench.offset = Eigen::VectorXd::Zero(file.dof());
+  for (double& spring : bench.spring) spring = drawn.between(0, 0.1);
+  for (double& offset : bench.offset) offset = drawn.between(-0.02, 0.02);
+  return bench;
+}
+
+namespace {
+
+ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
+  arm.gravity = unlike.gravity;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    arm.joints[i].spring = unlike.spring.size() > 0 ? unlike.spring[k] : 0;
+    arm.joints[i].offset = unlike.offset.size() > 0 ? unlike.offset[k] : 0;
+  }
+  return arm;
+}
+
+}  // namespace
+
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
-    : unlike_(unlike), arm_(truth), device_(truth), traits_(device_.traits()) {
-  parameters_of_links_ = parameters_of(truth);
+    : device_(with(truth, unlike)), traits_(device_.traits()) {
   traits_.name = "a device unlike its file";
   traits_.guarded = true;
-  others_ = push = Eigen::VectorXd::Zero(truth.dof());
+  push = Eigen::VectorXd::Zero(truth.dof());
   parameters_.encoder_step = unlike.encoder_step;
   parameters_.device_delay = unlike.delay;
+  parameters_.weighs = parameters_.springy = true;
   hand_.grip = 0;
+  put(rest_pose(truth));
+}
+
+void UnlikeDevice::put(const Eigen::VectorXd& x) {
+  const Eigen::VectorXd v = Eigen::VectorXd::Zero(x.size());
   device_.expect(parameters_, hand_);
-  const Eigen::VectorXd x = rest_pose(truth);
-  device_.place(span_of(x), span_of(others_), arm_.tip_at(x));
+  device_.place(span_of(x), span_of(v), Vec3::Zero());
+  device_.place(span_of(x), span_of(v), device_.arm.tip());
+}
+
+void UnlikeDevice::expect(const Parameters& p, const HandInput& hand) noexcept {
+  parameters_.hand_stiffness = p.hand_stiffness;
+  parameters_.hand_damping = p.hand_damping;
+  parameters_.hand_mass_at_tip = p.hand_mass_at_tip;
+  hand_.target = hand.target;
+  hand_.grip = hand.grip;
 }
 
 void UnlikeDevice::write(std::span<const double> torque) noexcept {
-  const Vec<kAnyDof> x = device_.arm.x(), zero = Vec<kAnyDof>::Zero(x.size());
-  others_ = push - regressor(arm_, x, zero, zero, unlike_.gravity) * parameters_of_links_;
-  if (unlike_.spring.size() > 0) others_ -= unlike_.spring.cwiseProduct(x);
-  if (unlike_.offset.size() > 0) others_ -= unlike_.offset;
-  hand_.torque = span_of(others_);
+  hand_.torque = span_of(push);
   device_.expect(parameters_, hand_);
   device_.write(torque);
 }

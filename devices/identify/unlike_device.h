@@ -18,7 +18,11 @@ struct Unlikeness {
 // seed. `most_friction` [N m].
 ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_friction);
 
-// Reads before it is moved, as a real one does; one write is one tick of 1 ms.
+// Axes of 10 or 16 bits, a delay of 1 to 4 ms, springs, drawn by this seed; gravity as it is given.
+Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gravity);
+
+// Reads before it is moved, as a real one does, and says no more than a real one; one write is one
+// tick of 1 ms. Whoever drives it through a rig holds it, too.
 class UnlikeDevice final : public Device {
  public:
   UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike);
@@ -27,17 +31,20 @@ class UnlikeDevice final : public Device {
   bool read(DeviceReading& newest) noexcept override { return device_.read(newest); }
   void write(std::span<const double> torque) noexcept override;
   void stop() noexcept override { write({}); }
+  // Of the parameters it is told the hand's alone: it is what it is.
+  void expect(const Parameters& p, const HandInput& hand) noexcept override;
+  // Somewhere at rest, the hand's target on the tip [rad].
+  void put(const Eigen::VectorXd& x);
+  // What nobody who drives it is told.
+  const VirtualArm<kAnyDof>& arm() const { return device_.arm; }
 
   Eigen::VectorXd push;  // of somebody, besides [N m]
 
  private:
-  Unlikeness unlike_;
-  Arm<kAnyDof> arm_;
   VirtualDevice<kAnyDof> device_;
   DeviceTraits traits_;
   Parameters parameters_;
   HandInput hand_;
-  Eigen::VectorXd parameters_of_links_, others_;
 };
 
 }  // namespace limpid

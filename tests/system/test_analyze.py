@@ -106,6 +106,25 @@ class Analyze(SystemTest):
                 if abs(device) > 1e-12 and abs(proxy) > 1e-12:
                     self.assertEqual(found["holds"], device >= 0 and proxy >= 0)
 
+    def test_condition_three_counts_a_delay(self) -> None:
+        for ticks, known in ((2, True), (2, False), (5, True)):
+            with self.subTest(ticks=ticks, known=known):
+                options = ["--set", f"device.delay={ticks}"]
+                if known:
+                    options += ["--set", f"model.delay={ticks}"]
+                found = self.analyze(*options)
+                delay = ticks * 1e-3
+                self.assertEqual(found["delay"], delay)
+                self.assertFalse(found["measured"])
+                margins = found["condition3"]
+                device = 0.012 - 0.002 - 10 * (1e-3 + 1.5 * delay)
+                self.assertAlmostEqual(margins["device_margin"], device, delta=1e-12)
+                self.assertAlmostEqual(
+                    margins["proxy_margin"], 0.012 - 10 * (1e-3 + delay) / 2, delta=1e-12
+                )
+                tip = found["tip"]
+                self.assert_close(tip["every_hand"], tip["damping"] / (5e-4 + delay))
+
     def test_passive_means_at_or_above_eta_min(self) -> None:
         for eta in (0.5, 0.58, 0.6, 1.0):
             with self.subTest(eta=eta):

@@ -149,6 +149,9 @@ class AnyArm(SystemTest):
             "encoder steps": ["device.encoder_step=4e-4", "observer.velocity=adaptive"],
             "friction": ["device.friction=0.005"],
             "low-pass": ["observer.velocity=lowpass"],
+            "a weight that is held": ["device.gravity=true", "model.gravity=true"],
+            "one that hangs": ["device.gravity=true", "model.gravity=true", 'device.down="+z"'],
+            "friction taken off": ["device.friction=0.005", "model.friction=0.7"],
         }  # fmt: skip
         for name, values in settings.items():
             with self.subTest(name):
@@ -164,6 +167,13 @@ class AnyArm(SystemTest):
                 self.assertEqual(np.abs(s["/device/velocity"][0]).max(), 0)
                 self.assertEqual(np.abs(s["/proxy/velocity"][0]).max(), 0)
                 np.testing.assert_array_equal(s["/proxy/position"][0], s["/device/position"][0])
+
+
+COMPENSATED = [
+    word
+    for value in ("device.gravity", "model.gravity", "device.springs", "model.springs")
+    for word in ("--set", f"{value}=true")
+] + ["--set", "device.friction=0.01", "--set", "model.friction=0.7"]
 
 
 class Replay(SystemTest):
@@ -199,6 +209,7 @@ class Replay(SystemTest):
         for options in (
             ["--eta", "0.7", "--seed", "5", "--set", "device.encoder_step=4e-4"],
             ["--coupling", "standard", "--duration", "1.5"],
+            ["--coupling", "predictive", *COMPENSATED],
         ):
             with self.subTest(options=options):
                 recorded = self.record(

@@ -72,11 +72,15 @@ void AnalysisPanel::update(const Parameters& p, const ArmDescription& arm, const
   analysis_ = analyze(arm, pose, p, 2 * std::numbers::pi * band);
   tip_ = tip_limits(arm, pose, p, scene);
   poles_ = handle_poles(arm, pose, p);
+  basis_ = basis_text(arm, p);
 }
 
 void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const Scene& scene,
                          std::span<const double> x, double& band) {
   update(p, arm, scene, x, band);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
+  ImGui::TextWrapped("for %s", basis_.c_str());
+  ImGui::PopStyleColor();
   draw_walls(p);
   draw_felt(p, band);
   if (info(p.kind).observes) draw_observed(p, band);
@@ -113,7 +117,8 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
   const TipLimits::Wall& mine = tip_.walls[static_cast<std::size_t>(p.kind)];
   tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
                       "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
-                      "most that any linear law can show and be passive in every hand (2 b_d/T). "
+                      "most that any linear law can show and be passive in every hand "
+                      "(b_d/(T/2 + delay)). "
                       "Coloured line: the stiffest thing in this scene.",
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());

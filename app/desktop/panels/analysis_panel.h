@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/run/analysis.h"
@@ -30,7 +31,8 @@ class AnalysisPanel {
   Analysis analysis_;
   TipLimits tip_;
   std::vector<std::complex<double>> poles_;
-  double due_ = 0;  // when to look at the pose again [s of ImGui's time]
+  std::string basis_;  // what all of it rests on
+  double due_ = 0;     // when to look at the pose again [s of ImGui's time]
 };
 
 }  // namespace limpid

@@ -26,18 +26,26 @@ std::string eta_broken(const Parameters& p, const Analysis& a) {
       p.eta, a.eta_min, a.eta_min - p.eta);
 }
 
+// What (3) asks for where the device answers late.
+std::string late(const Analysis& a, const char* prompt, const char* delayed) {
+  return a.delay > 0 ? fmt::format("{}, delay {:.1f} ms", delayed, 1e3 * a.delay) : prompt;
+}
+std::string device_needs(const Analysis& a) {
+  return late(a, "2 b_vc + k_vc T", "2 b_vc + k_vc (T + 3/2 delay)");
+}
+std::string proxy_needs(const Analysis& a) { return late(a, "k_vc T / 2", "k_vc (T + delay) / 2"); }
+
 std::string device_broken(const Analysis& a) {
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
-  return fmt::format(
-      "Condition (3): b_d is {:.4g} N m s/rad short of 2 b_vc + k_vc T.\nLower k_vc or b_vc.",
-      -a.condition3.device_margin);
+  return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
+                     -a.condition3.device_margin, device_needs(a));
 }
 
 std::string proxy_broken(const Analysis& a) {
   if (a.condition3.holds || a.condition3.proxy_margin >= 0) return {};
   return fmt::format(
-      "Condition (3): b_v is {:.4g} N m s/rad short of k_vc T / 2.\nRaise b_v or lower k_vc.",
-      -a.condition3.proxy_margin);
+      "Condition (3): b_v is {:.4g} N m s/rad short of {}.\nRaise b_v or lower k_vc.",
+      -a.condition3.proxy_margin, proxy_needs(a));
 }
 
 void slider(Parameters& p, const char* key, const std::string& broken = {}) {
@@ -83,17 +91,18 @@ bool advanced(std::string_view key) {
 }
 
 // Whether the gains are those that suit the arm, and a way back to them.
-void draw_fit(Parameters& p, const ArmDescription& arm) {
+void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   Parameters fit = p;
-  const Parameters own = fitted(arm, fit);
+  const Parameters own = fitted(arm, fit, a.delay);
   for (const char* key : kFittedKeys) {
     const ParameterInfo& info = *find_parameter(key);
     set_parameter_number(fit, info, parameter_number(own, info));
   }
   const std::string text = fit_text(own);
   const char* const help =
-      "From the arm's damping b_d: k_vc, b_vc, b_v so that condition (3) just holds, alpha so that "
-      "eta_min is the paper's. An arm whose file says no damping gets one that suits its inertia.";
+      "From the arm's damping b_d and its delay: k_vc, b_vc, b_v so that condition (3) just holds, "
+      "alpha so that eta_min is the paper's. An arm whose file says no damping gets one that suits "
+      "its inertia.";
   if (fit == p) {
     read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
     return;
@@ -102,7 +111,7 @@ void draw_fit(Parameters& p, const ArmDescription& arm) {
   tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
 }
 
-void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription* arm) {
+void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(a);
   const std::string proxy = proxy_broken(a);
@@ -122,15 +131,22 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription* arm) {
   if (section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
               false)) {
     draw(true);
-    if (arm != nullptr) draw_fit(p, *arm);
+    draw_fit(p, arm, a);
   }
 }
 
-void draw_passivity(const Parameters& p, const Analysis& a) {
+void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(a);
   const std::string proxy = proxy_broken(a);
   heading("Passivity");
+  if (a.measured || real) {
+    read_out("These figures are", a.measured ? "measured" : "assumed", {},
+             a.measured ? "They follow from the inertia, damping and delay that limpid identify "
+                          "found of the device."
+                        : "They follow from what the arm's file says of inertia and damping; the "
+                          "delay is taken to be what is set. limpid identify measures them.");
+  }
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("Observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "alpha / m over the modes of the inertia at the rest pose, (18)");
@@ -155,9 +171,9 @@ void draw_passivity(const Parameters& p, const Analysis& a) {
                           : fmt::format("broken  {:+.1e}", margin);
   };
   read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
-           "b_d - 2 b_vc - k_vc T [N m s/rad]: not negative");
+           ("b_d less " + device_needs(a) + " [N m s/rad]: not negative").c_str());
   read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
-           "b_v - k_vc T / 2 [N m s/rad]: not negative");
+           ("b_v less " + proxy_needs(a) + " [N m s/rad]: not negative").c_str());
 }
 
 // What bounds the energy that the human is given, for a law that keeps account of it.
@@ -237,15 +253,15 @@ void CouplingPanel::draw_break(Parameters& p, const ArmDescription& arm) {
 }
 
 void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-                         const ArmDescription* arm) {
+                         const ArmDescription& arm, bool real) {
   kind_buttons(p);
   ImGui::Spacing();
   draw_sliders(p, analysis, arm);
-  if (arm != nullptr) draw_break(p, *arm);
+  if (!real) draw_break(p, arm);
   if (info(p.kind).keeps_ledger) {
     draw_ledger(now);
   } else {
-    draw_passivity(p, analysis);
+    draw_passivity(p, analysis, real);
   }
   draw_energy(now.energy, p, analysis);
   draw_limited(now.limited);

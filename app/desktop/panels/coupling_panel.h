@@ -21,10 +21,10 @@ struct CouplingReading {
 
 class CouplingPanel {
  public:
-  // Draws into the ImGui window that is open. `analysis` of these parameters; `arm`: the virtual
-  // one; null: a device is in its place, whose grip is nobody's to choose.
+  // Draws into the ImGui window that is open. `analysis` of these parameters; `real`: a device is
+  // in the arm's place, whose grip is nobody's to choose.
   void draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-            const ArmDescription* arm);
+            const ArmDescription& arm, bool real);
 
  private:
   void draw_break(Parameters& p, const ArmDescription& arm);

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "app/desktop/panels/parameter_rows.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/run/fitted_gains.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "app/style/words.h"
 #include "core/dynamics/arm_description.h"
 
 namespace limpid {
@@ -118,6 +122,38 @@ void knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
       fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
   if (ImGui::Button(text.c_str())) p = with;
   tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
+}
+
+// What the motors take of the device's own forces off the hand.
+void compensation(const ArmDescription& arm, Parameters& p) {
+  if (!section("Compensation", true)) return;
+  tooltip(
+      "What the device itself pulls with, and the motors can take off the hand. It is armed, fades "
+      "and stops with all other force.");
+  const CompensationSettings suggested = suggested_compensation(arm);
+  CompensationSettings& now = p;
+  CompensationSettings wanted = suggested;
+  wanted.down = now.down;
+  if (arm.delay && now != wanted) {
+    if (ImGui::Button("Take off what was measured")) now = wanted;
+    tooltip(fmt::format("Weight {}, springs {}, {:.0f} % of the friction.",
+                        wanted.holds_weight ? "held" : "not there",
+                        wanted.holds_springs ? "held" : "not there", 100 * wanted.friction_share)
+                .c_str());
+  }
+  double friction = 0, spring = 0;
+  for (const Joint& joint : arm.joints) {
+    friction = std::max(friction, joint.friction);
+    spring = std::max({spring, std::abs(joint.spring), std::abs(joint.offset)});
+  }
+  draw_parameters(p, arm, {"model.gravity"});
+  if (p.holds_weight) draw_parameters(p, arm, {"device.down"});
+  const auto where_there = [&](const char* key, bool there, const char* none) {
+    if (there) return draw_parameters(p, arm, {key});
+    read_out(caption(*find_parameter(key)), none, {}, "limpid identify finds what there is.");
+  };
+  where_there("model.springs", spring > 0, "none known");
+  where_there("model.friction", friction > 0, "no friction known");
 }
 
 // A joint of the arm, or of a cap, which has none: where it is, which way round, how far, its zero.
@@ -243,6 +279,7 @@ void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& p
   status(devices, desk.loop());
   if (!devices.hub().in_use().empty()) {
     knowledge(devices, desk, p);
+    if (desk.loop().device_in_place()) compensation(desk.stage().arm(), p);
     adjustments(devices, desk);
   }
   ImGui::Separator();

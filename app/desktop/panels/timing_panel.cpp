@@ -13,39 +13,6 @@
 namespace limpid {
 namespace {
 
-// Shares of ticks over wake-up latency, on a logarithmic axis from 1 us to 100 ms.
-void draw_histogram(const LatencyHistogram& histogram) {
-  const Palette& colours = palette(current_theme());
-  const float height = 32 * current_scale();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  draw->AddRectFilled(at, {at.x + width, at.y + height}, colour(colours.frame, 0.5f), 3);
-  constexpr int kColumns = 50;
-  constexpr int kPerColumn = LatencyHistogram::kBins / kColumns;
-  std::array<double, kColumns> columns{};
-  double most = 1;
-  for (int i = 0; i < LatencyHistogram::kBins; ++i) {
-    double& column = columns[static_cast<std::size_t>(i / kPerColumn)];
-    column += static_cast<double>(histogram.count_in(i));
-    most = std::max(most, column);
-  }
-  const float step = width / kColumns;
-  for (int i = 0; i < kColumns; ++i) {
-    const double share = columns[static_cast<std::size_t>(i)];
-    if (share == 0) continue;
-    const auto tall = static_cast<float>(std::log1p(share) / std::log1p(most)) * (height - 4);
-    const float x = at.x + step * static_cast<float>(i);
-    const bool late = LatencyHistogram::upper_edge(i * kPerColumn) > 1e-3;
-    draw->AddRectFilled({x, at.y + height - tall}, {x + step - 1, at.y + height},
-                        colour(late ? colours.broken : colours.muted));
-  }
-  ImGui::Dummy({width, height});
-  tooltip(
-      "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; red: over "
-      "one tick.");
-}
-
 // Ticks that did not begin in time, as a number and a share of all.
 std::string of_all(std::int64_t count, std::int64_t ticks) {
   if (count == 0) return "0";
@@ -69,6 +36,36 @@ void draw_late_ticks(const LoopStatus& status, bool motors) {
 
 }  // namespace
 
+void draw_time_histogram(const LatencyHistogram& histogram, double late, const char* help) {
+  const Palette& colours = palette(current_theme());
+  const float height = 32 * current_scale();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(at, {at.x + width, at.y + height}, colour(colours.frame, 0.5f), 3);
+  constexpr int kBars = 50;
+  constexpr int kPerBar = LatencyHistogram::kBins / kBars;
+  std::array<double, kBars> columns{};
+  double most = 1;
+  for (int i = 0; i < LatencyHistogram::kBins; ++i) {
+    double& column = columns[static_cast<std::size_t>(i / kPerBar)];
+    column += static_cast<double>(histogram.count_in(i));
+    most = std::max(most, column);
+  }
+  const float step = width / kBars;
+  for (int i = 0; i < kBars; ++i) {
+    const double share = columns[static_cast<std::size_t>(i)];
+    if (share == 0) continue;
+    const auto tall = static_cast<float>(std::log1p(share) / std::log1p(most)) * (height - 4);
+    const float x = at.x + step * static_cast<float>(i);
+    const bool too_late = LatencyHistogram::upper_edge(i * kPerBar) > late;
+    draw->AddRectFilled({x, at.y + height - tall}, {x + step - 1, at.y + height},
+                        colour(too_late ? colours.broken : colours.muted));
+  }
+  ImGui::Dummy({width, height});
+  tooltip(help);
+}
+
 LateTicks late_ticks(bool motors) {
   if (motors) {
     return {"Ticks that began after the next one was due",
@@ -90,7 +87,10 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
   read_out("wake-up p50 / p99",
            fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)),
            {}, "How long after its deadline a tick begins");
-  draw_histogram(wake);
+  draw_time_histogram(
+      wake, 1e-3,
+      "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; "
+      "red: over one tick.");
   const LatencyHistogram& compute = loop.thread().compute_time();
   read_out("tick takes p50 / p99", fmt::format("{:.0f} / {:.0f} us", 1e6 * compute.quantile(0.5),
                                                1e6 * compute.quantile(0.99)));

@@ -16,6 +16,10 @@ struct LateTicks {
 };
 LateTicks late_ticks(bool motors);
 
+// Shares of times on a logarithmic axis from 1 us to 100 ms, both axes logarithmic; above `late`
+// [s] they are red.
+void draw_time_histogram(const LatencyHistogram& histogram, double late, const char* help);
+
 // `quality` of the picture in words; `frame_time`: work for one picture [s].
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time);
 

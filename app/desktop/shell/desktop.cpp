@@ -77,6 +77,7 @@ void Desktop::open_last_world(const std::string& device, const std::string& tip,
 void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models,
                    std::unique_ptr<Device> device, bool saved) {
   fit_to(arm);
+  take_compensation(device != nullptr);
   desk_.open(std::move(arm), std::move(document), models, settings_.parameters,
              settings_.plot_length, std::move(device));
   take_stage(std::move(models), saved);
@@ -127,6 +128,7 @@ void Desktop::update(double dt) {
   follow_story();
   take_loaded();
   devices_.update();
+  note_compensation();
   camera_.advance(dt);
   if (desk_.became_unstable()) {
     cut_force();

@@ -132,6 +132,8 @@ class Desktop {
   void open(ArmDescription arm, SceneDocument document, MeshModels models,
             std::unique_ptr<Device> device = nullptr, bool saved = true);
   void take_stage(MeshModels models, bool saved);
+  void take_compensation(bool of_device);
+  void note_compensation();
   void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
   void take_up_set_aside(const ArmDescription& arm);
   std::string why_fixed() const;
@@ -169,6 +171,8 @@ class Desktop {
   std::string device_file_, device_tip_;
   std::optional<TipsToChoose> tips_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
+  // While a device in the arm's place has its own compensation: its id, and the virtual arm's.
+  std::optional<std::pair<std::string, CompensationSettings>> compensated_;
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

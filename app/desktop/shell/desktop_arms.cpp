@@ -106,6 +106,7 @@ void Desktop::fit_to(const ArmDescription& arm) {
 
 Settings Desktop::settings_to_keep() const {
   Settings kept = settings_;
+  if (compensated_) static_cast<CompensationSettings&>(kept.parameters) = compensated_->second;
   if (!fitted_for_) return kept;
   refit(kept.parameters, &*fitted_for_, nullptr);
   refit(kept.twin.parameters, &*fitted_for_, nullptr);

@@ -1,4 +1,8 @@
 // What the desktop does when devices come and go.
+#include <imgui.h>
+
+#include <utility>
+
 #include "app/base/assets.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/run/own_world.h"
@@ -24,6 +28,28 @@ void Desktop::open_device(std::unique_ptr<Device> device) {
   }
   playback_.close();
   change_arm(arm, std::move(device));
+}
+
+// Of a device it is the device's, remembered with it: nothing of it is left to an arm that comes
+// after it.
+void Desktop::take_compensation(bool of_device) {
+  CompensationSettings& now = settings_.parameters;
+  const CompensationSettings of_virtual = compensated_ ? compensated_->second : now;
+  compensated_.reset();
+  now = of_virtual;
+  if (!of_device) return;
+  const std::string& id = devices_.hub().in_use();
+  compensated_ = {id, of_virtual};
+  now = devices_.hub().notes(id).compensation;
+}
+
+void Desktop::note_compensation() {
+  if (!compensated_ || ImGui::IsAnyItemActive()) return;
+  const CompensationSettings& now = settings_.parameters;
+  CompensationSettings& noted = devices_.hub().notes(compensated_->first).compensation;
+  if (noted == now) return;
+  noted = now;
+  devices_.save();
 }
 
 void Desktop::close_device() {

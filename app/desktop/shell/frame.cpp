@@ -153,7 +153,7 @@ void Frame::draw_coupling(ScreenRect rect) {
     draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited,
               desktop_.settings().twin_overlaid);
   }
-  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, real ? nullptr : &shown.arm());
+  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, shown.arm(), real);
   ImGui::End();
 }
 
@@ -179,6 +179,11 @@ void Frame::draw_side(ScreenRect rect) {
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
     draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad}, parameters);
+    if (!desk.loop().device_in_place()) {
+      draw_parameters(
+          parameters, shown.arm(),
+          {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
+    }
     draw_parameters(
         parameters, shown.arm(),
         {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
@@ -191,7 +196,14 @@ void Frame::draw_side(ScreenRect rect) {
     const Scene& scene = session ? session->document().scene : desktop_.document().scene();
     analysis_.draw(desktop_.edited(), shown.arm(), scene, pose, settings.band);
   }
-  if (section("Timing", true)) draw_timing(desk.loop(), quality_text(), window_.frame_time());
+  if (section("Timing", true)) {
+    draw_timing(desk.loop(), quality_text(), window_.frame_time());
+    if (desk.loop().device_in_place()) {
+      device_timing_.draw(desk.loop().device_pace(), desk.stage().arm(), parameters,
+                          desktop_.document().scene(),
+                          desk.loop().layout().in(desk.row(), Column::device_position));
+    }
+  }
   ImGui::End();
 }
 

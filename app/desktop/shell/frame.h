@@ -5,6 +5,7 @@
 
 #include "app/desktop/panels/analysis_panel.h"
 #include "app/desktop/panels/coupling_panel.h"
+#include "app/desktop/panels/device_timing.h"
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/view_panel.h"
 #include "app/desktop/shell/dialogs.h"
@@ -57,6 +58,7 @@ class Frame {
   ScenePanel scene_;
   CouplingPanel coupling_;
   AnalysisPanel analysis_;
+  DeviceTiming device_timing_;
   Dialogs dialogs_;
   std::uint64_t seen_of_sweep_ = 0;  // its revision
 };

@@ -9,6 +9,7 @@
 
 #include "devices/files/arm/urdf_chain.h"
 #include "devices/files/arm/urdf_dynamics.h"
+#include "devices/files/arm/urdf_own.h"
 #include "devices/files/arm/urdf_path.h"
 #include "devices/files/arm/urdf_visuals.h"
 #include "devices/files/arm/xacro.h"
@@ -102,16 +103,6 @@ std::string place_named_in(const std::string& complaint, const UrdfPlaces& place
   return places.where;
 }
 
-// The tip that the text itself names: <limpid tip="LINK"/> in the robot.
-std::string named_tip(const TiXmlElement& robot) {
-  std::string tip;  // the last one holds
-  for (auto* own = robot.FirstChildElement("limpid"); own;
-       own = own->NextSiblingElement("limpid")) {
-    if (const char* link = own->Attribute("tip")) tip = link;
-  }
-  return tip;
-}
-
 // So that a recording, which has the text alone, has the same arm.
 std::string with_tip(const std::string& text, const std::string& tip) {
   TiXmlElement own("limpid");
@@ -151,9 +142,10 @@ ArmDescription parse_urdf(const std::string& text, const std::string& where,
   const urdf::ModelInterfaceSharedPtr model = parse_dynamics(robot, places);
   MeshFinder meshes(base_dir);
   const LinkVisuals visuals = urdf_visuals(robot, meshes, places);
-  const std::string own = named_tip(robot);
+  const std::string own = own_tip(robot);
   ArmDescription arm =
       chain_of(*model, way_to_tip(*model, tip.empty() ? own : tip, places), visuals, places);
+  read_own(robot, places, arm);
   arm.urdf = tip.empty() || tip == own ? text : with_tip(text, tip);
   arm.warnings = places.warnings;
   return arm;

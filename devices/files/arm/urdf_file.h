@@ -15,6 +15,8 @@ namespace limpid {
 // links behind joints that do not move are merged into the one that moves them (those before the
 // first joint weigh nothing); the tip is the origin of the last link.
 //
+// What else the text says of the device is in <limpid>, see urdf_own.h.
+//
 // What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
 // MeshFinder) or read, efforts of 0, links without inertia between others that have some.
 // Errors: TipsToChoose where a name has to say which tip; FileError "FILE:LINE: ..." for what is

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <tinyxml.h>
 
-#include <charconv>
-#include <cstring>
-
+#include "devices/files/arm/urdf_numbers.h"
 #include "devices/files/rpy.h"
 
 namespace limpid {
@@ -16,31 +14,12 @@ struct NotShown {
   std::string why;
 };
 
-template <int N>
-using Numbers = Eigen::Matrix<double, N, 1>;
-
-// As many numbers as asked for, with spaces between, and nothing else.
+// As many finite numbers as asked for.
 template <int N>
 Numbers<N> numbers(const char* text, const std::string& what) {
-  Numbers<N> out;
-  const char* at = text == nullptr ? "" : text;
-  const char* const end = at + std::strlen(at);
-  const auto skip = [&] {
-    while (at != end && std::isspace(static_cast<unsigned char>(*at))) ++at;
-  };
-  for (double& x : out) {
-    skip();
-    if (at != end && *at == '+') ++at;
-    const auto read = std::from_chars(at, end, x);
-    if (read.ec != std::errc() || !std::isfinite(x)) {
-      throw NotShown{fmt::format("{} \"{}\"; needed: {} finite number{}", what,
-                                 text == nullptr ? "" : text, N, N == 1 ? "" : "s")};
-    }
-    at = read.ptr;
-  }
-  skip();
-  if (at != end) throw NotShown{fmt::format("{} \"{}\"; needed: {} numbers", what, text, N)};
-  return out;
+  if (const auto found = numbers_in<N>(text)) return *found;
+  throw NotShown{fmt::format("{} \"{}\"; needed: {} finite number{}", what,
+                             text == nullptr ? "" : text, N, N == 1 ? "" : "s")};
 }
 
 Pose origin_of(const TiXmlElement& visual) {

@@ -34,6 +34,8 @@ std::optional<double> default_of(Column column) {
     case Column::force_state:
     case Column::contact_potential:
     case Column::contact_gain:
+    case Column::compensation_torque:
+    case Column::energy_compensation:
     case Column::energy_ledger: return 0.0;
     // What the human was given, and that nothing touched, is not known.
     case Column::energy_port:

@@ -196,14 +196,20 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
   ArmDescription found = omni;
   found.links[1].mass = 0.123;
+  const CompensationSettings taken_off{
+      .holds_weight = true, .down = Down::plus_x, .friction_share = 0.6, .holds_springs = true};
   {
     DeviceHub hub(dir / "devices.toml", {});
     hub.use("1209:4c50:a/b c");
     EXPECT_EQ(hub.remember_arm(urdf_text(found, "found"), 0.0021), "");
+    hub.notes(hub.in_use()).compensation = taken_off;
     EXPECT_EQ(hub.save(), "");
   }
   DeviceHub hub(dir / "devices.toml", {});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, 0.123);
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).delay, 0.0021)
+      << "its file lacks it, the book does not";
+  EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, taken_off);
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").delay, 0.0021);
   std::filesystem::remove_all(dir / "data");
   try {
@@ -214,7 +220,17 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   }
   hub.forget_arm();
   EXPECT_LT(hub.notes("1209:4c50:a/b c").delay, 0);
+  EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, CompensationSettings{});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
+}
+
+TEST(DeviceBook, TakesNoCompensationThatIsOutOfRange) {
+  const test::TempDir dir;
+  std::ofstream(dir / "devices.toml")
+      << "[device.a.compensation]\nfriction = 1.5\ndown = 'up'\ngravity = true\nsprings = 3\n";
+  std::string complaint;
+  const DeviceBook book = load_device_book(dir / "devices.toml", complaint);
+  EXPECT_EQ(book.notes.at("a").compensation, CompensationSettings{.holds_weight = true});
 }
 
 }  // namespace

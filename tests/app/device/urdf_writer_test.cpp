@@ -19,13 +19,19 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
   for (std::size_t i = 0; i < 4; ++i) {
     Joint& joint = arm.joints[i];
     joint.friction = 0.01 * static_cast<double>(i + 1);
+    joint.spring = 0.02 * static_cast<double>(i);
+    joint.offset = -0.003 * static_cast<double>(i);
     if (i == 0 && !arm.slides(0)) continue;  // without stops
     joint.lower = -0.5 - 0.1 * static_cast<double>(i);
     joint.upper = 0.7;
   }
+  arm.gravity = Vec3(1, -2, -9.5);
+  arm.delay = 0.00213;
   const ArmDescription read = parse_urdf(urdf_text(arm, "a remark -- <of> it"), "text", {});
   EXPECT_EQ(read.name, arm.name);
   ASSERT_EQ(read.dof(), 4);
+  EXPECT_EQ(read.gravity, arm.gravity);
+  EXPECT_EQ(read.delay, arm.delay);
   EXPECT_LT((read.tip.matrix() - arm.tip.matrix()).norm(), 1e-9);
   for (std::size_t i = 0; i < 4; ++i) {
     const Joint &a = arm.joints[i], &b = read.joints[i];
@@ -38,6 +44,8 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
     EXPECT_DOUBLE_EQ(b.effort, a.effort);
     EXPECT_DOUBLE_EQ(b.damping, a.damping);
     EXPECT_DOUBLE_EQ(b.friction, a.friction);
+    EXPECT_DOUBLE_EQ(b.spring, a.spring);
+    EXPECT_DOUBLE_EQ(b.offset, a.offset);
     EXPECT_DOUBLE_EQ(read.links[i].mass, arm.links[i].mass);
     EXPECT_LT((read.links[i].com - arm.links[i].com).norm(), 1e-12);
     EXPECT_LT((read.links[i].inertia - arm.links[i].inertia).norm(), 1e-15);

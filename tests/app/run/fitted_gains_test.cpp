@@ -60,6 +60,40 @@ TEST(FittedGains, KeepCondition3AndTheMarginOfEta) {
 }
 
 // 50 per second off the arm's motion, as the built-in arm's dampers take: of b/m, over the modes.
+TEST(FittedGains, ReckonWithTheDelayThatWasMeasured) {
+  for (const double damping : {0.004, 0.012, 0.5}) {
+    ArmDescription arm = large_arm(damping);
+    arm.delay = 0.0021;
+    const Parameters p = fitted(arm, {}, *arm.delay);
+    EXPECT_LT(p.k_vc, fitted(arm).k_vc) << "which is for none";
+    const Analysis a = analyze(arm, rest_pose(arm), p, std::nullopt);
+    EXPECT_EQ(a.delay, 0.0021);
+    EXPECT_TRUE(a.condition3.holds) << damping;
+    EXPECT_LT(a.condition3.device_margin, 0.1 * damping) << damping;
+  }
+}
+
+// Nobody measured a damping that it has not.
+TEST(FittedGains, GiveAnIdentifiedArmNoDampingOfItsOwn) {
+  ArmDescription arm = large_arm(0);
+  arm.delay = 0.001;
+  EXPECT_TRUE(std::isnan(fitted(arm).damping));
+}
+
+TEST(SuggestedCompensation, IsOfWhatWasMeasuredAlone) {
+  ArmDescription arm = large_arm(0.5);
+  arm.joints[1].friction = 0.01;
+  EXPECT_EQ(suggested_compensation(arm), CompensationSettings{}) << "it is its file's";
+  arm.delay = 0.001;
+  EXPECT_TRUE(suggested_compensation(arm).holds_weight);
+  EXPECT_FALSE(suggested_compensation(arm).holds_springs);
+  EXPECT_EQ(suggested_compensation(arm).friction_share, 0.7);
+  arm.gravity.setZero();
+  arm.joints[0].offset = -0.01;
+  EXPECT_FALSE(suggested_compensation(arm).holds_weight);
+  EXPECT_TRUE(suggested_compensation(arm).holds_springs);
+}
+
 TEST(FittedGains, DampAnArmThatSaysNoDampingAsTheBuiltInOneIs) {
   const auto rate = [](const ArmDescription& arm, double b_d) {
     const Analysis a = analyze(arm, rest_pose(arm), Parameters{}, std::nullopt);

@@ -46,6 +46,18 @@ TEST(TipLimits, OfThePapersLawsAreItsSpringAndItsLag) {
   EXPECT_NEAR(l.every_hand, 2 * 0.012 / l.tip.lever2 / p.tick, 1e-9);
 }
 
+TEST(TipLimits, ReckonWithTheDeviceAsItWasMeasured) {
+  ArmDescription arm = test::omni();
+  arm.delay = 0.0016;
+  const TipLimits unknown = tip_limits(arm, rest_pose(arm), {}, {});
+  EXPECT_EQ(unknown.delay, 0.0016);
+  EXPECT_NEAR(unknown.every_hand, limits({}).every_hand * 0.5 / 2.1, 1e-9);
+  EXPECT_LE(wall(unknown, CouplingKind::predictive), 2000) << "it does not reckon with it";
+  Parameters p;
+  p.delay = 2;
+  EXPECT_GT(wall(tip_limits(arm, rest_pose(arm), p, {}), CouplingKind::predictive), 2000);
+}
+
 TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
   Scene scene;
   EXPECT_EQ(limits({}, scene).scene, 0);

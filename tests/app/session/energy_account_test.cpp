@@ -40,6 +40,19 @@ TEST(EnergyAccount, CallsWhatNobodyElsePutInTheCouplingsOwn) {
   EXPECT_EQ(books.account.by_changes(), 0);
 }
 
+// A device whose weight the motors lift is given energy, and no hand is.
+TEST(EnergyAccount, LeavesOutWhatWasForTheDevicesOwnForces) {
+  Books books;
+  for (int i = 1; i <= 500; ++i) {
+    std::vector<double> values(static_cast<std::size_t>(books.channels.count()), 0.0);
+    values[static_cast<std::size_t>(Channel::energy_total)] = 1e-3 * i;
+    values[static_cast<std::size_t>(Channel::energy_compensation)] = 1.1e-3 * i;
+    books.history.append(0.001 * i, values);
+    books.account.follow(books.history, books.history.end());
+  }
+  EXPECT_NEAR(books.account.own(), -0.05, kRound);
+}
+
 TEST(EnergyAccount, BooksWhatASwitchPutsInAsTheSwitchs) {
   Books books;
   books.go_to(-0.1, 100);

@@ -43,6 +43,68 @@ TEST(Condition3, CountsTheLeastDampedJoint) {
   EXPECT_NEAR(c.device_margin, -0.001, 1e-15);
 }
 
+// What device and proxy are given in all while they move in a way that ends where it began, the
+// torque of the device d ticks late, less what their dampers take [J].
+double given(const SpringDamper& p, double b_d, int d, const std::vector<double>& dx1,
+             const std::vector<double>& dx2) {
+  constexpr double T = 0.001;
+  const std::size_t n = dx1.size();
+  std::vector<double> x1{0}, x2{0}, wanted;
+  double energy = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double v1 = k > 0 ? dx1[k - 1] / T : 0, v2 = k > 0 ? dx2[k - 1] / T : 0;
+    wanted.push_back(-p.k_vc * (x1[k] - x2[k]) - p.b_vc * (v1 - v2));
+    const double late =
+        k >= static_cast<std::size_t>(d) ? wanted[k - static_cast<std::size_t>(d)] : 0;
+    const double tau2 = -p.k_vc * (x2[k] + dx2[k] / 2 - x1[k]) - p.b_vc * (dx2[k] / T - v1);
+    energy += late * dx1[k] - b_d / T * dx1[k] * dx1[k];
+    energy += tau2 * dx2[k] - p.b_v / T * dx2[k] * dx2[k];
+    x1.push_back(x1[k] + dx1[k]);
+    x2.push_back(x2[k] + dx2[k]);
+  }
+  return energy;
+}
+
+// Motions of every frequency a tick has room for, in and against one another.
+double most_given(const SpringDamper& p, double b_d, int d) {
+  double most = -1;
+  for (const double part : {0.01, 0.05, 0.1, 0.2, 0.3, 0.5}) {
+    for (const double ratio : {0.0, 0.3, 1.0, -0.3, -1.0}) {
+      std::vector<double> dx1, dx2;
+      for (int k = 0; k < 4000; ++k) {
+        dx1.push_back(1e-4 * std::cos(2 * 3.14159265358979 * part * k));
+        dx2.push_back(ratio * dx1.back());
+      }
+      most = std::max(most, given(p, b_d, d, dx1, dx2));
+    }
+  }
+  return most;
+}
+
+// By the books alone: no model of arm, proxy or hand.
+TEST(Condition3, BoundsWhatADelayedDeviceCanBeGiven) {
+  Random random(71);
+  for (const int d : {0, 1, 3, 8}) {
+    SpringDamper p;
+    const double delay = 1e-3 * d, b_d = 2 * p.b_vc + p.k_vc * (0.001 + 1.5 * delay);
+    p.b_v = p.k_vc * (0.001 + delay) / 2;
+    EXPECT_TRUE(condition3(p, 0.001, std::array{b_d}, delay).holds);
+    EXPECT_FALSE(condition3(p, 0.001, std::array{0.999 * b_d}, delay).holds);
+    EXPECT_LE(most_given(p, b_d, d), 1e-9) << d;
+    for (int round = 0; round < 50; ++round) {
+      std::vector<double> dx1, dx2;
+      for (int k = 0; k < 500; ++k) {
+        dx1.push_back(random.between(-1e-4, 1e-4));
+        dx2.push_back(random.between(-1e-4, 1e-4));
+      }
+      EXPECT_LE(given(p, b_d, d, dx1, dx2), 1e-12) << d;
+    }
+    if (d == 0) continue;
+    p.b_v = p.k_vc * 0.001 / 2;  // as (3) has it without a delay
+    EXPECT_GT(most_given(p, 2 * p.b_vc + p.k_vc * 0.001, d), 1e-6) << d;
+  }
+}
+
 struct Random2 {
   explicit Random2(int n, unsigned seed) : random(seed) {
     one.M = random.positive_definite(n, 1e-4, 1e-3);

@@ -59,6 +59,7 @@ TEST_P(RegressorOf, GivesTheTorquesOfTheArm) {
     const Eigen::VectorXd torque = regressor(arm, x, v, a, gravity) * parameters_of(description);
     const Eigen::VectorXd wanted = M * a + C * v + weight;
     EXPECT_LT((torque - wanted).norm(), 1e-10 * wanted.norm());
+    EXPECT_LT((arm.weight(f, gravity) - weight).norm(), 1e-9 * weight.norm());
   }
 }
 

@@ -51,6 +51,15 @@ TEST(Walls, ThatAreInfinitelyFastAndHeavyHandedEndWhereTheDesignSaysSo) {
   EXPECT_TRUE(std::isinf(mistaken_wall(tip, s)));
 }
 
+TEST(Walls, AreSofterWhereTheTorqueIsLate) {
+  const TipAlong tip = bar(0.225, 5e-4, 0.012);
+  WallSetting s{.T = 0.001, .k_vc = 10, .b_v = 0.012, .hand_damping = 2};
+  const double prompt = proposed_wall(tip, s);
+  s.delay = 0.0017;  // as long as half a tick and b_v/k_vc together
+  EXPECT_NEAR(proposed_wall(tip, s), prompt / 2, 1e-9);
+  EXPECT_NEAR(every_hands_wall(tip, 0.001, 0.002), every_hands_wall(tip, 0.001) / 5, 1e-9);
+}
+
 TEST(Walls, OfEveryHandAreTwiceTheDampingOverATick) {
   EXPECT_NEAR(every_hands_wall(bar(0.225, 5e-4, 0.012), 0.001), 2 * 0.012 / 0.225 / 0.225 / 0.001,
               1e-9);

@@ -49,7 +49,9 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
       "loop.tick",           "device.substeps",     "device.encoder_step",  "device.friction",
       "device.damping",      "device.torque_limit", "coupling.damping",     "coupling.band",
       "predictor.preset",    "predictor.p",         "predictor.mu",         "predictor.hand_mass",
-      "ledger.energy",       "hand.mass",           "device.delay",         "model.delay"};
+      "ledger.energy",       "hand.mass",           "device.delay",         "model.delay",
+      "model.gravity",       "device.down",         "model.friction",       "model.springs",
+      "device.gravity",      "device.springs"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;
@@ -167,7 +169,7 @@ TEST(Parameters, AreEqualIfEveryOneOfThemIs) {
     } else if (is_number(info)) {
       set_parameter(p, info.key, info.minimum + 0.3 * (info.maximum - info.minimum));
     } else if (std::holds_alternative<bool Parameters::*>(info.field)) {
-      set_parameter(p, info.key, false);
+      set_parameter(p, info.key, parameter_number(p, info) == 0);
     } else if (info.key == std::string("coupling.kind")) {
       set_parameter(p, info.key, std::string("standard"));
     } else {

@@ -164,6 +164,10 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       p.inertia_ratio = k / 250 % 2 ? 1e-4 : 1e-2;
       p.anti_windup = k % 2 == 0;
       p.eta = k / 70 % 2 ? 0.8 : 2;
+      p.weighs = p.holds_weight = k / 90 % 2 == 0;
+      p.springy = p.holds_springs = k / 80 % 2 == 0;
+      p.friction_share = k / 60 % 2 ? 0.7 : 0;
+      p.friction = 0.01;
       const double t = 1e-3 * k;
       const Vec3 goal = home + 0.03 * Vec3(std::sin(9 * t), std::sin(7 * t), -std::sin(5 * t));
       const HandInput input =

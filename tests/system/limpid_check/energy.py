@@ -35,7 +35,18 @@ def check_controller_energy(s: Session) -> list[Check]:
         largest = max(float(np.max(np.abs(mine))), 1e-12)
         error = float(np.max(np.abs(theirs - mine))) / largest
         checks.append(Check(f"energy {kind}", error, 1e-9, f"of largest |E_c| {largest:.3g} J"))
-    return checks
+    return checks + _compensation_check(s)
+
+
+def _compensation_check(s: Session) -> list[Check]:
+    """What of E_c was for the device's own forces, while force is on and no delay shifts it."""
+    theirs, torque = s["/energy/compensation"], s["/device/compensation_torque"]
+    if not np.any(torque):
+        return []
+    mine = _running_sum(np.sum(torque[:-1] * np.diff(s["/device/position"], axis=0), axis=1))
+    largest = max(float(np.max(np.abs(mine))), 1e-12)
+    error = float(np.max(np.abs(theirs - mine))) / largest
+    return [Check("energy compensation", error, 1e-9, f"of its largest {largest:.3g} J")]
 
 
 def check_proxy_balance(s: Session) -> list[Check]:

@@ -131,7 +131,7 @@ def _system(p: Prediction, proxy: Proxy, the: Law, drive: Array, momentum: Array
 
 def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSolve) -> Solved:
     """(6) to (8): everything a tick does, from what was before it."""
-    n, t, limit = s.dof, s.tick, s.torque_limit
+    n, t, limit = s.dof, s.tick, s.law_limit
     b_v = s.number("coupling.b_v")
     drive = p.drive(t)
     momentum = 2 / t * apply(proxy.m, s["/proxy/velocity"])

@@ -18,10 +18,10 @@ def expected_input(s: Session) -> Array:
 
     With the right model and the true torque that is f1 (/hand/torque) itself. A model wrong by a
     factor e sees e (M a + C v) - tau instead of M a + C v - tau = f1, and an observer without the
-    saturation remedy takes the commanded torque for tau.
+    saturation remedy takes the commanded torque for tau. Held weight and springs cancel.
     """
     own = s.damping[:-1] * np.diff(s["/device/position"], axis=0) / s.tick
-    motor = s["/device/motor_torque"][:-1]
+    motor = s.law_torque[:-1]
     remedy = np.array(s.settings["observer.anti_windup"], dtype=bool)[:-1, None]
     assumed = np.where(remedy, motor, s["/device/commanded_torque"][:-1])
     believed = s.number("model.inertia_error")[:-1]
@@ -64,6 +64,9 @@ def check_observer(s: Session) -> list[Check]:
         return [not_applicable(name, "the velocity is filtered")]
     if np.any(s.number("device.encoder_step") > 0) or np.any(s.friction > 0):
         return [not_applicable(name, "encoder steps or friction")]
+    for force in ("gravity", "springs"):
+        if np.any(s.number(f"device.{force}") != s.number(f"model.{force}")):
+            return [not_applicable(name, f"the device's {force} that nobody holds")]
     settled = s["/time"] - s["/time"][0] > _SETTLING
     if settled.sum() < 100:
         return [not_applicable(name, "shorter than 0.2 s")]

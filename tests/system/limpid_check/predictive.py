@@ -55,7 +55,7 @@ def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen
     w = np.linalg.solve(left, (r.u_n - apply(c_le, u) - tau1 - tau2)[:, :, None])[:, :, 0]
     off = tau2 - the.proxy.at(w, u, s["/proxy/contact_torque"])
     x = p.x + off / s.number("coupling.k_vc")
-    limit = s.torque_limit
+    limit = s.law_limit
     held = np.abs(np.abs(tau2 + s.number("coupling.b_v") * u) - limit) < 1e-9 * limit
     known = tells & ~np.any(held | (np.abs(tau1) >= limit), axis=1)
     known[-1] = False

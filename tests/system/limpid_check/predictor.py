@@ -176,7 +176,7 @@ class _Input:
 
 def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
     """And the pair at the first row."""
-    given = _Input(s["/device/measured_position"], s["/device/motor_torque"], gains(s),
+    given = _Input(s["/device/measured_position"], s.law_torque, gains(s),
                    s.number("device.encoder_step")[:, 0] / 2,
                    s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen,
                    np.zeros(len(s), dtype=bool))  # fmt: skip

@@ -135,9 +135,9 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
     moved = np.diff(y, axis=0, prepend=y[:1])
     edge = 2 * np.pi * s.number("coupling.band")[:, 0]
     step = s.number("device.encoder_step")[:, 0]
-    held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.torque_limit)
+    held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.law_limit)
     held = held + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
-    given = np.sum(s["/device/motor_torque"][:-1] * moved[1:], axis=1)
+    given = np.sum(s.law_torque[:-1] * moved[1:], axis=1)
     leak, cancelled = _leaks(s, p), _share_cancelled(s)
     pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
     touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed])

@@ -52,6 +52,9 @@ _LATER = (
     "/energy/contact_potential",
 )
 
+# Of sessions with compensation; nothing where they lack it.
+_COMPENSATION = {"/device/compensation_torque": 0, "/energy/compensation": 1}
+
 ATTRIBUTES = (
     "format", "version", "tick", "dof", "created", "app_version",
     "seed", "source", "config", "device_urdf", "scene",
@@ -79,6 +82,10 @@ _DEFAULTS: Mapping[str, Any] = {
     "device.friction": None,
     "device.damping": None,
     "device.torque_limit": None,
+    "model.gravity": False,
+    "model.springs": False,
+    "device.gravity": False,
+    "device.springs": False,
 }
 
 
@@ -141,6 +148,17 @@ class Session:
         """(N, n) [N m]."""
         return self.joint_number("device.torque_limit", [j.effort for j in self.chain.joints])
 
+    @property
+    def law_torque(self) -> Array:
+        """What the motors gave, but for the device's own forces (N, n) [N m]."""
+        return self["/device/motor_torque"] - self["/device/compensation_torque"]
+
+    @property
+    def law_limit(self) -> Array:
+        """What of the motors' limit is left to the law, a tenth at least (N, n) [N m]."""
+        left = self.torque_limit - np.abs(self["/device/compensation_torque"])
+        return np.maximum(left, 0.1 * self.torque_limit)
+
 
 def flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """TOML tables as dotted keys."""
@@ -172,6 +190,11 @@ def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
         if values.dtype != kind:
             raise SessionError(f"{path} is {values.dtype}, expected {np.dtype(kind)}")
         data[path] = values
+    for path, columns in _COMPENSATION.items():
+        nothing = np.zeros((rows,) if columns == 1 else (rows, dof))
+        data[path] = file[path][()] if path in file else nothing
+        if data[path].shape != nothing.shape:
+            raise SessionError(f"{path} has shape {data[path].shape}, expected {nothing.shape}")
     predictive = np.any(data["/coupling/kind"] == 2)
     for path in _LATER:
         if path in file:

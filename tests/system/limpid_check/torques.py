@@ -107,9 +107,10 @@ def switching_rows(s: Session) -> Array:
 
 
 def check_motors(s: Session) -> list[Check]:
-    """Motors get the commanded torque clipped at their limit; never more than the limit."""
+    """Motors get the commanded torque, and what holds the device's own forces, clipped at their limit; never more than the limit."""
     limit = s.torque_limit
-    commanded, motor = s["/device/commanded_torque"], s["/device/motor_torque"]
+    commanded = s["/device/commanded_torque"] + s["/device/compensation_torque"]
+    motor = s["/device/motor_torque"]
     error = np.abs(motor - np.clip(commanded, -limit, limit))
     steady = ~switching_rows(s)
     above = float(np.max(np.abs(motor) - limit))

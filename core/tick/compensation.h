@@ -1,0 +1,87 @@
+// What the device itself pulls with, and the motors take off the hand: weight, springs, and part of
+// its friction.
+//
+// Weight and springs have a potential: what the motors give for them on the way up they get back on
+// the way down. Of the friction f_c the torque is s f_c sigma(v), |sigma| <= 1, s < 1. So it never
+// puts out more than s f_c |v|, whatever it takes v for, late or noisy, and the device itself takes
+// f_c |v| at the same time: motors and friction together stay passive as long as s times what is
+// believed is no more than what there is. Near rest sigma is smooth, and v is filtered and wide
+// enough for the encoder's steps, so that it does not chatter where the device stands still.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/coupling/setting.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+
+// Where down is, in the base's frame.
+enum class Down : std::uint8_t { as_file, minus_z, plus_z, minus_x, plus_x, minus_y, plus_y };
+inline constexpr std::array<const char*, 7> kDowns{"file", "-z", "+z", "-x", "+x", "-y", "+y"};
+
+// [m/s^2]; of_arm: as the arm's file has it.
+Vec3 gravity_of(Down down, const Vec3& of_arm);
+
+struct CompensationSettings {
+  bool holds_weight = false;
+  Down down = Down::as_file;
+  double friction_share = 0;  // s, of the Coulomb friction [-]
+  bool holds_springs = false;
+
+  static constexpr double kUsualShare = 0.7, kMostShare = 0.95;
+  friend bool operator==(const CompensationSettings&, const CompensationSettings&) = default;
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 4> settings() {
+    return {
+        {{"model.gravity", "hold the weight", &P::holds_weight, "-", 0, 1, 0, 1, false, true,
+          "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
+          "device does it by itself, as by counterweights."},
+         {"device.down", "down", choice<P, &P::down>(kDowns), "-", 0, 6, 0, 6, false, true,
+          "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
+          "side; file: as its file says, else -z."},
+         {"model.friction", "friction taken off", &P::friction_share, "-", 0, kMostShare, 0,
+          kMostShare, false, true,
+          "Share of the Coulomb friction that the motors take off the hand. Passive while that is "
+          "less than the friction that there is: leave what it may be wrong by."},
+         {"model.springs", "hold the springs", &P::holds_springs, "-", 0, 1, 0, 1, false, true,
+          "The motors hold against the device's own springs, as its file has them."}}};
+  }
+};
+
+template <int N>
+class Compensation {
+ public:
+  explicit Compensation(const ArmDescription& arm);
+
+  // As it is set, at rest.
+  void start(const CompensationSettings& p);
+  // The device was without torque for a while: it is taken to be at rest.
+  void rest() { v_.setZero(); }
+  // Nothing of it is on its way to another setting.
+  bool steady() const { return steady_; }
+
+  // Of the tick that begins [N m]: the arm at these frames and x, its velocity estimate v, friction
+  // as it is believed to be [N m], `dt` since the tick before [s]. Another setting is gone over to
+  // within half a second.
+  const Vec<N>& step(const CompensationSettings& p, const Arm<N>& arm,
+                     const typename Arm<N>::Frames& frames, const Vec<N>& x, const Vec<N>& v,
+                     const Vec<N>& friction, double encoder_step, double dt);
+
+ private:
+  Vec3 wanted_gravity(const CompensationSettings& p) const;
+
+  Vec3 own_gravity_;        // as the arm's file has it [m/s^2]
+  Vec<N> spring_, offset_;  // [N m/rad, N m]
+  Vec3 gravity_ = Vec3::Zero();
+  double share_ = 0, springs_ = 0;
+  bool steady_ = true;
+  Vec<N> v_, torque_;
+};
+
+extern template class Compensation<3>;
+extern template class Compensation<kAnyDof>;
+
+}  // namespace limpid
