@@ -22,8 +22,8 @@ void take(const toml::table& t, const char* key, double least, double most, doub
 
 CompensationSettings read_compensation(const toml::table& t) {
   CompensationSettings c;
-  c.holds_weight = t["gravity"].value_or(false);
-  c.holds_springs = t["springs"].value_or(false);
+  c.holds_weight = t["gravity"].value_exact<bool>().value_or(false);
+  c.holds_springs = t["springs"].value_exact<bool>().value_or(false);
   take(t, "friction", 0, CompensationSettings::kMostShare, c.friction_share);
   const auto down = std::ranges::find(kDowns, t["down"].value_or(std::string(kDowns[0])));
   if (down != kDowns.end()) c.down = static_cast<Down>(down - kDowns.begin());

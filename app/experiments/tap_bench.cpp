@@ -58,7 +58,8 @@ Trial TapBench::trial() const {
   p.hand_stiffness = grip_;
   p.hand_damping = kGripDamping;
   p.torque_limit = setting_.torque_limit;
-  p.device_delay = p.delay = static_cast<int>(std::lround(setting_.delay));
+  p.device_delay = static_cast<int>(std::lround(setting_.delay));
+  if (setting_.knows_delay) p.delay = p.device_delay;
   const auto at = [&](double t) { return Vec3(kAhead, 0, kSurface + kAbove - height(t)); };
   const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
   Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};

@@ -18,7 +18,8 @@ struct TapSetting {
   bool expects_a_mass = true;  // a second predictor, for a hand with mass
   double press = 4;            // of the hand while it holds, if the wall bears it [N]
   double torque_limit = 100;   // of every motor [N m]
-  double delay = 0;            // of the device, known to the law [ticks]
+  double delay = 0;            // of the device [ticks]
+  bool knows_delay = true;     // the law does
 
   friend bool operator==(const TapSetting&, const TapSetting&) = default;
 };

@@ -40,23 +40,25 @@ Curve curve(std::size_t panel, const std::string& label, const char* ink, const 
 std::vector<Curve> all_curves() {
   using enum CouplingKind;
   const TapSetting exact{}, fine{.encoder_step = kFine}, paper{.kind = proposed},
-      unprepared{.expects_a_mass = false};
+      unprepared{.expects_a_mass = false}, unaware{.knows_delay = false};
   const std::string quantised = fmt::format("predictive, encoder {} rad", kFine);
-  return {curve(0, "predictive", kPredictiveInk, exact, &TapSetting::eta, kEtas),
-          curve(0, quantised, kPredictiveTint, fine, &TapSetting::eta, kEtas),
-          curve(0, "proposed", kProposedInk, paper, &TapSetting::eta, kEtas),
-          curve(1, "predictive", kPredictiveInk, exact, &TapSetting::tick, kTicks),
-          curve(1, quantised, kPredictiveTint, fine, &TapSetting::tick, kTicks),
-          curve(1, "proposed", kProposedInk, paper, &TapSetting::tick, kTicks),
-          curve(2, "predictive", kPredictiveInk, exact, &TapSetting::encoder_step, kSteps),
-          curve(2, "proposed", kProposedInk, paper, &TapSetting::encoder_step, kSteps),
-          curve(3, "predictive", kPredictiveInk, exact, &TapSetting::hand_mass, kMasses),
-          curve(3, "predictive, one predictor", kEnergyInk, unprepared, &TapSetting::hand_mass,
-                kMasses),
-          curve(3, "proposed", kProposedInk, paper, &TapSetting::hand_mass, kMasses),
-          curve(4, "predictive, delay known", kPredictiveInk, exact, &TapSetting::delay, kDelays),
-          curve(4, quantised, kPredictiveTint, fine, &TapSetting::delay, kDelays),
-          curve(4, "proposed", kProposedInk, paper, &TapSetting::delay, kDelays)};
+  return {
+      curve(0, "predictive", kPredictiveInk, exact, &TapSetting::eta, kEtas),
+      curve(0, quantised, kPredictiveTint, fine, &TapSetting::eta, kEtas),
+      curve(0, "proposed", kProposedInk, paper, &TapSetting::eta, kEtas),
+      curve(1, "predictive", kPredictiveInk, exact, &TapSetting::tick, kTicks),
+      curve(1, quantised, kPredictiveTint, fine, &TapSetting::tick, kTicks),
+      curve(1, "proposed", kProposedInk, paper, &TapSetting::tick, kTicks),
+      curve(2, "predictive", kPredictiveInk, exact, &TapSetting::encoder_step, kSteps),
+      curve(2, "proposed", kProposedInk, paper, &TapSetting::encoder_step, kSteps),
+      curve(3, "predictive", kPredictiveInk, exact, &TapSetting::hand_mass, kMasses),
+      curve(3, "predictive, one predictor", kEnergyInk, unprepared, &TapSetting::hand_mass,
+            kMasses),
+      curve(3, "proposed", kProposedInk, paper, &TapSetting::hand_mass, kMasses),
+      curve(4, "predictive, delay known", kPredictiveInk, exact, &TapSetting::delay, kDelays),
+      curve(4, "the same, encoder 0.0001 rad", kPredictiveTint, fine, &TapSetting::delay, kDelays),
+      curve(4, "predictive, delay not known", kEnergyInk, unaware, &TapSetting::delay, kDelays),
+      curve(4, "proposed", kProposedInk, paper, &TapSetting::delay, kDelays)};
 }
 
 // What theory says, in the hand of the benches.

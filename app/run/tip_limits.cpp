@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "app/run/analysis.h"
 
@@ -14,11 +15,22 @@ namespace {
 // Where the predictive coupling was found to end, with the built-in arm (experiment zwidth): walls
 // up to 20,000 N/m were tried at 1 ms, at 2 ms they end at 3,500; a step of the encoder may change
 // the wall's force by so much, and be so much of a speed; hands heavier than expected leave half of
-// what theory does; a tick of delay that it does not know of.
-constexpr double kTried = 20000, kTriedTick = 0.001;        // [N/m], [s]
-constexpr double kFineStep = 0.11, kCoarseStep = 0.22;      // [N]
-constexpr double kFineSpeed = 0.3, kSoftest = 100;          // [rad/s], [N/m]
-constexpr double kCoarseWall = 2000, kUnknownDelay = 2000;  // [N/m]
+// what theory does; delays.
+constexpr double kTried = 20000, kTriedTick = 0.001;    // [N/m], [s]
+constexpr double kFineStep = 0.11, kCoarseStep = 0.22;  // [N]
+constexpr double kFineSpeed = 0.3, kSoftest = 100;      // [rad/s], [N/m]
+constexpr double kCoarseWall = 2000;                    // [N/m]
+// With a delay, by its milliseconds: one that it reckons with, the same with steps of 1e-4 rad, and
+// one that it does not reckon with.
+constexpr double kDelayedStep = 1e-4;  // [rad]
+constexpr std::array kKnown{kTried, 3500.0, 1000.0, 270.0};
+constexpr std::array kKnownStepped{kTried, 2300.0};
+constexpr std::array kUnknown{kTried, 3500.0, 1400.0, 620.0, 290.0, 240.0, 190.0};
+
+double delayed(std::span<const double> walls, double delay) {
+  const auto i = static_cast<std::size_t>(std::lround(1000 * delay));
+  return i < walls.size() ? walls[i] : kSoftest;
+}
 
 TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const Parameters& p) {
   TipLimits::Wall wall{kTried * std::min(1.0, std::pow(kTriedTick / p.tick, 2.5)),
@@ -39,11 +51,13 @@ TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const 
   if (p.hand_mass_at_tip > p.hand_mass) {
     bound(mistaken_wall(l.tip, s) / 2, "a hand that is heavier than the predictor takes it for");
   }
-  if (std::abs(l.delay - p.delay * p.tick) > p.tick / 2 * (1 + 1e-9)) {
-    bound(kUnknownDelay,
-          fmt::format("a delay of {:.1f} ms that it does not reckon with: model.delay is {}",
-                      1e3 * l.delay, p.delay));
-  }
+  const bool known = std::abs(l.delay - p.delay * p.tick) <= p.tick / 2 * (1 + 1e-9);
+  const std::span<const double> walls = !known              ? std::span<const double>(kUnknown)
+                                        : q >= kDelayedStep ? std::span<const double>(kKnownStepped)
+                                                            : std::span<const double>(kKnown);
+  bound(delayed(walls, known ? l.delay : std::abs(l.delay - p.delay * p.tick)),
+        fmt::format("a delay of {:.1f} ms, as measured with the built-in arm{}", 1e3 * l.delay,
+                    known ? "" : "; it is not reckoned with (model.delay)"));
   return wall;
 }
 

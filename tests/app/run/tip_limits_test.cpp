@@ -34,7 +34,11 @@ TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   late.device_delay = 1;
   EXPECT_LT(wall(limits(late), predictive), 5000);
   late.delay = 1;
-  EXPECT_EQ(wall(limits(late), predictive), wall(limits(exact), predictive));
+  EXPECT_NEAR(wall(limits(late), predictive), 3500, 100) << "as zwidth finds";
+  late.encoder_step = 1e-4;
+  EXPECT_NEAR(wall(limits(late), predictive), 2300, 100);
+  late.device_delay = late.delay = 5;
+  EXPECT_LE(wall(limits(late), predictive), 100);
 }
 
 TEST(TipLimits, OfThePapersLawsAreItsSpringAndItsLag) {
@@ -52,10 +56,11 @@ TEST(TipLimits, ReckonWithTheDeviceAsItWasMeasured) {
   const TipLimits unknown = tip_limits(arm, rest_pose(arm), {}, {});
   EXPECT_EQ(unknown.delay, 0.0016);
   EXPECT_NEAR(unknown.every_hand, limits({}).every_hand * 0.5 / 2.1, 1e-9);
-  EXPECT_LE(wall(unknown, CouplingKind::predictive), 2000) << "it does not reckon with it";
+  EXPECT_NEAR(wall(unknown, CouplingKind::predictive), 1400, 50) << "it does not reckon with it";
   Parameters p;
   p.delay = 2;
-  EXPECT_GT(wall(tip_limits(arm, rest_pose(arm), p, {}), CouplingKind::predictive), 2000);
+  const TipLimits known = tip_limits(arm, rest_pose(arm), p, {});
+  EXPECT_NEAR(wall(known, CouplingKind::predictive), 1000, 50);
 }
 
 TEST(TipLimits, KnowTheStiffestThingOfTheScene) {

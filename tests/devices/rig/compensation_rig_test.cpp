@@ -191,7 +191,17 @@ struct HeldDevice : testing::Test {
     EXPECT_TRUE(told().isZero(0));
   }
 
-  const ArmDescription arm = test::omni();
+  // Heavier than the built-in arm, and out of balance.
+  static ArmDescription heavy() {
+    ArmDescription arm = test::omni();
+    for (Link& link : arm.links) {
+      link.mass *= 3;
+      link.com += Vec3(0.04, 0, 0);
+    }
+    return arm;
+  }
+
+  const ArmDescription arm = heavy();
   const Eigen::Vector3d x0 = rest_pose(arm);
   Eigen::Vector3d weight;
   Parameters p;
