@@ -10,7 +10,6 @@
 #include "app/base/interrupt.h"
 #include "app/cli/progress.h"
 #include "app/live/rtkit.h"
-#include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "app/run/replay.h"
 #include "devices/files/scene/scene_file.h"
@@ -82,9 +81,12 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
       input.scene.empty() ? scene_of_device(plan_.arm) : std::filesystem::path(input.scene);
   plan_.document = read_scene(scene, plan_.arm);
   plan_.models = build_meshes(plan_.document);
-  plan_.parameters = make_parameters(input, plan_.arm);
+  const DeviceNotes& notes = hub.notes(hub.in_use());
+  Parameters usual = make_parameters(input, plan_.arm);
+  static_cast<CompensationSettings&>(usual) = notes.compensation;  // as the window has it
+  plan_.parameters = make_parameters(input, usual);
   plan_.hand.source = "device";
-  limits_ = hub.notes(hub.in_use()).limits;
+  limits_ = notes.limits;
   catch_interrupts();
   run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), rtkit());
 }
