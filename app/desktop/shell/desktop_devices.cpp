@@ -44,7 +44,8 @@ void Desktop::take_compensation(bool of_device) {
 }
 
 void Desktop::note_compensation() {
-  if (!compensated_ || ImGui::IsAnyItemActive()) return;
+  const bool sliding = ImGui::GetCurrentContext() != nullptr && ImGui::IsAnyItemActive();
+  if (!compensated_ || sliding) return;
   const CompensationSettings& now = settings_.parameters;
   CompensationSettings& noted = devices_.hub().notes(compensated_->first).compensation;
   if (noted == now) return;

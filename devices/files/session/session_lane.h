@@ -38,6 +38,7 @@ class SessionLane {
 
  private:
   std::uint64_t pending_rows() const;
+  void create_device(hid_t group);
   void create_column(hid_t group, const ColumnInfo& column);
   void create_events(hid_t group);
   void create_check(hid_t group);

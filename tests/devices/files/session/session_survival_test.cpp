@@ -335,12 +335,12 @@ int record_until_it_fails(const fs::path& out) {
 TEST(FullDisk, IsAnErrorAndKeepsWhatWasFlushed) {
   // The columns have room for eight seconds each before the first has more, so a limit of length
   // ends the recording with the last of them that is whole.
-  for (const rlim_t bytes : {4'000'000, 10'000'001, 13'333'333}) {
+  for (const rlim_t bytes : {4'300'000, 10'000'001, 13'333'333}) {
     const test::TempDir dir;
     EXPECT_EQ(exit_status_with_limit(bytes, &record_until_it_fails, dir / "a.h5"), 0) << bytes;
     const auto left = read_session(dir / "a.h5.part");
-    // A row of three joints takes at most 75 numbers.
-    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (75 * 8)) << bytes;
+    // A row of three joints takes at most 79 numbers.
+    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (79 * 8)) << bytes;
     expect_sample(left);
     EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, left.size());
   }
