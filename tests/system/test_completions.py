@@ -27,7 +27,7 @@ zmodload zsh/zpty
 zpty shell zsh -f -i
 tell() { zpty -w shell "$1" }
 tell "PS1= fpath=($1:h \$fpath) PATH=$PATH; cd $PWD"
-tell 'autoload -Uz compinit; compinit -u -d /dev/null'
+tell 'autoload -Uz compinit; compinit -u -D'
 tell 'compadd() { local -a found; builtin compadd -O found "$@"; print -rl -- "<"$^found">"; builtin compadd "$@" }'
 tell 'zstyle ":completion:*" verbose no; bindkey "^I" complete-word; print R\EADY'
 zpty -r shell answer '*READY*'
