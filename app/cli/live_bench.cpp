@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/cli/progress.h"
 #include "app/live/rtkit.h"
 #include "app/run/own_world.h"
 #include "app/run/replay.h"
+#include "devices/files/place.h"
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid {
@@ -100,6 +103,7 @@ void LiveBench::touch(const SceneDocument& document) {
 bool LiveBench::ask(const std::string& instruction) {
   fmt::print("{}\n", instruction);
   if (yes_) return run_->pass(kBreath, interrupted);
+  tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before was no answer to this
   fmt::print("{} will push. Enter begins, Ctrl-C ends: ", name_);
   std::fflush(stdout);
   while (!line_typed()) {
@@ -130,42 +134,60 @@ std::unique_ptr<Recorder> LiveBench::recorder(const LiveTask& task, const Parame
   return std::make_unique<Recorder>(task.out, info, p, task.force, Recorder::kLiveRoom);
 }
 
+// What has no force says nothing of a coupling.
+void LiveBench::WithoutForce::judge(double seconds) const {
+  if (time <= kWorthSaying) return;
+  fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", time, explain(why));
+  if (time > seconds * kMostWithoutForce) {
+    throw std::runtime_error("too long to say anything of the coupling; once more");
+  }
+}
+
+bool LiveBench::lead(const LiveTask& task, double T, const LiveRun::Row& row, WithoutForce& off) {
+  Progress progress({.title = "live", .whole = task.seconds, .unit = "s", .rate = ""});
+  const RowLayout layout(plan_.arm.dof());
+  double time = 0;
+  return run_->pass(task.seconds, interrupted, [&](std::span<const double> tick) {
+    progress.at(time += T);
+    const double state = layout.in(tick, Column::force_state)[0];
+    if (state != 0) {
+      off.time += T;
+      off.why = static_cast<ForceState>(state);
+    }
+    if (row) row(tick);
+  });
+}
+
 bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveRun::Row& row) {
-  // Before the hand is asked for anything.
+  // Opened before the hand is asked for anything; one that nothing came of takes no file's place.
   auto recording = task.out.empty() ? nullptr : recorder(task, p);
+  const auto end = [&] {
+    run_->cut();
+    if (std::exchange(recording, nullptr)) {
+      std::error_code none;
+      std::filesystem::remove(part_of(task.out), none);
+    }
+    return run_->finish_recording();
+  };
   run_->set(p);
-  double without_force = 0;  // [s]
-  ForceState why = ForceState::on;
-  bool whole = ask(task.instruction) && await_force();
-  if (recording) {
-    whole ? run_->record(std::move(recording)) : recording->finish();
+  WithoutForce off;
+  bool whole = false;
+  std::uint64_t lost = 0;
+  try {
+    whole = ask(task.instruction) && await_force();
+    if (whole && recording) run_->record(std::move(recording));
+    whole = whole && lead(task, p.tick, row, off);
+    lost = end();
+  } catch (...) {
+    end();  // what came up to here is whole
+    throw;
   }
-  if (whole) {
-    Progress progress({.title = "live", .whole = task.seconds, .unit = "s", .rate = ""});
-    double time = 0;
-    const RowLayout layout(plan_.arm.dof());
-    whole = run_->pass(task.seconds, interrupted, [&](std::span<const double> tick) {
-      progress.at(time += p.tick);
-      const double state = layout.in(tick, Column::force_state)[0];
-      if (state != 0) {
-        without_force += p.tick;
-        why = static_cast<ForceState>(state);
-      }
-      if (row) row(tick);
-    });
-  }
-  run_->cut();
-  if (const std::uint64_t lost = run_->finish_recording(); lost > 0) {
+  if (lost > 0) {
     throw std::runtime_error(
         fmt::format("{} ticks found no room and are missing from {}", lost, task.out.string()));
   }
   if (whole && run_->now().diverged) throw std::runtime_error("the coupling became unstable");
-  if (whole && without_force > kWorthSaying) {
-    fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", without_force, explain(why));
-    if (without_force > task.seconds * kMostWithoutForce) {
-      throw std::runtime_error("too long to say anything of the coupling; once more");
-    }
-  }
+  if (whole) off.judge(task.seconds);
   return whole;
 }
 

@@ -48,8 +48,17 @@ class LiveBench {
   void touch(const SceneDocument& document);
 
  private:
+  // Of a task: how long, and why last.
+  struct WithoutForce {
+    double time = 0;  // [s]
+    ForceState why = ForceState::on;
+
+    void judge(double seconds) const;
+  };
+
   bool ask(const std::string& instruction);
   bool await_force();
+  bool lead(const LiveTask& task, double T, const LiveRun::Row& row, WithoutForce& off);
   std::unique_ptr<Recorder> recorder(const LiveTask& task, const Parameters& p) const;
 
   bool yes_;

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import pty
 import signal
 import subprocess
 import sys
@@ -73,6 +75,26 @@ class Live(unittest.TestCase):
                      "live-coordination/standard.h5", "live-coordination/proposed.h5"):
             self.assertTrue((out / name).exists(), name + ": " + result.err)
         self.assertIn("slope of the error", result.out)
+
+    def test_begins_by_no_enter_of_before_and_leaves_the_old_file_then(self) -> None:
+        self.plug()
+        out = self.folder / "old.h5"
+        out.write_text("precious")
+        keyboard, terminal = pty.openpty()
+        self.addCleanup(os.close, keyboard)
+        run = subprocess.Popen([LIMPID, "run", "--live", "--duration", "60", "--record", out,
+                                "--force"], stdin=terminal, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+        os.close(terminal)
+        os.write(keyboard, b"\n\n")
+        time.sleep(4)
+        run.send_signal(signal.SIGINT)
+        asked, said = run.communicate(timeout=60)
+        self.assertIn("Enter begins", asked)
+        self.assertEqual(said, "limpid: stopped\n", "it has begun")
+        self.assertEqual(run.returncode, 1)
+        self.assertEqual(out.read_text(), "precious")
+        self.assertEqual(list(self.folder.glob("*.part")), [])
 
     def test_ends_when_the_device_is_pulled_out_or_on_ctrl_c(self) -> None:
         for what in ("pulled out", "Ctrl-C"):
