@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <ctime>
-#include <map>
 #include <memory>
 #include <stdexcept>
 

@@ -24,11 +24,7 @@ std::string processor() {
 // In a thread that ends at once: this one stays as it is.
 std::string granted() {
   std::string said;
-  std::thread([&said] {
-    said = become_realtime([](pid_t thread, int priority) {
-             return ask_rtkit(thread, priority, nullptr);
-           }).explanation;
-  }).join();
+  std::thread([&said] { said = become_realtime(by_rtkit()).explanation; }).join();
   return said.substr(0, said.find(';'));
 }
 

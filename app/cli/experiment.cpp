@@ -29,16 +29,18 @@ struct ExperimentOptions {
   InputOptions input;  // of a live one
 };
 
-std::vector<const Experiment*> chosen(const std::string& name) {
-  std::vector<const Experiment*> all;
+// The one of that name, or all.
+template <class E>
+std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
+                             const char* refusal) {
+  std::vector<const E*> wanted;
   std::string names = "all";
-  for (const Experiment& e : experiments()) {
-    all.push_back(&e);
+  for (const E& e : known) {
+    if (name == "all" || name == e.name) wanted.push_back(&e);
     names += fmt::format(", {}", e.name);
   }
-  if (name == "all") return all;
-  if (const Experiment* one = find_experiment(name)) return {one};
-  throw UsageError(fmt::format("\"{}\" is not an experiment; allowed: {}", name, names));
+  if (!wanted.empty()) return wanted;
+  throw UsageError(fmt::format("\"{}\"{}; allowed: {}", name, refusal, names));
 }
 
 void print(const std::string& name, const Outcome& outcome) {
@@ -82,7 +84,7 @@ int finish(const ExperimentOptions& options, const std::vector<std::string>& fai
 }
 
 int run(const ExperimentOptions& options) {
-  const std::vector<const Experiment*> wanted = chosen(options.name);
+  const auto wanted = chosen(experiments(), options.name, " is not an experiment");
   prepare_out(options.out);
   catch_interrupts();
   std::vector<std::string> failed;  // checks
@@ -124,20 +126,8 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
   return lab;
 }
 
-std::vector<const LiveExperiment*> chosen_live(const std::string& name) {
-  std::vector<const LiveExperiment*> all;
-  std::string names = "all";
-  for (const LiveExperiment& e : live_experiments()) {
-    all.push_back(&e);
-    names += fmt::format(", {}", e.name);
-  }
-  if (name == "all") return all;
-  if (const LiveExperiment* one = find_live_experiment(name)) return {one};
-  throw UsageError(fmt::format("\"{}\": not beside --live; allowed: {}", name, names));
-}
-
 int run_live(const ExperimentOptions& options) {
-  const std::vector<const LiveExperiment*> wanted = chosen_live(options.name);
+  const auto wanted = chosen(live_experiments(), options.name, ": not beside --live");
   prepare_out(options.out);
   LiveBench bench(options.live, options.input);
   std::vector<std::string> failed;  // checks

@@ -34,10 +34,6 @@ bool line_typed() {
   return true;
 }
 
-AskForPriority rtkit() {
-  return [](pid_t thread, int priority) { return ask_rtkit(thread, priority, nullptr); };
-}
-
 }  // namespace
 
 void LiveOptions::add(CLI::App& command) {
@@ -74,7 +70,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   if (!yes_ && isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may push; needed: --yes, or a terminal");
   }
-  DeviceHub hub(device_book_file(), rtkit());
+  DeviceHub hub(device_book_file(), by_rtkit());
   std::unique_ptr<Device> device = open_device(*options.device, hub, "");
   const DeviceTraits& traits = device->traits();
   name_ = traits.name;
@@ -91,7 +87,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   plan_.hand.source = "device";
   limits_ = notes.limits;
   catch_interrupts();
-  run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), rtkit());
+  run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), by_rtkit());
 }
 
 void LiveBench::touch(const SceneDocument& document) {

@@ -65,8 +65,7 @@ struct Granted {
 Granted ask_for_all() {
   Granted granted;
   std::thread([&granted] {
-    granted.report = become_realtime(
-        [](pid_t thread, int priority) { return ask_rtkit(thread, priority, nullptr); });
+    granted.report = become_realtime(by_rtkit());
     granted.timer_slack = prctl(PR_GET_TIMERSLACK);
   }).join();
   return granted;

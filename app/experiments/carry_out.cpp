@@ -67,13 +67,6 @@ void write_verdict(const std::string& name, const Outcome& outcome,
 
 std::span<const Experiment> experiments() { return kExperiments; }
 
-const Experiment* find_experiment(const std::string& name) {
-  for (const Experiment& e : kExperiments) {
-    if (name == e.name) return &e;
-  }
-  return nullptr;
-}
-
 void write_outcome(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& dir) {
   std::filesystem::create_directories(dir);

@@ -105,7 +105,6 @@ struct Experiment {
 
 // The paper's in its order, then those of the predictive coupling.
 std::span<const Experiment> experiments();
-const Experiment* find_experiment(const std::string& name);
 
 // Writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError.
 void write_outcome(const std::string& name, const Outcome& outcome,

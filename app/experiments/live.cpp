@@ -52,13 +52,6 @@ std::vector<Eigen::VectorXd> smooth(const std::vector<Eigen::VectorXd>& raw, std
 
 std::span<const LiveExperiment> live_experiments() { return kExperiments; }
 
-const LiveExperiment* find_live_experiment(const std::string& name) {
-  for (const LiveExperiment& e : kExperiments) {
-    if (name == e.name) return &e;
-  }
-  return nullptr;
-}
-
 Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
                   const std::filesystem::path& dir) {
   Outcome outcome = experiment.run(lab);

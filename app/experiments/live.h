@@ -37,7 +37,6 @@ struct LiveExperiment {
 inline std::string live_name(const LiveExperiment& e) { return std::string("live-") + e.name; }
 
 std::span<const LiveExperiment> live_experiments();
-const LiveExperiment* find_live_experiment(const std::string& name);
 
 // Runs one and writes DIR/live-NAME.csv, .png, .svg and .json. Errors: as carry_out().
 Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,

@@ -69,4 +69,8 @@ bool ask_rtkit(pid_t tid, int priority, std::string* why) {
   return answer ? true : refused(why, error.message);
 }
 
+AskForPriority by_rtkit() {
+  return [](pid_t tid, int priority) { return ask_rtkit(tid, priority, nullptr); };
+}
+
 }  // namespace limpid

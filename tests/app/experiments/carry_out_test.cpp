@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "app/experiments/experiment.h"
@@ -95,8 +96,8 @@ TEST_F(CarryOut, ReportsPastAVerdictThatIsDamaged) {
 }
 
 TEST(Experiments, HaveNamesOfTheirOwn) {
-  for (const Experiment& e : experiments()) EXPECT_EQ(find_experiment(e.name), &e);
-  EXPECT_EQ(find_experiment("none"), nullptr);
+  std::set<std::string> names;
+  for (const Experiment& e : experiments()) EXPECT_TRUE(names.insert(e.name).second) << e.name;
 }
 
 }  // namespace

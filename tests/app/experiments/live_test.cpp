@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "app/experiments/contact_series.h"
 #include "app/experiments/excitation.h"
@@ -61,12 +63,19 @@ class LiveExperiments : public testing::Test {
   double stiffness_ = 600;
 };
 
+Outcome run_the(const char* name, LiveLaboratory& bench) {
+  const auto all = live_experiments();
+  const auto it = std::ranges::find(all, std::string_view(name),
+                                    [](const LiveExperiment& e) { return e.name; });
+  return it->run(bench);
+}
+
 Vec3 pressing(double t) { return kStart - Vec3(0, 0, 0.031 * (1 - std::cos(2 * t))); }
 Vec3 swinging(double t) { return kStart + 0.03 * Vec3(0, std::sin(5 * t), 0.5 * std::sin(7 * t)); }
 
 TEST_F(LiveExperiments, CoordinationTellsTheCouplingsApart) {
   LiveLaboratory bench = lab({pressing});
-  const Outcome outcome = find_live_experiment("coordination")->run(bench);
+  const Outcome outcome = run_the("coordination", bench);
   for (const Check& c : outcome.checks) EXPECT_TRUE(c.passed) << c.what << ": " << c.value;
   EXPECT_EQ(outcome.figure.panels.size(), 3u);
   ASSERT_EQ(asked_.size(), 2u);
@@ -75,25 +84,25 @@ TEST_F(LiveExperiments, CoordinationTellsTheCouplingsApart) {
 
 TEST_F(LiveExperiments, CoordinationFailsWhereNothingIsTouched) {
   LiveLaboratory bench = lab({swinging});
-  EXPECT_FALSE(find_live_experiment("coordination")->run(bench).passed());
+  EXPECT_FALSE(run_the("coordination", bench).passed());
 }
 
 TEST_F(LiveExperiments, InertiaFindsEtaWithoutTheHandsTorque) {
   LiveLaboratory bench = lab({swinging, 3000});
-  const Outcome outcome = find_live_experiment("inertia")->run(bench);
+  const Outcome outcome = run_the("inertia", bench);
   for (const Check& c : outcome.checks) EXPECT_TRUE(c.passed) << c.what << ": " << c.value;
 }
 
 TEST_F(LiveExperiments, PassivityFindsNoEnergyOnATable) {
   LiveLaboratory bench = lab({pressing});
-  const Outcome outcome = find_live_experiment("passivity")->run(bench);
+  const Outcome outcome = run_the("passivity", bench);
   for (const Check& c : outcome.checks) EXPECT_TRUE(c.passed) << c.what << ": " << c.value;
 }
 
 TEST_F(LiveExperiments, ZwidthStiffensTheWallUntilItBuzzes) {
   encoder_step_ = 1e-4;
   LiveLaboratory bench = lab({pressing});
-  const Outcome outcome = find_live_experiment("zwidth")->run(bench);
+  const Outcome outcome = run_the("zwidth", bench);
   for (const Check& c : outcome.checks) EXPECT_TRUE(c.passed) << c.what << ": " << c.value;
   ASSERT_GT(asked_.size(), 2u);
   EXPECT_NE(asked_[0].instruction.find("250 N/m"), std::string::npos);
@@ -102,7 +111,7 @@ TEST_F(LiveExperiments, ZwidthStiffensTheWallUntilItBuzzes) {
 
 TEST_F(LiveExperiments, ZwidthSaysThatTheWallWasNotTouched) {
   LiveLaboratory bench = lab({swinging});
-  EXPECT_THROW(find_live_experiment("zwidth")->run(bench), std::runtime_error);
+  EXPECT_THROW(run_the("zwidth", bench), std::runtime_error);
 }
 
 // Against rows made by hand: a torque of 0.7 M a, and one joint with a damper.
