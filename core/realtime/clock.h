@@ -43,7 +43,8 @@ class Clock {
   static constexpr nanoseconds kSpin{100'000};
 
   // start: deadline of tick 0; period: T > 0; spin: how long before a deadline to stop sleeping and
-  // to watch the clock instead. kSpin pays under real-time scheduling; else 0, or it does harm.
+  // to watch the clock instead. kSpin pays for motors under real-time scheduling; else 0, or it
+  // does harm.
   // catch_up: how many ticks may run back to back, 0 to kMaxCatchUp.
   Clock(nanoseconds start, nanoseconds period, nanoseconds spin, Time time = {},
         std::int64_t catch_up = kMaxCatchUp)

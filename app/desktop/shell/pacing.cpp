@@ -10,7 +10,7 @@ namespace limpid {
 namespace {
 
 constexpr auto kStirs = std::chrono::milliseconds(700);  // after a touch: hints fade, lists open
-constexpr auto kBeat = std::chrono::milliseconds(300);   // read-outs while nothing moves
+constexpr auto kBeat = std::chrono::milliseconds(500);   // read-outs while nothing moves
 constexpr double kNearly = 0.7;                          // of a refresh
 
 }  // namespace
