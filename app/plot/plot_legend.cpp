@@ -1,6 +1,7 @@
 #include "app/plot/plot_legend.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace limpid {
@@ -26,20 +27,31 @@ std::string without_shared_words(const std::string& label, const std::string& be
 
 }  // namespace
 
-float PlotLegend::sample_width(float scale) const { return samples_ ? (kSwatch + 5) * scale : 0; }
+float PlotLegend::sample_width(float scale) const {
+  return style_.samples ? (kSwatch + 5) * scale : 0;
+}
+
+// Empty where nothing is to be said of the curve.
+std::string PlotLegend::label_of(const std::string& whole, const std::string& before) const {
+  if (style_.samples) return whole;
+  if (style_.runs) return without_shared_words(whole, before);
+  std::string last = whole.substr(whole.rfind(' ') + 1);
+  const bool said = std::ranges::any_of(entries_, [&](const Entry& e) { return e.label == last; });
+  return said ? "" : last;
+}
 
 // Entries from left to right, in lines no wider than `width`, relative to (0, 0).
-ImVec2 PlotLegend::lay_out(const PlotSpec& spec, bool hidden_too, float width, float scale) {
+ImVec2 PlotLegend::lay_out(const PlotSpec& spec, float width, float scale) {
   entries_.clear();
   const float height = text_size(Face::small, "0").y + 2 * scale;
   ImVec2 at{0, 0};
   float widest = 0;
   std::string before;
   for (std::size_t i = 0; i < spec.curves.size(); ++i) {
-    if (!hidden_too && !spec.curves[i].visible) continue;
-    const std::string& whole = spec.curves[i].label;
-    std::string label = samples_ ? whole : without_shared_words(whole, before);
-    before = whole;
+    if (!style_.hidden_too && !spec.curves[i].visible) continue;
+    std::string label = label_of(spec.curves[i].label, before);
+    before = spec.curves[i].label;
+    if (label.empty()) continue;
     const float entry = sample_width(scale) + text_size(Face::small, label).x;
     if (at.x > 0 && at.x + entry > width) at = {0, at.y + height};
     const ScreenRect box{at, {at.x + entry, at.y + height}};
@@ -65,18 +77,17 @@ float PlotLegend::place(const Room& room, const PlotSpec& spec, float scale) {
   const float line = text_size(Face::small, "0").y + 2 * scale;
   const float under = outer.max.y - room.beside.max.y - room.least_height;
   const float most = std::max(1.0f, std::floor(under / line)) * line;
-  struct Style {
-    bool hidden_too, samples;
-  };
-  for (const Style style : {Style{true, true}, Style{false, true}, Style{false, false}}) {
-    samples_ = style.samples;
-    ImVec2 size = lay_out(spec, style.hidden_too, 1e6f, scale);
+  constexpr std::array kStyles{Style{true, true, true}, Style{false, true, true},
+                               Style{false, false, true}, Style{false, false, false}};
+  for (const Style& style : kStyles) {
+    style_ = style;
+    ImVec2 size = lay_out(spec, 1e6f, scale);
     if (size.x < beside) {
       move_entries({room.beside.max.x - 6 * scale - size.x, room.beside.max.y - size.y});
       return 0;
     }
-    size = lay_out(spec, style.hidden_too, right - left, scale);
-    if (size.y > most + 1 && style.samples) continue;
+    size = lay_out(spec, right - left, scale);
+    if (size.y > most + 1 && style.runs) continue;
     std::erase_if(entries_, [&](const Entry& e) { return e.box.max.y > most + 1; });
     move_entries({left, room.beside.max.y});
     return std::min(size.y, most);
@@ -94,9 +105,9 @@ int PlotLegend::curve_at(ImVec2 mouse) const {
 void PlotLegend::draw(const PlotFrame& frame, const PlotSpec& spec, int hovered) const {
   for (const Entry& e : entries_) {
     const Curve& curve = spec.curves[static_cast<std::size_t>(e.curve)];
-    if (samples_) draw_swatch(frame, e.box, curve, curve.visible ? 1.0f : 0.25f);
+    if (style_.samples) draw_swatch(frame, e.box, curve, curve.visible ? 1.0f : 0.25f);
     const Rgb text = e.curve == hovered ? frame.palette.text
-                     : samples_         ? frame.palette.muted
+                     : style_.samples   ? frame.palette.muted
                                         : ink(frame.palette, curve.ink, curve.shade);
     draw_text(frame.list, Face::small,
               {e.box.min.x + sample_width(frame.scale), e.box.min.y + frame.scale},

@@ -16,8 +16,9 @@ class PlotLegend {
   };
   // Beside the title where there is room; else on lines of its own under it, as many as leave the
   // curves their height, but one at least: what is hidden goes without a name first, then names
-  // are in their curves' colours without a sample and without the run's name that stands before
-  // them. Returns how much height it takes under the title.
+  // are in their curves' colours without a sample and without the words they share with the one
+  // before, then each quantity is named once for all runs. Returns how much height it takes under
+  // the title.
   float place(const Room& room, const PlotSpec& spec, float scale);
 
   // Curve under the mouse, -1 for none.
@@ -31,12 +32,16 @@ class PlotLegend {
     int curve;
     std::string label;
   };
-  ImVec2 lay_out(const PlotSpec& spec, bool hidden_too, float width, float scale);
+  struct Style {
+    bool hidden_too, samples, runs;
+  };
+  ImVec2 lay_out(const PlotSpec& spec, float width, float scale);
+  std::string label_of(const std::string& whole, const std::string& before) const;
   float sample_width(float scale) const;
   void move_entries(ImVec2 by);
 
   std::vector<Entry> entries_;
-  bool samples_ = true;
+  Style style_{true, true, true};
 };
 
 }  // namespace limpid

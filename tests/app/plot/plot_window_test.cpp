@@ -110,6 +110,9 @@ TEST_F(APlot, NamesBothRunsOfATwinInALineThatIsTooShortForTheirWholeNames) {
     ASSERT_LT(narrow, width(labels[0]) + width(labels[1]) + width(labels[2]) + width(labels[3]));
     legend.place({{{0, 0}, {narrow, 100}}, {{80, 0}, {narrow, 20}}, 84}, spec, 1);
     EXPECT_EQ(names(legend, {narrow, 100}).curves, (std::set{0, 1, 2, 3}));
+    const float narrower = narrow - 70;
+    legend.place({{{0, 0}, {narrower, 100}}, {{80, 0}, {narrower, 20}}, 84}, spec, 1);
+    EXPECT_EQ(names(legend, {narrower, 100}).curves, (std::set{0, 1})) << "each quantity once";
   });
 }
 
