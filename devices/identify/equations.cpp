@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace limpid {
 namespace {
@@ -29,6 +30,17 @@ bool moves_on(const MotionRecord& record, const Window& window, double time, Ind
 }
 
 }  // namespace
+
+Eigen::VectorXd independent_times(const MotionRecord& record, const Window& window,
+                                  double longest_delay) {
+  const double margin = 1.5 * window.reach() + longest_delay;
+  const double spacing = window.independent();
+  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
+  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
+  const auto count = static_cast<Index>(length / spacing);
+  return Eigen::VectorXd::LinSpaced(count, margin,
+                                    margin + static_cast<double>(count - 1) * spacing);
+}
 
 Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
                        const Window& window, const Eigen::VectorXd& times) {

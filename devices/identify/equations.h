@@ -22,6 +22,11 @@ struct Equations {
   Eigen::VectorXd of(const Eigen::MatrixXd& torque) const;
 };
 
+// Moments at which noise is independent, far enough within the record [s]. Errors:
+// std::invalid_argument where it is too short for any.
+Eigen::VectorXd independent_times(const MotionRecord& record, const Window& window,
+                                  double longest_delay);
+
 // `times` as in motion_at(); `gravity` in the base's frame [m/s^2].
 Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
                        const Window& window, const Eigen::VectorXd& times);

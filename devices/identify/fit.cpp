@@ -125,12 +125,7 @@ class Fit {
       throw std::invalid_argument(
           fmt::format("the arm has {} joints, the recorded motion {}", guess.dof(), n_));
     }
-    const double margin = 1.5 * window_.reach() + settings.longest_delay;
-    const double spacing = window_.independent();
-    const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
-    if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
-    const auto count = static_cast<Index>(length / spacing);
-    times_ = VectorXd::LinSpaced(count, margin, margin + static_cast<double>(count - 1) * spacing);
+    times_ = independent_times(record, window_, settings.longest_delay);
     rows_ = equations_of(guess, record, settings.gravity, window_, times_);
     count_ = Eigen::VectorX<Index>::Zero(n_);
     for (const Index j : rows_.joint) ++count_[j];
@@ -229,6 +224,22 @@ class Fit {
     out.arm.gravity = settings_.gravity;
     out.arm.delay = delay_;
     out.delay = {delay_, delay_deviation()};
+    out.moments = explained(z);
+    return out;
+  }
+
+  std::vector<Explained> explained(const VectorXd& z) const {
+    const Index of_links = kLinkParameters * n_;
+    std::vector<Explained> out;
+    for (Index i = 0; i < b_.size(); ++i) {
+      const Eigen::RowVectorXd row = rows_.A.row(i);
+      out.push_back({.time = times_[rows_.time[static_cast<std::size_t>(i)]],
+                     .joint = joint(i),
+                     .velocity = row[of_links + kOwnParameters * joint(i)],
+                     .torque = b_[i],
+                     .bodies = row.head(of_links).dot(z.head(of_links)),
+                     .own = row.tail(kOwnParameters * n_).dot(z.tail(kOwnParameters * n_))});
+    }
     return out;
   }
 

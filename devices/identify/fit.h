@@ -27,11 +27,22 @@ struct JointFinding {
   Eigen::Index samples = 0;  // independent ones that were used
 };
 
+// What there was to explain of a joint that moved on, at some moment.
+struct Explained {
+  double time = 0;  // since the first row [s]
+  Eigen::Index joint = 0;
+  double velocity = 0;  // [rad/s]
+  double torque = 0;    // of the motor [N m]
+  double bodies = 0;    // of it, for inertia and weight of the links [N m]
+  double own = 0;       // of it, for the joint's friction and springs [N m]
+};
+
 struct Identified {
   ArmDescription arm;  // the guess with what was found in it, gravity as it was said to be
   std::vector<JointFinding> joints;
   Eigen::VectorXd middle;  // where inertia and gravity are given [rad]
   Found delay;             // from a reading to the torque that answers it, beyond the tick [s]
+  std::vector<Explained> moments{};
 };
 
 struct FitSettings {

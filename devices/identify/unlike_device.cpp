@@ -58,6 +58,16 @@ Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gr
   return bench;
 }
 
+double drawn_torque_scale(unsigned seed) {
+  return std::exp2(Drawn(seed + 2000003).between(-0.5, 0.5));
+}
+
+ArmDescription loaded(ArmDescription arm, double mass) {
+  const Link load{.name = "load", .mass = mass, .com = arm.tip.translation()};
+  set_parameters(arm.links.back(), parameters_of(arm.links.back()) + parameters_of(load));
+  return arm;
+}
+
 namespace {
 
 ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
@@ -73,7 +83,9 @@ ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
 }  // namespace
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
-    : device_(with(truth, unlike)), traits_(device_.traits()) {
+    : device_(with(truth, unlike)),
+      traits_(device_.traits()),
+      torque_scale_(unlike.torque_scale) {
   traits_.name = "a device unlike its file";
   traits_.guarded = true;
   push = Eigen::VectorXd::Zero(truth.dof());
@@ -102,7 +114,9 @@ void UnlikeDevice::expect(const Parameters& p, const HandInput& hand) noexcept {
 void UnlikeDevice::write(std::span<const double> torque) noexcept {
   hand_.torque = span_of(push);
   device_.expect(parameters_, hand_);
-  device_.write(torque);
+  const std::size_t n = std::min(torque.size(), torque_.size());
+  for (std::size_t i = 0; i < n; ++i) torque_[i] = torque_scale_ * torque[i];
+  device_.write(std::span(torque_).first(n));
 }
 
 }  // namespace limpid

@@ -12,6 +12,7 @@ struct Unlikeness {
   double encoder_step = 0;             // [rad]
   int delay = 0;                       // [ticks]
   Eigen::VectorXd spring{}, offset{};  // of each joint; none: nothing [N m/rad, N m]
+  double torque_scale = 1;             // what its motors give of what they are told
 };
 
 // The file's arm with other masses (half to twice), centres, damping and friction, drawn by this
@@ -20,6 +21,11 @@ ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_fri
 
 // Axes of 10 or 16 bits, a delay of 1 to 4 ms, springs, drawn by this seed; gravity as it is given.
 Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gravity);
+// Between 0.7 and 1.4, drawn by this seed.
+double drawn_torque_scale(unsigned seed);
+
+// The arm with a small thing of so many kg fixed to its tip.
+ArmDescription loaded(ArmDescription arm, double mass);
 
 // Reads before it is moved, as a real one does, and says no more than a real one; one write is one
 // tick of 1 ms. Whoever drives it through a rig holds it, too.
@@ -45,6 +51,8 @@ class UnlikeDevice final : public Device {
   DeviceTraits traits_;
   Parameters parameters_;
   HandInput hand_;
+  double torque_scale_;
+  std::array<double, kMaxDof> torque_{};
 };
 
 }  // namespace limpid

@@ -1,0 +1,91 @@
+#include "devices/identify/torque_scale.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "devices/identify/equations.h"
+
+namespace limpid {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLeast = 0.1, kMost = 10;  // that is believed
+constexpr double kUnsure = 0.2;             // deviation, of the scale, that is too much
+
+// The equations of a motion, each divided by its joint's noise.
+struct Weighed {
+  MatrixXd A;
+  VectorXd b;
+};
+
+Weighed weighed(const Identified& found, const MotionRecord& record, const FitSettings& settings) {
+  const Window window = window_for(record);
+  const VectorXd times = independent_times(record, window, settings.longest_delay);
+  const Equations rows = equations_of(found.arm, record, settings.gravity, window, times);
+  Weighed out{rows.A, rows.of(torque_at(record, window, times, found.delay.value))};
+  for (Index i = 0; i < out.b.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(rows.joint[static_cast<std::size_t>(i)]);
+    const double noise = std::max(found.joints[joint].residual, 1e-9);
+    out.A.row(i) /= noise;
+    out.b[i] /= noise;
+  }
+  return out;
+}
+
+// s, where A z = b and the last of z is 1 / s.
+Found scale_in(const MatrixXd& A, const VectorXd& b) {
+  VectorXd inverse = A.colwise().norm().transpose();
+  for (double& s : inverse) s = s > 0 ? 1 / s : 0;
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  solver.compute(A * inverse.asDiagonal());
+  const VectorXd z = inverse.asDiagonal() * VectorXd(solver.solve(b));
+  const MatrixXd pseudo = solver.pseudoInverse();
+  const double value = 1 / z[z.size() - 1];
+  const double deviation =
+      inverse[inverse.size() - 1] * pseudo.row(pseudo.rows() - 1).norm() * value * value;
+  if (!(value > kLeast && value < kMost) || !(deviation < kUnsure * value)) {
+    throw std::invalid_argument(
+        fmt::format("what the motors give of what they are told cannot be found: {:.2g} +- {:.2g}, "
+                    "needed: {} to {}, and surer",
+                    value, deviation, kLeast, kMost));
+  }
+  return {value, deviation};
+}
+
+}  // namespace
+
+Found torque_scale_by_load(const Identified& found, const MotionRecord& bare,
+                           const MotionRecord& with_load, double mass,
+                           const FitSettings& settings) {
+  const Weighed one = weighed(found, bare, settings), two = weighed(found, with_load, settings);
+  const Link load{.name = "load", .mass = mass, .com = found.arm.tip.translation()};
+  const Index last = kLinkParameters * (found.arm.dof() - 1);
+  MatrixXd A = MatrixXd::Zero(one.A.rows() + two.A.rows(), one.A.cols() + 1);
+  A.topLeftCorner(one.A.rows(), one.A.cols()) = one.A;
+  A.bottomLeftCorner(two.A.rows(), two.A.cols()) = two.A;
+  A.col(one.A.cols()).tail(two.A.rows()) =
+      two.A.middleCols(last, kLinkParameters) * parameters_of(load);
+  VectorXd b(A.rows());
+  b << one.b, two.b;
+  return scale_in(A, b);
+}
+
+Found torque_scale_by_masses(const ArmDescription& file, const Identified& found,
+                             const MotionRecord& record, const FitSettings& settings) {
+  const Weighed all = weighed(found, record, settings);
+  const Index of_links = kLinkParameters * file.dof(), own = all.A.cols() - of_links;
+  MatrixXd A(all.A.rows(), own + 1);
+  A.leftCols(own) = all.A.rightCols(own);
+  A.col(own) = all.A.leftCols(of_links) * parameters_of(file);
+  return scale_in(A, all.b);
+}
+
+}  // namespace limpid
