@@ -5,8 +5,9 @@
 
 namespace limpid {
 
-AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes)
-    : device_(std::move(device)), traits_(device_->traits()) {
+AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes,
+                               double torque_scale)
+    : device_(std::move(device)), traits_(device_->traits()), torque_scale_(torque_scale) {
   factor_.fill(1);
   for (std::size_t i = 0; i < axes.size() && i < factor_.size(); ++i) {
     factor_[i] = axes[i].factor();
@@ -21,7 +22,9 @@ AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device, std::span<const A
   for (std::size_t i = 0; i < traits_.resolution.size(); ++i) {
     traits_.resolution[i] *= std::abs(factor_[i]);
   }
-  for (std::size_t i = 0; i < traits_.effort.size(); ++i) traits_.effort[i] /= std::abs(factor_[i]);
+  for (std::size_t i = 0; i < traits_.effort.size(); ++i) {
+    traits_.effort[i] *= torque_scale_ / std::abs(factor_[i]);
+  }
 }
 
 bool AdjustedDevice::read(DeviceReading& newest) noexcept {
@@ -35,7 +38,7 @@ bool AdjustedDevice::read(DeviceReading& newest) noexcept {
 void AdjustedDevice::write(std::span<const double> torque) noexcept {
   std::array<double, kMaxDof> out{};
   const std::size_t count = std::min(torque.size(), out.size());
-  for (std::size_t i = 0; i < count; ++i) out[i] = factor_[i] * torque[i];
+  for (std::size_t i = 0; i < count; ++i) out[i] = factor_[i] * torque[i] / torque_scale_;
   device_->write({out.data(), count});
 }
 

@@ -16,11 +16,14 @@ struct AxisAdjustment {
 };
 
 // Angles become factor * (x - zero), torques are multiplied by the factor too: the power at the
-// joint is the power at the device, so that nothing passive becomes active.
+// joint is the power at the device, so that nothing passive becomes active. A device whose motors
+// give `torque_scale` times what they are told is told so much less, and its limits are so much
+// higher.
 class AdjustedDevice final : public Device {
  public:
-  // One adjustment a joint; joints without one are left as they are.
-  AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes);
+  // One adjustment a joint; joints without one are left as they are. torque_scale: above 0.
+  AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes,
+                 double torque_scale = 1);
 
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override;
@@ -31,6 +34,7 @@ class AdjustedDevice final : public Device {
   std::unique_ptr<Device> device_;
   DeviceTraits traits_;
   std::array<double, kMaxDof> factor_{}, zero_{};
+  double torque_scale_;
 };
 
 }  // namespace limpid

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <future>
 #include <iostream>
@@ -16,11 +17,8 @@
 #include "app/cli/progress.h"
 #include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
-#include "app/device/identify_run.h"
-#include "app/device/urdf_writer.h"
+#include "app/identify/identify_report.h"
 #include "app/run/analysis.h"
-#include "devices/files/atomic_file.h"
-#include "devices/identify/fit.h"
 #include "devices/identify/unlike_device.h"
 
 namespace limpid {
@@ -38,7 +36,7 @@ struct IdentifyOptions {
   std::string gravity = "0,0,-9.81";
   unsigned seed = 1;
   bool yes = false, forget = false;
-  ExcitationPlan plan;
+  IdentifyOrder order;
 };
 
 Vec3 gravity_of(const std::string& text) {
@@ -53,13 +51,7 @@ Vec3 gravity_of(const std::string& text) {
                   text));
 }
 
-void ask_to_begin(const IdentifyOptions& options, const Device& device, double seconds) {
-  fmt::print(
-      "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
-      "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
-      "holding on to it.\n",
-      device.traits().name, seconds, 100 * options.plan.range);
-  if (options.yes) return;
+void await_enter() {
   if (isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may move; needed: --yes, or a terminal");
   }
@@ -67,6 +59,17 @@ void ask_to_begin(const IdentifyOptions& options, const Device& device, double s
   std::fflush(stdout);
   std::string line;
   if (!std::getline(std::cin, line)) throw UsageError("not begun");
+}
+
+void ask_to_begin(const IdentifyOptions& options, const Device& device) {
+  const IdentifyOrder& order = options.order;
+  fmt::print(
+      "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
+      "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
+      "holding on to it.\n",
+      device.traits().name, Excitation(order.guess, device.traits(), order.plan).duration(),
+      100 * order.plan.range);
+  if (!options.yes) await_enter();
 }
 
 IdentifyRun watched(const std::function<IdentifyRun(IdentifyTalk&)>& run) {
@@ -82,86 +85,48 @@ IdentifyRun watched(const std::function<IdentifyRun(IdentifyTalk&)>& run) {
   return result.get();
 }
 
-ordered_json as_json(const Found& found) {
-  return {{"value", found.value}, {"deviation", found.deviation}};
-}
-
-ordered_json as_json(const Identified& found, const IdentifyRun& run, const std::string& device) {
-  ordered_json joints = ordered_json::array();
-  for (std::size_t j = 0; j < found.joints.size(); ++j) {
-    const JointFinding& joint = found.joints[j];
-    joints.push_back({{"name", found.arm.joints[j].name},
-                      {"middle", found.middle[static_cast<Eigen::Index>(j)]},
-                      {"inertia", as_json(joint.inertia)},
-                      {"weight", as_json(joint.gravity)},
-                      {"viscous", as_json(joint.viscous)},
-                      {"coulomb", as_json(joint.coulomb)},
-                      {"offset", as_json(joint.offset)},
-                      {"spring", as_json(joint.spring)},
-                      {"residual", joint.residual},
-                      {"torque", joint.torque},
-                      {"samples", joint.samples}});
+void print(const Identification& identification) {
+  const Identified& found = identification.found;
+  fmt::print("{:<14}", "joint");
+  for (const FindingInfo& info : kFindings) {
+    fmt::print(" {:>22}", fmt::format("{} [{}]", info.label, info.unit));
   }
-  ordered_json json{{"device", device},
-                    {"arm", found.arm.name},
-                    {"seconds", run.record.T * static_cast<double>(run.record.rows())},
-                    {"delay", as_json(found.delay)},
-                    {"joints", joints}};
-  if (run.timing.rate > 0) {
-    json["readings"] = {{"rate", run.timing.rate},
-                        {"interval_p50", run.timing.p50},
-                        {"interval_p99", run.timing.p99},
-                        {"interval_max", run.timing.most}};
-  }
-  return json;
-}
-
-void print(const Identified& found, const ArmDescription& guess, const IdentifyRun& run) {
-  fmt::print("{:<14} {:>22} {:>10} {:>20} {:>22} {:>22} {:>20} {:>9}\n", "joint", "inertia [g m^2]",
-             "was", "weight [mN m]", "friction [mN m]", "viscous [mN m s/rad]", "spring [N m/rad]",
-             "missed");
-  const auto pair = [](const Found& f, double unit) {
-    return fmt::format("{:.3f} +- {:.3f}", f.value / unit, f.deviation / unit);
-  };
-  const Eigen::MatrixXd M = arm_at(guess, found.middle).M;
+  fmt::print(" {:>10} {:>9}\n", "inertia was", "missed");
+  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
     const JointFinding& joint = found.joints[j];
     const auto i = static_cast<Eigen::Index>(j);
-    fmt::print("{:<14} {:>22} {:>10.3f} {:>20} {:>22} {:>22} {:>20} {:>7.1f} %\n",
-               found.arm.joints[j].name, pair(joint.inertia, 1e-3), M(i, i) / 1e-3,
-               pair(joint.gravity, 1e-3), pair(joint.coulomb, 1e-3), pair(joint.viscous, 1e-3),
-               pair(joint.spring, 1), 100 * joint.residual / joint.torque);
+    fmt::print("{:<14}", found.arm.joints[j].name);
+    for (const FindingInfo& info : kFindings) {
+      fmt::print(" {:>22}", text_of(joint.*info.field, info.per_unit));
+    }
+    fmt::print(" {:>11.3f} {:>7.1f} %\n", M(i, i) / 1e-3, 100 * joint.residual / joint.torque);
   }
-  fmt::print("delay          {:.2f} +- {:.2f} ms from a reading to the torque that answers it\n",
-             1e3 * found.delay.value, 1e3 * found.delay.deviation);
-  if (run.timing.rate > 0) {
+  fmt::print("delay          {} ms from a reading to the torque that answers it\n",
+             text_of(found.delay, 1e-3));
+  const DeviceTiming& timing = identification.bare.timing;
+  if (timing.rate > 0) {
     fmt::print(
         "readings       {:.0f} a second; between two: {:.2f} ms in the middle, {:.2f} ms at "
         "99 %, {:.2f} ms at most\n",
-        run.timing.rate, 1e3 * run.timing.p50, 1e3 * run.timing.p99, 1e3 * run.timing.most);
+        timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
+  }
+  if (identification.torque_scale) {
+    fmt::print("motors         give {} times what they are told\n",
+               text_of(*identification.torque_scale, 1));
   }
 }
 
-std::string csv_of(const MotionRecord& record) {
-  std::string text = "time";
-  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",x{}", j);
-  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",torque{}", j);
-  text += '\n';
-  for (Eigen::Index i = 0; i < record.rows(); ++i) {
-    text += fmt::format("{:.3f}", static_cast<double>(i) * record.T);
-    for (Eigen::Index j = 0; j < record.joints(); ++j)
-      text += fmt::format(",{:.9g}", record.x(i, j));
-    for (Eigen::Index j = 0; j < record.joints(); ++j) {
-      text += fmt::format(",{:.9g}", record.torque(i, j));
-    }
-    text += '\n';
+// What is other than the last time.
+void print_drift(const Findings& last, const Identification& now) {
+  const std::vector<Drift> all = drift(last, now);
+  if (all.empty()) return;
+  const auto certain = std::ranges::count_if(all, &Drift::certain);
+  fmt::print("since {}: {}\n", last.when, certain == 0 ? "nothing has changed" : "changed are");
+  for (const Drift& d : all) {
+    if (!d.certain) continue;
+    fmt::print("  {:<30} {} -> {} {}\n", d.what, text_of(d.before, 1), text_of(d.now, 1), d.unit);
   }
-  return text;
-}
-
-void write(const fs::path& file, const std::string& text) {
-  const std::string wrong = try_write_atomically(file, text);
-  if (!wrong.empty()) throw std::runtime_error(wrong);
 }
 
 // With the device in use that was before.
@@ -180,62 +145,114 @@ int forget(const IdentifyOptions& options) {
   return 0;
 }
 
+int write(const IdentifyOptions& options, const Identification& done,
+          const std::optional<Findings>& last, const std::string& more) {
+  const fs::path out = options.out;
+  const std::string wrong = write_identification(done, last, out, more);
+  fmt::print("arm: {}\nreport: {}\n", (out / "identified.urdf").string(),
+             (out / "report.html").string());
+  if (!wrong.empty()) fmt::print(stderr, "limpid: no pictures: {}\n", wrong);
+  return wrong.empty() ? 0 : 1;
+}
+
+// A device, and how it is moved.
+struct Bench {
+  std::unique_ptr<Device> device;
+  std::function<IdentifyRun(bool with_load, IdentifyTalk&)> move;
+};
+
+Bench simulated_bench(const IdentifyOrder& order, const ArmDescription& truth,
+                      const Unlikeness& unlike) {
+  Bench bench{.device = std::make_unique<UnlikeDevice>(truth, unlike), .move = {}};
+  bench.move = [&order, &truth, &unlike](bool with_load, IdentifyTalk& talk) {
+    UnlikeDevice device(with_load ? loaded(truth, order.load) : truth, unlike);
+    return simulate_identification(device, order.guess, order.plan, talk);
+  };
+  return bench;
+}
+
+void ask_for_load(const IdentifyOptions& options) {
+  fmt::print("Now fix the {:g} kg to the tip, firmly and close to it, and let go.\n",
+             options.order.load);
+  await_enter();
+}
+
+// Moves it, and moves it again with the load. False, and the motion is kept, where it ended before.
+bool moved(const IdentifyOptions& options, const Bench& bench, IdentifyRun& bare,
+           IdentifyRun& with_load) {
+  const auto move = [&](bool load, IdentifyRun& run, const char* file) {
+    run = watched([&](IdentifyTalk& talk) { return bench.move(load, talk); });
+    if (run.end == ExcitationEnd::complete) return true;
+    write_motion(run, fs::path(options.out) / file);
+    fmt::print(stderr, "limpid: ended: {}; {} holds the motion until then\n",
+               explain(run, options.order), (fs::path(options.out) / file).string());
+    return false;
+  };
+  if (!move(false, bare, "motion.csv")) return false;
+  if (options.order.load == 0) return true;
+  if (options.device != kSimulated) ask_for_load(options);
+  return move(true, with_load, "motion-with-load.csv");
+}
+
+// On a device that is drawn at random, and what it is worth there.
+int identify_simulated(IdentifyOptions& options) {
+  IdentifyOrder& order = options.order;
+  if (order.masses_right) {
+    throw UsageError("--masses-right: the simulated device has other masses than its file");
+  }
+  const ArmDescription truth = unlike(order.guess, options.seed, 0.03);
+  Unlikeness unlikeness = drawn_bench(order.guess, options.seed, order.fit.gravity);
+  if (order.load > 0) unlikeness.torque_scale = drawn_torque_scale(options.seed);
+  const Bench bench = simulated_bench(order, truth, unlikeness);
+  IdentifyRun bare, with_load;
+  if (!moved(options, bench, bare, with_load)) return 1;
+  const Identification done =
+      identification(bench.device->traits().name, order, std::move(bare), std::move(with_load));
+  print(done);
+  if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", unlikeness.torque_scale);
+  unlikeness.torque_scale = 1;  // what is told takes it into account
+  const ordered_json rehearsal{
+      {"rehearsal", rehearse_and_print(truth, unlikeness, order.guess, done.found.arm)}};
+  return write(options, done, {}, rehearsal.dump());
+}
+
 int identify_device(IdentifyOptions options) {
   if (options.forget) return forget(options);
   if (options.out.empty()) throw UsageError("--out is required");
   prepare_out(options.out);
-  const Vec3 gravity = gravity_of(options.gravity);
-  ArmDescription guess;
+  IdentifyOrder& order = options.order;
+  order.fit.gravity = gravity_of(options.gravity);
   SceneDocument scene;
-  read_world(options.input, guess, scene);
+  read_world(options.input, order.guess, scene);
+  if (options.device == kSimulated) return identify_simulated(options);
+  if (options.yes && order.load > 0) {
+    throw UsageError("--yes: with --load somebody has to be asked to fix it to the tip");
+  }
   DeviceHub hub(device_book_file(), {});
   const std::string in_use = hub.in_use();
-  const bool simulated = options.device == kSimulated;
-  const ArmDescription truth = unlike(guess, options.seed, 0.03);
-  const Unlikeness bench = drawn_bench(guess, options.seed, gravity);
-  std::unique_ptr<Device> device;
-  if (simulated) {
-    device = std::make_unique<UnlikeDevice>(truth, bench);
-  } else {
-    device = open_device(options.device, hub,
-                         fmt::format(", and \"{}\" tries it without one", kSimulated));
-    options.plan = within(options.plan, hub.notes(hub.in_use()).limits);
-    if (options.input.device.empty()) guess = hub.arm_for(device->traits(), guess);
-  }
-  const double seconds = Excitation(guess, device->traits(), options.plan).duration();
-  if (!simulated) ask_to_begin(options, *device, seconds);
-  IdentifyRun run = watched([&](IdentifyTalk& talk) {
-    return simulated ? simulate_identification(*device, guess, options.plan, talk)
-                     : run_identification(*device, guess, options.plan, talk, {});
-  });
-  const fs::path out = options.out;
-  write(out / "motion.csv", csv_of(run.record));
-  if (run.end != ExcitationEnd::complete) {
-    fmt::print(stderr, "limpid: ended: {}{}{}; {} holds the motion until then\n", explain(run.end),
-               run.end == ExcitationEnd::held
-                   ? fmt::format(" ({})", guess.joints[static_cast<std::size_t>(run.joint)].name)
-                   : "",
-               run.objection != ForceState::on ? fmt::format(" ({})", explain(run.objection)) : "",
-               (out / "motion.csv").string());
-    return 1;
-  }
-  const Identified found = identify(guess, run.record, {.gravity = gravity});
-  const std::string name = device->traits().name;
-  ordered_json json = as_json(found, run, name);
-  const std::string urdf =
-      urdf_text(found.arm, fmt::format("identified by limpid on {}, from {}", name, guess.name));
-  write(out / "identified.urdf", urdf);
-  print(found, guess, run);
-  if (simulated) json["rehearsal"] = rehearse_and_print(truth, bench, guess, found.arm);
-  write(out / "identified.json", json.dump(2) + "\n");
-  fmt::print("arm: {}\n", (out / "identified.urdf").string());
-  if (simulated) return 0;
-  if (const std::string wrong = hub.remember_arm(urdf, found.delay.value); !wrong.empty()) {
+  Bench bench{.device = open_device(options.device, hub,
+                                    fmt::format(", and \"{}\" tries it without one", kSimulated)),
+              .move = {}};
+  order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
+  if (options.input.device.empty()) order.guess = hub.arm_for(bench.device->traits(), order.guess);
+  bench.move = [&](bool, IdentifyTalk& talk) {
+    return run_identification(*bench.device, order.guess, order.plan, talk, {});
+  };
+  ask_to_begin(options, *bench.device);
+  IdentifyRun bare, with_load;
+  if (!moved(options, bench, bare, with_load)) return 1;
+  const std::string name = bench.device->traits().name;
+  const Identification done = identification(name, order, std::move(bare), std::move(with_load));
+  print(done);
+  const std::optional<Findings> last = read_findings(hub.remembered_report());
+  if (last) print_drift(*last, done);
+  const int status = write(options, done, last, {});
+  if (const std::string wrong = hub.remember(nature_of(done)); !wrong.empty()) {
     throw std::runtime_error(wrong);
   }
   save(hub, in_use);
   fmt::print("remembered: {} is this arm from now on; --forget ends that\n", name);
-  return 0;
+  return status;
 }
 
 }  // namespace
@@ -249,14 +266,29 @@ Command declare_identify(CLI::App& app) {
                                   "unlike its file, drawn by --seed; default: the one in use",
                                   kSimulated));
   options->input.add_world(*command);
-  command->add_option("--out", options->out, "folder for identified.urdf, .json and motion.csv")
+  command
+      ->add_option("--out", options->out,
+                   "folder for report.html, identified.urdf, .json, .svg and motion.csv")
       ->type_name("DIR");
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");
-  command->add_option("--range", options->plan.range, "part of each joint's range that is used")
+  command
+      ->add_option("--range", options->order.plan.range, "part of each joint's range that is used")
       ->check(CLI::Range(0.05, 0.9));
-  command->add_option("--torque", options->plan.torque, "part of the motors' limits that is used")
+  command
+      ->add_option("--torque", options->order.plan.torque,
+                   "part of the motors' limits that is used")
       ->check(CLI::Range(0.05, 1.0));
+  auto* load =
+      command
+          ->add_option("--load", options->order.load,
+                       "mass that you will fix to the tip for a second motion, which tells "
+                       "what the motors really give [kg]")
+          ->check(CLI::Range(kLeastLoad, kMostLoad));
+  command
+      ->add_flag("--masses-right", options->order.masses_right,
+                 "the arm's file has the masses right: they tell what the motors really give")
+      ->excludes(load);
   require_whole_number(command->add_option("--seed", options->seed, "of the simulated device"));
   command->add_flag("--yes", options->yes, "begin without asking");
   command->add_flag("--forget", options->forget, "take the device for its file's arm again");

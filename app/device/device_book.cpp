@@ -53,6 +53,7 @@ DeviceNotes read_notes(const toml::table& t) {
   notes.checked = t["checked"].value_or(false);
   notes.arm = t["arm"].value_or(std::string());
   take(t, "delay", 0, 1, notes.delay);
+  take(t, "torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
   if (const toml::table* forces = t["compensation"].as_table()) {
     notes.compensation = read_compensation(*forces);
   }
@@ -89,6 +90,7 @@ toml::table write_notes(const DeviceNotes& notes) {
                     {"limits", write_limits(notes.limits)},
                     {"checked", notes.checked},
                     {"arm", notes.arm},
+                    {"torque_scale", notes.torque_scale},
                     {"compensation", write_compensation(notes.compensation)},
                     {"axis", axes}};
   if (notes.delay >= 0) table.insert("delay", notes.delay);

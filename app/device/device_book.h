@@ -15,6 +15,8 @@
 
 namespace limpid {
 
+inline constexpr double kLeastTorqueScale = 0.1, kMostTorqueScale = 10;
+
 struct DeviceNotes {
   std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
   PidSettings pid;                   // of a joystick
@@ -23,6 +25,7 @@ struct DeviceNotes {
   std::string arm;                   // URDF of what it was identified as; empty: it was not
   double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
                       // [s]; below 0: not known
+  double torque_scale = 1;            // what its motors give of what they are told
   CompensationSettings compensation;  // of its own forces, while it is in the loop
 };
 

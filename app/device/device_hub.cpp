@@ -6,6 +6,8 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <optional>
 
 #include "app/base/assets.h"
@@ -136,25 +138,49 @@ std::optional<FoundDevice> DeviceHub::found_now() const {
 std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   return [id = book_.in_use, found = found_now(), notes = known(), ask = ask_] {
     std::unique_ptr<Device> opened = std::make_unique<AdjustedDevice>(
-        open_device(usable(found, id), notes.pid, ask), notes.axes);
+        open_device(usable(found, id), notes.pid, ask), notes.axes, notes.torque_scale);
     await_reading(*opened, kFirstReading);
     return opened;
   };
 }
 
-std::string DeviceHub::remember_arm(const std::string& urdf, double delay) {
-  std::string name = book_.in_use;
-  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  const std::filesystem::path file = user_data_dir() / "devices" / (name + ".urdf");
-  if (std::string wrong = try_write_atomically(file, urdf); !wrong.empty()) return wrong;
-  notes(book_.in_use).arm = file.string();
-  notes(book_.in_use).delay = delay;
+namespace {
+
+std::filesystem::path nature_file(std::string id, const char* extension) {
+  for (char& c : id) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return user_data_dir() / "devices" / (id + extension);
+}
+
+}  // namespace
+
+std::string DeviceHub::remember(const Nature& nature) {
+  DeviceNotes& notes = DeviceHub::notes(book_.in_use);
+  const double scale = notes.torque_scale * nature.torque_scale;
+  if (scale < kLeastTorqueScale || scale > kMostTorqueScale) {
+    return fmt::format("the motors would give {:.3g} times what they are told; believed: {} to {}",
+                       scale, kLeastTorqueScale, kMostTorqueScale);
+  }
+  const std::filesystem::path arm = nature_file(book_.in_use, ".urdf");
+  for (const auto& [file, text] : {std::pair(arm, &nature.urdf),
+                                   std::pair(nature_file(book_.in_use, ".json"), &nature.report)}) {
+    if (std::string wrong = try_write_atomically(file, *text); !wrong.empty()) return wrong;
+  }
+  notes.arm = arm.string();
+  notes.delay = nature.delay;
+  notes.torque_scale = scale;
   return {};
+}
+
+std::string DeviceHub::remembered_report() const {
+  if (known().arm.empty()) return {};
+  std::ifstream file(nature_file(book_.in_use, ".json"));
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void DeviceHub::forget_arm() {
   notes(book_.in_use).arm.clear();
   notes(book_.in_use).delay = DeviceNotes{}.delay;
+  notes(book_.in_use).torque_scale = 1;
   notes(book_.in_use).compensation = {};
 }
 

@@ -44,9 +44,18 @@ class DeviceHub {
   // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
   // FileError if there is none with so many joints, or what it was identified as cannot be read.
   ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) const;
-  // From now on the device in use is this arm with this delay [s]; once saved. Returns what went
-  // wrong, empty if nothing did.
-  std::string remember_arm(const std::string& urdf, double delay);
+  // What a device was found to be.
+  struct Nature {
+    std::string urdf;         // the arm
+    std::string report;       // the findings, as JSON
+    double delay = 0;         // [s]
+    double torque_scale = 1;  // what its motors give of what they were told meanwhile
+  };
+  // From now on the device in use is that, connected anew; once saved. Returns what went wrong,
+  // empty if nothing did.
+  std::string remember(const Nature& nature);
+  // The report of what the device in use was found to be; empty: nobody knows.
+  std::string remembered_report() const;
   // Takes it for its file's again, and nothing of its forces off the hand.
   void forget_arm();
   // Its axes must be checked and were not yet: it may not push.

@@ -233,12 +233,14 @@ class Fit {
     std::vector<Explained> out;
     for (Index i = 0; i < b_.size(); ++i) {
       const Eigen::RowVectorXd row = rows_.A.row(i);
+      const Index own = of_links + kOwnParameters * joint(i);
       out.push_back({.time = times_[rows_.time[static_cast<std::size_t>(i)]],
                      .joint = joint(i),
-                     .velocity = row[of_links + kOwnParameters * joint(i)],
+                     .velocity = row[own],
                      .torque = b_[i],
                      .bodies = row.head(of_links).dot(z.head(of_links)),
-                     .own = row.tail(kOwnParameters * n_).dot(z.tail(kOwnParameters * n_))});
+                     .springs = row.segment<2>(own + 2).dot(z.segment<2>(own + 2)),
+                     .friction = row.segment<2>(own).dot(z.segment<2>(own))});
     }
     return out;
   }

@@ -34,7 +34,8 @@ struct Explained {
   double velocity = 0;  // [rad/s]
   double torque = 0;    // of the motor [N m]
   double bodies = 0;    // of it, for inertia and weight of the links [N m]
-  double own = 0;       // of it, for the joint's friction and springs [N m]
+  double springs = 0;   // of it, for the joint's spring and offset [N m]
+  double friction = 0;  // of it, Coulomb and viscous [N m]
 };
 
 struct Identified {

@@ -83,9 +83,7 @@ ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
 }  // namespace
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
-    : device_(with(truth, unlike)),
-      traits_(device_.traits()),
-      torque_scale_(unlike.torque_scale) {
+    : device_(with(truth, unlike)), traits_(device_.traits()), torque_scale_(unlike.torque_scale) {
   traits_.name = "a device unlike its file";
   traits_.guarded = true;
   push = Eigen::VectorXd::Zero(truth.dof());

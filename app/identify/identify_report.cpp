@@ -1,0 +1,165 @@
+#include "app/identify/identify_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/base/markup.h"
+#include "app/device/urdf_writer.h"
+#include "app/figure/page.h"
+#include "app/run/analysis.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& text) {
+  const std::string wrong = try_write_atomically(file, text);
+  if (!wrong.empty()) throw FileError(wrong);
+}
+
+std::string with_sign(std::string text) {
+  for (auto at = text.find("+-"); at != std::string::npos; at = text.find("+-")) {
+    text.replace(at, 2, "\xC2\xB1");
+  }
+  return text;
+}
+
+std::string cell(const std::string& text) {
+  return "<td class=\"number\">" + escaped(with_sign(text)) + "</td>";
+}
+
+std::string joints_table(const Identification& identification) {
+  const Identified& found = identification.found;
+  std::string head = "<th>joint</th>", rows;
+  for (const FindingInfo& info : kFindings) {
+    head += fmt::format("<th class=\"number\">{} [{}]</th>", info.label, escaped(info.unit));
+  }
+  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
+  for (std::size_t j = 0; j < found.joints.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    rows += "<tr><td>" + escaped(found.arm.joints[j].name) + "</td>";
+    for (const FindingInfo& info : kFindings) {
+      rows += cell(text_of(found.joints[j].*info.field, info.per_unit));
+    }
+    rows += cell(fmt::format("{:.3f}", M(i, i) / 1e-3)) +
+            cell(fmt::format("{:.1f} %", 100 * found.joints[j].residual / found.joints[j].torque)) +
+            "</tr>\n";
+  }
+  return fmt::format(
+      "<table><thead><tr>{}<th class=\"number\">inertia in its file [g m^2]</th>"
+      "<th class=\"number\">not explained</th></tr></thead><tbody>\n{}</tbody></table>\n",
+      head, rows);
+}
+
+std::string device_text(const Identification& identification) {
+  std::string text =
+      fmt::format("Delay from a reading to the torque that answers it: {} ms, beyond the tick.",
+                  text_of(identification.found.delay, 1e-3));
+  const DeviceTiming& timing = identification.bare.timing;
+  if (timing.rate > 0) {
+    text += fmt::format(
+        " {:.0f} readings a second, {:.2f} ms apart in the middle, {:.2f} ms at 99 %, {:.2f} ms at "
+        "most.",
+        timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
+  }
+  if (identification.torque_scale) {
+    text += fmt::format(" The motors give {} times what they are told, from {}.",
+                        text_of(*identification.torque_scale, 1),
+                        identification.order.load > 0
+                            ? fmt::format("a load of {:g} kg at the tip", identification.order.load)
+                            : std::string("the masses of the arm's file"));
+  }
+  return escaped(with_sign(text));
+}
+
+std::string drift_section(const std::vector<Drift>& all, const std::string& when) {
+  std::string rows;
+  for (const Drift& d : all) {
+    rows += fmt::format("<tr><td>{}</td><td>{}</td>{}{}<td class=\"verdict\">{}</td></tr>\n",
+                        escaped(d.what), escaped(d.unit), cell(text_of(d.before, 1)),
+                        cell(text_of(d.now, 1)), d.certain ? "changed" : "");
+  }
+  return fmt::format(
+      "<section><header><h2>Since last time</h2></header><p class=\"soft\">{}</p>\n"
+      "<table><thead><tr><th>what</th><th>unit</th><th class=\"number\">then</th>"
+      "<th class=\"number\">now</th><th></th></tr></thead><tbody>\n{}</tbody></table></section>\n",
+      escaped(when), rows);
+}
+
+void write_report(const Identification& identification, const std::optional<Findings>& last,
+                  bool pictures, const fs::path& file) {
+  std::string body = "<section><header><h2>What was found</h2></header>\n" +
+                     joints_table(identification) + "<p>" + device_text(identification) +
+                     "</p>\n<p class=\"soft\">\xC2\xB1: one standard deviation. Inertia and weight "
+                     "in the middle of the motion. <a href=\"identified.urdf\">arm</a>, <a "
+                     "href=\"identified.json\">figures</a>, <a href=\"motion.csv\">motion</a></p>";
+  if (pictures) {
+    body +=
+        "<figure><img src=\"identified.svg\" alt=\"torques and what explains them\">"
+        "<figcaption><a href=\"identified.csv\">data</a>, <a href=\"identified.png\">picture</a>"
+        "</figcaption></figure>";
+  }
+  body += "</section>\n";
+  const auto changes = last ? drift(*last, identification) : std::vector<Drift>{};
+  if (!changes.empty()) body += drift_section(changes, last->when);
+  write_page(file, "Identification of " + identification.device,
+             "The arm was taken for " + identification.order.guess.name + ".", body);
+}
+
+}  // namespace
+
+std::string identified_urdf(const Identification& identification) {
+  return urdf_text(identification.found.arm,
+                   fmt::format("identified by limpid on {}, from {}", identification.device,
+                               identification.order.guess.name));
+}
+
+DeviceHub::Nature nature_of(const Identification& identification) {
+  return {.urdf = identified_urdf(identification),
+          .report = findings_text(identification),
+          .delay = identification.found.delay.value,
+          .torque_scale = identification.torque_scale ? identification.torque_scale->value : 1};
+}
+
+void write_motion(const IdentifyRun& run, const fs::path& file) {
+  const MotionRecord& record = run.record;
+  std::string text = "time";
+  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",x{}", j);
+  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",torque{}", j);
+  text += '\n';
+  for (Eigen::Index i = 0; i < record.rows(); ++i) {
+    text += fmt::format("{:.3f}", static_cast<double>(i) * record.T);
+    for (const Eigen::MatrixXd* columns : {&record.x, &record.torque}) {
+      for (const double value : columns->row(i)) text += fmt::format(",{:.9g}", value);
+    }
+    text += '\n';
+  }
+  write(file, text);
+}
+
+std::string write_identification(const Identification& identification,
+                                 const std::optional<Findings>& last, const fs::path& dir,
+                                 const std::string& more) {
+  write_motion(identification.bare, dir / "motion.csv");
+  if (identification.order.load > 0) {
+    write_motion(identification.with_load, dir / "motion-with-load.csv");
+  }
+  write(dir / "identified.urdf", identified_urdf(identification));
+  write(dir / "identified.json", findings_text(identification, more));
+  const Figure figure = identify_figure(identification);
+  write_figure_data(figure, dir / "identified.csv");
+  std::string wrong;
+  try {
+    draw_figure(figure, dir, "identified");
+  } catch (const std::exception& e) {
+    wrong = e.what();
+  }
+  write_report(identification, last, wrong.empty(), dir / "report.html");
+  return wrong;
+}
+
+}  // namespace limpid
