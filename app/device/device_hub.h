@@ -37,6 +37,8 @@ class DeviceHub {
   void use(const std::string& id);
   DeviceNotes& notes(const std::string& id) { return book_.notes[id]; }
 
+  const AskForPriority& ask() const { return ask_; }
+
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
   // be called from anywhere, later. Errors: HidError.
   std::function<std::unique_ptr<Device>()> opening() const;

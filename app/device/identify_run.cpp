@@ -70,7 +70,7 @@ class Recording {
                                .x = x_.leftCols(rows_).transpose(),
                                .torque = torque_.leftCols(rows_).transpose()},
                     .timing = {}};
-    DeviceTiming& timing = run.timing;
+    ReadingTimes& timing = run.timing;
     timing.intervals = std::move(intervals_);
     if (timing.intervals.empty()) return run;
     std::vector<double> sorted = timing.intervals;

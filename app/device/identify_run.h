@@ -24,7 +24,7 @@ struct IdentifyTalk {
 };
 
 // How punctually a device reports, as its readings arrive.
-struct DeviceTiming {
+struct ReadingTimes {
   double rate = 0;                    // [Hz]
   std::vector<double> intervals;      // between neighbouring readings [s]
   double p50 = 0, p99 = 0, most = 0;  // of them [s]
@@ -35,7 +35,7 @@ struct IdentifyRun {
   ForceState objection = ForceState::on;  // where a limit or the device ended it
   int joint = 0;                          // that did not follow, where something held it
   MotionRecord record;                    // as far as it came
-  DeviceTiming timing;
+  ReadingTimes timing;
 };
 
 // The plan within limits that somebody set for the device.

@@ -31,14 +31,24 @@ Identification identification(std::string device, const IdentifyOrder& order, Id
   return out;
 }
 
-// With the digits that the deviation leaves, four at most.
+// With the digits that the deviation leaves, four that count at most.
 std::string text_of(const Found& found, double per_unit) {
-  const double deviation = found.deviation / per_unit;
-  const int digits =
-      deviation > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 4) : 3;
+  const auto size = [](double x) {
+    return x > 0 ? static_cast<int>(std::floor(std::log10(x))) : 0;
+  };
+  const double value = found.value / per_unit, deviation = found.deviation / per_unit;
+  const int most = std::clamp(3 - size(std::abs(value)), 0, 4);
+  const int digits = deviation > 0 ? std::clamp(1 - size(deviation), 0, most) : most;
   const double unit = std::pow(10, digits);
-  const double value = std::round(found.value / per_unit * unit) / unit + 0.0;  // no -0
-  return fmt::format("{:.{}f} +- {:.{}f}", value, digits, deviation, digits);
+  return fmt::format("{:.{}f} +- {:.{}f}", std::round(value * unit) / unit + 0.0,  // no -0
+                     digits, deviation, digits);
+}
+
+std::string with_plus_minus(std::string text) {
+  for (auto at = text.find("+-"); at != std::string::npos; at = text.find("+-")) {
+    text.replace(at, 2, "\xC2\xB1");
+  }
+  return text;
 }
 
 std::string explain(const IdentifyRun& run, const IdentifyOrder& order) {

@@ -51,6 +51,8 @@ inline constexpr std::array kFindings{
 
 // "1.23 +- 0.05", in the finding's unit.
 std::string text_of(const Found& found, double per_unit);
+// The same with the sign, where it can be shown.
+std::string with_plus_minus(std::string text);
 // Why a run ended before its end, for people; `order`: its.
 std::string explain(const IdentifyRun& run, const IdentifyOrder& order);
 

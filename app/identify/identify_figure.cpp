@@ -58,7 +58,7 @@ FigurePanel friction_panel(const Identification& identification, Eigen::Index jo
           .series = {left, back, forth}};
 }
 
-FigurePanel readings_panel(const DeviceTiming& timing) {
+FigurePanel readings_panel(const ReadingTimes& timing) {
   constexpr int kBins = 60;
   const double most = std::max(1e-4, 1.2 * timing.p99);
   std::vector<double> count(kBins, 0);

@@ -21,15 +21,8 @@ void write(const fs::path& file, const std::string& text) {
   if (!wrong.empty()) throw FileError(wrong);
 }
 
-std::string with_sign(std::string text) {
-  for (auto at = text.find("+-"); at != std::string::npos; at = text.find("+-")) {
-    text.replace(at, 2, "\xC2\xB1");
-  }
-  return text;
-}
-
 std::string cell(const std::string& text) {
-  return "<td class=\"number\">" + escaped(with_sign(text)) + "</td>";
+  return "<td class=\"number\">" + escaped(with_plus_minus(text)) + "</td>";
 }
 
 std::string joints_table(const Identification& identification) {
@@ -59,7 +52,7 @@ std::string device_text(const Identification& identification) {
   std::string text =
       fmt::format("Delay from a reading to the torque that answers it: {} ms, beyond the tick.",
                   text_of(identification.found.delay, 1e-3));
-  const DeviceTiming& timing = identification.bare.timing;
+  const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {
     text += fmt::format(
         " {:.0f} readings a second, {:.2f} ms apart in the middle, {:.2f} ms at 99 %, {:.2f} ms at "
@@ -73,7 +66,7 @@ std::string device_text(const Identification& identification) {
                             ? fmt::format("a load of {:g} kg at the tip", identification.order.load)
                             : std::string("the masses of the arm's file"));
   }
-  return escaped(with_sign(text));
+  return escaped(with_plus_minus(text));
 }
 
 std::string drift_section(const std::vector<Drift>& all, const std::string& when) {

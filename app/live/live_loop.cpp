@@ -87,7 +87,7 @@ LiveLoop::~LiveLoop() { close(); }
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
-  plugs_.offer(std::make_unique<Plug>(std::move(device), dispose_));
+  plugs_.offer(std::make_unique<Plug>(std::move(device), dispose_, held_));
 }
 
 // What the window has offered.

@@ -56,10 +56,18 @@ using Dispose = std::function<void(std::unique_ptr<Device>)>;
 struct Plug {
   std::unique_ptr<Device> device;
   const Dispose* dispose = nullptr;
+  int* held = nullptr;  // how many of them have a device
 
-  Plug(std::unique_ptr<Device> d, const Dispose& by) : device(std::move(d)), dispose(&by) {}
+  Plug(std::unique_ptr<Device> d, const Dispose& by, int& all)
+      : device(std::move(d)), dispose(&by), held(&all) {
+    if (device) ++*held;
+  }
+  Plug(const Plug&) = delete;
+  Plug& operator=(const Plug&) = delete;
   ~Plug() {
-    if (device && *dispose) (*dispose)(std::move(device));
+    if (!device) return;
+    --*held;
+    if (*dispose) (*dispose)(std::move(device));
   }
 
   // Leads the virtual arm's hand instead of being the arm.
@@ -92,6 +100,8 @@ class LiveLoop {
   void plug(std::unique_ptr<Device> device);
   bool device_in_place() const { return in_place_; }
   bool device_plugged() const { return plugged_; }  // by the window; it may be lost
+  // One that is done with may be in the loop's hands still: it is free once this is false.
+  bool holds_device() const { return held_ > 0; }
 
   // Asks for force; nothing else does. What was asked before open() is forgotten.
   void arm() { arms_.fetch_add(1, std::memory_order_relaxed); }
@@ -153,6 +163,7 @@ class LiveLoop {
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
   HandOver<TouchWorlds> worlds_;
+  int held_ = 0;  // devices in plugs; these go before it
   HandOver<Plug> plugs_;
   bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
   bool plugged_ = false;   // the window's

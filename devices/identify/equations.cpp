@@ -13,8 +13,8 @@ constexpr double kLeastSpeed = 0.05;  // that is motion [rad/s]
 
 // About that time the joint moves in the direction of v all along, faster than one that sticks or
 // an encoder that flickers.
-bool moves_on(const MotionRecord& record, const Window& window, double time, Index joint, double v,
-              double step) {
+bool moves_on(const MotionRecord& record, const Smoothing& window, double time, Index joint,
+              double v, double step) {
   const double piece = std::max(window.sigma, 0.01);
   const double least = std::max(1.5 * step, kLeastSpeed * piece);
   const auto at = [&](double t) {
@@ -31,7 +31,7 @@ bool moves_on(const MotionRecord& record, const Window& window, double time, Ind
 
 }  // namespace
 
-Eigen::VectorXd independent_times(const MotionRecord& record, const Window& window,
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
                                   double longest_delay) {
   const double margin = 1.5 * window.reach() + longest_delay;
   const double spacing = window.independent();
@@ -43,7 +43,7 @@ Eigen::VectorXd independent_times(const MotionRecord& record, const Window& wind
 }
 
 Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
-                       const Window& window, const Eigen::VectorXd& times) {
+                       const Smoothing& window, const Eigen::VectorXd& times) {
   const Motion3 motion = motion_at(record, window, times);
   const Eigen::VectorXd step = encoder_steps(record);
   const Arm<kAnyDof> arm(guess);

@@ -24,11 +24,11 @@ struct Equations {
 
 // Moments at which noise is independent, far enough within the record [s]. Errors:
 // std::invalid_argument where it is too short for any.
-Eigen::VectorXd independent_times(const MotionRecord& record, const Window& window,
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
                                   double longest_delay);
 
 // `times` as in motion_at(); `gravity` in the base's frame [m/s^2].
 Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
-                       const Window& window, const Eigen::VectorXd& times);
+                       const Smoothing& window, const Eigen::VectorXd& times);
 
 }  // namespace limpid

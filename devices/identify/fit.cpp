@@ -119,14 +119,14 @@ class Fit {
       : guess_(guess),
         record_(record),
         settings_(settings),
-        window_(window_for(record)),
+        smoothing_(smoothing_for(record)),
         n_(record.joints()) {
     if (guess.dof() != n_) {
       throw std::invalid_argument(
           fmt::format("the arm has {} joints, the recorded motion {}", guess.dof(), n_));
     }
-    times_ = independent_times(record, window_, settings.longest_delay);
-    rows_ = equations_of(guess, record, settings.gravity, window_, times_);
+    times_ = independent_times(record, smoothing_, settings.longest_delay);
+    rows_ = equations_of(guess, record, settings.gravity, smoothing_, times_);
     count_ = Eigen::VectorX<Index>::Zero(n_);
     for (const Index j : rows_.joint) ++count_[j];
     for (Index j = 0; j < n_; ++j) {
@@ -145,7 +145,7 @@ class Fit {
 
  private:
   VectorXd torque(double delay) const {
-    return rows_.of(torque_at(record_, window_, times_, delay));
+    return rows_.of(torque_at(record_, smoothing_, times_, delay));
   }
   double miss(const Projection& fit, double delay) const {
     return fit.miss(weight_.cwiseProduct(torque(delay)));
@@ -258,7 +258,7 @@ class Fit {
   const ArmDescription& guess_;
   const MotionRecord& record_;
   const FitSettings& settings_;
-  Window window_;
+  Smoothing smoothing_;
   Index n_;
   VectorXd times_;
   Equations rows_;

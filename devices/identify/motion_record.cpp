@@ -12,7 +12,7 @@ struct Rows {
   Eigen::Index first, last;  // inclusive
 };
 
-Rows rows_about(const MotionRecord& record, const Window& window, double time) {
+Rows rows_about(const MotionRecord& record, const Smoothing& window, double time) {
   const auto at = [&](double t) {
     return std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::llround(t / record.T)), 0,
                                     record.rows() - 1);
@@ -34,11 +34,11 @@ Eigen::VectorXd encoder_steps(const MotionRecord& record) {
   return step;
 }
 
-Window window_for(const MotionRecord& record) {
+Smoothing smoothing_for(const MotionRecord& record) {
   constexpr double kNoise = 3e-4;
   const Eigen::VectorXd step = encoder_steps(record);
   for (const double sigma : {0.008, 0.010}) {
-    const Window window{sigma};
+    const Smoothing window{sigma};
     // White noise of step^2 / 12 a row, through the second derivative of the Gaussian.
     const double passed = record.T * 3 / (8 * std::sqrt(std::numbers::pi) * std::pow(sigma, 5));
     const double length = static_cast<double>(record.rows()) * record.T - 2 * window.reach();
@@ -51,7 +51,8 @@ Window window_for(const MotionRecord& record) {
   return {0.0125};
 }
 
-Motion3 motion_at(const MotionRecord& record, const Window& window, const Eigen::VectorXd& times) {
+Motion3 motion_at(const MotionRecord& record, const Smoothing& window,
+                  const Eigen::VectorXd& times) {
   const Eigen::Index n = record.joints();
   Motion3 out{Eigen::MatrixXd::Zero(times.size(), n), Eigen::MatrixXd::Zero(times.size(), n),
               Eigen::MatrixXd::Zero(times.size(), n)};
@@ -78,7 +79,7 @@ Motion3 motion_at(const MotionRecord& record, const Window& window, const Eigen:
 }
 
 // A torque that is held for a tick has the window's integral over it.
-Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window,
+Eigen::MatrixXd torque_at(const MotionRecord& record, const Smoothing& window,
                           const Eigen::VectorXd& times, double delay) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(times.size(), record.joints());
   const double scale = 1 / (window.sigma * std::numbers::sqrt2);

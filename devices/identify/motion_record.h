@@ -17,7 +17,7 @@ struct MotionRecord {
 
 // The same Gaussian window over positions and torques: what it keeps of one it keeps of the other,
 // so that a linear law between their derivatives stays exact. Without a shift in time.
-struct Window {
+struct Smoothing {
   double sigma;                                         // [s]
   double reach() const { return 5 * sigma; }            // what is beyond it weighs less than 4e-6
   double independent() const { return 3.545 * sigma; }  // 2 sqrt(pi) sigma: noise further apart is
@@ -31,12 +31,13 @@ struct Motion3 {
 Eigen::VectorXd encoder_steps(const MotionRecord& record);
 // The narrowest window, from 8 to 12.5 ms, in which the encoders' steps make less than 3e-4 of the
 // mean square of each joint's acceleration; noise there would pass for less inertia.
-Window window_for(const MotionRecord& record);
+Smoothing smoothing_for(const MotionRecord& record);
 
 // At these times [s] since the first row; each at least the window's reach within the record.
-Motion3 motion_at(const MotionRecord& record, const Window& window, const Eigen::VectorXd& times);
+Motion3 motion_at(const MotionRecord& record, const Smoothing& window,
+                  const Eigen::VectorXd& times);
 // The torques that acted there if each began `delay` [s] after its reading and was held for a tick.
-Eigen::MatrixXd torque_at(const MotionRecord& record, const Window& window,
+Eigen::MatrixXd torque_at(const MotionRecord& record, const Smoothing& window,
                           const Eigen::VectorXd& times, double delay);
 
 }  // namespace limpid

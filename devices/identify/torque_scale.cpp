@@ -26,7 +26,7 @@ struct Weighed {
 };
 
 Weighed weighed(const Identified& found, const MotionRecord& record, const FitSettings& settings) {
-  const Window window = window_for(record);
+  const Smoothing window = smoothing_for(record);
   const VectorXd times = independent_times(record, window, settings.longest_delay);
   const Equations rows = equations_of(found.arm, record, settings.gravity, window, times);
   Weighed out{rows.A, rows.of(torque_at(record, window, times, found.delay.value))};

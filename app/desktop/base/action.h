@@ -49,6 +49,7 @@ enum class Action : std::uint8_t {
   toggle_plots,
   toggle_experiments,
   toggle_sweep,
+  toggle_identify,
   add_plot,
   layouts,
   presets,

@@ -20,7 +20,8 @@ void DeviceDesk::update() {
   follow_check();
   if (desk_.loop().device_in_place()) desk_.controls().limits = hub_.notes(hub_.in_use()).limits;
   if (desk_.loop().device_plugged()) return watch();
-  if (hub_.in_use().empty() || connecting_.valid() || check_.valid() || Clock::now() < retry_at_) {
+  if (hub_.in_use().empty() || lent_ || connecting_.valid() || check_.valid() ||
+      desk_.loop().holds_device() || Clock::now() < retry_at_) {
     return;
   }
   const FoundDevice* found = hub_.present();
@@ -154,11 +155,15 @@ void DeviceDesk::use(const std::string& id) {
 
 void DeviceDesk::connect_anew() {
   save();
-  if (!desk_.loop().device_plugged()) return;
+  if (desk_.loop().device_plugged()) lend();
+  take_back();
+}
+
+void DeviceDesk::lend() {
+  lent_ = true;
   desk_.loop().cut();
   cancel_check();
   desk_.loop().plug(nullptr);
-  retry_at_ = Clock::now() + milliseconds(100);  // the loop gives the old one back first
 }
 
 }  // namespace limpid

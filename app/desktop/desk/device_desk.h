@@ -53,6 +53,10 @@ class DeviceDesk {
   // What goes on in it; null: none does.
   const AxisCheckTalk* check() const { return check_.valid() ? talk_.get() : nullptr; }
 
+  // The device in use leaves the loop, without force, and stays away until it is taken back.
+  void lend();
+  void take_back() { lent_ = false; }
+
   DeviceHub& hub() { return hub_; }
   const DeviceHub& hub() const { return hub_; }
 
@@ -76,7 +80,7 @@ class DeviceDesk {
   ButtonPresses buttons_;
   Arming arming_ = Arming::off;  // at the last frame
   std::future<std::vector<FoundDevice>> looking_;
-  bool asking_services_ = false;
+  bool asking_services_ = false, lent_ = false;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;
   std::future<AxisCheck> check_;

@@ -103,25 +103,33 @@ void status(DeviceDesk& devices, const LiveLoop& loop) {
 }
 
 // What of the device was measured and what is assumed, and the delay that the law reckons with.
-void knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
-  if (!desk.loop().device_in_place()) return;
+// True once more of it shall be measured.
+bool knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
+  if (!desk.loop().device_in_place()) return false;
   const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
   const bool found = !notes.arm.empty();
   read_out("inertia, friction", found ? "measured" : "assumed", {},
            "Measured: by limpid identify, and remembered for this device. Assumed: what the arm's "
            "file says. Condition (3), \xCE\xB7_min and the walls in the analysis rest on them.");
+  if (notes.torque_scale != 1) {
+    read_out("motors", fmt::format("give {:.3f} of what they are told", notes.torque_scale), {},
+             "Measured with a load at the tip; what they are told takes it into account.");
+  }
+  const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
+  tooltip("Moves it by itself and finds inertia, friction, weight and delay.");
   if (notes.delay < 0) {
-    read_out("delay", "not measured", {}, "limpid identify finds it.");
-    return;
+    read_out("delay", "not measured", {}, "Identifying the device finds it.");
+    return wanted;
   }
   read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
            "From a reading to the torque that answers it, beyond the tick.");
   const Parameters with = reckoning_with(p, notes.delay);
-  if (with.delay == p.delay) return;
+  if (with.delay == p.delay) return wanted;
   const std::string text =
       fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
   if (ImGui::Button(text.c_str())) p = with;
   tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
+  return wanted;
 }
 
 // What the motors take of the device's own forces off the hand.
@@ -256,7 +264,9 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
   }
   if (found->kind->uncalibrated) {
     const auto reverse = notes.pid.reverse;
+    const double effort = notes.pid.effort;
     changed = joystick_settings(notes.pid) || changed;
+    if (notes.pid.effort != effort) notes.torque_scale = 1;  // which was found with the other one
     if (notes.pid.reverse != reverse) notes.checked = false;
   }
   if (changed) devices.connect_anew();
@@ -273,16 +283,18 @@ Parameters reckoning_with(Parameters p, double delay) {
   return p;
 }
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads,
+bool draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads,
                        Parameters& p) {
+  bool identify = false;
   choices(devices, pads);
   status(devices, desk.loop());
   if (!devices.hub().in_use().empty()) {
-    knowledge(devices, desk, p);
+    identify = knowledge(devices, desk, p);
     if (desk.loop().device_in_place()) compensation(desk.stage().arm(), p);
     adjustments(devices, desk);
   }
   ImGui::Separator();
+  return identify;
 }
 
 }  // namespace limpid

@@ -15,6 +15,7 @@ struct PadChoice {
 // can.
 Parameters reckoning_with(Parameters p, double delay);
 
-void draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
+// True once the device is to be identified.
+bool draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
 
 }  // namespace limpid

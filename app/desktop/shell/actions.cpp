@@ -140,12 +140,16 @@ bool act_on_window(Action action, Window& window) {
   }
 }
 
+// What is moved by itself stops, and says so where it was asked for.
+void escape(Desktop& d) {
+  const bool moving = d.identify().busy();
+  cut_force(d);
+  if (!moving) close_one(d);
+}
+
 void act_on_desktop(Action action, Desktop& d) {
   switch (action) {
-    case Action::escape:
-      cut_force(d);
-      close_one(d);
-      break;
+    case Action::escape: escape(d); break;
     case Action::cut_force: cut_force(d); break;
     case Action::toggle_force: d.desk().toggle_force(); break;
     case Action::start_over: d.desk().start_over(); break;
@@ -161,6 +165,7 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::toggle_help: toggle(d, Dialog::help); break;
     case Action::toggle_experiments: toggle(d, Dialog::experiments); break;
     case Action::toggle_sweep: toggle_sweep(d); break;
+    case Action::toggle_identify: toggle(d, Dialog::identify); break;
     case Action::add_plot: d.add_plot(); break;
     case Action::layouts: d.open_dialog(Dialog::layouts); break;
     case Action::presets: d.open_dialog(Dialog::presets); break;

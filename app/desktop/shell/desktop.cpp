@@ -29,6 +29,7 @@ Desktop::Desktop(Settings settings, const AskForPriority& ask)
                {.open = [this](std::unique_ptr<Device> device) { open_device(std::move(device)); },
                 .close = [this] { close_device(); },
                 .toggle_coupling = [this] { toggle_coupling(); }}),
+      identify_(desk_, devices_, notices_),
       playback_(notices_),
       sweep_(std::make_unique<SweepDesk>(notices_)),
       layouts_(data_dir() / "assets/layouts.toml", user_config_dir() / "layouts.toml"),
@@ -128,6 +129,7 @@ void Desktop::update(double dt) {
   follow_story();
   take_loaded();
   devices_.update();
+  identify_.update();
   note_compensation();
   camera_.advance(dt);
   if (desk_.became_unstable()) {
@@ -238,6 +240,7 @@ void Desktop::toggle_twin() {
 void Desktop::cut_force() {
   desk_.loop().cut();
   devices_.cancel_check();
+  identify_.stop();
 }
 
 void Desktop::reset_parameters() {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/desktop/base/named_texts.h"
-#include "app/desktop/desk/device_desk.h"
+#include "app/desktop/desk/identify_desk.h"
 #include "app/desktop/desk/pad_hand.h"
 #include "app/desktop/document/document.h"
 #include "app/desktop/playback/playback.h"
@@ -33,6 +33,7 @@ class Desktop {
   Document& document() { return document_; }
   Desk& desk() { return desk_; }
   DeviceDesk& devices() { return devices_; }
+  IdentifyDesk& identify() { return identify_; }
   Playback& playback() { return playback_; }
   SweepDesk& sweep() { return *sweep_; }
   Camera& camera() { return camera_; }
@@ -155,6 +156,7 @@ class Desktop {
   Document document_;
   Desk desk_;
   DeviceDesk devices_;
+  IdentifyDesk identify_;
   Playback playback_;
   std::unique_ptr<SweepDesk> sweep_;
   Camera camera_;

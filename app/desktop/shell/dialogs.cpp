@@ -127,6 +127,14 @@ void Dialogs::draw_list(Dialog which, NamedDialog& dialog, NamedTexts& texts) {
   }
 }
 
+void Dialogs::draw_identify() {
+  const Down down = desktop_.settings().parameters.down;
+  draw(Dialog::identify, [&](bool& open) {
+    identify_.draw(open, desktop_.identify(), down, desktop_.desk().stage().arm());
+    return open;
+  });
+}
+
 void Dialogs::draw_named() {
   draw_list(Dialog::layouts, layouts_, desktop_.layouts());
   draw_list(Dialog::presets, presets_, desktop_.presets());

@@ -6,6 +6,7 @@
 #include "app/desktop/base/action.h"
 #include "app/desktop/panels/experiments_panel.h"
 #include "app/desktop/panels/gallery.h"
+#include "app/desktop/panels/identify_dialog.h"
 #include "app/desktop/panels/named_dialog.h"
 #include "app/desktop/panels/plot_chooser.h"
 #include "app/desktop/panels/session_dialog.h"
@@ -27,6 +28,7 @@ class Dialogs {
   void draw_scenes(const Act& act);
   void draw_sessions();
   void draw_named();  // layouts and presets
+  void draw_identify();
   // What a plot shows; `room`: of the view, above the plots.
   void draw_plot_chooser(ScreenRect room);
   void drop_pictures() {  // before the OpenGL context goes
@@ -52,6 +54,7 @@ class Dialogs {
                    .extensions = {".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"}}};
   PathDialog arm_{{.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}}};
   TipQuestion tip_;
+  IdentifyDialog identify_;
   PathDialog save_{
       {.title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true}};
   PlotChooser chooser_;

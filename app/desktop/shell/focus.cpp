@@ -29,6 +29,7 @@ const char* name(Dialog dialog) {
     case Dialog::video: return "video";
     case Dialog::layouts: return "layouts";
     case Dialog::presets: return "presets";
+    case Dialog::identify: return "identify";
   }
   return "";
 }

@@ -24,6 +24,7 @@ enum class Dialog : std::uint8_t {
   video,
   layouts,
   presets,
+  identify,
 };
 const char* name(Dialog dialog);
 // One that asks something: nothing behind it acts meanwhile.

@@ -53,6 +53,7 @@ void Frame::draw() {
   part([&] { dialogs_.draw_scenes(act_); });
   part([&] { dialogs_.draw_sessions(); });
   part([&] { dialogs_.draw_named(); });
+  part([&] { dialogs_.draw_identify(); });
   draw_notices(desktop_.notices(), at.view, signs_box(at.view));
 }
 
@@ -178,7 +179,10 @@ void Frame::draw_side(ScreenRect rect) {
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   }
   if (section("Device", !desktop_.devices().hub().in_use().empty())) {
-    draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad}, parameters);
+    if (draw_device_panel(desktop_.devices(), desk, {desktop_.pads(), settings.gamepad},
+                          parameters)) {
+      desktop_.open_dialog(Dialog::identify);
+    }
     if (!desk.loop().device_in_place()) {
       draw_parameters(
           parameters, shown.arm(),

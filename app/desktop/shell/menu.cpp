@@ -177,6 +177,7 @@ void device_menu(Desktop& d, const Act& act) {
   ImGui::TextDisabled("%s, virtual, %d joints", arm.name.c_str(), arm.dof());
   item("Open arm (URDF)...", nullptr, Action::open_arm, act, !d.desk().loop().device_in_place());
   if (ImGui::MenuItem("Built-in arm", nullptr, d.built_in_arm())) d.use_built_in_arm();
+  item("Identify...", "F7", Action::toggle_identify, act);
   ImGui::Separator();
   const bool armed = d.desk().force_armed();
   item(armed ? "Force off" : "Force on", armed ? "Esc" : "F", Action::toggle_force, act);

@@ -50,6 +50,14 @@ nlohmann::json state_of(const SweepDesk& desk) {
   return state;
 }
 
+// `plugged`: the device is in the loop.
+nlohmann::json state_of(const IdentifyDesk& desk, bool plugged) {
+  constexpr std::array kPhases{"asking", "moving", "load", "working", "found"};
+  return {{"phase", kPhases[static_cast<std::size_t>(desk.phase())]},
+          {"wrong", desk.wrong()},
+          {"plugged", plugged}};
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -84,7 +92,7 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
-      "\"loading_part\": {:.3f}, \"sweep\": {}}}\n",
+      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -99,7 +107,8 @@ void print_state(Desktop& d, const WindowState& window) {
       plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), window.width, window.height,
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
       d.pads().size(), window.frames, window.input_waits,
-      d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump());
+      d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump(),
+      state_of(d.identify(), desk.loop().device_plugged()).dump());
   std::fflush(stdout);
 }
 

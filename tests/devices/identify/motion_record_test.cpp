@@ -10,7 +10,7 @@ namespace {
 // A Gaussian window leaves exp(-w^2 sigma^2 / 2) of a sine, and its phase.
 TEST(MotionAt, GivesASinesDerivativesDampedByTheWindow) {
   const double w = 2 * std::numbers::pi * 3;
-  const Window window{0.01};
+  const Smoothing window{0.01};
   MotionRecord record;
   record.x.resize(4000, 1);
   for (Eigen::Index i = 0; i < 4000; ++i) record.x(i, 0) = std::sin(w * record.T * double(i)) + 2;
@@ -28,7 +28,7 @@ TEST(MotionAt, GivesASinesDerivativesDampedByTheWindow) {
 // A torque that is held for a tick is half a tick late, besides its delay.
 TEST(TorqueAt, GivesWhatActedDampedByTheWindow) {
   const double w = 2 * std::numbers::pi * 3, delay = 2.7e-3;
-  const Window window{0.01};
+  const Smoothing window{0.01};
   MotionRecord record;
   record.torque.resize(4000, 1);
   for (Eigen::Index i = 0; i < 4000; ++i) record.torque(i, 0) = std::sin(w * record.T * double(i));

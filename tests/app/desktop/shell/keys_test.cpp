@@ -70,6 +70,7 @@ const Case kCases[] = {
     {"F4", GLFW_KEY_F4, 0, Action::toggle_plots, Action::toggle_plots},
     {"F5", GLFW_KEY_F5, 0, Action::toggle_experiments, Action::toggle_experiments},
     {"F6", GLFW_KEY_F6, 0, Action::toggle_sweep, Action::toggle_sweep},
+    {"F7", GLFW_KEY_F7, 0, Action::toggle_identify, Action::toggle_identify},
     {"F11", GLFW_KEY_F11, 0, Action::full_screen, Action::full_screen},
     {"F12", GLFW_KEY_F12, 0, Action::save_picture, Action::save_picture},
     {"Ctrl+O", GLFW_KEY_O, kControl, Action::open_session, Action::open_session},

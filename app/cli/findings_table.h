@@ -1,0 +1,12 @@
+// What was found of a device, as tables.
+#pragma once
+
+#include "app/identify/findings.h"
+
+namespace limpid {
+
+void print(const Identification& identification);
+// What is other than the last time.
+void print_drift(const Findings& last, const Identification& now);
+
+}  // namespace limpid

@@ -1,0 +1,182 @@
+#include "app/desktop/desk/identify_desk.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cctype>
+#include <ctime>
+
+#include "app/base/user_dirs.h"
+#include "app/identify/identify_report.h"
+#include "devices/identify/unlike_device.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kSeed = 1;  // of the simulated device
+constexpr double kMostFriction = 0.03;
+
+fs::path folder_for(std::string name) {
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return user_data_dir() / "identified" /
+         fmt::format("{}-{:%Y%m%d-%H%M%S}", name, fmt::localtime(std::time(nullptr)));
+}
+
+Unlikeness simulated_bench(const IdentifyOrder& order) {
+  Unlikeness bench = drawn_bench(order.guess, kSeed, order.fit.gravity);
+  if (order.load > 0) bench.torque_scale = drawn_torque_scale(kSeed);
+  return bench;
+}
+
+IdentifyRun move_simulated(const IdentifyOrder& order, bool with_load, IdentifyTalk& talk) {
+  ArmDescription truth = unlike(order.guess, kSeed, kMostFriction);
+  if (with_load) truth = loaded(truth, order.load);
+  UnlikeDevice device(truth, simulated_bench(order));
+  return simulate_identification(device, order.guess, order.plan, talk);
+}
+
+IdentifyDesk::Done conclude(const std::string& name, const IdentifyOrder& order, IdentifyRun bare,
+                            IdentifyRun with_load, const std::string& last) {
+  IdentifyDesk::Done done{
+      .identification = identification(name, order, std::move(bare), std::move(with_load)),
+      .drift = {},
+      .report = folder_for(name),
+      .no_pictures = {}};
+  const std::optional<Findings> before = read_findings(last);
+  if (before) done.drift = drift(*before, done.identification);
+  fs::create_directories(done.report);
+  done.no_pictures = write_identification(done.identification, before, done.report);
+  return done;
+}
+
+}  // namespace
+
+std::string IdentifyDesk::why_not() const {
+  if (desk_.recording()) return "Stop the recording first.";
+  if (simulated()) return {};
+  if (desk_.loop().device_plugged() && !desk_.loop().device_in_place()) {
+    return "It has no motors that could move it.";
+  }
+  if (!desk_.loop().device_plugged()) {
+    return devices_.problem().empty() ? "The device is not in the loop." : devices_.problem();
+  }
+  return {};
+}
+
+double IdentifyDesk::duration(const ExcitationPlan& plan) const {
+  const ArmDescription& arm = desk_.stage().arm();
+  DeviceTraits traits;
+  traits.dof = arm.dof();
+  for (const Joint& joint : arm.joints) traits.effort.push_back(joint.effort);
+  traits.pushes = true;
+  return Excitation(arm, traits, plan).duration();
+}
+
+void IdentifyDesk::begin(IdentifyOrder order) {
+  if (phase_ != Phase::asking || !why_not().empty()) return;
+  order_ = std::move(order);
+  order_.guess = desk_.stage().arm();
+  id_ = devices_.hub().in_use();
+  name_ = order_.guess.name + ", simulated";
+  if (!simulated()) {
+    const FoundDevice* found = devices_.hub().present();
+    name_ = found != nullptr ? found->place.name : id_;
+    order_.plan = within(order_.plan, devices_.hub().notes(id_).limits);
+    devices_.lend();
+  }
+  bare_.reset();
+  done_.reset();
+  wrong_.clear();
+  phase_ = Phase::moving;
+}
+
+// Once the loop has given the device back: nobody else may drive it.
+void IdentifyDesk::move() {
+  talk_ = std::make_shared<IdentifyTalk>();
+  const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_,
+                    open = simulated() ? nullptr : devices_.hub().opening(),
+                    ask = devices_.hub().ask()] {
+    if (!open) return move_simulated(order, with_load, *talk);
+    const std::unique_ptr<Device> device = open();
+    talk->see();
+    return run_identification(*device, order.guess, order.plan, *talk, ask);
+  };
+  moving_ = desk_.device_errands().run(run);
+}
+
+void IdentifyDesk::go_on() {
+  if (phase_ == Phase::load) phase_ = Phase::moving;
+}
+
+void IdentifyDesk::update() {
+  talk_->see();
+  if (phase_ != Phase::asking && devices_.hub().in_use() != id_) stop();
+  try {
+    follow_motion();
+    follow_work();
+  } catch (const std::exception& e) {
+    fail(e.what());
+  }
+}
+
+void IdentifyDesk::follow_motion() {
+  if (phase_ != Phase::moving) return;
+  if (!moving_.valid()) {
+    if (simulated() || !desk_.loop().holds_device()) move();
+    return;
+  }
+  std::optional<IdentifyRun> run = take_ready(moving_);
+  if (!run) return;
+  if (run->end != ExcitationEnd::complete) return fail(explain(*run, order_));
+  if (order_.load > 0 && !bare_) {
+    bare_ = std::move(run);
+    phase_ = Phase::load;
+    if (simulated()) go_on();
+    return;
+  }
+  IdentifyRun with_load;
+  if (bare_) with_load = std::move(*run);
+  phase_ = Phase::working;
+  working_ = desk_.device_errands().run(
+      [name = name_, order = order_, bare = bare_ ? std::move(*bare_) : std::move(*run),
+       with_load = std::move(with_load), last = devices_.hub().remembered_report()]() mutable {
+        return conclude(name, order, std::move(bare), std::move(with_load), last);
+      });
+}
+
+void IdentifyDesk::follow_work() {
+  if (phase_ != Phase::working) return;
+  if (auto done = take_ready(working_)) {
+    done_ = std::move(*done);
+    phase_ = Phase::found;
+  }
+}
+
+void IdentifyDesk::fail(const std::string& why) {
+  stop();
+  wrong_ = why;
+}
+
+void IdentifyDesk::stop() {
+  talk_->cancel = true;
+  if (phase_ == Phase::asking) return;
+  wrong_ = busy() ? "stopped" : "";
+  phase_ = Phase::asking;
+  moving_ = {};
+  working_ = {};
+  done_.reset();
+  devices_.take_back();
+}
+
+void IdentifyDesk::keep() {
+  if (phase_ != Phase::found || simulated()) return;
+  const std::string wrong = devices_.hub().remember(nature_of(done_->identification));
+  if (!wrong.empty()) return fail(wrong);
+  devices_.save();
+  stop();
+  notices_.say("Remembered: " + name_ + " is what was found from now on.");
+}
+
+}  // namespace limpid

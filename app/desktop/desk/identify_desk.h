@@ -1,0 +1,72 @@
+// A device that is moved by itself to be identified, step by step as the window leads through it.
+// In place of the virtual arm one that is unlike its file is moved, to try it on.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/desktop/desk/device_desk.h"
+#include "app/identify/findings.h"
+
+namespace limpid {
+
+class IdentifyDesk {
+ public:
+  enum class Phase { asking, moving, load, working, found };
+  struct Done {
+    Identification identification;
+    std::vector<Drift> drift;      // since last time
+    std::filesystem::path report;  // folder of it
+    std::string no_pictures;       // why there are none
+  };
+
+  IdentifyDesk(Desk& desk, DeviceDesk& devices, Notices& notices)
+      : desk_(desk), devices_(devices), notices_(notices) {}
+  ~IdentifyDesk() { stop(); }
+
+  // Once a frame.
+  void update();
+
+  Phase phase() const { return phase_; }
+  bool busy() const { return phase_ != Phase::asking && phase_ != Phase::found; }
+  bool simulated() const { return devices_.hub().in_use().empty(); }
+  // Why it cannot begin; empty: it can.
+  std::string why_not() const;
+  // How long it will move [s].
+  double duration(const ExcitationPlan& plan) const;
+  // Moves the device, which leaves the loop for it, without its force; of the order the arm and the
+  // limits are the device's.
+  void begin(IdentifyOrder order);
+  void go_on();  // the load is fixed to the tip
+  // No motion; what was found is forgotten, and the device comes back into the loop.
+  void stop();
+  // What was found is the device's from now on.
+  void keep();
+
+  const IdentifyTalk& talk() const { return *talk_; }  // while it moves
+  const Done* done() const { return done_ ? &*done_ : nullptr; }
+  const std::string& wrong() const { return wrong_; }  // why the last one came to nothing
+
+ private:
+  void move();
+  void follow_motion();
+  void follow_work();
+  void fail(const std::string& why);
+
+  Desk& desk_;
+  DeviceDesk& devices_;
+  Notices& notices_;
+  Phase phase_ = Phase::asking;
+  IdentifyOrder order_;
+  std::string name_, id_, wrong_;
+  std::shared_ptr<IdentifyTalk> talk_ = std::make_shared<IdentifyTalk>();
+  std::future<IdentifyRun> moving_;
+  std::optional<IdentifyRun> bare_;
+  std::future<Done> working_;
+  std::optional<Done> done_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,212 @@
+#include "app/desktop/panels/identify_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/run/analysis.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "app/style/tooltip.h"
+
+namespace limpid {
+namespace {
+
+using Phase = IdentifyDesk::Phase;
+
+constexpr float kLabels = 14;  // width of them [text sizes]
+constexpr std::array kDownLabels{"as the arm's file says", "-z", "+z", "-x", "+x", "-y", "+y"};
+
+void muted(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
+// A part of something, in per cent.
+void part_slider(const char* label, double& part, float least, float most, const char* help) {
+  auto per_cent = static_cast<float>(100 * part);
+  ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
+  ImGui::SliderFloat(label, &per_cent, 100 * least, 100 * most, "%.0f %%",
+                     ImGuiSliderFlags_AlwaysClamp);
+  part = static_cast<double>(per_cent) / 100;
+  tooltip(help);
+}
+
+std::string going_on(const IdentifyTalk& talk, const ArmDescription& arm) {
+  switch (talk.stage) {
+    case ExcitationStage::approach: return "goes to the middle of its range";
+    case ExcitationStage::sweep:
+      return fmt::format("{} slowly, for its friction",
+                         arm.joints[static_cast<std::size_t>(talk.joint)].name);
+    case ExcitationStage::shake: return "all joints at once, for inertia, weight and delay";
+    case ExcitationStage::fade: return "comes to rest";
+  }
+  return {};
+}
+
+void draw_motion(IdentifyDesk& desk, const ArmDescription& arm) {
+  const IdentifyTalk& talk = desk.talk();
+  ImGui::TextWrapped("It moves by itself: %s.", going_on(talk, arm).c_str());
+  progress_bar(std::clamp(talk.time / talk.duration, 0.0, 1.0), ImGui::GetContentRegionAvail().x);
+  muted("Holding on to it ends it, too.");
+  if (ImGui::Button("Stop (Esc)")) desk.stop();
+}
+
+void draw_load(IdentifyDesk& desk, double load) {
+  ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to it, and let go.",
+                     1e3 * load);
+  if (ImGui::Button("Go on (Enter)") || accepted()) desk.go_on();
+  ImGui::SameLine();
+  if (ImGui::Button("Stop (Esc)")) desk.stop();
+}
+
+void joints_table(const Identification& identification) {
+  const Identified& found = identification.found;
+  const auto columns = static_cast<int>(found.joints.size()) + 1;
+  if (!ImGui::BeginTable("found", columns, ImGuiTableFlags_BordersInnerH)) return;
+  ImGui::TableSetupColumn("");
+  for (const Joint& joint : found.arm.joints) ImGui::TableSetupColumn(joint.name.c_str());
+  ImGui::TableHeadersRow();
+  const auto row = [&](const std::string& label, const auto& text) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(label.c_str());
+    for (std::size_t j = 0; j < found.joints.size(); ++j) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(text(j).c_str());
+    }
+  };
+  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
+  row("inertia in its file [g m^2]", [&](std::size_t j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    return fmt::format("{:.3f}", M(i, i) / 1e-3);
+  });
+  for (const FindingInfo& info : kFindings) {
+    row(fmt::format("{} [{}]", info.label, info.unit), [&](std::size_t j) {
+      return with_plus_minus(text_of(found.joints[j].*info.field, info.per_unit));
+    });
+  }
+  row("not explained", [&](std::size_t j) {
+    return fmt::format("{:.1f} %", 100 * found.joints[j].residual / found.joints[j].torque);
+  });
+  ImGui::EndTable();
+}
+
+void device_figures(const Identification& identification) {
+  std::string text = fmt::format("Delay {} ms.", text_of(identification.found.delay, 1e-3));
+  if (const ReadingTimes& timing = identification.bare.timing; timing.rate > 0) {
+    text += fmt::format(" {:.0f} readings a second, at most {:.1f} ms apart.", timing.rate,
+                        1e3 * timing.most);
+  }
+  if (identification.torque_scale) {
+    text += fmt::format(" The motors give {} times what they are told.",
+                        text_of(*identification.torque_scale, 1));
+  }
+  ImGui::TextWrapped("%s", with_plus_minus(text).c_str());
+}
+
+void draw_drift(const std::vector<Drift>& all) {
+  if (all.empty()) return;
+  std::string text;
+  for (const Drift& d : all) {
+    if (!d.certain) continue;
+    text += fmt::format("{}{}: {} \xE2\x86\x92 {} {}", text.empty() ? "" : "\n", d.what,
+                        text_of(d.before, 1), text_of(d.now, 1), d.unit);
+  }
+  if (text.empty()) return muted("Nothing has changed since last time.");
+  ImGui::TextUnformatted("Changed since last time:");
+  ImGui::TextWrapped("%s", with_plus_minus(text).c_str());
+}
+
+// True once it is to be closed.
+bool draw_found(IdentifyDesk& desk) {
+  const IdentifyDesk::Done& done = *desk.done();
+  joints_table(done.identification);
+  device_figures(done.identification);
+  draw_drift(done.drift);
+  muted("Report: " + (done.report / "report.html").string());
+  if (!done.no_pictures.empty()) muted("Without pictures: " + done.no_pictures);
+  ImGui::Spacing();
+  if (desk.simulated()) {
+    muted("This was a simulated device that is unlike its file; nothing is remembered of it.");
+  } else {
+    if (ImGui::Button("Use it (Enter)") || accepted()) {
+      desk.keep();
+      return desk.wrong().empty();
+    }
+    tooltip("From now on the device is taken for what was found.");
+    ImGui::SameLine();
+  }
+  if (ImGui::Button(desk.simulated() ? "Again" : "Leave it as it was")) desk.stop();
+  return false;
+}
+
+}  // namespace
+
+void IdentifyDialog::draw_question(IdentifyDesk& desk, const ArmDescription& arm) {
+  ImGui::TextWrapped(
+      "The device moves by itself, each joint slowly and then all at once, and shows its inertia, "
+      "friction, weight, springs and delay. Couplings, margins and compensation rest on them.");
+  ImGui::Spacing();
+  part_slider("of each joint's range", order_.plan.range, 0.05f, 0.9f,
+              "How far it moves, about the middle of its range.");
+  part_slider("of the motors' limits", order_.plan.torque, 0.05f, 1,
+              "The most that its motors may give meanwhile.");
+  int down = static_cast<int>(down_);
+  ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
+  ImGui::Combo("down, seen from the base", &down, kDownLabels.data(),
+               static_cast<int>(kDownLabels.size()));
+  down_ = static_cast<Down>(down);
+  ImGui::Checkbox("a second time with a load at the tip", &with_load_);
+  tooltip("A mass that you know tells what the motors really give of what they are told.");
+  if (with_load_) {
+    ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
+    ImGui::SliderFloat("load", &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+  }
+  ImGui::Spacing();
+  const std::string why_not = desk.why_not();
+  muted(!why_not.empty() ? why_not
+        : desk.simulated()
+            ? "No device is in use: a simulated one that is unlike its file is moved, "
+              "to try it on."
+            : fmt::format("It takes about {:.0f} s. Clear the space around it and "
+                          "let go of it; nobody holds it meanwhile.",
+                          desk.duration(order_.plan)));
+  if (!desk.wrong().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
+    ImGui::TextWrapped("Ended: %s", desk.wrong().c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::BeginDisabled(!why_not.empty());
+  if (ImGui::Button("Begin (Enter)") || (accepted() && why_not.empty())) {
+    order_.load = with_load_ ? 1e-3 * static_cast<double>(load_) : 0;
+    order_.fit.gravity = gravity_of(down_, arm.gravity);
+    desk.begin(order_);
+  }
+  ImGui::EndDisabled();
+}
+
+void IdentifyDialog::draw(bool& open, IdentifyDesk& desk, Down down, const ArmDescription& arm) {
+  const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+  const float em = ImGui::GetFontSize();
+  const float wide = desk.phase() == Phase::found ? 52 * em : 36 * em;
+  if (!begin_modal("Identify the device", open, {std::min(wide, 0.94f * room.x), 0})) {
+    if (std::exchange(was_open_, false)) desk.stop();
+    return;
+  }
+  if (!std::exchange(was_open_, true)) down_ = down;
+  switch (desk.phase()) {
+    case Phase::asking: draw_question(desk, arm); break;
+    case Phase::moving: draw_motion(desk, arm); break;
+    case Phase::load: draw_load(desk, order_.load); break;
+    case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
+    case Phase::found: open = !draw_found(desk); break;
+  }
+  ImGui::EndPopup();
+}
+
+}  // namespace limpid

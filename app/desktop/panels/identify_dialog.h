@@ -1,0 +1,24 @@
+// Leads through the identification of a device: what is asked before, what goes on, what was found.
+#pragma once
+
+#include "app/desktop/desk/identify_desk.h"
+#include "core/tick/compensation.h"
+
+namespace limpid {
+
+class IdentifyDialog {
+ public:
+  // While `open`; a motion ends when it is closed. `down`: of the settings, the start of the
+  // choice.
+  void draw(bool& open, IdentifyDesk& desk, Down down, const ArmDescription& arm);
+
+ private:
+  void draw_question(IdentifyDesk& desk, const ArmDescription& arm);
+
+  IdentifyOrder order_;  // as it was the last time
+  Down down_ = Down::as_file;
+  bool with_load_ = false, was_open_ = false;
+  float load_ = 50;  // [g]
+};
+
+}  // namespace limpid
