@@ -60,6 +60,21 @@ TEST_F(Adjusted, PushesWithTheSamePowerAsItIsTold) {
   EXPECT_DOUBLE_EQ(fake->told[1], -0.2);
 }
 
+// Motors that give twice what they are told: the torque at the joint is the one that is asked for,
+// and what the joint can be asked for is the most that the device takes.
+TEST(AdjustedTorque, IsWhatTheMotorsGive) {
+  constexpr double kScale = 2;
+  auto inner = std::make_unique<test::FakeDevice>(2);
+  test::FakeDevice& fake = *inner;
+  const double most = inner->traits().effort.at(1);
+  AdjustedDevice device(std::move(inner), {}, kScale);
+  device.write(std::array<double, 2>{0.1, -0.2});
+  EXPECT_DOUBLE_EQ(kScale * fake.told[0], 0.1);
+  EXPECT_DOUBLE_EQ(kScale * fake.told[1], -0.2);
+  device.write(std::array<double, 2>{0, device.traits().effort.at(1)});
+  EXPECT_DOUBLE_EQ(fake.told[1], most);
+}
+
 TEST_F(Adjusted, Stops) {
   device->stop();
   EXPECT_TRUE(fake->stopped);

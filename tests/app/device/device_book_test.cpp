@@ -201,7 +201,8 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   {
     DeviceHub hub(dir / "devices.toml", {});
     hub.use("1209:4c50:a/b c");
-    EXPECT_EQ(hub.remember({.urdf = urdf_text(found, "found"), .report = "{}", .delay = 0.0021}), "");
+    EXPECT_EQ(hub.remember({.urdf = urdf_text(found, "found"), .report = "{}", .delay = 0.0021}),
+              "");
     hub.notes(hub.in_use()).compensation = taken_off;
     EXPECT_EQ(hub.save(), "");
   }

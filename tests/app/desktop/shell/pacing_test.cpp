@@ -23,12 +23,12 @@ TEST(Liveliness, DrawsAfterATouchAndNowAndThenWithoutOne) {
   const auto at = [&](int ms) { return start + milliseconds(100'000 + ms); };
   window.drawn(at(0));
   EXPECT_FALSE(window.due(at(16)));
-  EXPECT_TRUE(window.due(at(400)));
-  window.touch(at(400));
-  window.drawn(at(400));
-  EXPECT_TRUE(window.due(at(416)));
-  window.drawn(at(1200));
-  EXPECT_FALSE(window.due(at(1216)));
+  EXPECT_TRUE(window.due(at(600)));
+  window.touch(at(600));
+  window.drawn(at(600));
+  EXPECT_TRUE(window.due(at(616)));
+  window.drawn(at(1400));
+  EXPECT_FALSE(window.due(at(1416)));
 }
 
 }  // namespace
