@@ -107,12 +107,16 @@ class SimulatedDesk {
   static constexpr bool kPid = std::is_base_of_v<PidJoystickModel, Model>;
 
   SimulatedDesk(const ArmDescription& arm, const Scene& scene)
-      : model(make_model()), rig(arm, scene, nullptr), row(rig.layout()) {
+      : SimulatedDesk(arm, scene, make_model(), {}) {
     model->hand().axis(0) = stick_axis(0);
     model->hand().axis(0).path = lean_right;
+  }
+  SimulatedDesk(const ArmDescription& arm, const Scene& scene, std::unique_ptr<Model> one,
+                const Parameters& p)
+      : parameters(p), model(std::move(one)), rig(arm, scene, nullptr), row(rig.layout()) {
     model->power(true, now);
     connect();
-    rig.start({}, rest_at(arm, Vec3(0, 0, kStickLength)));
+    rig.start(parameters, rest_at(arm, Vec3(0, 0, kStickLength)));
   }
 
   void connect() {
@@ -141,7 +145,7 @@ class SimulatedDesk {
       now += microseconds(50);
       link->exchange.step();
       now += microseconds(450);
-      if (ticking) rig.step({}, {{rig.tip(), 1}, wisher.at(armed)}, row.add());
+      if (ticking) rig.step(parameters, {{rig.tip(), 1}, wisher.at(armed)}, row.add());
     }
   }
   // Until it has been pushed for a while, as far as it is.
@@ -167,6 +171,7 @@ class SimulatedDesk {
   Time now = std::chrono::hours(1);
   bool armed = false, ticking = true;
   Wisher wisher;
+  Parameters parameters;
   std::unique_ptr<Model> model;
   Rig rig;
   Rows row;

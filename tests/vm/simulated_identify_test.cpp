@@ -1,15 +1,19 @@
-// Devices behind their protocol are found out, in simulated time.
+// Devices behind their protocol are found out, in simulated time; a coupling comes nearer to what
+// it promises on them then.
 #include <gtest/gtest.h>
 
-#include "devices/identify/excitation.h"
-#include "tests/support/built_in.h"
-#include "tests/vm/simulated_desk.h"
-#include "tests/vm/unlike_stick.h"
+#include <numbers>
+
+#include "app/run/fitted_gains.h"
+#include "tests/vm/simulated_identification.h"
 
 namespace limpid::test {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr double kEta = 0.7;
+const Vec3 kDown(0, 0, -9.81);
 
 struct Trial {
   unsigned seed;
@@ -17,52 +21,167 @@ struct Trial {
   Time lag;
 };
 
-class SimulatedIdentify : public testing::TestWithParam<Trial> {
- protected:
-  // Readings at each whole millisecond, the tick in the middle, its torque out with the next.
-  void tick() {
-    link_.transport.arrive(model_->input(now_));
-    now_ += 50us;
-    link_.exchange.step();
-    now_ += 450us;
-    DeviceReading reading;
-    const bool here = link_.read(reading);
-    const auto x = std::span(reading.x).first(2);
-    const auto torque = motion_.step({x, 1e-3, {.guarded = true, .lost = !here}});
-    link_.write(torque);
-    x_.emplace_back(x[0], x[1]);
-    torque_.emplace_back(torque[0], torque[1]);
-    now_ += 500us;
-  }
-
-  const ArmDescription arm_ = read_urdf(assets_dir() / "devices/joystick.urdf");
-  const UnlikeStick stick_{GetParam().seed, GetParam().bits, GetParam().lag};
-  std::unique_ptr<RawDeviceModel> model_ = stick_.made();
-  Time now_ = std::chrono::hours(1);
-  const bool powered_ = (model_->power(true, now_), true);
-  SimulatedLink link_{*model_, std::make_unique<RawProtocol>(), now_};
-  Excitation motion_{arm_, link_.traits(), {}};
-  std::vector<Eigen::Vector2d> x_, torque_;
+struct SimulatedIdentify : testing::TestWithParam<Trial> {
+  const UnlikeStick stick{GetParam().seed, GetParam().bits, GetParam().lag};
 };
 INSTANTIATE_TEST_SUITE_P(Sticks, SimulatedIdentify,
                          testing::Values(Trial{1, 16, 1ms}, Trial{2, 10, 1ms}, Trial{3, 16, 4ms},
                                          Trial{4, 10, 4ms}, Trial{5, 10, 2ms}, Trial{6, 10, 3ms}));
 
 TEST_P(SimulatedIdentify, FindsWhatTheStickIs) {
-  while (motion_.end() == ExcitationEnd::running) tick();
-  ASSERT_EQ(motion_.end(), ExcitationEnd::complete)
-      << explain(motion_.end()) << ", " << explain(motion_.objection()) << " after "
-      << motion_.time() << " s, joint " << motion_.joint();
-  MotionRecord record;
-  record.x.resize(static_cast<Eigen::Index>(x_.size()), 2);
-  record.torque.resizeLike(record.x);
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    record.x.row(static_cast<Eigen::Index>(i)) = x_[i];
-    record.torque.row(static_cast<Eigen::Index>(i)) = torque_[i];
+  SimulatedIdentification run(stick);
+  run.run();
+  ASSERT_EQ(run.motion.end(), ExcitationEnd::complete)
+      << explain(run.motion.end()) << ", " << explain(run.motion.objection()) << " after "
+      << run.motion.time() << " s, joint " << run.motion.joint();
+  stick.expect_found(identify(run.arm, run.record(), {.gravity = kDown}), 1.05e-3);
+  EXPECT_TRUE(run.model->violations().empty()) << run.model->violations()[0];
+  EXPECT_LE(run.model->forces().largest(), ExcitationPlan{}.torque * kEffort * (1 + 1e-6));
+}
+
+struct Felt {
+  double inertia = 0;  // part of the stick's own that is felt
+  double off = 0;      // the hand's torque in free motion off the one that eta promises, of it
+  double slope = 0;    // of the coordination error against the contact torque [rad/(N m)]
+  double energy = 0;   // most of E_c [J]
+  bool force = true;   // all along
+};
+
+// A hand on the stick, which its own spring pulls at as well.
+class Hand {
+ public:
+  static constexpr double kStiffness = 2, kDamping = 0.02;  // [N m/rad, N m s/rad]
+
+  Hand(SprungHand& axes, const UnlikeStick& stick, double (*path)(int, double)) : axes_(axes) {
+    for (int i = 0; i < 2; ++i) {
+      AxisPhysics& axis = axes.axis(i);
+      spring_[i] = stick.axes[static_cast<std::size_t>(i)].stiffness;
+      axis.stiffness = spring_[i] + kStiffness;
+      axis.damping = kDamping;
+      axis.path = [i, path, share = kStiffness / axis.stiffness](double t) {
+        return share * path(i, t);
+      };
+    }
   }
-  stick_.expect_found(identify(arm_, record, {.gravity = Vec3(0, 0, -9.81)}), 1.05e-3);
-  EXPECT_TRUE(model_->violations().empty()) << model_->violations()[0];
-  EXPECT_LE(model_->forces().largest(), ExcitationPlan{}.torque * kEffort * (1 + 1e-6));
+  double torque(int i, double t) const {
+    const AxisPhysics& axis = axes_.axis(i);
+    const double x = axes_.position(i), speed = (axis.path(t + 1e-4) - axis.path(t)) / 1e-4;
+    return axis.stiffness * (axis.path(t) - x) + axis.damping * (speed - axes_.velocity(i)) +
+           spring_[i] * x;
+  }
+
+ private:
+  SprungHand& axes_;
+  double spring_[2]{};
+};
+
+double resting_then(double t, double amplitude, double angle) {
+  return amplitude * std::clamp(t - 1.5, 0.0, 1.0) * std::sin(angle);
+}
+double swinging(int axis, double t) {
+  constexpr double kTwoPi = 2 * std::numbers::pi;
+  return resting_then(t, 0.12, kTwoPi * (axis == 0 ? 1.3 : 1.7) * t) +
+         resting_then(t, 0.05, kTwoPi * (axis == 0 ? 4.1 : 3.3) * t);
+}
+double leaning(int axis, double t) {
+  return axis == 0 ? 0.3 * std::clamp((t - 1.5) / 3, 0.0, 1.0) : 0;
+}
+
+Parameters suited(const ArmDescription& arm, double resolution) {
+  Parameters p = fitted(arm);
+  p.kind = CouplingKind::proposed;
+  p.eta = kEta;
+  p.encoder_step = resolution;
+  p.velocity = VelocitySource::adaptive;
+  static_cast<CompensationSettings&>(p) = suggested_compensation(arm);
+  return p;
+}
+
+// What explains the hand's torque: inertia and damping, as parts of the stick's own, friction, and
+// of each axis a spring and a push.
+class FreeMotion {
+ public:
+  void add(const UnlikeStick& stick, const SprungHand& axes, const Hand& hand, double t,
+           double b_v) {
+    for (int i = 0; i < 2; ++i) {
+      const AxisPhysics& axis = stick.axes[static_cast<std::size_t>(i)];
+      const double v = axes.velocity(i), a = (v - before_[i]) / 1e-3, x = axes.position(i);
+      const double torque = hand.torque(i, t);
+      const double mean = 0.5 * (torque + torque_[i]);  // as that of the acceleration
+      before_[i] = v, torque_[i] = torque;
+      if (t < 3 || std::abs(v) < 0.05) continue;
+      const double inertia = axis.inertia * a, damping = (axis.friction + b_v) * v;
+      const double first = i == 0 ? 1 : 0;
+      Eigen::Vector<double, 7> row;
+      row << inertia, damping, v > 0 ? 1 : -1, first * x, (1 - first) * x, first, 1 - first;
+      A_ += row * row.transpose();
+      b_ += row * mean;
+      const double promised = kEta * (inertia + damping);
+      missed_ += (mean - promised) * (mean - promised);
+      whole_ += promised * promised;
+    }
+  }
+  double inertia() const { return A_.ldlt().solve(b_)[0]; }
+  double off() const { return std::sqrt(missed_ / whole_); }
+
+ private:
+  double before_[2]{}, torque_[2]{}, missed_ = 0, whole_ = 0;
+  Eigen::Matrix<double, 7, 7> A_ = Eigen::Matrix<double, 7, 7>::Zero();
+  Eigen::Vector<double, 7> b_ = Eigen::Vector<double, 7>::Zero();
+};
+
+Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
+  Felt out;
+  for (const bool pressing : {false, true}) {
+    Scene scene;
+    if (pressing) scene.joint_contacts.push_back({"stop", 0, 0.1, 1, 2});
+    SimulatedDesk<RawDeviceModel> desk(believed, scene, stick.made(),
+                                       suited(believed, stick.layout.resolution));
+    const Hand hand(desk.model->hand(), stick, pressing ? leaning : swinging);
+    desk.armed = true;
+    FreeMotion motion;
+    double ef = 0, ff = 0;
+    for (int ms = 1; ms <= 5000; ++ms) {
+      desk.run(1);
+      const std::size_t k = desk.row.size() - 1;
+      if (ms > 1000) out.force = out.force && desk.rig.force_state() == ForceState::on;
+      if (!pressing)
+        motion.add(stick, desk.model->hand(), hand, 1e-3 * (ms - 1), desk.parameters.b_v);
+      out.energy = std::max(out.energy, desk.row.at(k, Column::energy_total) -
+                                            desk.row.at(k, Column::energy_compensation));
+      const double f = desk.row.vec(k, Column::contact_torque).norm();
+      ef +=
+          f * (desk.row.vec(k, Column::measured_position) - desk.row.vec(k, Column::proxy_position))
+                  .norm();
+      ff += f * f;
+    }
+    if (pressing) {
+      out.slope = ef / ff;
+    } else {
+      out.off = motion.off();
+      out.inertia = motion.inertia();
+    }
+  }
+  return out;
+}
+
+TEST_P(SimulatedIdentify, BringsTheCouplingNearerToItsPromise) {
+  SimulatedIdentification run(stick);
+  run.run();
+  const Identified found = identify(run.arm, run.record(), {.gravity = kDown});
+  const Felt before = felt_on(stick, run.arm), after = felt_on(stick, found.arm);
+  std::printf(
+      "| %2d bits, lag %lld ms | inertia felt %.2f -> %.2f | hand off %.0f -> %.0f %% | slope %.2f "
+      "-> "
+      "%.2f mrad/(N m) | E_c %.2f -> %.2f mJ |\n",
+      GetParam().bits, static_cast<long long>(GetParam().lag / 1ms), before.inertia, after.inertia,
+      100 * before.off, 100 * after.off, 1e3 * before.slope, 1e3 * after.slope, 1e3 * before.energy,
+      1e3 * after.energy);
+  EXPECT_TRUE(after.force);
+  // Not the inertia alone: friction that is taken off late is felt as some.
+  EXPECT_LT(after.off, 0.95 * before.off);
+  EXPECT_NEAR(after.slope, before.slope, 0.1 * before.slope);
+  EXPECT_LT(after.energy, 1e-4);
 }
 
 }  // namespace
