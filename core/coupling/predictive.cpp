@@ -128,6 +128,8 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   y_ = at.x1;
   acted_ = slip_ = tau1_ = zero;
   elapsed_ = 0;
+  b_d_ = zero;
+  quick_ = false;
 }
 
 template <int N>
@@ -136,7 +138,7 @@ Whereabouts<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<
   both_ = p.hand_mass > 0;
   if (elapsed_ > 0) {
     slip_ = in.x1 - y_ - elapsed_ * predictor_.w();
-    predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step).p, both_);
+    predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step, quick_).p, both_);
   } else {  // the first reading, maybe not quite where the device is
     predictor_.begin_at(in.x1);
     ledger_.start(in.x1);
@@ -163,7 +165,11 @@ template <int N>
 Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDamper& c,
                                   const LawInput<N>& in, Proxy<N>& proxy) {
   const double T = in.tick;
-  const PredictorGains gains = p.gains(in.encoder_step);
+  if (in.b_d != b_d_) {
+    quick_ = dies_within_a_tick<N>(in.device.M, in.b_d, T);
+    b_d_ = in.b_d;
+  }
+  const PredictorGains gains = p.gains(in.encoder_step, quick_);
   Jacobian<N> J;
   const Arm<N>& arm = proxy.arm();
   arm.point_jacobian(in.frames, arm.dof() - 1, arm.tip(in.frames), J);

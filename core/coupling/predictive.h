@@ -91,6 +91,8 @@ struct PredictiveLaw {
     Vec<N> tau1_;         // as wanted, this tick [N m]
     double elapsed_ = 0;  // since the reading before; 0 at the first [s]
     bool both_ = true;    // predictors
+    Vec<N> b_d_;          // for which quick_ is
+    bool quick_ = false;  // the device, see dies_within_a_tick()
   };
 };
 

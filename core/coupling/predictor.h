@@ -32,10 +32,12 @@ struct PredictorSettings {
   // Encoders coarser than this ask for the coarse preset [rad].
   static constexpr double kCoarse = 1.5e-4;
 
-  PredictorGains gains(double encoder_step) const {
-    const bool coarse = preset == PredictorPreset::coarse ||
-                        (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
+  // quick: see dies_within_a_tick().
+  PredictorGains gains(double encoder_step, bool quick) const {
+    const bool free = preset == PredictorPreset::by_encoder;
+    const bool coarse = preset == PredictorPreset::coarse || (free && encoder_step > kCoarse);
     PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
+    if (free && quick) g.p = 0.45;
     if (!std::isnan(memory)) g.p = memory;
     if (!std::isnan(inertia)) g.mu = inertia;
     return g;
@@ -43,24 +45,39 @@ struct PredictorSettings {
 
   template <class P>
   static constexpr std::array<Setting<P>, 5> settings() {
-    return {{{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2,
-              0, 2, false, true,
-              "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
-              "(walls up to 2000 N/m); auto goes by device.encoder_step."},
-             {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-              "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
-              "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
-             {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
-              "Predictive coupling: factor on the device's inertia in the predictor. Default: "
-              "the preset's, 1 or 0.5."},
-             {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
-              "Predictive coupling: mass of hand and handle in the second predictor, which takes "
-              "over when it is the better one. 0 does without."},
-             {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
-              "Predictive coupling: delay between command and motor that it reckons with, in "
-              "ticks."}}};
+    return {
+        {{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2, 0,
+          2, false, true,
+          "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
+          "(walls up to 2000 N/m); auto goes by device.encoder_step, and takes the coarse memory "
+          "where a motion of the device dies out within a tick, as that of light links does."},
+         {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+          "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
+          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
+         {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
+          "Predictive coupling: factor on the device's inertia in the predictor. Default: "
+          "the preset's, 1 or 0.5."},
+         {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
+          "Predictive coupling: mass of hand and handle in the second predictor, which takes "
+          "over when it is the better one. 0 does without."},
+         {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
+          "Predictive coupling: delay between command and motor that it reckons with, in "
+          "ticks."}}};
   }
 };
+
+// Whether some joint that moves alone, the others free, loses its motion to its damping b_d within
+// a tick: T b_d_j (M^-1)_jj > 1. The midpoint rule foretells there that it goes back and forth;
+// with little memory that builds up from 2.7 on (chains of 3 to 30 joints, of many masses).
+template <int N>
+bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
+  const Factor<N> factor(M);
+  for (Eigen::Index j = 0; j < b_d.size(); ++j) {
+    const Vec<N> unit = Vec<N>::Unit(b_d.size(), j);
+    if (T * b_d[j] * Vec<N>(factor.solve(unit))[j] > 1) return true;
+  }
+  return false;
+}
 
 // Two of them run side by side, for a light hand and for one with mass; the one whose predictions
 // were better lately is active.

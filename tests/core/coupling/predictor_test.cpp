@@ -189,19 +189,21 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
 
 TEST(PredictorSettings, GoByTheEncoderUnlessTold) {
   PredictorSettings s;
-  EXPECT_EQ(s.gains(0).p, 0.2);
-  EXPECT_EQ(s.gains(1.5e-4).mu, 1);
-  EXPECT_EQ(s.gains(1.6e-4).p, 0.45);
-  EXPECT_EQ(s.gains(1.6e-4).mu, 0.5);
-  EXPECT_EQ(s.gains(1.6e-4).damping, 0.1);
+  EXPECT_EQ(s.gains(0, false).p, 0.2);
+  EXPECT_EQ(s.gains(1.5e-4, false).mu, 1);
+  EXPECT_EQ(s.gains(1.6e-4, false).p, 0.45);
+  EXPECT_EQ(s.gains(1.6e-4, false).mu, 0.5);
+  EXPECT_EQ(s.gains(1.6e-4, false).damping, 0.1);
+  EXPECT_EQ(s.gains(0, true).p, 0.45);
+  EXPECT_EQ(s.gains(0, true).mu, 1);
   s.preset = PredictorPreset::fine;
-  EXPECT_EQ(s.gains(5e-4).p, 0.2);
+  EXPECT_EQ(s.gains(5e-4, true).p, 0.2);
   s.preset = PredictorPreset::coarse;
-  EXPECT_EQ(s.gains(0).damping, 0.1);
+  EXPECT_EQ(s.gains(0, false).damping, 0.1);
   s.memory = 0;
   s.inertia = 2;
-  EXPECT_EQ(s.gains(0).p, 0);
-  EXPECT_EQ(s.gains(0).mu, 2);
+  EXPECT_EQ(s.gains(0, false).p, 0);
+  EXPECT_EQ(s.gains(0, false).mu, 2);
 }
 
 }  // namespace
