@@ -8,7 +8,7 @@ namespace limpid {
 namespace {
 
 constexpr std::size_t kBlockRows = 4096;  // what SessionWriter writes at once
-constexpr int kMostNaps = 10;  // of 2 ms, for a block to come together
+constexpr int kMostNaps = 10;             // of 2 ms, for a block to come together
 
 // Never more than 64 MiB.
 std::size_t ring_rows(std::size_t room, int stride) {
