@@ -42,20 +42,26 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   return behind;
 }
 
-int open_window(const WindowOptions& options) {
-  DesktopOptions desktop = options.desktop;
-  const InputOptions& input = options.input;
-  // What is wrong with the input is said before a window opens.
+// What is wrong with the input is said before a window opens, which reads it again: nothing of it
+// is kept. None: the window's own.
+std::optional<Parameters> checked_parameters(const InputOptions& input) {
   ArmDescription arm;
   SceneDocument document;
   read_world(input, arm, document);
+  const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
+                   input.eta || input.alpha;
+  if (!own) return std::nullopt;
+  return make_parameters(input, arm);
+}
+
+int open_window(const WindowOptions& options) {
+  DesktopOptions desktop = options.desktop;
+  const InputOptions& input = options.input;
+  desktop.parameters = checked_parameters(input);
   desktop.in_use = device_named(input.device);
   if (desktop.in_use.empty()) desktop.device = input.device;
   desktop.tip = input.tip;
   desktop.scene = input.scene;
-  const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
-                   input.eta || input.alpha;
-  if (own) desktop.parameters = make_parameters(input, arm);
   for (const std::string& file : options.files) {
     if (!std::filesystem::exists(file)) {
       throw UsageError(fmt::format(

@@ -55,25 +55,28 @@ std::size_t ticks(double seconds) {
 // A hand that shakes a little in all three directions, at the same frequencies.
 class Shaking {
  public:
-  explicit Shaking(std::uint64_t seed) : seed_(seed) {
+  explicit Shaking(std::uint64_t seed) {
+    std::vector<Multisine> axes;
     for (std::uint64_t i = 0; i < 3; ++i) {
-      axes_.push_back(multisine(1 / kPeriod, kLowest, kHighest, 48, kSpeed, 3 * seed + i));
+      axes.push_back(multisine(1 / kPeriod, kLowest, kHighest, 48, kSpeed, 3 * seed + i));
     }
+    const std::string source =
+        fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest, kHighest, kSpeed, seed);
+    path_ = hand_path(source, kTick, 2 * kPeriod, [&](double t) {
+      return Vec3(start() + Vec3(axes[0].at(t), axes[1].at(t), axes[2].at(t)));
+    });
+    lines_ = axes.front();
   }
-  const Multisine& lines() const { return axes_.front(); }
+  const Multisine& lines() const { return lines_; }
   Trial trial(double alpha, double seconds, bool keep) const {
-    const std::string source = fmt::format("shaking from {} to {} Hz at {} m/s, seed {}", kLowest,
-                                           kHighest, kSpeed, seed_);
-    const auto at = [&](double t) {
-      return Vec3(start() + Vec3(axes_[0].at(t), axes_[1].at(t), axes_[2].at(t)));
-    };
-    return {fmt::format("alpha-{:.3g}", alpha),
-            free_plan(alpha, hand_path(source, kTick, seconds, at)), keep};
+    Trial trial{fmt::format("alpha-{:.3g}", alpha), free_plan(alpha, path_), keep};
+    trial.plan.rows = std::min<std::uint64_t>(trial.plan.rows, ticks(seconds));
+    return trial;
   }
 
  private:
-  std::uint64_t seed_;
-  std::vector<Multisine> axes_;
+  Multisine lines_;
+  HandPath path_;
 };
 
 double off(double value, double wanted) { return std::abs(value / wanted - 1); }

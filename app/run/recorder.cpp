@@ -7,7 +7,8 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kBlockRows = 512;
+constexpr std::size_t kBlockRows = 4096;  // what SessionWriter writes at once
+constexpr int kMostNaps = 10;             // of 2 ms, for a block to come together
 
 // Never more than 64 MiB.
 std::size_t ring_rows(std::size_t room, int stride) {
@@ -71,8 +72,10 @@ void Recorder::live() {
       const bool last_round = stop_.load();
       write_changes();
       write_rows();
-      if (last_round) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      if (last_round && ring_.size() == 0) return;
+      for (int i = 0; i < kMostNaps && ring_.size() < kBlockRows && !stop_.load(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
     }
   } catch (const std::exception& e) {
     const std::lock_guard lock(error_mutex_);
@@ -82,21 +85,17 @@ void Recorder::live() {
 }
 
 void Recorder::write_rows() {
-  while (const std::size_t rows = ring_.pop(block_)) {
-    const auto both = std::span<const double>(block_).first(rows * ring_.stride());
-    if (lanes_ == 1) {
-      writer_.append(both);
-      continue;
+  const std::size_t rows = ring_.pop(block_);
+  const auto both = std::span<const double>(block_).first(rows * ring_.stride());
+  if (lanes_ == 1) return writer_.append(both);
+  const std::size_t stride = ring_.stride() / lanes_;
+  for (std::size_t lane = 0; lane < lanes_; ++lane) {
+    of_lane_.clear();
+    for (std::size_t at = lane * stride; at < both.size(); at += ring_.stride()) {
+      const auto row = both.subspan(at, stride);
+      of_lane_.insert(of_lane_.end(), row.begin(), row.end());
     }
-    const std::size_t stride = ring_.stride() / lanes_;
-    for (std::size_t lane = 0; lane < lanes_; ++lane) {
-      of_lane_.clear();
-      for (std::size_t at = lane * stride; at < both.size(); at += ring_.stride()) {
-        const auto row = both.subspan(at, stride);
-        of_lane_.insert(of_lane_.end(), row.begin(), row.end());
-      }
-      writer_.append(of_lane_, lane);
-    }
+    writer_.append(of_lane_, lane);
   }
 }
 

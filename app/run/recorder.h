@@ -20,7 +20,7 @@ class Recorder {
   // Room for rows that wait to be written: half a minute at 1 kHz where a clock sets the pace;
   // little, which stays in the processor's cache, where push_waiting() does.
   static constexpr std::size_t kLiveRoom = 1 << 15;
-  static constexpr std::size_t kWaitingRoom = 1 << 11;
+  static constexpr std::size_t kWaitingRoom = 1 << 13;
 
   // Opens the file at once, so that what cannot be written is known before the first tick.
   // Errors: FileError.

@@ -34,13 +34,21 @@ void add_start(Digest& digest, const RigStart& start) {
 std::optional<std::uint64_t> file_digest(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
-  Digest digest;
-  std::array<char, 1 << 16> block;
-  while (in.read(block.data(), block.size()) || in.gcount() > 0) {
-    digest.add(block.data(), static_cast<std::size_t>(in.gcount()));
-  }
+  // As Digest, but of eight bytes at a time: recordings are long. The last ones are padded with 0.
+  std::array<std::uint64_t, 1 << 13> block;
+  std::uint64_t digest = 0, size = 0;
+  do {
+    block.fill(0);
+    in.read(reinterpret_cast<char*>(block.data()), sizeof block);
+    const auto count = static_cast<std::size_t>(in.gcount());
+    for (std::size_t i = 0; i < (count + 7) / 8; ++i) {
+      digest = (digest ^ block[i]) * 0x9e37'79b9'7f4a'7c15;
+      digest ^= digest >> 32;
+    }
+    size += count;
+  } while (in);
   if (in.bad()) return std::nullopt;
-  return digest.value();
+  return digest ^ size;
 }
 
 std::uint64_t program_digest() {

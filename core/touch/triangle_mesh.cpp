@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 
+#include "core/touch/mesh_edges.h"
+
 namespace limpid {
 namespace {
 
@@ -31,8 +33,9 @@ struct TriangleMesh::Tree {
   std::atomic<std::ptrdiff_t> bytes{0};
   std::vector<std::uint32_t> indices;
 
-  // One thread: building goes on beside the haptic loop.
-  Tree() : device(rtcNewDevice("threads=1,set_affinity=0")) {
+  // One thread: building goes on beside the haptic loop. No room for surfaces that are divided on
+  // the way, 128 MB else.
+  Tree() : device(rtcNewDevice("threads=1,set_affinity=0,tessellation_cache_size=1")) {
     if (device == nullptr) throw std::runtime_error("Embree cannot be started");
     rtcSetDeviceMemoryMonitorFunction(
         device,
@@ -116,7 +119,6 @@ TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
                            const std::atomic<bool>* cancel) {
   const auto began = std::chrono::steady_clock::now();
   keep_triangles(vertices, indices);
-  examine_edges();
   tree_ = std::make_unique<Tree>();
   tree_->cancel = cancel;
   tree_->build(corners_);
@@ -145,12 +147,18 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
     box.extend(vertices[i].cast<double>());
   }
   if (!box.isEmpty()) middle_ = box.center();
+  std::vector<Eigen::Vector3f> places;
+  places.reserve(vertices.size());
+  for (const Eigen::Vector3f& v : vertices) {
+    places.emplace_back((v.cast<double>() - middle_).cast<float>());
+  }
+  const std::vector<std::uint32_t> names = names_of(places);
+  std::vector<std::uint32_t> kept;  // the corners' names
+  kept.reserve(indices.size());
   corners_.reserve(indices.size() + 2);
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     std::array<Eigen::Vector3f, 3> t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      t[k] = (vertices[indices[i + k]].cast<double>() - middle_).cast<float>();
-    }
+    for (std::size_t k = 0; k < 3; ++k) t[k] = places[indices[i + k]];
     const Vec3 a = t[0].cast<double>(), ab = t[1].cast<double>() - a, ac = t[2].cast<double>() - a;
     const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     if (!(ab.cross(ac).norm() > kSliver * longest) || longest < 1e-30) {
@@ -158,43 +166,16 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
       continue;
     }
     corners_.insert(corners_.end(), t.begin(), t.end());
+    for (std::size_t k = 0; k < 3; ++k) kept.push_back(names[indices[i + k]]);
     for (const Eigen::Vector3f& v : t) radius_ = std::max(radius_, v.cast<double>().norm());
   }
   if (corners_.empty()) {
     throw std::invalid_argument(health_.degenerate == 0 ? "no triangles"
                                                         : "no triangle with an area");
   }
-}
-
-// Two triangles meet in an edge where the bits of its two ends agree.
-void TriangleMesh::examine_edges() {
-  const std::size_t count = corners_.size();
-  std::vector<std::uint32_t> order(count), name(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint32_t>(i);
-  const auto less = [&](std::uint32_t i, std::uint32_t j) {
-    return std::lexicographical_compare(corners_[i].data(), corners_[i].data() + 3,
-                                        corners_[j].data(), corners_[j].data() + 3);
-  };
-  std::sort(order.begin(), order.end(), less);
-  std::uint32_t names = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0 && less(order[i - 1], order[i])) ++names;
-    name[order[i]] = names;
-  }
-  std::vector<std::uint64_t> edges;  // ends, the lower first; the last bit: which way
-  edges.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t from = name[i], to = name[i % 3 == 2 ? i - 2 : i + 1];
-    edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | (from < to ? 1 : 0));
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < count;) {
-    std::size_t end = i + 1;
-    while (end < count && edges[end] >> 1 == edges[i] >> 1) ++end;
-    if (end - i == 1) ++health_.open_edges;
-    if (end - i > 2 || (end - i == 2 && edges[i] == edges[i + 1])) ++health_.odd_edges;
-    i = end;
-  }
+  const EdgeCount edges = count_edges(kept, names.size());
+  health_.open_edges = edges.open;
+  health_.odd_edges = edges.odd;
 }
 
 std::size_t TriangleMesh::bytes() const {

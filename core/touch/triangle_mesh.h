@@ -69,7 +69,6 @@ class TriangleMesh {
   }
   void keep_triangles(std::span<const Eigen::Vector3f> vertices,
                       std::span<const std::uint32_t> indices);
-  void examine_edges();
 
   std::vector<Eigen::Vector3f> corners_;  // three a triangle, side by side
   Vec3 middle_ = Vec3::Zero();

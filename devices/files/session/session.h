@@ -60,9 +60,9 @@ struct Session {
 inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
 // Writes OUT.h5.part while running (SWMR: readable live) and renames it to OUT.h5 when closed.
-// Rows reach the disk at least every half second of ticks. Not for the haptic thread.
-// Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a write
-// fails (disk full); after a failed write the .part keeps what had been flushed.
+// Rows reach the disk at least every three quarters of a second of ticks. Not for the haptic
+// thread. Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a
+// write fails (disk full); after a failed write the .part keeps what had been flushed.
 class SessionWriter {
  public:
   SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force);

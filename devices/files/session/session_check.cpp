@@ -29,35 +29,34 @@ std::vector<std::optional<Column>> columns_in(const std::string& paths) {
   return columns;
 }
 
-// Takes a row's values of one column into its sum.
-void stir(const RowLayout& layout, const double* row, const ColumnInfo& column,
-          std::uint64_t& sum) {
-  const double* values = row + layout.offset(column.column);
-  for (int i = 0; i < layout.width(column.column); ++i) {
-    const double x = column.byte ? static_cast<std::uint8_t>(values[i]) : values[i];  // as stored
-    sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
-    sum ^= sum >> 32;
-  }
+// Takes a value into a sum.
+std::uint64_t stirred(std::uint64_t sum, double x) {
+  sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
+  return sum ^ sum >> 32;
 }
 
 }  // namespace
 
 std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column) {
   const auto stride = static_cast<std::size_t>(layout.stride());
-  const ColumnInfo& info = kColumnInfo[static_cast<std::size_t>(column)];
   std::uint64_t sum = rows.size() / stride;
-  for (std::size_t at = 0; at < rows.size(); at += stride) stir(layout, &rows[at], info, sum);
+  for (std::size_t at = 0; at < rows.size(); at += stride) {
+    for (const double x : layout.in(rows.subspan(at, stride), column)) sum = stirred(sum, x);
+  }
   return sum;
 }
 
-std::array<std::uint64_t, kColumns> column_sums(const RowLayout& layout,
-                                                std::span<const double> rows) {
-  const auto stride = static_cast<std::size_t>(layout.stride());
+std::array<std::uint64_t, kColumns> column_sums(const std::array<ColumnValues, kColumns>& columns,
+                                                std::uint64_t from, std::uint64_t count) {
   std::array<std::uint64_t, kColumns> sums;
-  sums.fill(rows.size() / stride);
-  for (std::size_t at = 0; at < rows.size(); at += stride) {
-    for (const ColumnInfo& column : kColumnInfo) {
-      stir(layout, &rows[at], column, sums[static_cast<std::size_t>(column.column)]);
+  sums.fill(count);
+  for (std::uint64_t k = from; k < from + count; ++k) {
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const auto width = static_cast<std::size_t>(columns[c].width);
+      const double* values = columns[c].first + k * width;
+      std::uint64_t sum = sums[c];
+      for (std::size_t i = 0; i < width; ++i) sum = stirred(sum, values[i]);
+      sums[c] = sum;
     }
   }
   return sums;

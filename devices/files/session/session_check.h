@@ -24,9 +24,15 @@ inline constexpr const char* kCheckColumns = "columns";
 // Over the values of `rows` in that column: h <- (h ^ bits) * odd, and a shift. Each step can be
 // undone, so a single value that changes always changes the sum.
 std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column);
-// Of all columns, going through the rows once: several times faster than one after the other.
-std::array<std::uint64_t, kColumns> column_sums(const RowLayout& layout,
-                                                std::span<const double> rows);
+// The values of a column alone, a row behind the other.
+struct ColumnValues {
+  const double* first;
+  int width;
+};
+// Of all columns, in their order, over `count` rows from row `from` on. They go side by side: each
+// sum waits for the step before, so that one column after the other takes several times as long.
+std::array<std::uint64_t, kColumns> column_sums(const std::array<ColumnValues, kColumns>& columns,
+                                                std::uint64_t from, std::uint64_t count);
 
 // The columns in the order of their sums.
 std::string check_columns();

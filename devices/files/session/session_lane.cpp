@@ -15,8 +15,9 @@ using hdf5::append_to;
 using hdf5::check;
 using hdf5::create_growing;
 
-constexpr double kFlushSeconds = 0.5;  // rows reach the disk this often
+constexpr double kFlushSeconds = 0.75;  // rows reach the disk at least this often
 constexpr double kMostBlockRows = 16384;
+constexpr std::uint64_t kMostRows = 4096;  // at once: more would not stay in the processor's cache
 constexpr std::uint64_t kBlocksPerChunk = 16;
 constexpr hsize_t kEventChunk = 64;
 constexpr hsize_t kSumChunk = 64;
@@ -36,15 +37,21 @@ bool sparse(const ColumnInfo& column) {
          column.column == Column::energy_compensation;
 }
 
+// Of ticks of so long [s].
+std::uint64_t rows_of_block(double tick) {
+  return std::bit_floor(
+      static_cast<std::uint64_t>(std::clamp(kFlushSeconds / tick, 1.0, kMostBlockRows)));
+}
+
 }  // namespace
 
 SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info)
     : path_(std::move(path)),
       layout_(info.dof),
-      block_rows_(static_cast<std::uint64_t>(
-          std::clamp(std::round(kFlushSeconds / info.tick), 1.0, kMostBlockRows))) {
-  pending_.reserve(block_rows_ * static_cast<std::size_t>(layout_.stride()));
-}
+      block_rows_(rows_of_block(info.tick)),
+      most_rows_(std::max(block_rows_, kMostRows)),
+      pending_(std::make_unique_for_overwrite<double[]>(
+          most_rows_ * static_cast<std::size_t>(layout_.stride()))) {}
 
 void SessionLane::create(hid_t group) {
   create_device(group);
@@ -96,58 +103,75 @@ void SessionLane::create_check(hid_t group) {
   hdf5::write_text(sums_.get(), "what", "checksum of each column over so many rows", path_);
 }
 
-std::uint64_t SessionLane::pending_rows() const {
-  return pending_.size() / static_cast<std::size_t>(layout_.stride());
+bool SessionLane::take(std::span<const double>& rows) {
+  const auto stride = static_cast<std::size_t>(layout_.stride());
+  const std::uint64_t in_blocks =
+      std::min((pending_rows_ + rows.size() / stride) / block_rows_ * block_rows_, most_rows_);
+  const auto part = in_blocks > 0 ? rows.first((in_blocks - pending_rows_) * stride) : rows;
+  sort_in(part);
+  rows = rows.subspan(part.size());
+  return in_blocks > 0;
 }
 
-bool SessionLane::take(std::span<const double>& rows) {
-  const std::size_t room =
-      block_rows_ * static_cast<std::size_t>(layout_.stride()) - pending_.size();
-  const auto part = rows.first(std::min(room, rows.size()));
-  pending_.insert(pending_.end(), part.begin(), part.end());
-  rows = rows.subspan(part.size());
-  return pending_rows() == block_rows_;
+double* SessionLane::pending(Column column) const {
+  return pending_.get() + static_cast<std::size_t>(layout_.offset(column)) * most_rows_;
+}
+
+// Rows as columns, one behind the other.
+void SessionLane::sort_in(std::span<const double> rows) {
+  struct Place {
+    double* to;
+    int width;
+    bool byte;
+  };
+  std::array<Place, kColumns> places;  // in the order of the row
+  std::ranges::transform(kColumnInfo, places.begin(), [&](const ColumnInfo& column) {
+    const int width = layout_.width(column.column);
+    double* first = pending(column.column);
+    return Place{first + pending_rows_ * static_cast<std::size_t>(width), width, column.byte};
+  });
+  for (auto from = rows.begin(); from != rows.end();) {
+    for (Place& place : places) {
+      if (place.byte) {  // as it will be stored
+        *place.to++ = static_cast<std::uint8_t>(*from++);
+        continue;
+      }
+      for (int i = 0; i < place.width; ++i) *place.to++ = *from++;
+    }
+  }
+  pending_rows_ += rows.size() / static_cast<std::size_t>(layout_.stride());
 }
 
 // Changes go first and the sums last: what they stand for is complete.
 void SessionLane::flush() {
   write_changes();
-  const std::uint64_t count = pending_rows();
-  if (count == 0) return;
-  sort_columns(count);
+  if (pending_rows_ == 0) return;
   for (auto column = kColumnInfo.rbegin(); column != kColumnInfo.rend(); ++column) {
-    write_column(*column, count);
+    write_column(*column);
   }
   write_check();
-  flushed_rows_ += count;
-  pending_.clear();
+  flushed_rows_ += pending_rows_;
+  pending_rows_ = 0;
 }
 
 void SessionLane::write_check() {
-  const auto sums = column_sums(layout_, pending_);
-  append_to(sums_, flushed_sums_, 1, kColumns, H5T_NATIVE_UINT64, sums.data(), path_);
-  ++flushed_sums_;
-}
-
-// Rows as columns, one behind the other.
-void SessionLane::sort_columns(std::uint64_t count) {
-  const auto stride = static_cast<std::size_t>(layout_.stride());
-  by_column_.resize(pending_.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const double* row = pending_.data() + k * stride;
-    for (const ColumnInfo& column : kColumnInfo) {
-      const auto at = static_cast<std::size_t>(layout_.offset(column.column));
-      const auto width = static_cast<std::size_t>(layout_.width(column.column));
-      double* to = by_column_.data() + at * count + k * width;
-      for (std::size_t i = 0; i < width; ++i) to[i] = row[at + i];
-    }
+  std::array<ColumnValues, kColumns> columns;
+  std::ranges::transform(kColumnInfo, columns.begin(), [&](const ColumnInfo& column) {
+    return ColumnValues{pending(column.column), layout_.width(column.column)};
+  });
+  std::vector<std::uint64_t> sums;
+  for (std::uint64_t from = 0; from < pending_rows_; from += block_rows_) {
+    const auto of_block = column_sums(columns, from, std::min(block_rows_, pending_rows_ - from));
+    sums.insert(sums.end(), of_block.begin(), of_block.end());
   }
+  const std::uint64_t blocks = sums.size() / kColumns;
+  append_to(sums_, flushed_sums_, blocks, kColumns, H5T_NATIVE_UINT64, sums.data(), path_);
+  flushed_sums_ += blocks;
 }
 
-void SessionLane::write_column(const ColumnInfo& column, std::uint64_t count) {
-  const auto at = static_cast<std::size_t>(layout_.offset(column.column));
+void SessionLane::write_column(const ColumnInfo& column) {
   const auto width = static_cast<std::size_t>(layout_.width(column.column));
-  const std::span<const double> numbers(by_column_.data() + at * count, width * count);
+  const std::span<const double> numbers(pending(column.column), width * pending_rows_);
   if (column.byte) {
     bytes_.resize(numbers.size());
     std::transform(numbers.begin(), numbers.end(), bytes_.begin(),
@@ -156,7 +180,7 @@ void SessionLane::write_column(const ColumnInfo& column, std::uint64_t count) {
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers.data();
   const auto zero = [](double x) { return std::bit_cast<std::uint64_t>(x) == 0; };
   if (sparse(column) && std::ranges::all_of(numbers, zero)) data = nullptr;
-  append_to(columns_[column_index(column.column)], flushed_rows_, count, width,
+  append_to(columns_[column_index(column.column)], flushed_rows_, pending_rows_, width,
             column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);
 }
 

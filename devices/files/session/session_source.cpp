@@ -56,8 +56,9 @@ bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void
   const hdf5::Dataspace in_file(H5Dget_space(source.dataset.get()));
   const std::array<hsize_t, 2> start{from, 0};
   const std::array<hsize_t, 2> block{count, source.width};
-  const hsize_t total = count * source.width;
-  const hdf5::Dataspace in_memory(H5Screate_simple(1, &total, nullptr));
+  // Of the file's rank: HDF5 goes through other shapes number by number.
+  const int rank = H5Sget_simple_extent_ndims(in_file.get());
+  const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
   return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                              nullptr) >= 0 &&
          H5Dread(source.dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, out) >= 0;

@@ -84,13 +84,13 @@ void extend(const fs::path& file, hsize_t rows) {
 }
 
 TEST(DamagedSession, DoesNotTakeRowsForRealThatWereNeverWritten) {
-  for (const hsize_t rows : {1, 499, 500, 9000}) {
+  for (const hsize_t rows : {1, 511, 512, 9000}) {
     const test::TempDir dir;
-    test::write_sample(dir / "a.h5", 1000);
+    test::write_sample(dir / "a.h5", 1024);
     extend(dir / "a.h5", rows);
     fs::copy(dir / "a.h5", dir / "b.h5.part");
     EXPECT_NE(refusal([&] { read_session(dir / "a.h5"); }), "") << rows;
-    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 1000u) << rows;
+    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 1024u) << rows;
   }
 }
 
@@ -116,9 +116,9 @@ TEST(DamagedSession, IsNoticedByASingleNumberThatIsAnother) {
       H5Fclose(file);
     }
     EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }),
-                AllOf(HasSubstr(column.path), HasSubstr("rows 500 to 999")));
+                AllOf(HasSubstr(column.path), HasSubstr("rows 512 to 1023")));
     fs::copy(dir / "a.h5", dir / "b.h5.part");
-    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 500u);
+    EXPECT_EQ(read_session(dir / "b.h5.part").size(), 512u);
   }
 }
 

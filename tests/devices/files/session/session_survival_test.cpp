@@ -137,17 +137,17 @@ bool is_killed_after(std::size_t pages, Work work) {
   return WIFSIGNALED(status);
 }
 
-// Every append is half a second of ticks, which is what is written at once.
-constexpr std::size_t kHalfSecond = 50;
+// Every append is what is written at once, so that nothing waits for more: ticks of 0.64 s.
+constexpr std::size_t kBlock = 64;
 
 void record(const fs::path& out, std::size_t rows, int tell) {
   SessionInfo info = sample_info();
   info.tick = 0.01;
   SessionWriter writer(out, info, false);
-  for (std::size_t k = 0; k < rows; k += kHalfSecond) {
+  for (std::size_t k = 0; k < rows; k += kBlock) {
     writer.append(SettingChange{k, "coupling.eta = 1"});
-    writer.append(sample_rows(RowLayout(3), k, kHalfSecond));
-    const std::uint64_t handed = k + kHalfSecond;
+    writer.append(sample_rows(RowLayout(3), k, kBlock));
+    const std::uint64_t handed = k + kBlock;
     if (write(tell, &handed, sizeof handed) < 0) return;
   }
   writer.close();
@@ -172,13 +172,13 @@ TEST(KilledRecording, KeepsWhatWasWrittenWhereverTheLastWriteIsCut) {
     EXPECT_EQ(refusal([&] { session = read_session(left); }), "") << pages;
     if (!session) continue;
     EXPECT_GE(session->size(), handed) << pages;
-    EXPECT_EQ(session->changes.size(), session->size() / kHalfSecond) << pages;
+    EXPECT_EQ(session->changes.size(), session->size() / kBlock) << pages;
     expect_sample(*session);
   }
 }
 
 // Two hours at 10 Hz. How many pieces the file's columns have, and with them the size of every list
-// of HDF5's, depends on the time alone: half a second is written at once, whatever the tick.
+// of HDF5's, depends on the time alone: as long is written at once, whatever the tick.
 constexpr std::size_t kTwoHours = 72000;
 constexpr std::size_t kSecond = 10;
 constexpr int kMoments = 200;
@@ -248,7 +248,7 @@ TEST(KilledRecording, OfTwoHoursLacksAtMostTheLastSecond) {
 
 TEST(KilledRecovery, CanBeDoneAgain) {
   const test::TempDir made;
-  { SessionWriter(made / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 1000)); }
+  { SessionWriter(made / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 1024)); }
   bool killed = true;
   for (std::size_t pages = 0; killed; pages += 29) {
     const test::TempDir dir;
@@ -256,7 +256,7 @@ TEST(KilledRecovery, CanBeDoneAgain) {
     killed = is_killed_after(pages, [&] { recover_session(dir / "a.h5.part", false); });
     EXPECT_EQ(fs::exists(dir / "a.h5"), !killed) << pages;
     if (killed) {
-      EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1000u) << pages;
+      EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1024u) << pages;
     }
     expect_sample(read_session(dir / "a.h5"));
     EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1) << pages;
@@ -270,7 +270,7 @@ TEST(AbandonedRecording, IsLeftAsAKilledOne) {
     writer.append(sample_rows(RowLayout(3), 0, 1700));
   }
   EXPECT_FALSE(fs::exists(dir / "a.h5"));
-  EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1500u);
+  EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1536u);
   expect_sample(read_session(dir / "a.h5"));
 }
 
@@ -283,11 +283,11 @@ TEST(Recovery, RefusesWhatItCannotDo) {
   EXPECT_THAT(refusal([&] { recover_session(dir / "text.h5.part", false); }), HasSubstr("HDF5"));
   EXPECT_TRUE(fs::exists(dir / "text.h5.part"));
 
-  { SessionWriter(dir / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 500)); }
+  { SessionWriter(dir / "a.h5", sample_info(), false).append(sample_rows(RowLayout(3), 0, 512)); }
   test::write_file(dir / "a.h5", "precious");
   EXPECT_THAT(refusal([&] { recover_session(dir / "a.h5.part", false); }), HasSubstr("--force"));
   EXPECT_EQ(test::file_bytes(dir / "a.h5"), "precious");
-  EXPECT_EQ(recover_session(dir / "a.h5.part", true).rows, 500u);
+  EXPECT_EQ(recover_session(dir / "a.h5.part", true).rows, 512u);
 }
 
 // Of `work` in a process of its own.

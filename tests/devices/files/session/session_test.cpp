@@ -216,8 +216,8 @@ if len(sys.argv) > 3:
   test::write_sample(dir / "a.h5", 1234);
   EXPECT_EQ(python(dir / "a.h5", "1234 events"), 0);
   SessionWriter live(dir / "b.h5", sample_info(), false);
-  live.append(sample_rows(RowLayout(3), 0, 1000));
-  EXPECT_EQ(python(live.part(), "1000"), 0);
+  live.append(sample_rows(RowLayout(3), 0, 1024));
+  EXPECT_EQ(python(live.part(), "1024"), 0);
 }
 
 TEST(Session, RefusesAPlaceThatIsTakenOrMissing) {
