@@ -110,5 +110,36 @@ TEST(PredictiveArms, GiveNoEnergyInFreeMotionAndComeToRestWhereTheHandDoes) {
   }
 }
 
+// Links so light that their motion dies out within a tick, which the predictor's rule foretells to
+// go to and fro.
+TEST(PredictiveArms, GiveNoEnergyWhereLinksAreLight) {
+  for (const int dof : {5, 8, 15}) {
+    ArmDescription arm = test::random_arm(dof, 3);
+    for (Joint& joint : arm.joints) joint.damping = 0.012;
+    for (Link& link : arm.links) {
+      link.mass *= 0.03;
+      link.inertia *= 0.03;
+    }
+    Parameters p;
+    p.kind = CouplingKind::predictive;
+    const RigStart start = in_the_middle(arm);
+    Rig rig(arm, Scene{});
+    rig.start(p, start);
+    Rows rows(rig.layout());
+    for (int k = 0; k < 8000 && !rig.diverged(); ++k) {
+      const double t = k * p.tick;
+      const Vec3 moved(0, 0.01 * std::sin(5 * t), 0.01 * std::sin(7 * t));
+      rig.step(p, {{start.target + moved, 1}}, rows.add());
+    }
+    SCOPED_TRACE(testing::Message() << dof << " joints");
+    EXPECT_FALSE(rig.diverged());
+    double most = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      most = std::max(most, rows.at(k, Column::energy_total));
+    }
+    EXPECT_LE(most, 0.05e-3);
+  }
+}
+
 }  // namespace
 }  // namespace limpid
