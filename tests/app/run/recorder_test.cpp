@@ -85,7 +85,7 @@ TEST(Recorder, LeavesAPartThatCanBeRecoveredIfItIsNotFinished) {
   EXPECT_FALSE(std::filesystem::exists(dir / "a.h5"));
   EXPECT_EQ(recover_session(dir / "a.h5.part", false).file, dir / "a.h5");
   const Session session = read_session(dir / "a.h5");
-  EXPECT_EQ(session.size(), 2000u) << "every block of half a second that was full";
+  EXPECT_EQ(session.size(), 3 * 512u) << "every block that was full";
   const auto wanted = sample_rows(layout, 0, session.size());
   EXPECT_EQ(std::memcmp(session.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
 }

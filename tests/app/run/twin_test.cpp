@@ -125,8 +125,8 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
   const Recovered saved = recover_session(dir / "a.h5.part", false);
   const Session session = read_session(saved.file);
   ASSERT_TRUE(session.twin);
-  EXPECT_EQ(session.size(), 500u);  // of the half seconds that were whole, the fewer
-  EXPECT_EQ(session.twin->size(), 500u);
+  EXPECT_EQ(session.size(), 512u);  // of the blocks that were whole, the fewer
+  EXPECT_EQ(session.twin->size(), 512u);
 }
 
 }  // namespace
