@@ -105,8 +105,9 @@ void SessionLane::create_check(hid_t group) {
 
 bool SessionLane::take(std::span<const double>& rows) {
   const auto stride = static_cast<std::size_t>(layout_.stride());
+  const std::uint64_t most = std::clamp(flushed_rows_, block_rows_, most_rows_);
   const std::uint64_t in_blocks =
-      std::min((pending_rows_ + rows.size() / stride) / block_rows_ * block_rows_, most_rows_);
+      std::min(pending_rows_ + rows.size() / stride, most) / block_rows_ * block_rows_;
   const auto part = in_blocks > 0 ? rows.first((in_blocks - pending_rows_) * stride) : rows;
   sort_in(part);
   rows = rows.subspan(part.size());

@@ -17,7 +17,8 @@ namespace limpid {
 // Rows go straight behind those that are there, in blocks, without a filter, so that nothing that
 // was written is ever written again. A block is a power of two of rows, 512 at 1 kHz: what the
 // kernel is given then begins and ends where pages of memory do, which is half the work for it.
-// Blocks that are handed over together are written together.
+// Blocks that are handed over together are written together, but never more than there is already:
+// a disk that is full in the middle of it keeps half of the recording at least.
 //
 // The list of where a column's chunks lie grows in blocks, which outgrow a page of memory from
 // chunk 8176 on. A chunk therefore holds eight seconds of ticks, 16 blocks: a recording may last
