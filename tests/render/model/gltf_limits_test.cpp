@@ -7,6 +7,7 @@
 
 #include "render/model/gltf_model.h"
 #include "tests/render/model/gltf_builder.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -31,18 +32,14 @@ GltfBuilder triangle() {
 
 class GltfFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_ / "parts");
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::filesystem::create_directories(folder_ / "parts"); }
   static void write(const std::filesystem::path& path, const Bytes& bytes) {
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / "limpid_gltf_folder";
+  const test::TempDir dir_;
+  const std::filesystem::path folder_ = dir_ / "";
 };
 
 TEST_F(GltfFolder, ReadsBuffersAndImagesBesideTheFile) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "tests/render/model/gltf_builder.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -110,17 +111,15 @@ TEST(ModelFile, KeepsTheColoursOfVertices) {
 class ModelFolder : public testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::create_directories(folder_);
     write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl seen\nKd 0 0 0\nmap_Kd red.png\n");
     write("red.png", std::string(kRedPng.begin(), kRedPng.end()));
     write("a.obj", obj("mtllib a.mtl\nvt 0 0\nusemtl red\n", "usemtl seen\n"));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / "limpid_model_folder";
+  const test::TempDir dir_;
+  const std::filesystem::path folder_ = dir_ / "";
 };
 
 void expect_red_and_picture(const Model& model) {

@@ -7,6 +7,7 @@
 #include "app/base/assets.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -16,13 +17,12 @@ namespace fs = std::filesystem;
 class Unsaved : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder);
     document.scene.spheres.push_back(
         Sphere{.name = "ball", .center = {0.1, 0, 0.05}, .radius = 0.02});
   }
-  void TearDown() override { fs::remove_all(folder); }
 
-  fs::path folder = fs::path(testing::TempDir()) / "limpid_unsaved";
+  const test::TempDir dir;
+  const fs::path folder = dir / "unsaved";
   ArmDescription arm = read_urdf(default_device().string());
   SceneDocument document;
 };
