@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <future>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -15,6 +14,7 @@
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
+#include "app/cli/prompt.h"
 #include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
 #include "app/identify/identify_report.h"
@@ -50,14 +50,15 @@ Vec3 gravity_of(const std::string& text) {
                   text));
 }
 
-void await_enter() {
+void ask() {
   if (isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may move; needed: --yes, or a terminal");
   }
-  fmt::print("Enter begins: ");
-  std::fflush(stdout);
-  std::string line;
-  if (!std::getline(std::cin, line)) throw UsageError("not begun");
+  const auto wait = [] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return !interrupted;
+  };
+  if (!await_enter("Enter begins, Ctrl-C ends: ", wait)) throw UsageError("not begun");
 }
 
 void ask_to_begin(const IdentifyOptions& options, const Device& device) {
@@ -68,7 +69,7 @@ void ask_to_begin(const IdentifyOptions& options, const Device& device) {
       "holding on to it.\n",
       device.traits().name, Excitation(order.guess, device.traits(), order.plan).duration(),
       100 * order.plan.range);
-  if (!options.yes) await_enter();
+  if (!options.yes) ask();
 }
 
 IdentifyRun watched(const std::function<IdentifyRun(IdentifyTalk&)>& run) {
@@ -129,24 +130,25 @@ Bench simulated_bench(const IdentifyOrder& order, const ArmDescription& truth,
 void ask_for_load(const IdentifyOptions& options) {
   fmt::print("Now fix the {:g} kg to the tip, firmly and close to it, and let go.\n",
              options.order.load);
-  await_enter();
+  ask();
 }
 
-// Moves it, and moves it again with the load. False, and the motion is kept, where it ended before.
+// Moves it, and moves it again with the load; what moved is kept, whatever becomes of it. False
+// where it ended before its end.
 bool moved(const IdentifyOptions& options, const Bench& bench, IdentifyRun& bare,
            IdentifyRun& with_load) {
   const auto move = [&](bool load, IdentifyRun& run, const char* file) {
     run = watched([&](IdentifyTalk& talk) { return bench.move(load, talk); });
-    if (run.end == ExcitationEnd::complete) return true;
     write_motion(run, fs::path(options.out) / file);
+    if (run.end == ExcitationEnd::complete) return true;
     fmt::print(stderr, "limpid: ended: {}; {} holds the motion until then\n",
                explain(run, options.order), (fs::path(options.out) / file).string());
     return false;
   };
-  if (!move(false, bare, "motion.csv")) return false;
+  if (!move(false, bare, kMotionFile)) return false;
   if (options.order.load == 0) return true;
   if (options.device != kSimulated) ask_for_load(options);
-  return move(true, with_load, "motion-with-load.csv");
+  return move(true, with_load, kLoadedMotionFile);
 }
 
 // On a device that is drawn at random, and what it is worth there.

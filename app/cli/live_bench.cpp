@@ -1,16 +1,14 @@
 #include "app/cli/live_bench.h"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/cli/progress.h"
+#include "app/cli/prompt.h"
 #include "app/live/rtkit.h"
 #include "app/run/own_world.h"
 #include "app/run/replay.h"
@@ -25,14 +23,6 @@ constexpr double kLongestWait = 20;        // for the force to come on [s]
 constexpr double kMostWithoutForce = 0.1;  // of a task
 constexpr double kWorthSaying = 0.005;     // [s]
 constexpr double kBreath = 1;              // before a task that nobody is asked about [s]
-
-bool line_typed() {
-  pollfd in{STDIN_FILENO, POLLIN, 0};
-  if (poll(&in, 1, 0) <= 0) return false;
-  std::string line;
-  if (!std::getline(std::cin, line)) throw UsageError("not begun");
-  return true;
-}
 
 }  // namespace
 
@@ -99,13 +89,8 @@ void LiveBench::touch(const SceneDocument& document) {
 bool LiveBench::ask(const std::string& instruction) {
   fmt::print("{}\n", instruction);
   if (yes_) return run_->pass(kBreath, interrupted);
-  tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before was no answer to this
-  fmt::print("{} will push. Enter begins, Ctrl-C ends: ", name_);
-  std::fflush(stdout);
-  while (!line_typed()) {
-    if (!run_->pass(kGlance, interrupted)) return false;
-  }
-  return true;
+  return await_enter(fmt::format("{} will push. Enter begins, Ctrl-C ends: ", name_),
+                     [this] { return run_->pass(kGlance, interrupted); });
 }
 
 bool LiveBench::await_force() {

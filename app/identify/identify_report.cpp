@@ -137,10 +137,6 @@ void write_motion(const IdentifyRun& run, const fs::path& file) {
 std::string write_identification(const Identification& identification,
                                  const std::optional<Findings>& last, const fs::path& dir,
                                  const std::string& more) {
-  write_motion(identification.bare, dir / "motion.csv");
-  if (identification.order.load > 0) {
-    write_motion(identification.with_load, dir / "motion-with-load.csv");
-  }
   write(dir / "identified.urdf", identified_urdf(identification));
   write(dir / "identified.json", findings_text(identification, more));
   const Figure figure = identify_figure(identification);

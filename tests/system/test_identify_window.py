@@ -38,8 +38,13 @@ class Identify(WindowTest):
         for name in ("identified.urdf", "identified.svg", "motion.csv"):
             self.assertTrue(self.reports()[0].with_name(name).exists(), name)
         self.assertFalse((self.home / "data/limpid/devices").exists(), "nothing is remembered of it")
+        self.wait("the findings", lambda s: s["identify"]["phase"] == "found")
+        self.key("space")  # no force, and nothing is lost by it
+        self.settled()
+        self.assertEqual(self.state()["identify"]["phase"], "found")
         self.key("Escape")
         self.wait("no dialog", lambda s: s["dialog"] == "")
+        self.wait("nothing found", lambda s: s["identify"]["phase"] == "asking")
 
 
 class IdentifyDevice(WindowTest):

@@ -96,6 +96,21 @@ class Live(unittest.TestCase):
         self.assertEqual(out.read_text(), "precious")
         self.assertEqual(list(self.folder.glob("*.part")), [])
 
+    def test_moves_by_no_enter_of_before(self) -> None:
+        self.plug()
+        keyboard, terminal = pty.openpty()
+        self.addCleanup(os.close, keyboard)
+        run = subprocess.Popen([LIMPID, "identify", "--out", self.folder / "found"], stdin=terminal,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        os.close(terminal)
+        os.write(keyboard, b"\n\n")
+        time.sleep(4)
+        self.assertIsNone(run.poll(), "it has begun")
+        run.send_signal(signal.SIGINT)
+        asked, _ = run.communicate(timeout=60)
+        self.assertIn("Enter begins", asked)
+        self.assertFalse((self.folder / "found/motion.csv").exists(), "it has moved")
+
     def test_ends_when_the_device_is_pulled_out_or_on_ctrl_c(self) -> None:
         for what in ("pulled out", "Ctrl-C"):
             device = self.plug()

@@ -37,17 +37,20 @@ IdentifyRun move_simulated(const IdentifyOrder& order, bool with_load, IdentifyT
   return simulate_identification(device, order.guess, order.plan, talk);
 }
 
+// What moved is kept, whatever can be made of it.
 IdentifyDesk::Done conclude(const std::string& name, const IdentifyOrder& order, IdentifyRun bare,
                             IdentifyRun with_load, const std::string& last) {
+  const fs::path folder = folder_for(name);
+  write_motion(bare, folder / kMotionFile);
+  if (order.load > 0) write_motion(with_load, folder / kLoadedMotionFile);
   IdentifyDesk::Done done{
       .identification = identification(name, order, std::move(bare), std::move(with_load)),
       .drift = {},
-      .report = folder_for(name),
+      .report = folder,
       .no_pictures = {}};
   const std::optional<Findings> before = read_findings(last);
   if (before) done.drift = drift(*before, done.identification);
-  fs::create_directories(done.report);
-  done.no_pictures = write_identification(done.identification, before, done.report);
+  done.no_pictures = write_identification(done.identification, before, folder);
   return done;
 }
 

@@ -240,7 +240,7 @@ void Desktop::toggle_twin() {
 void Desktop::cut_force() {
   desk_.loop().cut();
   devices_.cancel_check();
-  identify_.stop();
+  if (identify_.busy()) identify_.stop();  // what was found stays
 }
 
 void Desktop::reset_parameters() {

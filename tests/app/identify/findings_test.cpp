@@ -87,6 +87,8 @@ TEST(IdentifyReport, HoldsArmFiguresMotionAndWhatHasChanged) {
   const test::TempDir dir;
   const auto before = read_findings(findings_text(identified(with_friction(0.02), 1, 0)));
   const Identification done = identified(with_friction(0.03), 1, 0.03);
+  write_motion(done.bare, dir / kMotionFile);
+  write_motion(done.with_load, dir / kLoadedMotionFile);
   write_identification(done, before, dir / "");
   std::ifstream page(dir / "report.html");
   const std::string html{std::istreambuf_iterator<char>(page), {}};
