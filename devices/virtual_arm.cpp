@@ -286,8 +286,10 @@ void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
 }
 
 template class VirtualDevice<3>;
+template class VirtualDevice<7>;
 template class VirtualDevice<kAnyDof>;
 template class VirtualArm<3>;
+template class VirtualArm<7>;
 template class VirtualArm<kAnyDof>;
 
 }  // namespace limpid

@@ -114,8 +114,10 @@ class VirtualDevice final : public Device {
 };
 
 extern template class VirtualDevice<3>;
+extern template class VirtualDevice<7>;
 extern template class VirtualDevice<kAnyDof>;
 extern template class VirtualArm<3>;
+extern template class VirtualArm<7>;
 extern template class VirtualArm<kAnyDof>;
 
 }  // namespace limpid

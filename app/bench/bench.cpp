@@ -91,8 +91,7 @@ Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind l
 }
 
 Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind law, bool of_arm) {
-  return joints == 3 ? pressing<3>(wishes, unit, joints, law, of_arm)
-                     : pressing<kAnyDof>(wishes, unit, joints, law, of_arm);
+  return with_dof(joints, [&](auto n) { return pressing<n>(wishes, unit, joints, law, of_arm); });
 }
 
 // Embree's query alone at the places of a stroke, and the tick there.

@@ -12,8 +12,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 double lag(double w_f, double T) {
+  constexpr double kPole = 1 - 1 / std::numbers::sqrt2;
   const double A = w_f * T;
-  return 1 / (1 + A + A * A / 2);
+  return (1 + (2 * kPole - 1) * A) / std::pow(1 + kPole * A, 2);
 }
 
 void add(Response& r, double f, std::complex<double> H) {

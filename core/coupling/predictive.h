@@ -97,6 +97,7 @@ struct PredictiveLaw {
 };
 
 extern template class PredictiveLaw::Of<3>;
+extern template class PredictiveLaw::Of<7>;
 extern template class PredictiveLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -58,6 +58,7 @@ struct ProposedLaw {
 };
 
 extern template class ProposedLaw::Of<3>;
+extern template class ProposedLaw::Of<7>;
 extern template class ProposedLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -19,6 +19,7 @@ Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>
 }
 
 template Vec<3> couple(const SpringDamper&, const LawInput<3>&, const Feedforward<3>&, Proxy<3>&);
+template Vec<7> couple(const SpringDamper&, const LawInput<7>&, const Feedforward<7>&, Proxy<7>&);
 template Vec<kAnyDof> couple(const SpringDamper&, const LawInput<kAnyDof>&,
                              const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
 

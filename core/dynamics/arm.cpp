@@ -117,13 +117,18 @@ void Arm<N>::point_jacobian(const FramesOf<S>& f, int link, const Vec3Of<S>& wor
 
 template void Arm<3>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
                                      JacobianOf<3, double>&) const;
+template void Arm<7>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                     JacobianOf<7, double>&) const;
 template void Arm<3>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                      JacobianOf<3, Pair>&) const;
+template void Arm<7>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                     JacobianOf<7, Pair>&) const;
 template void Arm<kAnyDof>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
                                            JacobianOf<kAnyDof, double>&) const;
 template void Arm<kAnyDof>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                            JacobianOf<kAnyDof, Pair>&) const;
 template class Arm<3>;
+template class Arm<7>;
 template class Arm<kAnyDof>;
 
 }  // namespace limpid

@@ -158,6 +158,7 @@ class Arm {
 };
 
 extern template class Arm<3>;
+extern template class Arm<7>;
 extern template class Arm<kAnyDof>;
 
 // A number of every joint.

@@ -21,8 +21,12 @@ Vec3Of<S> Arm<N>::point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& w
 
 template Vec3Of<double> Arm<3>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
                                             const VecOf<3, double>&) const;
+template Vec3Of<double> Arm<7>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                            const VecOf<7, double>&) const;
 template Vec3Of<Pair> Arm<3>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                           const VecOf<3, Pair>&) const;
+template Vec3Of<Pair> Arm<7>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                          const VecOf<7, Pair>&) const;
 template Vec3Of<double> Arm<kAnyDof>::point_drift(const FramesOf<double>&, int,
                                                   const Vec3Of<double>&,
                                                   const VecOf<kAnyDof, double>&) const;

@@ -19,6 +19,7 @@ Vec<N> Arm<N>::weight(const Frames& f, const Vec3& gravity) const {
 }
 
 template Vec<3> Arm<3>::weight(const Frames& f, const Vec3& gravity) const;
+template Vec<7> Arm<7>::weight(const Frames& f, const Vec3& gravity) const;
 template Vec<kAnyDof> Arm<kAnyDof>::weight(const Frames& f, const Vec3& gravity) const;
 
 }  // namespace limpid

@@ -1,16 +1,28 @@
 // Vectors and matrices of n joints, without allocation.
 //
-// A number of joints known when compiling (N = 3, the haptic devices people own) costs nothing
-// extra; any other n up to kMaxDof runs the same code on storage of bounded size.
+// A number of joints known when compiling costs nothing extra: N = 3, the haptic devices people
+// own, and 7, the robot arms beside them. Any other n up to kMaxDof runs the same code on storage
+// of bounded size.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <type_traits>
 
 namespace limpid {
 
 inline constexpr int kMaxDof = 32;
 inline constexpr int kAnyDof = Eigen::Dynamic;
+
+// f(N), N a constant: dof where code is compiled for just that, or kAnyDof.
+template <class F>
+decltype(auto) with_dof(int dof, F&& f) {
+  switch (dof) {
+    case 3: return f(std::integral_constant<int, 3>{});
+    case 7: return f(std::integral_constant<int, 7>{});
+    default: return f(std::integral_constant<int, kAnyDof>{});
+  }
+}
 
 template <int N>
 inline constexpr int kCapacity = N == kAnyDof ? kMaxDof : N;

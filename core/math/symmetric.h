@@ -15,7 +15,7 @@ struct Symmetric3 {
     return *this;
   }
 
-  Vec3Of<S> operator*(const Vec3Of<S>& v) const {
+  [[gnu::always_inline]] Vec3Of<S> operator*(const Vec3Of<S>& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
   }

@@ -78,6 +78,7 @@ const Vec<N>& Compensation<N>::step(const CompensationSettings& p, const Arm<N>&
 }
 
 template class Compensation<3>;
+template class Compensation<7>;
 template class Compensation<kAnyDof>;
 
 }  // namespace limpid

@@ -130,6 +130,7 @@ Vec<N> Safety<N>::within_tip_force(const Vec<N>& tau, const Jacobian<N>& J) cons
 }
 
 template class Safety<3>;
+template class Safety<7>;
 template class Safety<kAnyDof>;
 
 }  // namespace limpid

@@ -117,6 +117,7 @@ class Tick {
 };
 
 extern template class Tick<3>;
+extern template class Tick<7>;
 extern template class Tick<kAnyDof>;
 
 // A joint value given for all joints, or the arm's own where it is left to the arm.

@@ -142,6 +142,7 @@ class Contacts {
 };
 
 extern template class Contacts<3>;
+extern template class Contacts<7>;
 extern template class Contacts<kAnyDof>;
 
 // Signed distance of a point to the surface, negative inside, and the outward normal there.

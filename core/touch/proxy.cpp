@@ -64,28 +64,17 @@ void Proxy<N>::catch_up_beside(const Vec<N>& x, const Vec<N>& v, typename Arm<N>
   take(both, 1, M_);
   M_ *= ratio_;
   L_ = cholesky<N>(M_);
-  if (behind_) v_ = L_.transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  if (behind_) {
+    v_ = nu_;
+    solve_transposed<N>(L_, v_.data());
+  }
   behind_ = false;
   arm_.coriolis(f, bodies, paired<N>(v, v_), both);
   take(both, 0, C);
   take(both, 1, C_);
   C_ *= ratio_;
-  update_skew();
-}
-
-// S = C - L Ldot^T, where Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew: half of it says all.
-template <int N>
-void Proxy<N>::update_skew() {
-  const Mat<N> Ldot = cholesky_rate<N>(L_, C_ + C_.transpose());
-  const Eigen::Index n = C_.rows();
-  S_ = C_;
-  const auto column = [&](Eigen::Index k) { return L_.col(k).data(); };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto factor = [&](Eigen::Index k) { return Ldot(j, k); };
-    take_off<N>(j + 1, column, factor, j + 1, n, S_.col(j).data());
-    S_(j, j) = 0;
-    for (Eigen::Index i = j + 1; i < n; ++i) S_(j, i) = -S_(i, j);
-  }
+  // Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew.
+  S_ = skew_rest<N>(C_, L_, cholesky_rate<N>(L_, C_ + C_.transpose()));
 }
 
 template <int N>
@@ -96,7 +85,9 @@ Vec<N> Proxy<N>::v() const {
   arm_.frames(x_, f);
   arm_.inertia(f, M);
   M *= ratio_;
-  return cholesky<N>(M).transpose().template triangularView<Eigen::Upper>().solve(nu_);
+  Vec<N> v = nu_;
+  solve_transposed<N>(cholesky<N>(M), v.data());
+  return v;
 }
 
 template <int N>
@@ -141,6 +132,7 @@ bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
 }
 
 template class Proxy<3>;
+template class Proxy<7>;
 template class Proxy<kAnyDof>;
 
 }  // namespace limpid

@@ -74,7 +74,6 @@ class Proxy {
   void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
  private:
-  void update_skew();
   bool solve_step(double T, const ProxyDrive<N>& drive);
 
   Arm<N> arm_;
@@ -88,6 +87,7 @@ class Proxy {
 };
 
 extern template class Proxy<3>;
+extern template class Proxy<7>;
 extern template class Proxy<kAnyDof>;
 
 }  // namespace limpid

@@ -27,19 +27,15 @@ class NoDevice final : public Device {
 }  // namespace
 
 Rig::Rig(const ArmDescription& arm, const Scene& scene) {
-  if (arm.dof() == 3) {
-    of_ = std::make_unique<Of<3>>(arm, scene, std::make_unique<VirtualDevice<3>>(arm));
-  } else {
-    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, std::make_unique<VirtualDevice<kAnyDof>>(arm));
-  }
+  with_dof(arm.dof(), [&](auto n) {
+    of_ = std::make_unique<Of<n>>(arm, scene, std::make_unique<VirtualDevice<n>>(arm));
+  });
 }
 
 Rig::Rig(const ArmDescription& arm, const Scene& scene, Device* device) {
-  if (arm.dof() == 3) {
-    of_ = std::make_unique<Of<3>>(arm, scene, std::make_unique<NoDevice>());
-  } else {
-    of_ = std::make_unique<Of<kAnyDof>>(arm, scene, std::make_unique<NoDevice>());
-  }
+  with_dof(arm.dof(), [&](auto n) {
+    of_ = std::make_unique<Of<n>>(arm, scene, std::make_unique<NoDevice>());
+  });
   plug(device);
 }
 
@@ -111,19 +107,15 @@ Vec3 Rig::Of<N>::tip() const {
 }
 
 TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
-  if (arm.dof() == 3) {
-    contacts_ = std::make_unique<Contacts<3>>(arm, scene);
-  } else {
-    contacts_ = std::make_unique<Contacts<kAnyDof>>(arm, scene);
-  }
+  with_dof(arm.dof(), [&](auto n) { contacts_ = std::make_unique<Contacts<n>>(arm, scene); });
 }
 
 void Rig::exchange(TouchWorld& world) noexcept {
-  if (auto* of = std::get_if<std::unique_ptr<Of<3>>>(&of_)) {
-    if (auto* c = std::get_if<0>(&world.contacts_)) (*of)->tick.exchange(*c);
-  } else if (auto* c = std::get_if<1>(&world.contacts_)) {
-    std::get<1>(of_)->tick.exchange(*c);
-  }
+  std::visit(
+      [](auto& of, auto& contacts) {
+        if constexpr (requires { of->tick.exchange(contacts); }) of->tick.exchange(contacts);
+      },
+      of_, world.contacts_);
 }
 
 const RowLayout& Rig::layout() const {

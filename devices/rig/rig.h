@@ -39,7 +39,9 @@ class TouchWorld {
 
  private:
   friend class Rig;
-  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<kAnyDof>>> contacts_;
+  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<7>>,
+               std::unique_ptr<Contacts<kAnyDof>>>
+      contacts_;
 };
 
 class Rig {
@@ -103,7 +105,7 @@ class Rig {
     std::optional<std::uint32_t> lapses = 0;
     RigInput input;
   };
-  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;
+  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<7>>, std::unique_ptr<Of<kAnyDof>>> of_;
 };
 
 // At rest, the tip on `target`. Throws std::invalid_argument if it cannot be reached.

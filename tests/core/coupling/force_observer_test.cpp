@@ -206,7 +206,8 @@ TEST(ForceObserver, TakesNoShareOfAMotorThatPushesAtRandomForAHuman) {
 
 TEST(ForceObserver, FollowsItsRecurrenceUnderEverythingAtOnce) {
   // d_k = M (v_k - v_k-1)/T + C v_k + b_d (v_k + v_k-1)/2 - (tau_k-1 + tau_k-2)/2 through
-  // f_k = f_k-1 + (1 - E)(d_k - f_k-1), E = (1 + A + A^2/2)^-1, A = T alpha M^-1.
+  // f_k = f_k-1 + (1 - E)(d_k - f_k-1), E = (1 + (2g - 1) A)(1 + g A)^-2, A = T alpha M^-1,
+  // g = 1 - 1/sqrt(2).
   for (const int n : {1, 3, 5}) {
     Random random(85);
     const double T = 3e-3, alpha = 0.21;
@@ -223,7 +224,9 @@ TEST(ForceObserver, FollowsItsRecurrenceUnderEverythingAtOnce) {
       const Vector d =
           M * (next - v) / T + C * next - (tau + tau_before) / 2 + b_d.cwiseProduct(next + v) / 2;
       const Eigen::MatrixXd A = T * alpha * M.inverse(), I = Eigen::MatrixXd::Identity(n, n);
-      f += (I - (I + A + A * A / 2).inverse()) * (d - f);
+      const double g = 1 - std::sqrt(0.5);
+      const Eigen::MatrixXd back = (I + g * A).inverse(), E = (I + (2 * g - 1) * A) * back * back;
+      f += (I - E) * (d - f);
       v = next;
       ASSERT_LT((observer.estimate(alpha, T, M, C, next, b_d) - f).norm(), 1e-9 * (1 + f.norm()));
       tau_before = tau;

@@ -1,0 +1,292 @@
+// Triangular matrices of joint size: factors, their rates, and solves in place, without allocation.
+// Columns are stored one after another. Where the number of joints is known when compiling, the
+// loops unroll; of many, four columns and four rows are worked on at a time, by the widest vectors
+// that the processor has, each number reckoned in the same way with all of them.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "core/math/sizes.h"
+
+namespace limpid {
+
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+[[gnu::always_inline]] inline Four& four(double* x) { return *reinterpret_cast<Four*>(x); }
+[[gnu::always_inline]] inline const Four& four(const double* x) {
+  return *reinterpret_cast<const Four*>(x);
+}
+
+// x -= sum of columns[k] * factors[k] in rows from `first` to n; of many joints, from up to three
+// rows before `first` on, which come to hold anything.
+template <int N, class Column, class Factor>
+[[gnu::always_inline]] inline void take_off(Eigen::Index columns, const Column& column,
+                                            const Factor& factor, Eigen::Index first,
+                                            Eigen::Index n, double* __restrict x) {
+  Eigen::Index k = 0;
+  if (const Eigen::Index start = n - (n - first + 3) / 4 * 4; N == kAnyDof && start >= 0) {
+    for (; k < columns % 4; ++k) {
+      const double* a = column(k);
+      const double fa = factor(k);
+      for (Eigen::Index i = start; i < n; i += 4) four(x + i) -= four(a + i) * fa;
+    }
+    for (; k < columns; k += 4) {
+      const double *a = column(k), *b = column(k + 1), *c = column(k + 2), *d = column(k + 3);
+      const double fa = factor(k), fb = factor(k + 1), fc = factor(k + 2), fd = factor(k + 3);
+      for (Eigen::Index i = start; i < n; i += 4) {
+        four(x + i) -=
+            (four(a + i) * fa + four(b + i) * fb) + (four(c + i) * fc + four(d + i) * fd);
+      }
+    }
+  }
+  for (; k < columns; ++k) {
+    const double* a = column(k);
+    const double fa = factor(k);
+    for (Eigen::Index i = first; i < n; ++i) x[i] -= a[i] * fa;
+  }
+}
+
+// L, given as A's lower triangle, becomes its lower Cholesky factor.
+template <int N>
+[[gnu::always_inline]] inline void factor_in(Eigen::Index n, double* L) {
+  const auto column = [&](Eigen::Index k) { return L + k * n; };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double* const Lj = L + j * n;
+    const auto factor = [&](Eigen::Index k) { return L[k * n + j]; };
+    take_off<N>(j, column, factor, j, n, Lj);
+    const double scale = 1 / std::sqrt(Lj[j]);
+    for (Eigen::Index i = 0; i < j; ++i) Lj[i] = 0;
+    for (Eigen::Index i = j; i < n; ++i) Lj[i] *= scale;
+  }
+}
+
+// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of the lines
+// above.
+template <int N>
+[[gnu::always_inline]] inline void rate_in(Eigen::Index n, const double* L, double* D) {
+  const auto column = [&](Eigen::Index k) -> const double* { return (k % 2 ? L : D) + k / 2 * n; };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double* const Dj = D + j * n;
+    const double* const Lj = L + j * n;
+    const auto factor = [&](Eigen::Index k) { return (k % 2 ? D : L)[k / 2 * n + j]; };
+    take_off<N>(2 * j, column, factor, j, n, Dj);
+    const double scale = 1 / Lj[j];
+    Dj[j] *= 0.5 * scale;
+    const double d = Dj[j];
+    for (Eigen::Index i = 0; i < j; ++i) Dj[i] = 0;
+    for (Eigen::Index i = j + 1; i < n; ++i) Dj[i] = (Dj[i] - Lj[i] * d) * scale;
+  }
+}
+
+// S, given as C, becomes C - L Ldot^T where that is skew: half of it says all.
+template <int N>
+[[gnu::always_inline]] inline void skew_in(Eigen::Index n, const double* L, const double* Ldot,
+                                           double* S) {
+  const auto column = [&](Eigen::Index k) { return L + k * n; };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto factor = [&](Eigen::Index k) { return Ldot[k * n + j]; };
+    take_off<N>(j + 1, column, factor, j + 1, n, S + j * n);
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    S[j * n + j] = 0;
+    for (Eigen::Index i = j + 1; i < n; ++i) S[i * n + j] = -S[j * n + i];
+  }
+}
+
+// x becomes L^-1 x. The first columns are worked off one by one until the rest goes by fours.
+template <int N>
+[[gnu::always_inline]] inline void solve_lower_in(Eigen::Index n, const double* L, double* x) {
+  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  for (Eigen::Index j = 0; j < odd; ++j) {
+    const double* const Lj = L + j * n;
+    const double at_j = x[j] *= 1 / Lj[j];
+    for (Eigen::Index i = j + 1; i < odd; ++i) x[i] -= Lj[i] * at_j;
+    for (Eigen::Index i = odd; i < n; i += 4) four(x + i) -= four(Lj + i) * at_j;
+  }
+  for (Eigen::Index j = odd; j < n; j += 4) {
+    const double *a = L + j * n, *b = a + n, *c = b + n, *d = c + n;
+    const double xa = x[j] * (1 / a[j]);
+    const double xb = (x[j + 1] - a[j + 1] * xa) * (1 / b[j + 1]);
+    const double xc = (x[j + 2] - a[j + 2] * xa - b[j + 2] * xb) * (1 / c[j + 2]);
+    const double xd = (x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc) * (1 / d[j + 3]);
+    four(x + j) = Four{xa, xb, xc, xd};
+    for (Eigen::Index i = j + 4; i < n; i += 4) {
+      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
+    }
+  }
+}
+
+// x becomes L^-T x.
+template <int N>
+[[gnu::always_inline]] inline void solve_transposed_in(Eigen::Index n, const double* L, double* x) {
+  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  for (Eigen::Index j = n - 4; j >= odd; j -= 4) {
+    const double *a = L + j * n, *b = a + n, *c = b + n, *d = c + n;
+    Four sa{}, sb{}, sc{}, sd{};
+    for (Eigen::Index i = j + 4; i < n; i += 4) {
+      sa += four(a + i) * four(x + i);
+      sb += four(b + i) * four(x + i);
+      sc += four(c + i) * four(x + i);
+      sd += four(d + i) * four(x + i);
+    }
+    const auto rest = [&](Eigen::Index i, const Four& s) {
+      return x[i] - ((s[0] + s[1]) + (s[2] + s[3]));
+    };
+    const double xd = rest(j + 3, sd) * (1 / d[j + 3]);
+    const double xc = (rest(j + 2, sc) - c[j + 3] * xd) * (1 / c[j + 2]);
+    const double xb = (rest(j + 1, sb) - b[j + 2] * xc - b[j + 3] * xd) * (1 / b[j + 1]);
+    const double xa = (rest(j, sa) - a[j + 1] * xb - a[j + 2] * xc - a[j + 3] * xd) * (1 / a[j]);
+    four(x + j) = Four{xa, xb, xc, xd};
+  }
+  for (Eigen::Index j = odd; j-- > 0;) {
+    const double* const Lj = L + j * n;
+    double rest = x[j];
+    for (Eigen::Index i = j + 1; i < n; ++i) rest -= Lj[i] * x[i];
+    x[j] = rest * (1 / Lj[j]);
+  }
+}
+
+// A becomes L and U of P A = L U, L's ones left out and U's diagonal inverted; row j was exchanged
+// with rows[j].
+template <int N>
+[[gnu::always_inline]] inline void eliminate_in(Eigen::Index n, double* A, int* rows) {
+  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double* const x = A + j * n;
+    for (Eigen::Index k = 0; k < j; ++k) std::swap(x[k], x[rows[k]]);
+    Eigen::Index k = 0;
+    for (; k < j;) {
+      const double* const a = A + k * n;
+      if (k < odd || k + 4 > j) {
+        const Eigen::Index fours = k < odd ? odd : (k - odd) / 4 * 4 + odd + 4;
+        for (Eigen::Index i = k + 1; i < fours; ++i) x[i] -= a[i] * x[k];
+        for (Eigen::Index i = fours; i < n; i += 4) four(x + i) -= four(a + i) * x[k];
+        ++k;
+        continue;
+      }
+      const double *b = a + n, *c = b + n, *d = c + n;
+      const double xa = x[k], xb = x[k + 1] - a[k + 1] * xa;
+      const double xc = x[k + 2] - a[k + 2] * xa - b[k + 2] * xb;
+      const double xd = x[k + 3] - a[k + 3] * xa - b[k + 3] * xb - c[k + 3] * xc;
+      x[k + 1] = xb, x[k + 2] = xc, x[k + 3] = xd;
+      for (Eigen::Index i = k + 4; i < n; i += 4) {
+        four(x + i) -=
+            (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
+      }
+      k += 4;
+    }
+    Eigen::Index best = j;
+    for (Eigen::Index i = j + 1; i < n; ++i) best = std::abs(x[i]) > std::abs(x[best]) ? i : best;
+    rows[j] = static_cast<int>(best);
+    for (Eigen::Index m = 0; m <= j; ++m) std::swap(A[m * n + j], A[m * n + best]);
+    x[j] = 1 / x[j];
+    for (Eigen::Index i = j + 1; i < n; ++i) x[i] *= x[j];
+  }
+}
+
+// x becomes A^-1 x.
+template <int N>
+[[gnu::always_inline]] inline void solve_eliminated_in(Eigen::Index n, const double* LU,
+                                                       const int* rows, double* x) {
+  for (Eigen::Index j = 0; j < n; ++j) std::swap(x[j], x[rows[j]]);
+  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  for (Eigen::Index j = 0; j < odd; ++j) {
+    const double* const a = LU + j * n;
+    for (Eigen::Index i = j + 1; i < odd; ++i) x[i] -= a[i] * x[j];
+    for (Eigen::Index i = odd; i < n; i += 4) four(x + i) -= four(a + i) * x[j];
+  }
+  for (Eigen::Index j = odd; j < n; j += 4) {
+    const double *a = LU + j * n, *b = a + n, *c = b + n, *d = c + n;
+    const double xa = x[j], xb = x[j + 1] - a[j + 1] * xa;
+    const double xc = x[j + 2] - a[j + 2] * xa - b[j + 2] * xb;
+    const double xd = x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc;
+    x[j + 1] = xb, x[j + 2] = xc, x[j + 3] = xd;
+    for (Eigen::Index i = j + 4; i < n; i += 4) {
+      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
+    }
+  }
+  const Eigen::Index even = n - odd;
+  for (Eigen::Index j = n; j-- > even;) {
+    const double* const a = LU + j * n;
+    x[j] *= a[j];
+    for (Eigen::Index i = even; i < j; ++i) x[i] -= a[i] * x[j];
+    for (Eigen::Index i = 0; i < even; i += 4) four(x + i) -= four(a + i) * x[j];
+  }
+  for (Eigen::Index j = even - 4; j >= 0; j -= 4) {
+    const double *a = LU + j * n, *b = a + n, *c = b + n, *d = c + n;
+    const double xd = x[j + 3] * d[j + 3];
+    const double xc = (x[j + 2] - d[j + 2] * xd) * c[j + 2];
+    const double xb = (x[j + 1] - d[j + 1] * xd - c[j + 1] * xc) * b[j + 1];
+    const double xa = (x[j] - d[j] * xd - c[j] * xc - b[j] * xb) * a[j];
+    x[j] = xa, x[j + 1] = xb, x[j + 2] = xc, x[j + 3] = xd;
+    for (Eigen::Index i = 0; i < j; i += 4) {
+      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
+    }
+  }
+}
+
+// The same for any number of joints.
+void factor_many(Eigen::Index n, double* L);
+void rate_many(Eigen::Index n, const double* L, double* D);
+void skew_many(Eigen::Index n, const double* L, const double* Ldot, double* S);
+void solve_lower_many(Eigen::Index n, const double* L, double* x);
+void solve_transposed_many(Eigen::Index n, const double* L, double* x);
+void eliminate_many(Eigen::Index n, double* A, int* rows);
+void solve_eliminated_many(Eigen::Index n, const double* LU, const int* rows, double* x);
+
+// The lower Cholesky factor, A = L L^T, of a symmetric positive-definite A, whose lower triangle
+// alone is read.
+template <int N>
+Mat<N> cholesky(const Mat<N>& A) {
+  Mat<N> L = A;
+  if constexpr (N == kAnyDof) {
+    factor_many(L.rows(), L.data());
+  } else {
+    factor_in<N>(N, L.data());
+  }
+  return L;
+}
+
+// How that factor moves with A: Adot = Ldot L^T + L Ldot^T.
+template <int N>
+Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
+  Mat<N> D = Adot;  // Ldot
+  if constexpr (N == kAnyDof) {
+    rate_many(L.rows(), L.data(), D.data());
+  } else {
+    rate_in<N>(N, L.data(), D.data());
+  }
+  return D;
+}
+
+// C - L Ldot^T where that is skew.
+template <int N>
+Mat<N> skew_rest(const Mat<N>& C, const Mat<N>& L, const Mat<N>& Ldot) {
+  Mat<N> S = C;
+  if constexpr (N == kAnyDof) {
+    skew_many(L.rows(), L.data(), Ldot.data(), S.data());
+  } else {
+    skew_in<N>(N, L.data(), Ldot.data(), S.data());
+  }
+  return S;
+}
+
+// L^-1 x and L^-T x in the place of x.
+template <int N>
+void solve_lower(const Mat<N>& L, double* x) {
+  if constexpr (N == kAnyDof) {
+    solve_lower_many(L.rows(), L.data(), x);
+  } else {
+    solve_lower_in<N>(N, L.data(), x);
+  }
+}
+template <int N>
+void solve_transposed(const Mat<N>& L, double* x) {
+  if constexpr (N == kAnyDof) {
+    solve_transposed_many(L.rows(), L.data(), x);
+  } else {
+    solve_transposed_in<N>(N, L.data(), x);
+  }
+}
+
+}  // namespace limpid
