@@ -72,7 +72,7 @@ Touch TapBench::touch(const TrialResult& result) const {
   if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost};
   const Session& s = result.session;
   const double T = s.info.tick;
-  const Arm<kAnyDof> arm(read_urdf(default_device()));
+  static const Arm<kAnyDof> arm(read_urdf(default_device()));
   HighPass fast[] = {{kFast, 1 / T}, {kFast, 1 / T}, {kFast, 1 / T}};
   Touch touch;
   double fast2 = 0, force = 0, depth = 0;

@@ -12,30 +12,27 @@ struct Search {
   bool done = false;
 };
 
-// Whether each wall, not a number where none is asked for, is rendered well in every grip.
-std::vector<bool> try_walls(Laboratory& lab, std::span<const TapSetting> settings,
+// Whether each wall, not a number where none is asked for, is rendered well in every grip. What one
+// grip finds bad is not tried in the next.
+std::vector<char> try_walls(Laboratory& lab, std::span<const TapSetting> settings,
                             const std::vector<double>& walls) {
-  std::vector<std::size_t> of;
-  std::vector<TapBench> benches;
-  std::vector<Trial> trials;
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    if (std::isnan(walls[i])) continue;
-    for (const double grip : kGrips) {
+  std::vector<char> good(settings.size(), 1);
+  for (const double grip : kGrips) {
+    std::vector<std::size_t> of;
+    std::vector<TapBench> benches;
+    std::vector<Trial> trials;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      if (std::isnan(walls[i]) || good[i] == 0) continue;
       of.push_back(i);
       benches.emplace_back(settings[i], walls[i], grip, 1);
       trials.push_back(benches.back().trial());
     }
+    lab.run(trials, [&](std::size_t t, const TrialResult& result) {
+      const bool exact = settings[of[t]].encoder_step == 0;
+      good[of[t]] = well_rendered(benches[t].touch(result), exact) ? 1 : 0;
+    });
   }
-  std::vector<char> good(trials.size());
-  lab.run(trials, [&](std::size_t t, const TrialResult& result) {
-    const bool exact = settings[of[t]].encoder_step == 0;
-    good[t] = well_rendered(benches[t].touch(result), exact) ? 1 : 0;
-  });
-  std::vector<bool> all(settings.size(), true);
-  for (std::size_t t = 0; t < trials.size(); ++t) {
-    if (good[t] == 0) all[of[t]] = false;
-  }
-  return all;
+  return good;
 }
 
 }  // namespace
@@ -59,11 +56,11 @@ std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> 
                  : step == -1 ? s.low
                               : std::sqrt(s.low * s.high);
     }
-    const std::vector<bool> good = try_walls(lab, settings, walls);
+    const std::vector<char> good = try_walls(lab, settings, walls);
     for (std::size_t i = 0; i < settings.size(); ++i) {
       Search& s = searches[i];
       if (s.done) continue;
-      (good[i] ? s.low : s.high) = walls[i];
+      (good[i] != 0 ? s.low : s.high) = walls[i];
       s.done = s.low >= s.high;
     }
   }
