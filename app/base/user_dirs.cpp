@@ -1,5 +1,6 @@
 #include "app/base/user_dirs.h"
 
+#include <cctype>
 #include <cstdlib>
 
 namespace limpid {
@@ -20,5 +21,10 @@ std::filesystem::path user_data_dir() {
   return home_dir("XDG_DATA_HOME", ".local/share") / "limpid";
 }
 std::filesystem::path user_cache_dir() { return home_dir("XDG_CACHE_HOME", ".cache") / "limpid"; }
+
+std::string as_file_name(std::string name) {
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return name;
+}
 
 }  // namespace limpid

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "app/run/analysis.h"
-
 namespace limpid {
 
 void print(const Identification& identification) {
@@ -15,15 +13,14 @@ void print(const Identification& identification) {
     fmt::print(" {:>22}", fmt::format("{} [{}]", info.label, info.unit));
   }
   fmt::print(" {:>10} {:>9}\n", "inertia was", "missed");
-  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
     const JointFinding& joint = found.joints[j];
-    const auto i = static_cast<Eigen::Index>(j);
     fmt::print("{:<14}", found.arm.joints[j].name);
     for (const FindingInfo& info : kFindings) {
       fmt::print(" {:>22}", text_of(joint.*info.field, info.per_unit));
     }
-    fmt::print(" {:>11.3f} {:>7.1f} %\n", M(i, i) / 1e-3, 100 * joint.residual / joint.torque);
+    fmt::print(" {:>11.3f} {:>7.1f} %\n", identification.inertia_in_file[j] / 1e-3,
+               100 * joint.residual / joint.torque);
   }
   fmt::print("delay          {} ms from a reading to the torque that answers it\n",
              text_of(found.delay, 1e-3));

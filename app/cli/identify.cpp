@@ -18,7 +18,7 @@
 #include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
 #include "app/identify/identify_report.h"
-#include "devices/identify/unlike_device.h"
+#include "app/identify/simulated_bench.h"
 
 namespace limpid {
 namespace {
@@ -111,21 +111,8 @@ int write(const IdentifyOptions& options, const Identification& done,
   return wrong.empty() ? 0 : 1;
 }
 
-// A device, and how it is moved.
-struct Bench {
-  std::unique_ptr<Device> device;
-  std::function<IdentifyRun(bool with_load, IdentifyTalk&)> move;
-};
-
-Bench simulated_bench(const IdentifyOrder& order, const ArmDescription& truth,
-                      const Unlikeness& unlike) {
-  Bench bench{.device = std::make_unique<UnlikeDevice>(truth, unlike), .move = {}};
-  bench.move = [&order, &truth, &unlike](bool with_load, IdentifyTalk& talk) {
-    UnlikeDevice device(with_load ? loaded(truth, order.load) : truth, unlike);
-    return simulate_identification(device, order.guess, order.plan, talk);
-  };
-  return bench;
-}
+// How the device is moved.
+using Move = std::function<IdentifyRun(bool with_load, IdentifyTalk&)>;
 
 void ask_for_load(const IdentifyOptions& options) {
   fmt::print("Now fix the {:g} kg to the tip, firmly and close to it, and let go.\n",
@@ -135,10 +122,10 @@ void ask_for_load(const IdentifyOptions& options) {
 
 // Moves it, and moves it again with the load; what moved is kept, whatever becomes of it. False
 // where it ended before its end.
-bool moved(const IdentifyOptions& options, const Bench& bench, IdentifyRun& bare,
+bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
            IdentifyRun& with_load) {
   const auto move = [&](bool load, IdentifyRun& run, const char* file) {
-    run = watched([&](IdentifyTalk& talk) { return bench.move(load, talk); });
+    run = watched([&](IdentifyTalk& talk) { return mover(load, talk); });
     write_motion(run, fs::path(options.out) / file);
     if (run.end == ExcitationEnd::complete) return true;
     fmt::print(stderr, "limpid: ended: {}; {} holds the motion until then\n",
@@ -157,19 +144,20 @@ int identify_simulated(IdentifyOptions& options) {
   if (order.masses_right) {
     throw UsageError("--masses-right: the simulated device has other masses than its file");
   }
-  const ArmDescription truth = unlike(order.guess, options.seed, 0.03);
-  Unlikeness unlikeness = drawn_bench(order.guess, options.seed, order.fit.gravity);
-  if (order.load > 0) unlikeness.torque_scale = drawn_torque_scale(options.seed);
-  const Bench bench = simulated_bench(order, truth, unlikeness);
+  SimulatedBench bench = simulated_bench(order, options.seed);
+  const auto move = [&](bool with_load, IdentifyTalk& talk) {
+    return move_simulated(bench, order, with_load, talk);
+  };
   IdentifyRun bare, with_load;
-  if (!moved(options, bench, bare, with_load)) return 1;
+  if (!moved(options, move, bare, with_load)) return 1;
   const Identification done =
-      identification(bench.device->traits().name, order, std::move(bare), std::move(with_load));
+      identification(UnlikeDevice(bench.truth, bench.unlikeness).traits().name, order,
+                     std::move(bare), std::move(with_load));
   print(done);
-  if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", unlikeness.torque_scale);
-  unlikeness.torque_scale = 1;  // what is told takes it into account
-  const ordered_json rehearsal{
-      {"rehearsal", rehearse_and_print(truth, unlikeness, order.guess, done.found.arm)}};
+  if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", bench.unlikeness.torque_scale);
+  bench.unlikeness.torque_scale = 1;  // what is told takes it into account
+  const ordered_json rehearsal{{"rehearsal", rehearse_and_print(bench.truth, bench.unlikeness,
+                                                                order.guess, done.found.arm)}};
   return write(options, done, {}, rehearsal.dump());
 }
 
@@ -187,18 +175,17 @@ int identify_device(IdentifyOptions options) {
   }
   DeviceHub hub(device_book_file(), {});
   const std::string in_use = hub.in_use();
-  Bench bench{.device = open_device(options.device, hub,
-                                    fmt::format(", and \"{}\" tries it without one", kSimulated)),
-              .move = {}};
+  const std::unique_ptr<Device> device = open_device(
+      options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
-  if (options.input.device.empty()) order.guess = hub.arm_for(bench.device->traits(), order.guess);
-  bench.move = [&](bool, IdentifyTalk& talk) {
-    return run_identification(*bench.device, order.guess, order.plan, talk, {});
+  if (options.input.device.empty()) order.guess = hub.arm_for(device->traits(), order.guess);
+  const auto move = [&](bool, IdentifyTalk& talk) {
+    return run_identification(*device, order.guess, order.plan, talk, {});
   };
-  ask_to_begin(options, *bench.device);
+  ask_to_begin(options, *device);
   IdentifyRun bare, with_load;
-  if (!moved(options, bench, bare, with_load)) return 1;
-  const std::string name = bench.device->traits().name;
+  if (!moved(options, move, bare, with_load)) return 1;
+  const std::string name = device->traits().name;
   const Identification done = identification(name, order, std::move(bare), std::move(with_load));
   print(done);
   const std::optional<Findings> last = read_findings(hub.remembered_report());

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -146,9 +145,8 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
 
 namespace {
 
-std::filesystem::path nature_file(std::string id, const char* extension) {
-  for (char& c : id) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
-  return user_data_dir() / "devices" / (id + extension);
+std::filesystem::path nature_file(const std::string& id, const char* extension) {
+  return user_data_dir() / "devices" / (as_file_name(id) + extension);
 }
 
 }  // namespace

@@ -7,9 +7,13 @@ namespace limpid {
 
 std::complex<double> amplitude_at(const std::vector<double>& samples, double T, double f) {
   const double step = 2 * std::numbers::pi * f * T;
-  std::complex<double> sum = 0;
+  // Turned on from sample to sample, and anew before round-off gathers.
+  constexpr std::size_t kAnew = 64;
+  const std::complex<double> turn = std::polar(1.0, -step);
+  std::complex<double> sum = 0, at = 1;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    sum += samples[k] * std::polar(1.0, -step * static_cast<double>(k));
+    at = k % kAnew == 0 ? std::polar(1.0, -step * static_cast<double>(k)) : at * turn;
+    sum += samples[k] * at;
   }
   return 2.0 * sum / static_cast<double>(samples.size());
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/run/analysis.h"
 #include "devices/identify/torque_scale.h"
 
 namespace limpid {
@@ -16,7 +17,8 @@ Identification identification(std::string device, const IdentifyOrder& order, Id
                      .bare = std::move(bare),
                      .with_load = std::move(with_load),
                      .torque_scale = {},
-                     .found = {}};
+                     .found = {},
+                     .inertia_in_file = {}};
   out.found = identify(order.guess, out.bare.record, order.fit);
   if (order.load > 0) {
     out.torque_scale = torque_scale_by_load(out.found, out.bare.record, out.with_load.record,
@@ -24,11 +26,35 @@ Identification identification(std::string device, const IdentifyOrder& order, Id
   } else if (order.masses_right) {
     out.torque_scale = torque_scale_by_masses(order.guess, out.found, out.bare.record, order.fit);
   }
-  if (!out.torque_scale) return out;
-  MotionRecord given = out.bare.record;
-  given.torque *= out.torque_scale->value;
-  out.found = identify(order.guess, given, order.fit);
+  if (out.torque_scale) {
+    MotionRecord given = out.bare.record;
+    given.torque *= out.torque_scale->value;
+    out.found = identify(order.guess, given, order.fit);
+  }
+  const Eigen::VectorXd inertia = arm_at(order.guess, out.found.middle).M.diagonal();
+  out.inertia_in_file.assign(inertia.begin(), inertia.end());
   return out;
+}
+
+std::string device_text(const Identification& identification) {
+  std::string text =
+      fmt::format("Delay from a reading to the torque that answers it: {} ms, beyond the tick.",
+                  text_of(identification.found.delay, 1e-3));
+  const ReadingTimes& timing = identification.bare.timing;
+  if (timing.rate > 0) {
+    text += fmt::format(
+        " {:.0f} readings a second, {:.2f} ms apart in the middle, {:.2f} ms at 99 %, {:.2f} ms at "
+        "most.",
+        timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
+  }
+  if (identification.torque_scale) {
+    text += fmt::format(" The motors give {} times what they are told, from {}.",
+                        text_of(*identification.torque_scale, 1),
+                        identification.order.load > 0
+                            ? fmt::format("a load of {:g} kg at the tip", identification.order.load)
+                            : std::string("the masses of the arm's file"));
+  }
+  return with_plus_minus(text);
 }
 
 // With the digits that the deviation leaves, four that count at most.

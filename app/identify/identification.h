@@ -26,6 +26,7 @@ struct Identification {
   IdentifyRun bare, with_load;
   std::optional<Found> torque_scale;  // what the motors give of what they are told, where asked for
   Identified found;                   // in the torques that they give
+  std::vector<double> inertia_in_file;  // the guess's, of each joint, where it was found [kg m^2]
 };
 
 // Of a run that is complete, and of one with the load where there is one. Errors:
@@ -48,6 +49,9 @@ inline constexpr std::array kFindings{
     FindingInfo{"viscous", "damping", "mN m s/rad", 1e-3, &JointFinding::viscous},
     FindingInfo{"spring", "spring", "mN m/rad", 1e-3, &JointFinding::spring},
     FindingInfo{"offset", "offset", "mN m", 1e-3, &JointFinding::offset}};
+
+// How late the device answers, how often it reports, and what its motors give, in sentences.
+std::string device_text(const Identification& identification);
 
 // "1.23 +- 0.05", in the finding's unit.
 std::string text_of(const Found& found, double per_unit);

@@ -7,7 +7,6 @@
 #include "app/base/markup.h"
 #include "app/device/urdf_writer.h"
 #include "app/figure/page.h"
-#include "app/run/analysis.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
 
@@ -31,14 +30,12 @@ std::string joints_table(const Identification& identification) {
   for (const FindingInfo& info : kFindings) {
     head += fmt::format("<th class=\"number\">{} [{}]</th>", info.label, escaped(info.unit));
   }
-  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
     rows += "<tr><td>" + escaped(found.arm.joints[j].name) + "</td>";
     for (const FindingInfo& info : kFindings) {
       rows += cell(text_of(found.joints[j].*info.field, info.per_unit));
     }
-    rows += cell(fmt::format("{:.3f}", M(i, i) / 1e-3)) +
+    rows += cell(fmt::format("{:.3f}", identification.inertia_in_file[j] / 1e-3)) +
             cell(fmt::format("{:.1f} %", 100 * found.joints[j].residual / found.joints[j].torque)) +
             "</tr>\n";
   }
@@ -46,27 +43,6 @@ std::string joints_table(const Identification& identification) {
       "<table><thead><tr>{}<th class=\"number\">inertia in its file [g m^2]</th>"
       "<th class=\"number\">not explained</th></tr></thead><tbody>\n{}</tbody></table>\n",
       head, rows);
-}
-
-std::string device_text(const Identification& identification) {
-  std::string text =
-      fmt::format("Delay from a reading to the torque that answers it: {} ms, beyond the tick.",
-                  text_of(identification.found.delay, 1e-3));
-  const ReadingTimes& timing = identification.bare.timing;
-  if (timing.rate > 0) {
-    text += fmt::format(
-        " {:.0f} readings a second, {:.2f} ms apart in the middle, {:.2f} ms at 99 %, {:.2f} ms at "
-        "most.",
-        timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
-  }
-  if (identification.torque_scale) {
-    text += fmt::format(" The motors give {} times what they are told, from {}.",
-                        text_of(*identification.torque_scale, 1),
-                        identification.order.load > 0
-                            ? fmt::format("a load of {:g} kg at the tip", identification.order.load)
-                            : std::string("the masses of the arm's file"));
-  }
-  return escaped(with_plus_minus(text));
 }
 
 std::string drift_section(const std::vector<Drift>& all, const std::string& when) {
@@ -86,7 +62,7 @@ std::string drift_section(const std::vector<Drift>& all, const std::string& when
 void write_report(const Identification& identification, const std::optional<Findings>& last,
                   bool pictures, const fs::path& file) {
   std::string body = "<section><header><h2>What was found</h2></header>\n" +
-                     joints_table(identification) + "<p>" + device_text(identification) +
+                     joints_table(identification) + "<p>" + escaped(device_text(identification)) +
                      "</p>\n<p class=\"soft\">\xC2\xB1: one standard deviation. Inertia and weight "
                      "in the middle of the motion. <a href=\"identified.urdf\">arm</a>, <a "
                      "href=\"identified.json\">figures</a>, <a href=\"motion.csv\">motion</a></p>";

@@ -3,12 +3,11 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <cctype>
 #include <ctime>
 
 #include "app/base/user_dirs.h"
 #include "app/identify/identify_report.h"
-#include "devices/identify/unlike_device.h"
+#include "app/identify/simulated_bench.h"
 
 namespace limpid {
 namespace {
@@ -16,25 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kSeed = 1;  // of the simulated device
-constexpr double kMostFriction = 0.03;
 
-fs::path folder_for(std::string name) {
-  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+fs::path folder_for(const std::string& name) {
   return user_data_dir() / "identified" /
-         fmt::format("{}-{:%Y%m%d-%H%M%S}", name, fmt::localtime(std::time(nullptr)));
-}
-
-Unlikeness simulated_bench(const IdentifyOrder& order) {
-  Unlikeness bench = drawn_bench(order.guess, kSeed, order.fit.gravity);
-  if (order.load > 0) bench.torque_scale = drawn_torque_scale(kSeed);
-  return bench;
-}
-
-IdentifyRun move_simulated(const IdentifyOrder& order, bool with_load, IdentifyTalk& talk) {
-  ArmDescription truth = unlike(order.guess, kSeed, kMostFriction);
-  if (with_load) truth = loaded(truth, order.load);
-  UnlikeDevice device(truth, simulated_bench(order));
-  return simulate_identification(device, order.guess, order.plan, talk);
+         fmt::format("{}-{:%Y%m%d-%H%M%S}", as_file_name(name), fmt::localtime(std::time(nullptr)));
 }
 
 // What moved is kept, whatever can be made of it.
@@ -101,7 +85,7 @@ void IdentifyDesk::move() {
   const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_,
                     open = simulated() ? nullptr : devices_.hub().opening(),
                     ask = devices_.hub().ask()] {
-    if (!open) return move_simulated(order, with_load, *talk);
+    if (!open) return move_simulated(simulated_bench(order, kSeed), order, with_load, *talk);
     const std::unique_ptr<Device> device = open();
     talk->see();
     return run_identification(*device, order.guess, order.plan, *talk, ask);

@@ -7,7 +7,6 @@
 
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/run/analysis.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/tooltip.h"
@@ -79,10 +78,8 @@ void joints_table(const Identification& identification) {
       ImGui::TextUnformatted(text(j).c_str());
     }
   };
-  const Eigen::MatrixXd M = arm_at(identification.order.guess, found.middle).M;
   row("inertia in its file [g m^2]", [&](std::size_t j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    return fmt::format("{:.3f}", M(i, i) / 1e-3);
+    return fmt::format("{:.3f}", identification.inertia_in_file[j] / 1e-3);
   });
   for (const FindingInfo& info : kFindings) {
     row(fmt::format("{} [{}]", info.label, info.unit), [&](std::size_t j) {
@@ -93,19 +90,6 @@ void joints_table(const Identification& identification) {
     return fmt::format("{:.1f} %", 100 * found.joints[j].residual / found.joints[j].torque);
   });
   ImGui::EndTable();
-}
-
-void device_figures(const Identification& identification) {
-  std::string text = fmt::format("Delay {} ms.", text_of(identification.found.delay, 1e-3));
-  if (const ReadingTimes& timing = identification.bare.timing; timing.rate > 0) {
-    text += fmt::format(" {:.0f} readings a second, at most {:.1f} ms apart.", timing.rate,
-                        1e3 * timing.most);
-  }
-  if (identification.torque_scale) {
-    text += fmt::format(" The motors give {} times what they are told.",
-                        text_of(*identification.torque_scale, 1));
-  }
-  ImGui::TextWrapped("%s", with_plus_minus(text).c_str());
 }
 
 void draw_drift(const std::vector<Drift>& all) {
@@ -125,7 +109,7 @@ void draw_drift(const std::vector<Drift>& all) {
 bool draw_found(IdentifyDesk& desk) {
   const IdentifyDesk::Done& done = *desk.done();
   joints_table(done.identification);
-  device_figures(done.identification);
+  ImGui::TextWrapped("%s", device_text(done.identification).c_str());
   draw_drift(done.drift);
   muted("Report: " + (done.report / "report.html").string());
   if (!done.no_pictures.empty()) muted("Without pictures: " + done.no_pictures);

@@ -37,25 +37,24 @@ std::uint64_t stirred(std::uint64_t sum, double x) {
 
 }  // namespace
 
-std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column) {
-  const auto stride = static_cast<std::size_t>(layout.stride());
-  std::uint64_t sum = rows.size() / stride;
-  for (std::size_t at = 0; at < rows.size(); at += stride) {
-    for (const double x : layout.in(rows.subspan(at, stride), column)) sum = stirred(sum, x);
-  }
-  return sum;
+AllColumns columns_of(const RowLayout& layout, std::span<const double> rows) {
+  AllColumns columns;
+  std::ranges::transform(kColumnInfo, columns.begin(), [&](const ColumnInfo& info) {
+    return ColumnValues{rows.data() + layout.offset(info.column), layout.width(info.column),
+                        layout.stride()};
+  });
+  return columns;
 }
 
-std::array<std::uint64_t, kColumns> column_sums(const std::array<ColumnValues, kColumns>& columns,
-                                                std::uint64_t from, std::uint64_t count) {
+std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::uint64_t from,
+                                                std::uint64_t count) {
   std::array<std::uint64_t, kColumns> sums;
   sums.fill(count);
   for (std::uint64_t k = from; k < from + count; ++k) {
     for (std::size_t c = 0; c < kColumns; ++c) {
-      const auto width = static_cast<std::size_t>(columns[c].width);
-      const double* values = columns[c].first + k * width;
+      const double* values = columns[c].first + k * static_cast<std::size_t>(columns[c].step);
       std::uint64_t sum = sums[c];
-      for (std::size_t i = 0; i < width; ++i) sum = stirred(sum, values[i]);
+      for (int i = 0; i < columns[c].width; ++i) sum = stirred(sum, values[i]);
       sums[c] = sum;
     }
   }
@@ -84,7 +83,7 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
     refuse(file, fmt::format("{}: of another type; needed: uint64", kCheckPath));
   }
 
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  const AllColumns in_memory = columns_of(session.layout, session.rows);
   std::vector<std::uint64_t> wanted(columns.size());
   for (std::size_t from = 0; from < session.size(); from += block) {
     const std::size_t count = std::min<std::size_t>(block, session.size() - from);
@@ -92,10 +91,12 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
     if (from / block >= source.rows || !read_row(source, from / block, wanted.data())) {
       return {from, fmt::format("{} were never written", rows)};
     }
-    const auto values = std::span(session.rows).subspan(from * stride, count * stride);
+    const auto sums = column_sums(in_memory, from, count);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (!columns[i] || column_sum(session.layout, values, *columns[i]) == wanted[i]) continue;
-      const char* path = kColumnInfo[static_cast<std::size_t>(*columns[i])].path;
+      if (!columns[i]) continue;
+      const auto column = static_cast<std::size_t>(*columns[i]);
+      if (sums[column] == wanted[i]) continue;
+      const char* path = kColumnInfo[column].path;
       if (!exists(root, path)) continue;  // a column that somebody left out
       return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
                                 "another program (which then has to delete /check)",

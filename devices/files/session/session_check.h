@@ -21,18 +21,21 @@ inline constexpr const char* kCheckPath = "/check/sums";
 inline constexpr const char* kCheckRows = "rows";
 inline constexpr const char* kCheckColumns = "columns";
 
-// Over the values of `rows` in that column: h <- (h ^ bits) * odd, and a shift. Each step can be
-// undone, so a single value that changes always changes the sum.
-std::uint64_t column_sum(const RowLayout& layout, std::span<const double> rows, Column column);
-// The values of a column alone, a row behind the other.
+// The values of a column: `width` in each row, and from a row to the next `step`.
 struct ColumnValues {
   const double* first;
-  int width;
+  int width, step;
 };
-// Of all columns, in their order, over `count` rows from row `from` on. They go side by side: each
-// sum waits for the step before, so that one column after the other takes several times as long.
-std::array<std::uint64_t, kColumns> column_sums(const std::array<ColumnValues, kColumns>& columns,
-                                                std::uint64_t from, std::uint64_t count);
+using AllColumns = std::array<ColumnValues, kColumns>;
+// In rows as they are in memory.
+AllColumns columns_of(const RowLayout& layout, std::span<const double> rows);
+
+// Of all columns, in their order, over the values of `count` rows from row `from` on: h <- (h ^
+// bits) * odd, and a shift. Each step can be undone, so a single value that changes always changes
+// the sum. They go side by side: each sum waits for the step before, so that one column after the
+// other takes several times as long.
+std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::uint64_t from,
+                                                std::uint64_t count);
 
 // The columns in the order of their sums.
 std::string check_columns();

@@ -156,9 +156,10 @@ void SessionLane::flush() {
 }
 
 void SessionLane::write_check() {
-  std::array<ColumnValues, kColumns> columns;
+  AllColumns columns;
   std::ranges::transform(kColumnInfo, columns.begin(), [&](const ColumnInfo& column) {
-    return ColumnValues{pending(column.column), layout_.width(column.column)};
+    const int width = layout_.width(column.column);
+    return ColumnValues{pending(column.column), width, width};
   });
   std::vector<std::uint64_t> sums;
   for (std::uint64_t from = 0; from < pending_rows_; from += block_rows_) {
