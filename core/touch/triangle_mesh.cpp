@@ -191,10 +191,14 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
     Vec3 at, point;
     double best2, margin;
     std::uint32_t triangle = MeshPoint::kNone;
+    // No nearer than the nearest so far is what lies beyond the plane there: out . x <= level.
+    Vec3 out = Vec3::Zero();
+    double level = -1;
 
     bool consider(std::uint32_t t) {
       const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
-      // Most are in a plane that is too far away, rounding granted.
+      if (out.dot(a) <= level && out.dot(b) <= level && out.dot(c) <= level) return false;
+      // Others are in a plane that is too far away, rounding granted.
       const Vec3 n = (b - a).cross(c - a);
       const double height = n.dot(at - a);
       if (height * height > (1 + 1e-7) * best2 * n.squaredNorm()) return false;
@@ -204,6 +208,8 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
       best2 = d2;
       point = q;
       triangle = t;
+      out = d2 > 0 ? Vec3((at - q) / std::sqrt(d2)) : Vec3::Zero();
+      level = out.dot(q);
       return true;
     }
   };

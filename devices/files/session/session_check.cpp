@@ -91,11 +91,11 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
     if (from / block >= source.rows || !read_row(source, from / block, wanted.data())) {
       return {from, fmt::format("{} were never written", rows)};
     }
-    const auto sums = column_sums(in_memory, from, count);
+    const auto found = column_sums(in_memory, from, count);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (!columns[i]) continue;
       const auto column = static_cast<std::size_t>(*columns[i]);
-      if (sums[column] == wanted[i]) continue;
+      if (found[column] == wanted[i]) continue;
       const char* path = kColumnInfo[column].path;
       if (!exists(root, path)) continue;  // a column that somebody left out
       return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
