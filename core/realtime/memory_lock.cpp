@@ -2,6 +2,7 @@
 
 #include <link.h>
 #include <linux/capability.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -67,5 +68,7 @@ bool lock_memory() {
   dl_iterate_phdr(bring_in, &done);
   return done;
 }
+
+void give_back_what_is_freed() { mallopt(M_MMAP_THRESHOLD, 128 << 10); }
 
 }  // namespace limpid

@@ -9,4 +9,9 @@ namespace limpid {
 // called again. False where the system forbids it; then nothing is locked.
 bool lock_memory();
 
+// Large blocks go back to the system as soon as they are freed. Else malloc learns to keep them, a
+// heap for every few threads, and locked memory cannot be taken out of the middle of a heap: what
+// was once needed stays for good. For programs that go on for long; before they have threads.
+void give_back_what_is_freed();
+
 }  // namespace limpid

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <link.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +11,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 namespace limpid {
 namespace {
@@ -112,6 +115,30 @@ TEST(LockMemory, KeepsWhatIsMappedLaterOnceItIsTouched) {
   });
   if (kept == skipped) GTEST_SKIP() << "memory cannot be locked here";
   EXPECT_EQ(kept, yes);
+}
+
+// Blocks that were large once teach malloc to keep others of their size.
+TEST(GiveBackWhatIsFreed, GivesBackLargeBlocksThatLieUnderSmallOnes) {
+  const Verdict given_back = in_a_child([] {
+    give_back_what_is_freed();
+    lock_memory();
+    constexpr std::size_t kBytes = 1 << 20;
+    const auto taken = [] { return mallinfo2().arena; };  // the heap
+    const auto fill = [](std::size_t bytes) {
+      auto block = std::make_unique<std::vector<char>>(bytes, 'x');
+      return block;
+    };
+    fill(20 * kBytes).reset();
+    const std::size_t before = taken();
+    std::vector<std::unique_ptr<std::vector<char>>> large, small;
+    for (int i = 0; i < 20; ++i) {
+      large.push_back(fill(kBytes));
+      small.push_back(fill(100));
+    }
+    large.clear();
+    return taken() < before + kBytes ? yes : no;
+  });
+  EXPECT_EQ(given_back, yes);
 }
 
 }  // namespace
