@@ -25,7 +25,8 @@ inline constexpr const char* kResetMark = "reset";  // key of the mark where a n
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the
 // difference, so that data before and after a reset can be looked at together.
 //
-// Memory is taken once, by the constructor: about 5.2 bytes a value and 8 bytes a row.
+// Memory is set aside once, by the constructor: about 5.2 bytes a value and 8 bytes a row; it is
+// used as rows come.
 class History {
  public:
   struct Options {

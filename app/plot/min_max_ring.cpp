@@ -1,5 +1,7 @@
 #include "app/plot/min_max_ring.h"
 
+#include <cmath>
+
 namespace limpid {
 namespace {
 
@@ -25,6 +27,22 @@ MinMaxRing::MinMaxRing(std::size_t at_least) {
 }
 
 void MinMaxRing::append(float sample) {
+  if (samples_.empty() && !std::isnan(sample)) make_up();
+  if (!samples_.empty() || !std::isnan(sample)) keep(sample);
+  ++end_;
+  if (end_ - lap_ == capacity()) lap_ = end_;
+}
+
+// What was only counted, before the first number.
+void MinMaxRing::make_up() {
+  const std::size_t rows = end_ < capacity() ? static_cast<std::size_t>(end_) : capacity();
+  samples_.assign(rows, kNothing);
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    blocks_[level].assign(rows >> (kFanBits * (level + 1)), Extent{});
+  }
+}
+
+void MinMaxRing::keep(float sample) {
   std::size_t at = static_cast<std::size_t>(end_ - lap_);
   put(samples_, at, sample);
   for (std::size_t level = 0; level < kLevels && at % kFan == kFan - 1; ++level) {
@@ -40,8 +58,6 @@ void MinMaxRing::append(float sample) {
     at /= kFan;
     put(blocks_[level], at, extent);
   }
-  ++end_;
-  if (end_ - lap_ == capacity()) lap_ = end_;
 }
 
 void MinMaxRing::include(Extent& extent, SampleIndex index, int level) const {
@@ -54,6 +70,7 @@ void MinMaxRing::include(Extent& extent, SampleIndex index, int level) const {
 
 Extent MinMaxRing::extent(SampleIndex from, SampleIndex to) const {
   Extent extent;
+  if (samples_.empty()) return extent;
   for (int level = 0;; ++level) {
     if (level == kLevels || to - from < 2 * kFan) {
       while (from < to) include(extent, from++, level);

@@ -2,12 +2,14 @@
 //
 // Blocks of 8, 64, 512 and 4096 samples are summed up as soon as they are full, so that the extent
 // of any stretch costs a few dozen comparisons however long it is. Samples are numbered from 0 in
-// the order of arrival; a sample keeps its number when older ones are overwritten.
+// the order of arrival; a sample keeps its number when older ones are overwritten. A channel that
+// has never had a number, as those of a second run that there is not, is only counted.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "app/plot/extent.h"
@@ -34,7 +36,9 @@ class MinMaxRing {
   SampleIndex end() const { return end_; }
 
   // `index` from first() to end() - 1.
-  float at(SampleIndex index) const { return samples_[slot(index, 0)]; }
+  float at(SampleIndex index) const {
+    return samples_.empty() ? kNothing : samples_[slot(index, 0)];
+  }
 
   // Exact extent of the samples [from, to) inside [first(), end()); not-a-numbers do not count.
   Extent extent(SampleIndex from, SampleIndex to) const;
@@ -48,6 +52,10 @@ class MinMaxRing {
     return static_cast<std::size_t>(index >= lap ? index - lap : index + size - lap);
   }
   void include(Extent& extent, SampleIndex index, int level) const;
+  void keep(float sample);
+  void make_up();
+
+  static constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
   std::size_t capacity_;
   // Their memory is taken at once, and touched only as samples come.

@@ -1,16 +1,15 @@
 #include "core/realtime/realtime.h"
 
-#include <linux/capability.h>
 #include <sched.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+
+#include "core/realtime/memory_lock.h"
 
 namespace limpid {
 namespace {
@@ -38,30 +37,6 @@ bool become_realtime_by_asking(const AskForPriority& ask) {
   limit.rlim_max = std::min(limit.rlim_max, kRtkitTimeLimit);
   limit.rlim_cur = std::min(limit.rlim_cur, limit.rlim_max);
   return setrlimit(RLIMIT_RTTIME, &limit) == 0 && ask(gettid(), kRtkitPriority);
-}
-
-bool has_capability(unsigned capability) {
-  __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
-  std::array<__user_cap_data_struct, 2> data{};
-  if (syscall(SYS_capget, &header, data.data()) != 0) return false;
-  return (data[capability / 32].effective >> (capability % 32)) & 1u;
-}
-
-// Under a finite limit, locking what will be mapped later makes the allocations of the OpenGL
-// driver fail, and a locked stack cannot grow. So all is locked or nothing.
-bool may_lock_everything() {
-  if (has_capability(CAP_IPC_LOCK)) return true;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_max != RLIM_INFINITY) return false;
-  limit.rlim_cur = RLIM_INFINITY;
-  return setrlimit(RLIMIT_MEMLOCK, &limit) == 0;
-}
-
-// What is mapped now is brought in; what comes later stays once it has been touched, so that large
-// reservations cost nothing.
-bool lock_memory() {
-  return may_lock_everything() && mlockall(MCL_CURRENT) == 0 &&
-         mlockall(MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
 [[gnu::noinline]] void touch_stack() {

@@ -11,6 +11,7 @@
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
 #include "app/live/rtkit.h"
+#include "core/realtime/memory_lock.h"
 
 namespace limpid {
 namespace {
@@ -186,6 +187,7 @@ void Application::keep() {
 }  // namespace
 
 void run_desktop(const DesktopOptions& options) {
+  give_back_what_is_freed();
   std::string complaint;
   Settings settings = load_settings(complaint);
   if (options.parameters) settings.parameters = *options.parameters;

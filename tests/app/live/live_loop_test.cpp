@@ -1,13 +1,22 @@
 // The loop behind the window: what it records while controls change comes again bit for bit.
 #include "app/live/live_loop.h"
 
+#include <link.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "app/run/replay.h"
+#include "app/run/scene_meshes.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/random_arm.h"
@@ -79,6 +88,68 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   EXPECT_GT(session.changes.size(), 20u);
   const RunPlan plan = replay(session, "a.h5", session_parameters(session, "a.h5"));
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(plan)), -1);
+}
+
+// Of the haptic thread: how often it touched a page that was not there.
+std::int64_t page_faults() {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string stat;
+    std::getline(std::ifstream(task.path() / "stat"), stat);
+    const auto end = stat.find("(haptics) ");
+    if (end == std::string::npos) continue;
+    std::istringstream fields(stat.substr(end + 10));
+    std::string state;
+    std::int64_t skipped = 0, minor = 0, of_children = 0, major = 0;
+    fields >> state;
+    for (int i = 0; i < 6; ++i) fields >> skipped;
+    fields >> minor >> of_children >> major;
+    return minor + major;
+  }
+  return -1;
+}
+
+// As after a long time in which others needed the memory: no code is in it but what runs now.
+int drop_code(dl_phdr_info* object, std::size_t, void*) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  for (int i = 0; i < object->dlpi_phnum; ++i) {
+    const ElfW(Phdr)& segment = object->dlpi_phdr[i];
+    if (segment.p_type != PT_LOAD || segment.p_flags != (PF_R | PF_X)) continue;
+    const std::uintptr_t from = (object->dlpi_addr + segment.p_vaddr) / page * page;
+    const std::uintptr_t to = object->dlpi_addr + segment.p_vaddr + segment.p_memsz;
+    madvise(reinterpret_cast<void*>(from), to - from, MADV_DONTNEED);
+  }
+  return 0;
+}
+
+// The leaf is a mesh: its search tree is part of it.
+TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
+  const ArmDescription arm = test::omni();
+  dl_iterate_phdr(drop_code, nullptr);
+  SceneDocument leaf = test::omni_document("leaf.toml");
+  build_meshes(leaf);
+  LiveLoop loop({});
+  if (!loop.status().realtime.memory_locked) GTEST_SKIP() << "memory cannot be locked here";
+  const std::int64_t before = page_faults();
+  ASSERT_GT(before, 0);
+  Controls controls;
+  loop.open(arm, leaf.scene, controls.parameters, kHome);
+  double contact = 0;
+  controls.grab = true;
+  for (const CouplingKind kind :
+       {CouplingKind::predictive, CouplingKind::proposed, CouplingKind::standard}) {
+    controls.parameters.kind = kind;
+    for (int i = 0; i < 20; ++i) {
+      controls.goal = kHome + Vec3(0.002 * (i % 10), 0.001 * i, -0.005 * i);
+      loop.set(controls);
+      let_live(loop, 20);
+      loop.update();
+      const std::span<const double> row(loop.snapshot().row);
+      const auto f2 = loop.layout().in(row, Column::contact_torque);
+      for (const double torque : f2) contact += std::abs(torque);
+    }
+  }
+  EXPECT_GT(contact, 0);
+  EXPECT_EQ(page_faults() - before, 0);
 }
 
 TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {

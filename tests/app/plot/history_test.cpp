@@ -1,9 +1,11 @@
 #include "app/plot/history.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -66,6 +68,46 @@ TEST(History, ExtentsStayRightAfterTheOldestSamplesWereOverwritten) {
     EXPECT_GE(history.end() - history.first(), 8000u);
     compare_random_windows(history, plain, 4);
   }
+}
+
+// A second run may come at any time: before, within and after the first lap.
+TEST(History, ExtentsAreRightWhereverTheFirstNumberComes) {
+  for (const int nothing : {0, 1, 7, 8, 500, 4096, 8191, 8192, 8193, 20011}) {
+    History history({.seconds = 8, .tick = kTick});
+    Plain plain;
+    for (int i = 0; i < nothing; ++i) {
+      plain.times.push_back(i * kTick);
+      plain.values.push_back(std::numeric_limits<float>::quiet_NaN());
+      history.append(plain.times.back(), std::array{std::numeric_limits<double>::quiet_NaN()});
+    }
+    compare_random_windows(history, plain, 3);
+    for (int i = nothing; i < nothing + 9001; ++i) {
+      plain.times.push_back(i * kTick);
+      plain.values.push_back(static_cast<float>(std::sin(0.37 * i)));
+      history.append(plain.times.back(), std::array{static_cast<double>(plain.values.back())});
+      if (i == nothing + 3) compare_random_windows(history, plain, 4);
+    }
+    compare_random_windows(history, plain, 5);
+    for (SampleIndex i = history.first(); i < history.end(); ++i) {
+      const float kept = history.value(0, i), given = plain.values[i];
+      EXPECT_TRUE(kept == given || (std::isnan(kept) && std::isnan(given))) << i;
+    }
+  }
+}
+
+TEST(History, ChannelsThatNeverHadANumberTakeNoMemory) {
+  const auto resident = [] {
+    std::size_t size = 0, pages = 0;
+    std::ifstream("/proc/self/statm") >> size >> pages;
+    return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  };
+  constexpr int kChannels = 200;
+  History history({.channels = kChannels, .tick = kTick});
+  const std::vector<double> nothing(kChannels, std::numeric_limits<double>::quiet_NaN());
+  const std::size_t before = resident();
+  for (int i = 0; i < 60'000; ++i) history.append(i * kTick, nothing);
+  // Of numbers it would be 60 MB; times take 0.5 MB.
+  EXPECT_LT(resident() - before, 5'000'000u);
 }
 
 TEST(History, RemembersSamplesByNumberAndTime) {
