@@ -70,7 +70,9 @@ class Window(WindowTest):
         self.key("r")
         self.wait("the end", lambda s: not s["recording"])
         self.xdotool("mouseup", "1")
-        session = max((self.home / "data/limpid/sessions").glob("*.h5"))
+        sessions = self.home / "data/limpid/sessions"
+        self.wait_until("the session", lambda: list(sessions.glob("*.h5")))
+        session = max(sessions.glob("*.h5"))
         with h5py.File(session) as file:
             self.assertEqual(len(file["twin/time"]), len(file["time"]))
         self.check_rerun_is_the_same(session)
