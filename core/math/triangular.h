@@ -68,7 +68,7 @@ template <int N>
   for (Eigen::Index j = 0; j < n; ++j) {
     double* const Dj = D + j * n;
     const double* const Lj = L + j * n;
-    const auto factor = [&](Eigen::Index k) { return (k % 2 ? D : L)[k / 2 * n + j]; };
+    const auto factor = [&](Eigen::Index k) { return *((k % 2 ? D : L) + k / 2 * n + j); };
     take_off<N>(2 * j, column, factor, j, n, Dj);
     const double scale = 1 / Lj[j];
     Dj[j] *= 0.5 * scale;
