@@ -70,10 +70,8 @@ class Factor {
   explicit Factor(const Mat<N>& A) : factor_(A) {
     if constexpr (N == 3) {
       factor_ = A.inverse();
-    } else if constexpr (N == kAnyDof) {
-      eliminate_many(A.rows(), factor_.data(), rows_.data());
     } else {
-      eliminate_in<N>(N, factor_.data(), rows_.data());
+      eliminate_in<N>(A.rows(), factor_.data(), rows_.data());
     }
   }
   template <class B>
@@ -83,11 +81,7 @@ class Factor {
     } else {
       typename B::PlainObject x = b;
       for (Eigen::Index j = 0; j < x.cols(); ++j) {
-        if constexpr (N == kAnyDof) {
-          solve_eliminated_many(x.rows(), factor_.data(), rows_.data(), x.col(j).data());
-        } else {
-          solve_eliminated_in<N>(N, factor_.data(), rows_.data(), x.col(j).data());
-        }
+        solve_eliminated_in<N>(x.rows(), factor_.data(), rows_.data(), x.col(j).data());
       }
       return x;
     }

@@ -11,31 +11,40 @@
 
 namespace limpid {
 
-LIMPID_WIDE void factor_many(Eigen::Index n, double* L) { factor_in<kAnyDof>(n, L); }
-
-LIMPID_WIDE void rate_many(Eigen::Index n, const double* L, double* D) {
-  rate_in<kAnyDof>(n, L, D);
+template <>
+LIMPID_WIDE void factor_in<kAnyDof>(Eigen::Index n, double* L) {
+  factor_in<kByFours>(n, L);
 }
 
-LIMPID_WIDE void skew_many(Eigen::Index n, const double* L, const double* Ldot, double* S) {
-  skew_in<kAnyDof>(n, L, Ldot, S);
+template <>
+LIMPID_WIDE void rate_in<kAnyDof>(Eigen::Index n, const double* L, double* D) {
+  rate_in<kByFours>(n, L, D);
 }
 
-LIMPID_WIDE void solve_lower_many(Eigen::Index n, const double* L, double* x) {
-  solve_lower_in<kAnyDof>(n, L, x);
+template <>
+LIMPID_WIDE void skew_in<kAnyDof>(Eigen::Index n, const double* L, const double* Ldot, double* S) {
+  skew_in<kByFours>(n, L, Ldot, S);
 }
 
-LIMPID_WIDE void solve_transposed_many(Eigen::Index n, const double* L, double* x) {
-  solve_transposed_in<kAnyDof>(n, L, x);
+template <>
+LIMPID_WIDE void solve_lower_in<kAnyDof>(Eigen::Index n, const double* L, double* x) {
+  solve_lower_in<kByFours>(n, L, x);
 }
 
-LIMPID_WIDE void eliminate_many(Eigen::Index n, double* A, int* rows) {
-  eliminate_in<kAnyDof>(n, A, rows);
+template <>
+LIMPID_WIDE void solve_transposed_in<kAnyDof>(Eigen::Index n, const double* L, double* x) {
+  solve_transposed_in<kByFours>(n, L, x);
 }
 
-LIMPID_WIDE void solve_eliminated_many(Eigen::Index n, const double* LU, const int* rows,
-                                       double* x) {
-  solve_eliminated_in<kAnyDof>(n, LU, rows, x);
+template <>
+LIMPID_WIDE void eliminate_in<kAnyDof>(Eigen::Index n, double* A, int* rows) {
+  eliminate_in<kByFours>(n, A, rows);
+}
+
+template <>
+LIMPID_WIDE void solve_eliminated_in<kAnyDof>(Eigen::Index n, const double* LU, const int* rows,
+                                              double* x) {
+  solve_eliminated_in<kByFours>(n, LU, rows, x);
 }
 
 }  // namespace limpid

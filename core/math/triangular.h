@@ -4,6 +4,7 @@
 // that the processor has, each number reckoned in the same way with all of them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +18,22 @@ using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
   return *reinterpret_cast<const Four*>(x);
 }
 
+// The functions below are for N joints known when compiling, or for any number of them: of those
+// triangular.cpp holds the code, which calls the same once more with kByFours.
+inline constexpr int kByFours = -4;
+
+// x -= four columns times four factors, in rows from `first` on, a whole number of fours.
+[[gnu::always_inline]] inline void take_four(const std::array<const double*, 4>& columns,
+                                             const std::array<double, 4>& factors,
+                                             Eigen::Index first, Eigen::Index n,
+                                             double* __restrict x) {
+  const auto [a, b, c, d] = columns;
+  const auto [fa, fb, fc, fd] = factors;
+  for (Eigen::Index i = first; i < n; i += 4) {
+    four(x + i) -= (four(a + i) * fa + four(b + i) * fb) + (four(c + i) * fc + four(d + i) * fd);
+  }
+}
+
 // x -= sum of columns[k] * factors[k] in rows from `first` to n; of many joints, from up to three
 // rows before `first` on, which come to hold anything.
 template <int N, class Column, class Factor>
@@ -24,23 +41,19 @@ template <int N, class Column, class Factor>
                                             const Factor& factor, Eigen::Index first,
                                             Eigen::Index n, double* __restrict x) {
   Eigen::Index k = 0;
-  if (const Eigen::Index start = n - (n - first + 3) / 4 * 4; N == kAnyDof && start >= 0) {
+  if (const Eigen::Index start = n - (n - first + 3) / 4 * 4; N == kByFours && start >= 0) {
     for (; k < columns % 4; ++k) {
-      const double* a = column(k);
+      const double* const a = column(k);
       const double fa = factor(k);
       for (Eigen::Index i = start; i < n; i += 4) four(x + i) -= four(a + i) * fa;
     }
     for (; k < columns; k += 4) {
-      const double *a = column(k), *b = column(k + 1), *c = column(k + 2), *d = column(k + 3);
-      const double fa = factor(k), fb = factor(k + 1), fc = factor(k + 2), fd = factor(k + 3);
-      for (Eigen::Index i = start; i < n; i += 4) {
-        four(x + i) -=
-            (four(a + i) * fa + four(b + i) * fb) + (four(c + i) * fc + four(d + i) * fd);
-      }
+      take_four({column(k), column(k + 1), column(k + 2), column(k + 3)},
+                {factor(k), factor(k + 1), factor(k + 2), factor(k + 3)}, start, n, x);
     }
   }
   for (; k < columns; ++k) {
-    const double* a = column(k);
+    const double* const a = column(k);
     const double fa = factor(k);
     for (Eigen::Index i = first; i < n; ++i) x[i] -= a[i] * fa;
   }
@@ -68,6 +81,7 @@ template <int N>
   for (Eigen::Index j = 0; j < n; ++j) {
     double* const Dj = D + j * n;
     const double* const Lj = L + j * n;
+    // Not (k % 2 ? D : L)[...], whose index gcc 12 loses under -fsanitize=undefined.
     const auto factor = [&](Eigen::Index k) { return *((k % 2 ? D : L) + k / 2 * n + j); };
     take_off<N>(2 * j, column, factor, j, n, Dj);
     const double scale = 1 / Lj[j];
@@ -96,7 +110,7 @@ template <int N>
 // x becomes L^-1 x. The first columns are worked off one by one until the rest goes by fours.
 template <int N>
 [[gnu::always_inline]] inline void solve_lower_in(Eigen::Index n, const double* L, double* x) {
-  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  const Eigen::Index odd = N == kByFours ? n % 4 : n;
   for (Eigen::Index j = 0; j < odd; ++j) {
     const double* const Lj = L + j * n;
     const double at_j = x[j] *= 1 / Lj[j];
@@ -110,16 +124,14 @@ template <int N>
     const double xc = (x[j + 2] - a[j + 2] * xa - b[j + 2] * xb) * (1 / c[j + 2]);
     const double xd = (x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc) * (1 / d[j + 3]);
     four(x + j) = Four{xa, xb, xc, xd};
-    for (Eigen::Index i = j + 4; i < n; i += 4) {
-      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
-    }
+    take_four({a, b, c, d}, {xa, xb, xc, xd}, j + 4, n, x);
   }
 }
 
 // x becomes L^-T x.
 template <int N>
 [[gnu::always_inline]] inline void solve_transposed_in(Eigen::Index n, const double* L, double* x) {
-  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
+  const Eigen::Index odd = N == kByFours ? n % 4 : n;
   for (Eigen::Index j = n - 4; j >= odd; j -= 4) {
     const double *a = L + j * n, *b = a + n, *c = b + n, *d = c + n;
     Four sa{}, sb{}, sc{}, sd{};
@@ -146,35 +158,38 @@ template <int N>
   }
 }
 
+// x becomes L^-1 x as far as L's first `columns` columns go, its diagonal's ones left out.
+template <int N>
+[[gnu::always_inline]] inline void go_forward(Eigen::Index columns, Eigen::Index n, const double* L,
+                                              double* x) {
+  const Eigen::Index odd = N == kByFours ? n % 4 : n;
+  for (Eigen::Index j = 0; j < columns;) {
+    const double* const a = L + j * n;
+    if (j < odd || j + 4 > columns) {
+      const Eigen::Index fours = j < odd ? odd : (j - odd) / 4 * 4 + odd + 4;
+      for (Eigen::Index i = j + 1; i < fours; ++i) x[i] -= a[i] * x[j];
+      for (Eigen::Index i = fours; i < n; i += 4) four(x + i) -= four(a + i) * x[j];
+      ++j;
+      continue;
+    }
+    const double *b = a + n, *c = b + n, *d = c + n;
+    const double xa = x[j], xb = x[j + 1] - a[j + 1] * xa;
+    const double xc = x[j + 2] - a[j + 2] * xa - b[j + 2] * xb;
+    const double xd = x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc;
+    x[j + 1] = xb, x[j + 2] = xc, x[j + 3] = xd;
+    take_four({a, b, c, d}, {xa, xb, xc, xd}, j + 4, n, x);
+    j += 4;
+  }
+}
+
 // A becomes L and U of P A = L U, L's ones left out and U's diagonal inverted; row j was exchanged
 // with rows[j].
 template <int N>
 [[gnu::always_inline]] inline void eliminate_in(Eigen::Index n, double* A, int* rows) {
-  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
   for (Eigen::Index j = 0; j < n; ++j) {
     double* const x = A + j * n;
     for (Eigen::Index k = 0; k < j; ++k) std::swap(x[k], x[rows[k]]);
-    Eigen::Index k = 0;
-    for (; k < j;) {
-      const double* const a = A + k * n;
-      if (k < odd || k + 4 > j) {
-        const Eigen::Index fours = k < odd ? odd : (k - odd) / 4 * 4 + odd + 4;
-        for (Eigen::Index i = k + 1; i < fours; ++i) x[i] -= a[i] * x[k];
-        for (Eigen::Index i = fours; i < n; i += 4) four(x + i) -= four(a + i) * x[k];
-        ++k;
-        continue;
-      }
-      const double *b = a + n, *c = b + n, *d = c + n;
-      const double xa = x[k], xb = x[k + 1] - a[k + 1] * xa;
-      const double xc = x[k + 2] - a[k + 2] * xa - b[k + 2] * xb;
-      const double xd = x[k + 3] - a[k + 3] * xa - b[k + 3] * xb - c[k + 3] * xc;
-      x[k + 1] = xb, x[k + 2] = xc, x[k + 3] = xd;
-      for (Eigen::Index i = k + 4; i < n; i += 4) {
-        four(x + i) -=
-            (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
-      }
-      k += 4;
-    }
+    go_forward<N>(j, n, A, x);
     Eigen::Index best = j;
     for (Eigen::Index i = j + 1; i < n; ++i) best = std::abs(x[i]) > std::abs(x[best]) ? i : best;
     rows[j] = static_cast<int>(best);
@@ -189,23 +204,8 @@ template <int N>
 [[gnu::always_inline]] inline void solve_eliminated_in(Eigen::Index n, const double* LU,
                                                        const int* rows, double* x) {
   for (Eigen::Index j = 0; j < n; ++j) std::swap(x[j], x[rows[j]]);
-  const Eigen::Index odd = N == kAnyDof ? n % 4 : n;
-  for (Eigen::Index j = 0; j < odd; ++j) {
-    const double* const a = LU + j * n;
-    for (Eigen::Index i = j + 1; i < odd; ++i) x[i] -= a[i] * x[j];
-    for (Eigen::Index i = odd; i < n; i += 4) four(x + i) -= four(a + i) * x[j];
-  }
-  for (Eigen::Index j = odd; j < n; j += 4) {
-    const double *a = LU + j * n, *b = a + n, *c = b + n, *d = c + n;
-    const double xa = x[j], xb = x[j + 1] - a[j + 1] * xa;
-    const double xc = x[j + 2] - a[j + 2] * xa - b[j + 2] * xb;
-    const double xd = x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc;
-    x[j + 1] = xb, x[j + 2] = xc, x[j + 3] = xd;
-    for (Eigen::Index i = j + 4; i < n; i += 4) {
-      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
-    }
-  }
-  const Eigen::Index even = n - odd;
+  go_forward<N>(n, n, LU, x);
+  const Eigen::Index even = N == kByFours ? n / 4 * 4 : 0;
   for (Eigen::Index j = n; j-- > even;) {
     const double* const a = LU + j * n;
     x[j] *= a[j];
@@ -219,74 +219,58 @@ template <int N>
     const double xb = (x[j + 1] - d[j + 1] * xd - c[j + 1] * xc) * b[j + 1];
     const double xa = (x[j] - d[j] * xd - c[j] * xc - b[j] * xb) * a[j];
     x[j] = xa, x[j + 1] = xb, x[j + 2] = xc, x[j + 3] = xd;
-    for (Eigen::Index i = 0; i < j; i += 4) {
-      four(x + i) -= (four(a + i) * xa + four(b + i) * xb) + (four(c + i) * xc + four(d + i) * xd);
-    }
+    take_four({a, b, c, d}, {xa, xb, xc, xd}, 0, j, x);
   }
 }
 
-// The same for any number of joints.
-void factor_many(Eigen::Index n, double* L);
-void rate_many(Eigen::Index n, const double* L, double* D);
-void skew_many(Eigen::Index n, const double* L, const double* Ldot, double* S);
-void solve_lower_many(Eigen::Index n, const double* L, double* x);
-void solve_transposed_many(Eigen::Index n, const double* L, double* x);
-void eliminate_many(Eigen::Index n, double* A, int* rows);
-void solve_eliminated_many(Eigen::Index n, const double* LU, const int* rows, double* x);
+template <>
+void factor_in<kAnyDof>(Eigen::Index n, double* L);
+template <>
+void rate_in<kAnyDof>(Eigen::Index n, const double* L, double* D);
+template <>
+void skew_in<kAnyDof>(Eigen::Index n, const double* L, const double* Ldot, double* S);
+template <>
+void solve_lower_in<kAnyDof>(Eigen::Index n, const double* L, double* x);
+template <>
+void solve_transposed_in<kAnyDof>(Eigen::Index n, const double* L, double* x);
+template <>
+void eliminate_in<kAnyDof>(Eigen::Index n, double* A, int* rows);
+template <>
+void solve_eliminated_in<kAnyDof>(Eigen::Index n, const double* LU, const int* rows, double* x);
 
 // The lower Cholesky factor, A = L L^T, of a symmetric positive-definite A, whose lower triangle
 // alone is read.
 template <int N>
 Mat<N> cholesky(const Mat<N>& A) {
   Mat<N> L = A;
-  if constexpr (N == kAnyDof) {
-    factor_many(L.rows(), L.data());
-  } else {
-    factor_in<N>(N, L.data());
-  }
+  factor_in<N>(L.rows(), L.data());
   return L;
 }
 
 // How that factor moves with A: Adot = Ldot L^T + L Ldot^T.
 template <int N>
 Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
-  Mat<N> D = Adot;  // Ldot
-  if constexpr (N == kAnyDof) {
-    rate_many(L.rows(), L.data(), D.data());
-  } else {
-    rate_in<N>(N, L.data(), D.data());
-  }
-  return D;
+  Mat<N> Ldot = Adot;
+  rate_in<N>(L.rows(), L.data(), Ldot.data());
+  return Ldot;
 }
 
 // C - L Ldot^T where that is skew.
 template <int N>
 Mat<N> skew_rest(const Mat<N>& C, const Mat<N>& L, const Mat<N>& Ldot) {
   Mat<N> S = C;
-  if constexpr (N == kAnyDof) {
-    skew_many(L.rows(), L.data(), Ldot.data(), S.data());
-  } else {
-    skew_in<N>(N, L.data(), Ldot.data(), S.data());
-  }
+  skew_in<N>(L.rows(), L.data(), Ldot.data(), S.data());
   return S;
 }
 
 // L^-1 x and L^-T x in the place of x.
 template <int N>
 void solve_lower(const Mat<N>& L, double* x) {
-  if constexpr (N == kAnyDof) {
-    solve_lower_many(L.rows(), L.data(), x);
-  } else {
-    solve_lower_in<N>(N, L.data(), x);
-  }
+  solve_lower_in<N>(L.rows(), L.data(), x);
 }
 template <int N>
 void solve_transposed(const Mat<N>& L, double* x) {
-  if constexpr (N == kAnyDof) {
-    solve_transposed_many(L.rows(), L.data(), x);
-  } else {
-    solve_transposed_in<N>(N, L.data(), x);
-  }
+  solve_transposed_in<N>(L.rows(), L.data(), x);
 }
 
 }  // namespace limpid

@@ -11,7 +11,6 @@ namespace limpid {
 namespace {
 
 using test::Random;
-using Any = Mat<kAnyDof>;
 
 // Each number of joints that a loop by fours can end in, and the two that are compiled for.
 template <class F>
