@@ -151,8 +151,7 @@ int identify_simulated(IdentifyOptions& options) {
   IdentifyRun bare, with_load;
   if (!moved(options, move, bare, with_load)) return 1;
   const Identification done =
-      identification(UnlikeDevice(bench.truth, bench.unlikeness).traits().name, order,
-                     std::move(bare), std::move(with_load));
+      identification(bench.name, order, std::move(bare), std::move(with_load));
   print(done);
   if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", bench.unlikeness.torque_scale);
   bench.unlikeness.torque_scale = 1;  // what is told takes it into account

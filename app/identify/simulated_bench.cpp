@@ -8,7 +8,7 @@ constexpr double kMostFriction = 0.03;  // [N m]
 }  // namespace
 
 SimulatedBench simulated_bench(const IdentifyOrder& order, unsigned seed) {
-  SimulatedBench bench{unlike(order.guess, seed, kMostFriction),
+  SimulatedBench bench{order.guess.name + ", simulated", unlike(order.guess, seed, kMostFriction),
                        drawn_bench(order.guess, seed, order.fit.gravity)};
   if (order.load > 0) bench.unlikeness.torque_scale = drawn_torque_scale(seed);
   return bench;

@@ -7,6 +7,7 @@
 namespace limpid {
 
 struct SimulatedBench {
+  std::string name;
   ArmDescription truth;
   Unlikeness unlikeness;  // the torque's scale only where the order has a load that finds it
 };

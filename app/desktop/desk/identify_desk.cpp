@@ -7,7 +7,6 @@
 
 #include "app/base/user_dirs.h"
 #include "app/identify/identify_report.h"
-#include "app/identify/simulated_bench.h"
 
 namespace limpid {
 namespace {
@@ -66,8 +65,10 @@ void IdentifyDesk::begin(IdentifyOrder order) {
   order_ = std::move(order);
   order_.guess = desk_.stage().arm();
   id_ = devices_.hub().in_use();
-  name_ = order_.guess.name + ", simulated";
-  if (!simulated()) {
+  if (simulated()) {
+    bench_ = simulated_bench(order_, kSeed);
+    name_ = bench_.name;
+  } else {
     const FoundDevice* found = devices_.hub().present();
     name_ = found != nullptr ? found->place.name : id_;
     order_.plan = within(order_.plan, devices_.hub().notes(id_).limits);
@@ -82,10 +83,10 @@ void IdentifyDesk::begin(IdentifyOrder order) {
 // Once the loop has given the device back: nobody else may drive it.
 void IdentifyDesk::move() {
   talk_ = std::make_shared<IdentifyTalk>();
-  const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_,
+  const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_, bench = bench_,
                     open = simulated() ? nullptr : devices_.hub().opening(),
                     ask = devices_.hub().ask()] {
-    if (!open) return move_simulated(simulated_bench(order, kSeed), order, with_load, *talk);
+    if (!open) return move_simulated(bench, order, with_load, *talk);
     const std::unique_ptr<Device> device = open();
     talk->see();
     return run_identification(*device, order.guess, order.plan, *talk, ask);

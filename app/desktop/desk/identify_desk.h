@@ -10,6 +10,7 @@
 
 #include "app/desktop/desk/device_desk.h"
 #include "app/identify/findings.h"
+#include "app/identify/simulated_bench.h"
 
 namespace limpid {
 
@@ -61,6 +62,7 @@ class IdentifyDesk {
   Notices& notices_;
   Phase phase_ = Phase::asking;
   IdentifyOrder order_;
+  SimulatedBench bench_;  // in place of the virtual arm
   std::string name_, id_, wrong_;
   std::shared_ptr<IdentifyTalk> talk_ = std::make_shared<IdentifyTalk>();
   std::future<IdentifyRun> moving_;
