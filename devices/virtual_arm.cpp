@@ -13,6 +13,12 @@ constexpr double kFar = 0.05;            // looks this far apart say nothing of 
 constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
 constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
 
+template <int N>
+Going<N, Pair> side_by_side(const std::array<Going<N, double>, 2>& goings) {
+  const auto& [one, two] = goings;
+  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
+}
+
 }  // namespace
 
 template <int N>
@@ -36,11 +42,11 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
   v_ = v;
   target_ = target;
   hand_torque_ = Vec<N>::Zero(x.size());
-  for (Look& look : looks_) {
-    look.x = x;
-    look.v = v;
-    look.angles = arm_.angles(x);
-  }
+  renewed_ = 0;
+  looks_.x = paired<N>(x, x);
+  looks_.v = paired<N>(v, v);
+  const auto angles = arm_.angles(x);
+  looks_.angles = {paired<N>(angles.sin, angles.sin), paired<N>(angles.cos, angles.cos)};
   look(true, std::nullopt);
 }
 
@@ -54,20 +60,20 @@ Reading<N> VirtualArm<N>::read(double encoder_step) const {
 }
 
 template <int N>
-typename VirtualArm<N>::Drive VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
-                                                   const HandInput& hand) const {
-  Drive d{p.tick / p.substeps,
-          hand.grip * p.hand_stiffness,
-          hand.grip * p.hand_damping,
-          hand.grip * p.hand_mass_at_tip,
-          target_,
-          (hand.target - target_) / p.tick,
-          torque,
-          resolve<N>(p.damping, damping_),
-          resolve<N>(p.friction, friction_),
-          false,
-          p.springy,
-          p.weighs ? std::optional(gravity_of(p.down, gravity_)) : std::nullopt};
+Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
+                              const HandInput& hand) const {
+  Drive<N> d{p.tick / p.substeps,
+             hand.grip * p.hand_stiffness,
+             hand.grip * p.hand_damping,
+             hand.grip * p.hand_mass_at_tip,
+             target_,
+             (hand.target - target_) / p.tick,
+             torque,
+             resolve<N>(p.damping, damping_),
+             resolve<N>(p.friction, friction_),
+             false,
+             p.springy,
+             p.weighs ? std::optional(gravity_of(p.down, gravity_)) : std::nullopt};
   d.rubs = d.friction.maxCoeff() > 0;
   if (!hand.torque.empty()) d.torque += Eigen::Map<const Vec<N>>(hand.torque.data(), torque.size());
   return d;
@@ -76,153 +82,131 @@ typename VirtualArm<N>::Drive VirtualArm<N>::drive(const Parameters& p, const Ve
 // What the arm is like at both places.
 template <int N>
 void VirtualArm<N>::look(bool drift, const std::optional<Vec3>& gravity) {
-  const Look &one = looks_[0], &two = looks_[1];
   const int last = arm_.dof() - 1;
-  const VecOf<N, Pair> v = paired<N>(one.v, two.v);
   typename Arm<N>::template FramesOf<Pair> frames;
   typename Arm<N>::template Bodies<Pair> bodies;
-  MatOf<N, Pair> M;
-  VecOf<N, Pair> Cv;
-  JacobianOf<N, Pair> J;
-  arm_.frames(
-      {paired<N>(one.angles.sin, two.angles.sin), paired<N>(one.angles.cos, two.angles.cos)},
-      frames);
-  arm_.inertia(frames, bodies, M);
-  arm_.bias(frames, bodies, v, Cv);
-  const Vec3Of<Pair> tip = arm_.tip(frames);
-  arm_.point_jacobian(frames, last, tip, J);
-  Vec3Of<Pair> Jdot_v = Vec3Of<Pair>::Zero();
-  if (drift) Jdot_v = arm_.point_drift(frames, last, tip, v);
-  for (int i = 0; i < 2; ++i) {
-    Look& look = looks_[static_cast<std::size_t>(i)];
-    take(M, i, look.M);
-    take(Cv, i, look.Cv);
-    if (gravity) {
-      typename Arm<N>::Frames own;
-      arm_.take(frames, i, own);
-      look.Cv += arm_.weight(own, *gravity);
-    }
-    take(tip, i, look.tip);
-    take(J, i, look.J);
-    take(Jdot_v, i, look.drift);
+  arm_.frames(looks_.angles, frames);
+  arm_.inertia(frames, bodies, looks_.M);
+  arm_.bias(frames, bodies, looks_.v, looks_.Cv);
+  looks_.tip = arm_.tip(frames);
+  arm_.point_jacobian(frames, last, looks_.tip, looks_.J);
+  looks_.drift = Vec3Of<Pair>::Zero();
+  if (drift) looks_.drift = arm_.point_drift(frames, last, looks_.tip, looks_.v);
+  if (gravity) {
+    typename Arm<N>::Frames own[2];
+    for (int i = 0; i < 2; ++i) arm_.take(frames, i, own[i]);
+    looks_.Cv += paired<N>(arm_.weight(own[0], *gravity), arm_.weight(own[1], *gravity));
   }
 }
 
 template <int N>
-VirtualArm<N>::Stride::Stride(const Drive& drive, const Look& at, const Vec<N>& x, const Vec<N>& v)
-    : d(drive), look(at), A(at.M), torque(drive.torque - at.Cv) {
-  const double h = d.h;
-  along_rate = d.grip + h / 2 * d.stiffness;
-  answer = d.grip / 2 + h / 4 * d.stiffness + d.mass / h;
-  A *= 1 / h;
-  for (Eigen::Index j = 0; j < A.cols(); ++j) {
-    const Vec3 held = answer * look.J.col(j);
-    for (Eigen::Index i = j; i < A.rows(); ++i) A(i, j) += look.J.col(i).dot(held);
-    A(j, j) += d.damping[j] / 2;
-  }
-  A_factor.compute(A);
-  tip = look.tip + look.J * (x - look.x);
-  tip_rate = look.J * v;
+bool VirtualArm<N>::within_stops(const Vec<N>& x) const {
+  bool within = true;
+  for (Eigen::Index i = 0; i < x.size(); ++i) within &= x[i] >= lower_[i] && x[i] <= upper_[i];
+  return within;
 }
 
-// What friction, springs and stops add to A and b around the middle of a substep; false: nothing.
+// A substep with what friction, springs and stops add to A and b around its middle.
 template <int N>
-[[gnu::always_inline]] inline bool VirtualArm<N>::resist(const Stride& stride, const Vec<N>& x,
-                                                         const Vec<N>& v, Mat<N>& A,
-                                                         Vec<N>& b) const {
-  const Drive& d = stride.d;
-  const Vec<N> middle = x + d.h / 2 * v;
-  bool free = !d.rubs && !d.springy;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    free = free && middle[i] >= lower_[i] && middle[i] <= upper_[i];
-  }
-  if (free) return false;
-  A = stride.A;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double beyond =
-        std::max(middle[i] - upper_[i], 0.0) + std::min(middle[i] - lower_[i], 0.0);
+template <class Under>
+void VirtualArm<N>::go_resisted(const Drive<N>& d, const Under& stride, double t,
+                                Going<N, double>& at) const {
+  Mat<N> A = stride.A();
+  const double h = stride.h();
+  Vec<N> b = stride.b(t + h / 2, at.u, at.v);
+  for (Eigen::Index i = 0; i < b.size(); ++i) {
+    const double middle = stride.x()[i] + at.u[i] + h / 2 * at.v[i];
+    const double beyond = std::max(middle - upper_[i], 0.0) + std::min(middle - lower_[i], 0.0);
     double damping = 0, stiffness = 0;
-    if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(v[i]), kStictionSpeed);
+    if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(at.v[i]), kStictionSpeed);
     if (d.springy) {
-      b[i] -= spring_[i] * middle[i] + offset_[i];
-      A(i, i) += d.h / 4 * spring_[i];
+      b[i] -= spring_[i] * middle + offset_[i];
+      A(i, i) += h / 4 * spring_[i];
     }
     if (beyond != 0) {
       stiffness = effort_[i] / kStopDepth;
-      damping += std::sqrt(stiffness * stride.look.M(i, i));
+      damping += std::sqrt(stiffness * stride.M(i));
     }
-    b[i] -= stiffness * beyond + damping * v[i];
-    A(i, i) += damping / 2 + d.h / 4 * stiffness;
+    b[i] -= stiffness * beyond + damping * at.v[i];
+    A(i, i) += damping / 2 + h / 4 * stiffness;
   }
-  return true;
+  at.take(h, solve_symmetric<N>(A, b));
 }
 
-// A substep whose middle is at t from the tick's start. All is taken there as v would have it; dv,
-// which is returned, then corrects: x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
+// Where so many substeps lead from t on; one by one where something resists. `within`: the stops,
+// at the start and then at the end.
 template <int N>
-[[gnu::always_inline]] inline Vec<N> VirtualArm<N>::step(Stride& stride, double t, Vec<N>& x,
-                                                         Vec<N>& v) const {
-  const Drive& d = stride.d;
-  const Jacobian<N>& J = stride.look.J;
-  Vec3 force = d.stiffness * (d.target + t * d.target_rate - stride.tip) + d.grip * d.target_rate -
-               stride.along_rate * stride.tip_rate;
-  if (d.mass > 0) force -= d.mass * stride.look.drift;
-  Vec<N> b = stride.torque - d.damping.cwiseProduct(v);
-  b.noalias() += J.transpose() * force;
-  Mat<N> A;
-  const Vec<N> dv =
-      resist(stride, x, v, A, b) ? solve_symmetric<N>(A, b) : stride.A_factor.solve(b);
-  const Vec3 move = J * dv;
-  stride.force += force - stride.answer * move;
-  stride.tip += d.h * (stride.tip_rate + 0.5 * move);
-  stride.tip_rate += move;
-  x += d.h * (v + 0.5 * dv);
-  v += dv;
-  return dv;
+template <class Under>
+[[gnu::always_inline]] inline Going<N, double> VirtualArm<N>::gone(const Drive<N>& d,
+                                                                   const Under& stride,
+                                                                   const Going<N, double>& from,
+                                                                   double t, int substeps,
+                                                                   bool& within) const {
+  if (within && !d.rubs && !d.springy) {
+    const Going<N, double> to = stride.gone(from, t, substeps);
+    within = within_stops(stride.x() + to.u);
+    if (within) return to;
+  }
+  Going<N, double> at = from;
+  for (int s = 0; s < substeps; ++s) go_resisted(d, stride, t + s * stride.h(), at);
+  within = within_stops(stride.x() + at.u);
+  return at;
 }
 
 // Looks at where the arm will be on average over so many substeps from s on, and over as many after
 // them. It gets there in two big steps, by what the last two looks would have become.
 template <int N>
-void VirtualArm<N>::look_ahead(const Drive& d, int s, int share) {
-  Drive big = d;
-  big.h = share * d.h;
-  Look before = looks_[1];
+void VirtualArm<N>::look_ahead(const Drive<N>& d, int s, int share, bool within) {
   // From the middle of the last share to that of the next two, in shares.
-  const bool near = (before.x - looks_[0].x).cwiseAbs().maxCoeff() < kFar;
-  const double on = near ? 1.5 : 0;
-  before.M += on * (before.M - looks_[0].M);
-  before.Cv += on * (before.Cv - looks_[0].Cv);
-  before.J += on * (before.J - looks_[0].J);
-  Stride stride(big, before, x_, v_);
-  Vec<N> x = x_, v = v_;
-  for (int i = 0; i < 2; ++i) {
-    Look& look = looks_[static_cast<std::size_t>(i)];
-    look.x = x;
-    look.v = v;
-    const Vec<N> dv = step(stride, (s + (i + 0.5) * share) * d.h, x, v);
-    look.x += big.h / 2 * (look.v + dv / 3);
-    look.v += dv / 2;
-    look.angles = arm_.turned(before.angles, look.x - before.x);
+  bool near = true;
+  for (const Pair& x : looks_.x) near &= std::abs(x[1] - x[0]) < kFar;
+  const Look<N, double> last = beyond(looks_, near ? 1.5 : 0);
+  const double h = share * d.h;
+  const Stride<N> stride(d, h, last);
+  Going<N, double> at{x_ - last.x, v_, Vec<N>::Zero(x_.size())};
+  std::array<Vec<N>, 2> u, v;  // on average
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Going<N, double> from = at;
+    at = gone(d, stride, from, s * d.h + static_cast<double>(i) * h, 1, within);
+    const Vec<N> dv = at.v - from.v;
+    u[i] = from.u + h / 2 * (from.v + 1. / 3 * dv);
+    v[i] = from.v + 0.5 * dv;
   }
+  const VecOf<N, Pair> dx = paired<N>(u[0], u[1]);
+  looks_.v = paired<N>(v[0], v[1]);
+  looks_.x = last.x.template cast<Pair>() + dx;
+  looks_.angles = arm_.turned(last.angles, dx);
   look(d.mass > 0, d.gravity);
 }
 
 template <int N>
 void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
   const NoSubnormals fast_at_rest;
-  const Drive d = drive(p, torque, hand);
-  looks_[1].angles = arm_.angles(looks_[1].x);  // anew each tick: turned ones drift
+  const Drive<N> d = drive(p, torque, hand);
+  renewed_ = renewed_ + 1 < x_.size() ? renewed_ + 1 : 0;  // turned angles drift
+  arm_.renew(renewed_, looks_.x[renewed_][1], looks_.angles);
   hand_torque_.setZero();
+  bool within = within_stops(x_);
   for (int s = 0; s < p.substeps;) {
     const int share = std::min(kShare, (p.substeps - s + 1) / 2);
-    look_ahead(d, s, share);
-    for (const Look& look : looks_) {
-      const int next = std::min(s + share, p.substeps);
-      Stride stride(d, look, x_, v_);
-      for (; s < next; ++s) step(stride, (s + 0.5) * d.h, x_, v_);
-      hand_torque_.noalias() += look.J.transpose() * stride.force;
+    look_ahead(d, s, share, within);
+    const Strides<N> strides(d, looks_);
+    const std::array<int, 2> substeps{share, std::min(share, p.substeps - s - share)};
+    std::array<Going<N, double>, 2> from, to;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& stride = strides[static_cast<int>(i)];
+      from[i] = {x_ - stride.x(), v_, Vec<N>::Zero(x_.size())};
+      to[i] =
+          gone(d, stride, from[i], (s + static_cast<int>(i) * share) * d.h, substeps[i], within);
+      x_ = stride.x() + to[i].u;
+      v_ = to[i].v;
     }
+    const Pair started(s * d.h, (s + share) * d.h), steps(substeps[0], substeps[1]);
+    const VecOf<N, Pair> of_hand =
+        looks_.J.transpose() *
+        hand_force<N, Pair>(d, looks_, started, steps, side_by_side<N>(from), side_by_side<N>(to));
+    for (Eigen::Index i = 0; i < x_.size(); ++i) hand_torque_[i] += of_hand[i][0] + of_hand[i][1];
+    s += substeps[0] + substeps[1];
   }
   hand_torque_ /= p.substeps;
   if (!hand.torque.empty()) {

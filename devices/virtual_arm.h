@@ -1,14 +1,12 @@
 // The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
 #pragma once
 
-#include <optional>
 #include <span>
 
-#include "core/dynamics/arm.h"
-#include "core/math/solve.h"
 #include "core/tick/parameters.h"
 #include "core/tick/tick.h"
 #include "devices/device.h"
+#include "devices/stride.h"
 
 namespace limpid {
 
@@ -37,51 +35,23 @@ class VirtualArm {
   const Vec<N>& hand_torque() const { return hand_torque_; }
 
  private:
-  // What acts over a tick, and the substep that it is taken in.
-  struct Drive {
-    double h;                      // [s]
-    double stiffness, grip, mass;  // of the hand at the tip [N/m, N s/m, kg]
-    Vec3 target, target_rate;      // of the hand, at the tick's start [m, m/s]
-    Vec<N> torque;                 // of motors and hand [N m]
-    Vec<N> damping, friction;      // of the joints [N m s/rad, N m]
-    bool rubs, springy;            // some joint has friction; springs pull
-    std::optional<Vec3> gravity;   // of links that weigh something [m/s^2]
-  };
-  // Where the arm was looked at, and what it was like.
-  struct Look {
-    Vec<N> x, v;
-    typename Arm<N>::Angles angles;
-    Mat<N> M;
-    Vec<N> Cv;
-    Vec3 tip, drift;
-    Jacobian<N> J;  // of the tip
-  };
-  // Substeps under one look, ready to be taken.
-  struct Stride {
-    Stride(const Drive& d, const Look& look, const Vec<N>& x, const Vec<N>& v);
-
-    const Drive& d;
-    const Look& look;
-    Mat<N> A;  // A dv = torque at a substep's middle, were v to stay; lower triangle
-    SymmetricFactor<N> A_factor;
-    Vec<N> torque;              // of motors and hand, less C v [N m]
-    double along_rate, answer;  // what the hand makes of the tip's velocity and its change [N s/m]
-    Vec3 tip, tip_rate;         // as the look has them [m, m/s]
-    Vec3 force = Vec3::Zero();  // of the hand, sum over the substeps [N]
-  };
-
-  Drive drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
+  Drive<N> drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
   void look(bool drift, const std::optional<Vec3>& gravity);
-  void look_ahead(const Drive& d, int s, int share);
-  bool resist(const Stride& stride, const Vec<N>& x, const Vec<N>& v, Mat<N>& A, Vec<N>& b) const;
-  Vec<N> step(Stride& stride, double t, Vec<N>& x, Vec<N>& v) const;
+  void look_ahead(const Drive<N>& d, int s, int share, bool within);
+  bool within_stops(const Vec<N>& x) const;
+  template <class Under>
+  Going<N, double> gone(const Drive<N>& d, const Under& stride, const Going<N, double>& from,
+                        double t, int substeps, bool& within) const;
+  template <class Under>
+  void go_resisted(const Drive<N>& d, const Under& stride, double t, Going<N, double>& at) const;
 
   Arm<N> arm_;
   Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
   Vec3 gravity_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
-  std::array<Look, 2> looks_;  // the newest two
+  Look<N, Pair> looks_;       // the newest two
+  Eigen::Index renewed_ = 0;  // joint whose sine was asked for last
 };
 
 // The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.

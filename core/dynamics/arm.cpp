@@ -1,6 +1,7 @@
 #include "core/dynamics/arm.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace limpid {
@@ -12,31 +13,40 @@ Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(link.inertia);
     const Vec3& moments = principal.eigenvalues();  // smallest first
     const Mat3& axes = principal.eigenvectors();
-    links_[i] = {link.mass, link.com, moments[0], std::sqrt(moments[1] - moments[0]) * axes.col(1),
-                 std::sqrt(moments[2] - moments[0]) * axes.col(2)};
+    const Vec3 g = std::sqrt(moments[1] - moments[0]) * axes.col(1);
+    const Vec3 e = std::sqrt(moments[2] - moments[0]) * axes.col(2);
+    links_[i] = {link.mass, link.com.cast<Pair>(), moments[0], g.cast<Pair>(), e.cast<Pair>()};
   }
+  const Joint& joint = description.joints[0];
+  const Link& link = description.links[0];
+  first_inertia_ = joint.kind == Joint::Kind::prismatic
+                       ? link.mass * kSlideUnit * kSlideUnit
+                       : joint.axis.dot(link.inertia * joint.axis) +
+                             link.mass * joint.axis.cross(link.com).squaredNorm();
   tip_ = description.tip.translation();
 }
 
 template <int N>
 typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
   JointModel m{};
-  m.R0 = joint.origin.linear();
-  m.offset = joint.origin.translation();
+  Mat3 R0 = joint.origin.linear();
+  m.offset = joint.origin.translation().template cast<Pair>();
   joint.axis.cwiseAbs().maxCoeff(&m.third);
   m.first = (m.third + 1) % 3;
   m.second = (m.third + 2) % 3;
-  m.sign = joint.axis[m.third] < 0 ? -1 : 1;
-  m.oblique = joint.axis != m.sign * Vec3::Unit(m.third);
+  const double sign = joint.axis[m.third] < 0 ? -1 : 1;
+  m.sign = sign;
+  m.oblique = joint.axis != sign * Vec3::Unit(m.third);
   if (m.oblique) {
     Mat3 Q;
-    Q.col(m.third) = m.sign * joint.axis;
+    Q.col(m.third) = sign * joint.axis;
     Q.col(m.first) = Q.col(m.third).unitOrthogonal();
     Q.col(m.second) = Q.col(m.third).cross(Q.col(m.first));
-    m.R0 = m.R0 * Q;
-    m.back = Q.transpose();
+    R0 = R0 * Q;
+    m.back = Q.transpose().cast<Pair>();
   }
-  m.shifted = !m.R0.isIdentity(0);
+  m.R0 = R0.cast<Pair>();
+  m.shifted = !R0.isIdentity(0);
   m.slides = joint.kind == Joint::Kind::prismatic;
   return m;
 }
@@ -44,28 +54,34 @@ typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
 template <int N>
 typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) const {
   Angles a{x, x};
-  for (std::size_t i = 0; i < size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const double angle = x[k], sin = std::sin(angle), cos = std::cos(angle);
-    a.sin[k] = joints_[i].slides ? angle : sin;
-    a.cos[k] = cos;
-  }
+  for (Eigen::Index i = 0; i < x.size(); ++i) renew(i, x[i], a);
   return a;
 }
 
 template <int N>
-typename Arm<N>::Angles Arm<N>::turned(const Angles& a, const Vec<N>& dx) const {
-  constexpr double kSmall = 0.03;  // [rad]; the series below are exact to round-off there
-  Angles b = a;
+template <class S>
+void Arm<N>::renew(Eigen::Index joint, double x, AnglesOf<S>& a) const {
+  a.sin[joint] = joints_[static_cast<std::size_t>(joint)].slides ? x : std::sin(x);
+  a.cos[joint] = std::cos(x);
+}
+
+template <int N>
+template <class S>
+typename Arm<N>::template AnglesOf<S> Arm<N>::turned(const Angles& a, const VecOf<N, S>& dx) const {
+  constexpr double kSmall = 0.01;  // [rad]; the series below are exact to round-off there
+  const VecOf<N, S> sin = a.sin.template cast<S>(), cos = a.cos.template cast<S>();
+  AnglesOf<S> b{sin, cos};
   for (Eigen::Index i = 0; i < dx.size(); ++i) {
-    const double d = dx[i], d2 = d * d;
-    const bool small = std::abs(d) < kSmall;
-    const double s = small ? d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42))) : std::sin(d);
-    const double c =
-        small ? 1 - d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30 * (1 - d2 / 56))) : std::cos(d);
-    b.sin[i] = a.sin[i] * c + a.cos[i] * s;
-    b.cos[i] = a.cos[i] * c - a.sin[i] * s;
-    if (joints_[static_cast<std::size_t>(i)].slides) b.sin[i] = a.sin[i] + d;
+    const S d = dx[i], d2 = d * d;
+    S s = d * (1. - d2 * (1. / 6) * (1. - d2 * (1. / 20)));
+    S c = 1. - d2 * (1. / 2) * (1. - d2 * (1. / 12) * (1. - d2 * (1. / 30)));
+    if (std::max(std::abs(of(d, 0)), std::abs(of(d, 1))) >= kSmall) {
+      s = each(d, [](double angle) { return std::sin(angle); });
+      c = each(d, [](double angle) { return std::cos(angle); });
+    }
+    b.sin[i] = sin[i] * c + cos[i] * s;
+    b.cos[i] = cos[i] * c - sin[i] * s;
+    if (joints_[static_cast<std::size_t>(i)].slides) b.sin[i] = sin[i] + d;
   }
   return b;
 }
@@ -127,6 +143,16 @@ template void Arm<kAnyDof>::point_jacobian(const FramesOf<double>&, int, const V
                                            JacobianOf<kAnyDof, double>&) const;
 template void Arm<kAnyDof>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                            JacobianOf<kAnyDof, Pair>&) const;
+template Arm<3>::Angles Arm<3>::turned(const Angles&, const Vec<3>&) const;
+template Arm<7>::Angles Arm<7>::turned(const Angles&, const Vec<7>&) const;
+template Arm<kAnyDof>::Angles Arm<kAnyDof>::turned(const Angles&, const Vec<kAnyDof>&) const;
+template Arm<3>::AnglesOf<Pair> Arm<3>::turned(const Angles&, const VecOf<3, Pair>&) const;
+template Arm<7>::AnglesOf<Pair> Arm<7>::turned(const Angles&, const VecOf<7, Pair>&) const;
+template Arm<kAnyDof>::AnglesOf<Pair> Arm<kAnyDof>::turned(const Angles&,
+                                                           const VecOf<kAnyDof, Pair>&) const;
+template void Arm<3>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
+template void Arm<7>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
+template void Arm<kAnyDof>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
 template class Arm<3>;
 template class Arm<7>;
 template class Arm<kAnyDof>;

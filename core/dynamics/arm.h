@@ -45,7 +45,8 @@ class Arm {
     Vec3Of<S> mc = Vec3Of<S>::Zero();
     Symmetric3<S> I;
   };
-  // What is moved there.
+  // What is moved there. The first link only goes about or along its axis, which stays: a number
+  // says all of it, and it is left out.
   template <class S>
   struct Bodies {
     std::array<Body<S>, kCapacity<N>> link;
@@ -63,14 +64,18 @@ class Arm {
   }
 
   // Sines and cosines of a configuration, and of one further on by dx: to round-off, and for small
-  // steps without asking for sines again. Of a slide: its coordinate in the place of the sine.
+  // steps without asking for sines again, which one joint's renewal does. Of a slide: its
+  // coordinate in the place of the sine.
   template <class S>
   struct AnglesOf {
     VecOf<N, S> sin, cos;
   };
   using Angles = AnglesOf<double>;
   Angles angles(const Vec<N>& x) const;
-  Angles turned(const Angles& angles, const Vec<N>& dx) const;
+  template <class S>
+  void renew(Eigen::Index joint, double x, AnglesOf<S>& angles) const;
+  template <class S>
+  AnglesOf<S> turned(const Angles& angles, const VecOf<N, S>& dx) const;
 
   template <class S>
   void frames(const AnglesOf<S>& angles, FramesOf<S>& f) const;
@@ -126,21 +131,23 @@ class Arm {
  private:
   // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
   // own axes. Where the axis is one of those, Q only reorders: Q and Q^T are left out.
+  //
+  // Numbers of models stand there twice, ready for two configurations at a time.
   struct JointModel {
-    Mat3 R0 = Mat3::Identity();            // or R0 Q
+    Mat3Of<Pair> R0;                       // or R0 Q
     bool shifted = false;                  // R0 is not the identity
     bool oblique = false;                  // the axis is none of x, y, z
-    Mat3 back = Mat3::Identity();          // Q^T where oblique
+    Mat3Of<Pair> back;                     // Q^T where oblique
     int first = 0, second = 1, third = 2;  // columns: first turns towards second, third the axis
-    double sign = 1;                       // -1 where the axis points against the third column
+    Pair sign = 1;                         // -1 where the axis points against the third column
     bool slides = false;
-    Vec3 offset = Vec3::Zero();  // origin in the previous link's frame [m]
+    Vec3Of<Pair> offset;  // origin in the previous link's frame [m]
   };
   struct LinkModel {
-    double mass = 0;                          // [kg]
-    Vec3 com = Vec3::Zero();                  // in the link's frame [m]
-    double d = 0;                             // inertia about com: d 1 + g g^T + e e^T [kg m^2]
-    Vec3 g = Vec3::Zero(), e = Vec3::Zero();  // in the link's axes
+    Pair mass;          // [kg]
+    Vec3Of<Pair> com;   // in the link's frame [m]
+    Pair d;             // inertia about com: d 1 + g g^T + e e^T [kg m^2]
+    Vec3Of<Pair> g, e;  // in the link's axes
   };
 
   std::size_t size() const { return static_cast<std::size_t>(dof()); }
@@ -154,6 +161,7 @@ class Arm {
   int dof_;
   std::array<JointModel, kCapacity<N>> joints_;
   std::array<LinkModel, kCapacity<N>> links_;
+  double first_inertia_ = 0;  // of the first link as its joint moves it [kg m^2]
   Vec3 tip_;
 };
 

@@ -75,7 +75,7 @@ template <class S>
   const Vec3Of<S> g = f.R[i] * link.g.template cast<S>();
   const Vec3Of<S> e = f.R[i] * link.e.template cast<S>();
   Body<S>& b = bodies.link[i];
-  b.m = link.mass;
+  b.m = S(link.mass);
   b.mc = b.m * c;
   // Parallel axes: m (c.c 1 - c c^T) more than about the centre of mass.
   const S d = S(link.d) + b.mc.dot(c);
@@ -93,11 +93,13 @@ void Arm<N>::inertia(const FramesOf<S>& f, Bodies<S>& bodies, MatOf<N, S>& M) co
   M.resize(dof(), dof());
   Body<S> outer;
   for (std::size_t j = size(); j-- > 0;) {
-    place_link(f, j, bodies);
-    const Body<S>& b = bodies.link[j];
-    outer.m += b.m;
-    outer.mc += b.mc;
-    outer.I += b.I;
+    if (j > 0) {
+      place_link(f, j, bodies);
+      const Body<S>& b = bodies.link[j];
+      outer.m += b.m;
+      outer.mc += b.mc;
+      outer.I += b.I;
+    }
     const Vec3Of<S> moment = outer.I * f.a[j] + outer.mc.cross(f.o[j]);
     const Vec3Of<S> force = outer.m * f.o[j] - outer.mc.cross(f.a[j]);
     bodies.outer[j] = outer;
@@ -109,6 +111,7 @@ void Arm<N>::inertia(const FramesOf<S>& f, Bodies<S>& bodies, MatOf<N, S>& M) co
       M(row, col) = M(col, row) = f.a[i].dot(moment) + f.o[i].dot(force);
     }
   }
+  M(0, 0) += S(first_inertia_);
 }
 
 template <int N>
@@ -131,7 +134,7 @@ void Arm<N>::coriolis(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf
   // Inward: one column and one row of C each.
   Symmetric3<S> half_Idot;
   Vec3Of<S> half_L = Vec3Of<S>::Zero(), h = Vec3Of<S>::Zero();
-  for (std::size_t j = size(); j-- > 0;) {
+  for (std::size_t j = size(); j-- > 1;) {
     const Body<S>& b = bodies.link[j];
     half_Idot += half_rate(b.I, b.mc, w[j], u[j]);
     half_L += S(0.5) * (b.I * w[j] + b.mc.cross(u[j]));
@@ -155,6 +158,8 @@ void Arm<N>::coriolis(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf
       }
     }
   }
+  // Its own axis stays.
+  C(0, 0) = f.a[0].dot(half_Idot * f.a[0]) - f.o[0].dot(h.cross(f.a[0]));
 }
 
 template <int N>
@@ -164,10 +169,12 @@ void Arm<N>::bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, 
   Cv.resize(dof());
   // Outward: velocity (w, u) of each link and velocity-product acceleration (wdot, udot), that of
   // its point at O; and what changes its momentum and angular momentum about O.
+  // The first link, which only turns about its axis or slides along it, needs no torque for that.
   std::array<Vec3Of<S>, kCapacity<N>> moment, force;
   const Vec3Of<S> zero = Vec3Of<S>::Zero();
-  Vec3Of<S> w = zero, u = zero, wdot = zero, udot = zero;
-  for (std::size_t j = 0; j < size(); ++j) {
+  moment[0] = force[0] = zero;
+  Vec3Of<S> w = v[0] * f.a[0], u = v[0] * f.o[0], wdot = zero, udot = zero;
+  for (std::size_t j = 1; j < size(); ++j) {
     const S rate = v[static_cast<Eigen::Index>(j)];
     const Vec3Of<S> turn = rate * f.a[j], move = rate * f.o[j];
     wdot += w.cross(turn);

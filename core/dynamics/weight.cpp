@@ -10,8 +10,9 @@ Vec<N> Arm<N>::weight(const Frames& f, const Vec3& gravity) const {
   Vec3 mc = Vec3::Zero();
   for (std::size_t j = size(); j-- > 0;) {
     const LinkModel& link = links_[j];
-    m += link.mass;
-    mc += link.mass * (f.p[j] + f.R[j] * link.com);
+    const double mass = link.mass[0];
+    m += mass;
+    mc += mass * (f.p[j] + f.R[j] * link.com.template cast<double>());
     torque[static_cast<Eigen::Index>(j)] =
         -(f.a[j].dot(mc.cross(gravity)) + m * f.o[j].dot(gravity));
   }

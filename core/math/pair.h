@@ -14,6 +14,7 @@ struct Pair {
   Pair(double first, double second) : both{first, second} {}
 
   double operator[](int i) const { return both[i]; }
+  explicit operator double() const { return both[0]; }
 
   Pair& operator+=(const Pair& b) { return both += b.both, *this; }
   Pair& operator-=(const Pair& b) { return both -= b.both, *this; }
@@ -22,6 +23,7 @@ struct Pair {
   friend Pair operator+(const Pair& a, const Pair& b) { return Pair(a.both + b.both); }
   friend Pair operator-(const Pair& a, const Pair& b) { return Pair(a.both - b.both); }
   friend Pair operator*(const Pair& a, const Pair& b) { return Pair(a.both * b.both); }
+  friend Pair operator/(const Pair& a, const Pair& b) { return Pair(a.both / b.both); }
 
  private:
   explicit Pair(const Both& b) : both(b) {}
@@ -46,11 +48,21 @@ VecOf<N, Pair> paired(const Vec<N>& first, const Vec<N>& second) {
   for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = Pair(first[i], second[i]);
   return both;
 }
-// One of them.
+// One of them; of what is but one, that.
+inline double of(const Pair& both, int which) { return both[which]; }
+inline double of(double one, int) { return one; }
+template <class F>
+Pair each(const Pair& both, const F& f) {
+  return {f(both[0]), f(both[1])};
+}
+template <class F>
+double each(double one, const F& f) {
+  return f(one);
+}
 template <class Both, class One>
 void take(const Both& both, int which, One& one) {
   one.resize(both.rows(), both.cols());
-  for (Eigen::Index i = 0; i < both.size(); ++i) one.data()[i] = both.data()[i][which];
+  for (Eigen::Index i = 0; i < both.size(); ++i) one.data()[i] = of(both.data()[i], which);
 }
 
 }  // namespace limpid

@@ -5,16 +5,18 @@
 #include <Eigen/LU>
 #include <array>
 
+#include "core/math/pair.h"
 #include "core/math/triangular.h"
 
 namespace limpid {
 
 // The inverse of a symmetric positive-definite 3 x 3 matrix; only the lower triangle of A is read.
-inline Mat3 inverse_symmetric(const Mat3& A) {
-  const double a = A(0, 0), b = A(1, 0), c = A(2, 0), d = A(1, 1), e = A(2, 1), f = A(2, 2);
-  const double c00 = d * f - e * e, c10 = c * e - b * f, c20 = b * e - c * d;
-  const double scale = 1 / (a * c00 + b * c10 + c * c20);
-  Mat3 inverse;
+template <class S>
+Mat3Of<S> inverse_symmetric(const Mat3Of<S>& A) {
+  const S a = A(0, 0), b = A(1, 0), c = A(2, 0), d = A(1, 1), e = A(2, 1), f = A(2, 2);
+  const S c00 = d * f - e * e, c10 = c * e - b * f, c20 = b * e - c * d;
+  const S scale = S(1) / (a * c00 + b * c10 + c * c20);
+  Mat3Of<S> inverse;
   inverse(0, 0) = scale * c00;
   inverse(1, 1) = scale * (a * f - c * c);
   inverse(2, 2) = scale * (a * d - b * b);
