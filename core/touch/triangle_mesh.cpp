@@ -31,7 +31,6 @@ struct TriangleMesh::Tree {
   RTCScene scene = nullptr;
   const std::atomic<bool>* cancel = nullptr;
   std::atomic<std::ptrdiff_t> bytes{0};
-  std::vector<std::uint32_t> indices;
 
   // One thread: building goes on beside the haptic loop. No room for surfaces that are divided on
   // the way, 128 MB else.
@@ -53,19 +52,20 @@ struct TriangleMesh::Tree {
   Tree(const Tree&) = delete;
   Tree& operator=(const Tree&) = delete;
 
-  void build(const std::vector<Eigen::Vector3f>& corners) {
-    indices.resize(corners.size());
-    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+  void build(const std::vector<Eigen::Vector3f>& places,
+             const std::vector<std::uint32_t>& indices) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // The corners carry one more at the end, for Embree reads four numbers at a time.
+    // The places carry one more at the end, for Embree reads four numbers at a time.
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               corners.data(), 0, sizeof(Eigen::Vector3f), corners.size());
+                               places.data(), 0, sizeof(Eigen::Vector3f), places.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(),
                                0, 3 * sizeof(std::uint32_t), indices.size() / 3);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    // Compact: its leaves name triangles instead of holding their corners.
+    rtcSetSceneFlags(scene,
+                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT));
     rtcSetSceneProgressMonitorFunction(
         scene,
         [](void* tree, double) {
@@ -121,7 +121,7 @@ TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
   keep_triangles(vertices, indices);
   tree_ = std::make_unique<Tree>();
   tree_->cancel = cancel;
-  tree_->build(corners_);
+  tree_->build(places_, indices_);
   tree_->cancel = nullptr;
   // No tick is to be the first that needs Embree's code in memory.
   MeshPoint near;
@@ -157,9 +157,11 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
     places.emplace_back((v.cast<double>() - middle_).cast<float>());
   }
   const std::vector<std::uint32_t> names = names_of(places);
-  std::vector<std::uint32_t> kept;  // the corners' names
-  kept.reserve(indices.size());
-  corners_.reserve(indices.size() + 2);
+  std::vector<std::uint32_t> renamed(places.size(), MeshPoint::kNone);
+  indices_.reserve(indices.size());
+  std::size_t apart = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) apart += names[i] == i;
+  places_.reserve(apart + 2);
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     std::array<Eigen::Vector3f, 3> t;
     for (std::size_t k = 0; k < 3; ++k) t[k] = places[indices[i + k]];
@@ -169,22 +171,28 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
       ++health_.degenerate;
       continue;
     }
-    corners_.insert(corners_.end(), t.begin(), t.end());
-    for (std::size_t k = 0; k < 3; ++k) kept.push_back(names[indices[i + k]]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& name = renamed[names[indices[i + k]]];
+      if (name == MeshPoint::kNone) {
+        name = static_cast<std::uint32_t>(places_.size());
+        places_.push_back(t[k]);
+      }
+      indices_.push_back(name);
+    }
     for (const Eigen::Vector3f& v : t) radius_ = std::max(radius_, v.cast<double>().norm());
   }
-  if (corners_.empty()) {
+  if (indices_.empty()) {
     throw std::invalid_argument(health_.degenerate == 0 ? "no triangles"
                                                         : "no triangle with an area");
   }
-  const EdgeCount edges = count_edges(kept, names.size());
+  const EdgeCount edges = count_edges(indices_, places_.size());
   health_.open_edges = edges.open;
   health_.odd_edges = edges.odd;
 }
 
 std::size_t TriangleMesh::bytes() const {
-  return corners_.capacity() * sizeof(Eigen::Vector3f) +
-         tree_->indices.capacity() * sizeof(std::uint32_t) +
+  return places_.capacity() * sizeof(Eigen::Vector3f) +
+         indices_.capacity() * sizeof(std::uint32_t) +
          static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, tree_->bytes.load()));
 }
 

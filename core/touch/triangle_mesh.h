@@ -54,7 +54,7 @@ class TriangleMesh {
   // Is a point on the side that the surface around it turns its back to?
   bool behind(const Vec3& at) const noexcept;
 
-  std::size_t triangles() const { return corners_.size() / 3; }
+  std::size_t triangles() const { return indices_.size() / 3; }
   const Vec3& middle() const { return middle_; }
   double radius() const { return radius_; }  // of a ball around the middle that holds it
   const MeshHealth& health() const { return health_; }
@@ -65,12 +65,14 @@ class TriangleMesh {
   struct Tree;
 
   Vec3 corner(std::uint32_t triangle, int k) const {
-    return corners_[3 * std::size_t{triangle} + static_cast<std::size_t>(k)].cast<double>();
+    return places_[indices_[3 * std::size_t{triangle} + static_cast<std::size_t>(k)]]
+        .cast<double>();
   }
   void keep_triangles(std::span<const Eigen::Vector3f> vertices,
                       std::span<const std::uint32_t> indices);
 
-  std::vector<Eigen::Vector3f> corners_;  // three a triangle, side by side
+  std::vector<Eigen::Vector3f> places_;  // of corners
+  std::vector<std::uint32_t> indices_;   // of places, three a triangle
   Vec3 middle_ = Vec3::Zero();
   double radius_ = 0;
   MeshHealth health_;
