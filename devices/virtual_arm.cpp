@@ -263,9 +263,10 @@ template <int N>
 void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
   Vec<N> tau = Vec<N>::Zero(traits_.dof);
   if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
-  std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
-  sent_.front() = tau;
-  acted_ = sent_[static_cast<std::size_t>(p_.device_delay)];
+  newest_ = (newest_ + 1) % sent_.size();
+  sent_[newest_] = tau;
+  acted_ =
+      sent_[(newest_ + sent_.size() - static_cast<std::size_t>(p_.device_delay)) % sent_.size()];
   arm.live(p_, acted_, hand_);
 }
 

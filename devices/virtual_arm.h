@@ -78,7 +78,8 @@ class VirtualDevice final : public Device {
   DeviceTraits traits_;
   Parameters p_;
   HandInput hand_;
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques, the newest first [N m]
+  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques, one place a tick in turn [N m]
+  std::size_t newest_ = 0;                   // of them
   Vec<N> acted_;                             // the one that the motors gave over the last tick
   std::uint64_t count_ = 0;
 };
