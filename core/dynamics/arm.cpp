@@ -61,8 +61,10 @@ typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) const {
 template <int N>
 template <class S>
 void Arm<N>::renew(Eigen::Index joint, double x, AnglesOf<S>& a) const {
-  a.sin[joint] = joints_[static_cast<std::size_t>(joint)].slides ? x : std::sin(x);
-  a.cos[joint] = std::cos(x);
+  // Both whatever moves: compilers ask for them at once.
+  const double sin = std::sin(x), cos = std::cos(x);
+  a.sin[joint] = joints_[static_cast<std::size_t>(joint)].slides ? x : sin;
+  a.cos[joint] = cos;
 }
 
 template <int N>
