@@ -143,7 +143,7 @@ template <class Under>
                                                                    double t, int substeps,
                                                                    bool& within) const {
   if (within && !d.rubs && !d.springy) {
-    const Going<N, double> to = stride.gone(from, t, substeps);
+    Going<N, double> to = stride.gone(from, t, substeps);
     within = within_stops(stride.x() + to.u);
     if (within) return to;
   }
