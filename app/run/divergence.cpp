@@ -11,6 +11,7 @@ constexpr double kWildSpeed = 1e3;   // [rad/s]
 constexpr double kWildTorque = 1e4;  // [N m]
 constexpr double kWildError = 10;    // [rad]
 constexpr double kLost = 1e3;        // times those
+constexpr std::uint64_t kCalm = 10;  // rows; what swings ever higher passes through small values
 
 struct Excess {
   double times = 0;  // of what is wild; not a number where the value is none
@@ -66,9 +67,10 @@ void DivergenceWatch::add(std::span<const double> row) {
   if (lost_) return;
   const Excess excess = largest(layout_, row);
   if (!beyond(excess, 1)) {
-    why_.clear();
+    if (k >= wild_row_ + kCalm) why_.clear();
     return;
   }
+  wild_row_ = k;
   if (why_.empty()) {
     since_row_ = k;
     since_ = layout_.in(row, Column::time)[0];

@@ -35,15 +35,42 @@ DivergenceWatch after(std::initializer_list<std::vector<double>> rows) {
   return watch;
 }
 
+// After a wild row and so many calm ones.
+DivergenceWatch swinging(int calm) {
+  DivergenceWatch watch(kLayout);
+  watch.add(row(0));
+  watch.add(row(0.1, Column::device_velocity, 2, 1001));
+  for (int i = 0; i < calm; ++i) watch.add(row(0.2));
+  watch.add(row(0.3, Column::proxy_velocity, 1, -1e5));
+  watch.add(row(0.4, Column::device_velocity, 2, 2e3));
+  watch.add(row(0.5, Column::proxy_velocity, 1, 1.1e6));
+  return watch;
+}
+
 TEST(Divergence, BeginsWithTheFirstWildRowOfThoseThatLeadToIt) {
-  const auto watch =
-      after({row(0), row(0.1, Column::device_velocity, 2, 1001), row(0.2),
-             row(0.3, Column::proxy_velocity, 1, -1e5), row(0.4, Column::device_velocity, 2, 2e3),
-             row(0.5, Column::proxy_velocity, 1, 1.1e6)});
+  const auto watch = swinging(10);
   EXPECT_TRUE(watch.lost());
   EXPECT_EQ(watch.since(), 0.3);
-  EXPECT_EQ(watch.since_row(), 3u);
+  EXPECT_EQ(watch.since_row(), 12u);
   EXPECT_EQ(watch.why(), "the speed of the proxy's joint 2 grew beyond 1000 rad/s");
+}
+
+TEST(Divergence, ThatSwingsThroughSmallValuesBeganBefore) {
+  for (const int calm : {0, 1, 9}) {
+    const auto watch = swinging(calm);
+    EXPECT_TRUE(watch.lost()) << calm;
+    EXPECT_EQ(watch.since(), 0.1) << calm;
+    EXPECT_EQ(watch.why(), "the speed of the device's joint 3 grew beyond 1000 rad/s") << calm;
+  }
+}
+
+TEST(Divergence, IsForgottenOnceTheLoopHasComeBack) {
+  DivergenceWatch watch(kLayout);
+  watch.add(row(0, Column::device_velocity, 2, 1001));
+  for (int i = 0; i < 9; ++i) watch.add(row(0.1));
+  EXPECT_TRUE(watch.wild());
+  watch.add(row(0.1));
+  EXPECT_FALSE(watch.wild());
 }
 
 TEST(Divergence, SaysWhatGrewAndInWhichJoint) {
