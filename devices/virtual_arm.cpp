@@ -43,10 +43,10 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
   target_ = target;
   hand_torque_ = Vec<N>::Zero(x.size());
   renewed_ = 0;
-  looks_.x = paired<N>(x, x);
-  looks_.v = paired<N>(v, v);
+  looks_.x = x.template cast<Pair>();
+  looks_.v = v.template cast<Pair>();
   const auto angles = arm_.angles(x);
-  looks_.angles = {paired<N>(angles.sin, angles.sin), paired<N>(angles.cos, angles.cos)};
+  looks_.angles = {angles.sin.template cast<Pair>(), angles.cos.template cast<Pair>()};
   look(true, std::nullopt);
 }
 

@@ -30,7 +30,7 @@ template <int N>
 typename Arm<N>::JointModel Arm<N>::model(const Joint& joint) {
   JointModel m{};
   Mat3 R0 = joint.origin.linear();
-  m.offset = joint.origin.translation().template cast<Pair>();
+  m.offset = joint.origin.translation().cast<Pair>();
   joint.axis.cwiseAbs().maxCoeff(&m.third);
   m.first = (m.third + 1) % 3;
   m.second = (m.third + 2) % 3;

@@ -20,7 +20,7 @@ TEST(Health, OfClosedBodiesIsSpotless) {
     EXPECT_TRUE(mesh->health().closed());
     EXPECT_EQ(mesh->health().text(), "");
     EXPECT_EQ(mesh->triangles(), body.count());
-    EXPECT_GT(mesh->bytes(), body.count() * 18);  // three indices and half a place each
+    EXPECT_GT(mesh->bytes(), body.count() * 36);
     EXPECT_GE(mesh->build_seconds(), 0);
   }
 }
