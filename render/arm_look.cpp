@@ -8,6 +8,7 @@
 
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
+#include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
@@ -90,6 +91,7 @@ std::shared_ptr<const Model> read(const Visual& visual, const LoadProgress& prog
   if (model.indices.empty() || box.isEmpty() || !(box.diagonal().norm() > 0)) {
     throw std::runtime_error(visual.mesh + ": nothing to see in it");
   }
+  add_coarse(model);
   return std::make_shared<const Model>(std::move(model));
 }
 

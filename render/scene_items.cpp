@@ -7,6 +7,7 @@
 #include "render/arm_look.h"
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
+#include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
@@ -66,6 +67,7 @@ void add_scene(const Scene& scene, std::span<const VisualPicture> seen, double r
   for (const VisualPicture& visual : seen) {
     Item item{load_model_file(visual.file), visual.pose, -1};
     transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
+    add_coarse(item.model);
     visuals.push_back(moved(item.model.bounds(), item.pose));
     items.world.push_back(std::move(item));
   }

@@ -43,7 +43,7 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
 }
 
 // What is wrong with the input is said before a window opens, which reads it again: nothing of it
-// is kept. None: the window's own.
+// is kept. Models, which may be large, are the window's to read. None: the window's own.
 std::optional<Parameters> checked_parameters(const InputOptions& input) {
   ArmDescription arm;
   SceneDocument document;

@@ -197,13 +197,12 @@ ArmDescription arm_of(const InputOptions& options) {
   return read_urdf(file, options.tip);
 }
 
-MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {
+void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {
   arm = arm_of(options);
   const bool own = options.hand.empty() && !options.device.empty();
   std::filesystem::path scene = options.scene;
   if (options.scene.empty()) scene = own ? default_scene(arm) : default_scene();
   document = read_scene(scene, arm);
-  return build_meshes(document);
 }
 
 RunPlan make_plan(const InputOptions& options) {
@@ -211,7 +210,8 @@ RunPlan make_plan(const InputOptions& options) {
   if (is_session(options.hand)) {
     plan = plan_from_session(options);
   } else {
-    plan.models = read_world(options, plan.arm, plan.document);
+    read_world(options, plan.arm, plan.document);
+    plan.models = build_meshes(plan.document);
     plan.parameters = make_parameters(options, plan.arm);
     if (options.hand.empty() && !options.device.empty() && !suits_default_world(plan.arm)) {
       SmallPath path = small_path(plan.arm);

@@ -53,8 +53,9 @@ Parameters make_parameters(const InputOptions& options, const ArmDescription& ar
 std::string device_named(const std::string& words);
 // The arm alone; of a real device that is named, the built-in one that is like it.
 ArmDescription arm_of(const InputOptions& options);
-// Device and scene alone; by default a scene that the device can reach.
-MeshModels read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
+// Device and scene alone, without the models of its meshes; by default a scene that the device can
+// reach.
+void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();

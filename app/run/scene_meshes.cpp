@@ -1,11 +1,13 @@
 #include "app/run/scene_meshes.h"
 
 #include <filesystem>
+#include <future>
 
 #include "app/run/model_report.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/file_error.h"
 #include "render/model/model_file.h"
+#include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
@@ -13,6 +15,18 @@ namespace {
 std::string where(const SceneDocument& document, const MeshObstacle& mesh) {
   const std::string& path = document.models.at(mesh.model).path;
   return path.empty() ? mesh.model : path;
+}
+
+// What is touched is built beside what is drawn from afar: each takes longer than reading did.
+std::shared_ptr<const Model> finished(Model model, MeshObstacle& mesh, const std::string& name,
+                                      const LoadProgress& progress) {
+  std::future<std::shared_ptr<const TriangleMesh>> shape;
+  if (!mesh.shape) {
+    shape = std::async([&] { return shape_of(model, name, progress.cancel); });
+  }
+  add_coarse(model);
+  if (shape.valid()) mesh.shape = shape.get();
+  return std::make_shared<const Model>(std::move(model));
 }
 
 }  // namespace
@@ -37,17 +51,16 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
       // What it refers to is not there any more when a recording is opened; so recordings get one
       // file.
       std::vector<unsigned char> whole;
-      models.push_back(
-          std::make_shared<const Model>(parse_model(*file.bytes, name, folder, progress, &whole)));
+      Model model = parse_model(*file.bytes, name, folder, progress, &whole);
       if (!whole.empty()) {
         file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }
+      models.push_back(finished(std::move(model), mesh, name, progress));
     } catch (const LoadCancelled&) {
       throw;
     } catch (const std::exception& e) {
       throw FileError(e.what());
     }
-    if (!mesh.shape) mesh.shape = shape_of(*models.back(), name, progress.cancel);
   }
   return models;
 }

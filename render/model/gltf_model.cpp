@@ -10,7 +10,6 @@
 #include "render/model/gltf_rest.h"
 #include "render/model/gltf_triangles.h"
 #include "render/model/model_building.h"
-#include "render/model/simplify.h"
 
 namespace limpid {
 namespace {
@@ -250,14 +249,10 @@ Model Reader::read() {
 
 Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
                  const std::filesystem::path& folder, const LoadProgress& progress) {
-  Model model;
-  {
-    const GltfFile source = parse_gltf_file(bytes, name, folder);
-    if (progress.part) *progress.part = 0.3;
-    model = Reader(source, name, progress).read();
-  }  // the file's buffers go before more memory is needed
+  const GltfFile source = parse_gltf_file(bytes, name, folder);
+  if (progress.part) *progress.part = 0.3;
+  Model model = Reader(source, name, progress).read();
   check_wanted(progress);
-  add_coarse(model);
   if (progress.part) *progress.part = 1;
   return model;
 }

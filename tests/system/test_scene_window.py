@@ -154,6 +154,23 @@ class SceneWindow(WindowTest):
         self.assertEqual(state["objects"], 1)
         self.assertFalse(state["dirty"])
 
+    def test_a_scene_that_came_without_its_models_is_not_written_over(self) -> None:
+        self.add_pyramid()
+        path = self.home / "mine.toml"
+        self.save_as(path)
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        (self.home / "pyramid.glb").write_bytes(b"glTF")
+        text = path.read_text()
+        self.start()
+        self.wait_for_notice("pyramid.glb")
+        self.assertEqual(self.state()["objects"], 1)
+        self.key("ctrl+s")
+        self.wait("the question for a name", lambda s: s["asking"] and s["typing"])
+        self.key("Escape")
+        self.wait("the dialog to close", lambda s: not s["asking"])
+        self.assertEqual(path.read_text(), text)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -47,15 +47,20 @@ void Desktop::open_world(const std::string& device, const std::string& tip,
   device_tip_ = tip;
   ArmDescription arm = read_urdf(device_file_, tip);
   const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
-  document_.set_file(file.string());
-  SceneDocument whole = read_scene(document_.file(), arm);
-  if (whole.scene.meshes.empty()) return open(std::move(arm), std::move(whole), {});
-  // Models may be large: they come in while the window is there already.
-  SceneDocument first = whole;
-  first.scene.meshes.clear();
-  first.models.clear();
-  open(std::move(arm), std::move(first), {});
-  document_.loader().open_scene(document_.file(), desk_.stage().arm());
+  SceneDocument whole = read_scene(file, arm);
+  if (whole.scene.meshes.empty()) {
+    document_.set_file(file.string());
+    return open(std::move(arm), std::move(whole), {});
+  }
+  // Models may be large: they come in while the window is there already. Saving what is there
+  // without them must not write over the scene's own file.
+  whole.scene.meshes.clear();
+  whole.models.clear();
+  whole.toml.clear();
+  document_.set_file(default_scene(arm).string());
+  open(std::move(arm), std::move(whole), {});
+  first_scene_ = file.string();
+  document_.loader().open_scene(file, desk_.stage().arm());
 }
 
 void Desktop::open_last_world(const std::string& device, const std::string& tip,

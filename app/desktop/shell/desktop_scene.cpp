@@ -33,6 +33,7 @@ void Desktop::open_scene(const fs::path& file) {
   document_.leave([this, file = fs::absolute(file).lexically_normal()] {
     playback_.close();
     document_.loader().cancel();
+    first_scene_.clear();
     document_.loader().open_scene(file, desk_.stage().arm());
   });
 }
@@ -64,8 +65,10 @@ void Desktop::accept(LoadedScene& loaded) {
   } else {
     open(desk_.stage().arm(), std::move(loaded.document), std::move(loaded.models));
   }
-  // At the start it is the one that was named already.
-  if (const std::string file = loaded.file.string(); file != document_.file()) {
+  const std::string file = loaded.file.string();
+  if (file == std::exchange(first_scene_, "")) {
+    document_.set_file(file);
+  } else if (file != document_.file()) {
     document_.remember_file(file);
     remember_recent(settings_, file);
   }
