@@ -11,6 +11,7 @@
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/experiments/live.h"
+#include "core/realtime/memory_lock.h"
 #include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
@@ -87,6 +88,7 @@ int run(const ExperimentOptions& options) {
   const auto wanted = chosen(experiments(), options.name, " is not an experiment");
   prepare_out(options.out);
   catch_interrupts();
+  keep_what_is_freed();
   std::vector<std::string> failed;  // checks
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
@@ -89,25 +90,25 @@ void write_figure_data(const Figure& figure, const fs::path& csv) {
 }
 
 void draw_figure(const Figure& figure, const fs::path& dir, const std::string& name) {
-  struct Format {
-    const char *terminal, *extension;
-    double scale;  // a PNG for print
+  // Others may be drawing the same.
+  const auto part = [&](const char* extension) {
+    return dir / fmt::format(".{}.{}{}", name, getpid(), extension);
   };
-  for (const Format& format : {Format{"pngcairo", ".png", 2}, Format{"svg", ".svg", 1}}) {
-    const fs::path out = dir / (name + format.extension);
-    // Others may be drawing the same.
-    const fs::path part = dir / fmt::format(".{}.{}{}", name, getpid(), format.extension);
-    const fs::path script = dir / fmt::format(".{}.{}.gnuplot", name, getpid());
-    std::ofstream(script) << gnuplot_script(figure, format.terminal, format.scale, part);
-    const int status = gnuplot(script);
-    std::error_code none, failure;
-    fs::remove(script, none);
-    if (status == 0) fs::rename(part, out, failure);
-    if (status != 0 || failure) {
-      fs::remove(part, none);
-      throw std::runtime_error(
-          fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
-    }
+  constexpr double kForPrint = 1.5;  // 300 dots per inch over a page's text
+  const std::array files{FigureFile{"pngcairo", kForPrint, part(".png")},
+                         FigureFile{"svg", 1, part(".svg")}};
+  const fs::path script = part(".gnuplot");
+  std::ofstream(script) << gnuplot_script(figure, files);
+  const int status = gnuplot(script);
+  std::error_code failure, none;
+  fs::remove(script, none);
+  for (const FigureFile& file : files) {
+    const fs::path out = dir / (name + file.out.extension().string());
+    if (status == 0 && !failure) fs::rename(file.out, out, failure);
+    if (status == 0 && !failure) continue;
+    for (const FigureFile& each : files) fs::remove(each.out, none);
+    throw std::runtime_error(
+        fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,10 +68,15 @@ inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
 
 // Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
 void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
-// What gnuplot is told to draw. `terminal` is its picture format, `scale` the pixels of the picture
+// A file that gnuplot draws: `terminal` is its picture format, `scale` the pixels of the picture
 // per pixel of the layout.
-std::string gnuplot_script(const Figure& figure, const std::string& terminal, double scale,
-                           const std::filesystem::path& out);
+struct FigureFile {
+  std::string terminal;
+  double scale = 1;
+  std::filesystem::path out;
+};
+// What gnuplot is told to draw, the same into each of the files.
+std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> files);
 // Draws DIR/NAME.png and DIR/NAME.svg with gnuplot. Errors: std::runtime_error when gnuplot is
 // missing or fails.
 void draw_figure(const Figure& figure, const std::filesystem::path& dir, const std::string& name);

@@ -40,6 +40,22 @@ Excess largest(const RowLayout& layout, std::span<const double> row) {
   return most;
 }
 
+// Which nearly every row is: within all limits, and all numbers.
+bool calm(const RowLayout& layout, std::span<const double> row) {
+  const auto within = [](double value, double limit) { return std::abs(value) <= limit; };
+  const auto torque = layout.in(row, Column::commanded_torque);
+  const auto v1 = layout.in(row, Column::device_velocity);
+  const auto v2 = layout.in(row, Column::proxy_velocity);
+  const auto x1 = layout.in(row, Column::device_position);
+  const auto x2 = layout.in(row, Column::proxy_position);
+  bool all = true;
+  for (std::size_t i = 0; i < torque.size(); ++i) {
+    all = all && within(torque[i], kWildTorque) && within(v1[i], kWildSpeed) &&
+          within(v2[i], kWildSpeed) && within(x1[i] - x2[i], kWildError);
+  }
+  return all;
+}
+
 std::string in_words(const Excess& e) {
   struct Words {
     const char* what;
@@ -65,11 +81,11 @@ std::string in_words(const Excess& e) {
 void DivergenceWatch::add(std::span<const double> row) {
   const std::uint64_t k = rows_++;
   if (lost_) return;
-  const Excess excess = largest(layout_, row);
-  if (!beyond(excess, 1)) {
+  if (calm(layout_, row)) {
     if (k >= wild_row_ + kCalm) why_.clear();
     return;
   }
+  const Excess excess = largest(layout_, row);
   wild_row_ = k;
   if (why_.empty()) {
     since_row_ = k;

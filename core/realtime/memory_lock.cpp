@@ -71,4 +71,9 @@ bool lock_memory() {
 
 void give_back_what_is_freed() { mallopt(M_MMAP_THRESHOLD, 128 << 10); }
 
+void keep_what_is_freed() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the highest that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 }  // namespace limpid

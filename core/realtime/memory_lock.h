@@ -14,4 +14,8 @@ bool lock_memory();
 // was once needed stays for good. For programs that go on for long; before they have threads.
 void give_back_what_is_freed();
 
+// The other way round: large blocks stay, so that the next run finds memory whose pages are there
+// already. For commands that do the same many times over and end.
+void keep_what_is_freed();
+
 }  // namespace limpid

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -39,6 +40,10 @@ Figure small() {
                     .series = {{"line", kDeviceInk, Series::Style::line, {{0, 1}, {1, 2}}},
                                {"band", kProxyInk, Series::Style::band, {{0, 1, 0.5, 1.5}}}}}};
   return figure;
+}
+
+std::string script_of(const Figure& figure) {
+  return gnuplot_script(figure, std::array{FigureFile{"svg", 1, "f.svg"}});
 }
 
 TEST_F(Figures, WriteTheirDataAsATableOfAllSeries) {
@@ -114,7 +119,7 @@ TEST(GnuplotScript, ShowsWordsOfThePaperAsItsSymbols) {
   Figure figure = small();
   figure.panels[0].series[0].label = "eta = 0.6";
   figure.panels[0].title = "Error |x1 - x2| of a theta beta";
-  const std::string script = gnuplot_script(figure, "svg", 1, "f.svg");
+  const std::string script = script_of(figure);
   EXPECT_THAT(script, HasSubstr("'η = 0.6'"));
   EXPECT_THAT(script, HasSubstr("'Error |x₁ − x₂| of a theta beta'"));
 }
@@ -122,19 +127,19 @@ TEST(GnuplotScript, ShowsWordsOfThePaperAsItsSymbols) {
 TEST(GnuplotScript, ShowsAllOfABand) {
   Figure figure = small();
   figure.panels[0].series[1].points = {{0, 1, -10, 10}, {1, 1, -10, 10}};
-  EXPECT_THAT(gnuplot_script(figure, "svg", 1, "f.svg"), HasSubstr("set yrange [-11:11]"));
+  EXPECT_THAT(script_of(figure), HasSubstr("set yrange [-11:11]"));
 }
 
 TEST(GnuplotScript, KeepsARangeThatIsGiven) {
   Figure figure = small();
   figure.panels[0].y_range = {{-1, 3}};
-  EXPECT_THAT(gnuplot_script(figure, "svg", 1, "f.svg"), HasSubstr("set yrange [-1:3]"));
+  EXPECT_THAT(script_of(figure), HasSubstr("set yrange [-1:3]"));
 }
 
 TEST(GnuplotScript, NamesOnlySeriesWithALabel) {
   Figure figure = small();
   figure.panels[0].series[0].label = "";
-  const std::string script = gnuplot_script(figure, "svg", 1, "f.svg");
+  const std::string script = script_of(figure);
   EXPECT_THAT(script, Not(HasSubstr("label ''")));
   EXPECT_THAT(script, HasSubstr("'band'"));
 }
