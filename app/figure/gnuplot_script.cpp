@@ -264,27 +264,11 @@ std::string panel_commands(const FigurePanel& panel, const Screen& screen, doubl
 }
 
 std::string into(const FigureFile& file, const Screen& screen) {
-  const double scale = file.scale;
   return fmt::format(
       "set terminal {} size {},{} font 'Inter,12'{} background rgb 'white'\nset output {}\n",
-      file.terminal, screen.width * scale, screen.height * scale,
-      scale == 1 ? "" : fmt::format(" fontscale {0} linewidth {0} pointscale {0}", scale),
+      file.terminal, screen.width * file.scale, screen.height * file.scale,
+      file.scale == 1 ? "" : fmt::format(" fontscale {0} linewidth {0} pointscale {0}", file.scale),
       quoted(std::filesystem::absolute(file.out).string()));
-}
-
-std::string all_panels(const Figure& figure, const Screen& screen, int columns) {
-  std::string text =
-      fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
-  int block = 0;
-  for (int i = 0; i < static_cast<int>(figure.panels.size()); ++i) {
-    const FigurePanel& panel = figure.panels[static_cast<std::size_t>(i)];
-    text += panel_commands(panel, screen, (i % columns) * kPanelWidth,
-                           screen.height - kTitleHeight - (i / columns) * figure.panel_height,
-                           figure.panel_height);
-    text += plot_command(panel, block);
-    block += static_cast<int>(panel.series.size());
-  }
-  return text + "unset multiplot\n";
 }
 
 }  // namespace
@@ -294,14 +278,22 @@ std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> fil
   const int rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
   const Screen screen{static_cast<double>(columns * kPanelWidth),
                       static_cast<double>(rows * figure.panel_height + kTitleHeight)};
-  std::string text = "set encoding utf8\n" + data_blocks(figure);
-  text +=
-      "unset key\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', "
-      "4 '#fde725')\nset border 3 lc rgb '#444444' lw 0.8\n"
-      "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
-      "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
-  const std::string panels = all_panels(figure, screen, columns);
-  for (const FigureFile& file : files) text += into(file, screen) + panels;
+  std::string panels =
+      fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
+  int block = 0, at = 0;
+  for (const FigurePanel& panel : figure.panels) {
+    const int column = at % columns, row = at++ / columns;
+    const double top = screen.height - kTitleHeight - row * figure.panel_height;
+    panels += panel_commands(panel, screen, column * kPanelWidth, top, figure.panel_height) +
+              plot_command(panel, block);
+    block += static_cast<int>(panel.series.size());
+  }
+  std::string text = "set encoding utf8\n" + data_blocks(figure) +
+                     "unset key\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 "
+                     "'#5ec962', 4 '#fde725')\nset border 3 lc rgb '#444444' lw 0.8\n"
+                     "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
+                     "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
+  for (const FigureFile& file : files) text += into(file, screen) + panels + "unset multiplot\n";
   return text + "set output\n";  // closes the last one
 }
 

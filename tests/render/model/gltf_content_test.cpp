@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "render/model/gltf_model.h"
+#include "render/model/simplify.h"
 #include "tests/render/model/gltf_builder.h"
 
 namespace limpid {
@@ -216,7 +217,7 @@ TEST(GltfContent, ReadsAFileWithoutAScene) {
   EXPECT_EQ(parse_gltf(glb(json, file.data), "part.glb").indices.size(), 3u);
 }
 
-TEST(GltfContent, MakesACoarseVersionOfALargeModel) {
+TEST(GltfContent, CanBeDrawnCoarselyWhereItIsLarge) {
   constexpr std::uint32_t kSide = 400;
   std::vector<float> xyz;
   std::vector<std::uint32_t> indices;
@@ -233,6 +234,7 @@ TEST(GltfContent, MakesACoarseVersionOfALargeModel) {
   file.primitive = R"(,"indices":)" + std::to_string(file.accessor(file.view(indices), 5125,
                                                                    "SCALAR", indices.size()));
   Model model = parse_gltf(file.binary(), "part.glb");
+  add_coarse(model);
   EXPECT_GT(model.coarse.size() / 3, 10'000u);
   EXPECT_LT(model.coarse.size() / 3, 100'000u);
   // A flat sheet stays one without holes, but for half a cell at its edges.

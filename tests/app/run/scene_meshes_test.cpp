@@ -1,0 +1,90 @@
+// What becomes of the models that a scene names.
+#include "app/run/scene_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/file_error.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::uint32_t kSide = 230;  // just more than twice what is drawn coarsely
+
+// A bumpy sheet of 2 side^2 triangles as a binary STL.
+std::vector<unsigned char> sheet(std::uint32_t side) {
+  const std::uint32_t count = 2 * side * side;
+  std::vector<unsigned char> bytes(84 + 50 * std::size_t{count});
+  std::memcpy(bytes.data() + 80, &count, 4);
+  unsigned char* at = bytes.data() + 84;
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x)
+      for (const auto& corners : {std::array{0, 0, 1, 0, 0, 1}, {1, 0, 1, 1, 0, 1}}) {
+        std::array<float, 12> facet{};  // a normal that nobody reads, three corners
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto u = static_cast<float>(x) + static_cast<float>(corners[2 * k]);
+          const auto v = static_cast<float>(y) + static_cast<float>(corners[2 * k + 1]);
+          facet[3 + 3 * k] = u;
+          facet[4 + 3 * k] = v;
+          facet[5 + 3 * k] = 3 * std::sin(0.07f * u) * std::cos(0.05f * v);
+        }
+        std::memcpy(at, facet.data(), sizeof facet);
+        at += 50;
+      }
+  return bytes;
+}
+
+SceneDocument with_sheets(std::uint32_t side, const std::vector<std::string>& names) {
+  SceneDocument document;
+  for (const std::string& name : names) {
+    document.scene.meshes.emplace_back().model = name;
+    document.models[name] = {"/nowhere/sheet.stl",
+                             std::make_shared<const std::vector<unsigned char>>(sheet(side))};
+  }
+  return document;
+}
+
+TEST(SceneMeshes, CanBeTouchedAndDrawnCoarsely) {
+  SceneDocument document = with_sheets(kSide, {"sheet.stl"});
+  const MeshModels models = build_meshes(document);
+  ASSERT_EQ(models.size(), 1u);
+  EXPECT_EQ(models[0]->indices.size() / 3, 2 * kSide * kSide);
+  EXPECT_GT(models[0]->coarse.size() / 3, 10'000u);
+  EXPECT_LT(models[0]->coarse.size() / 3, 100'000u);
+  ASSERT_TRUE(document.scene.meshes[0].shape);
+  EXPECT_EQ(document.scene.meshes[0].shape->triangles(), 2 * kSide * kSide);
+}
+
+TEST(SceneMeshes, ShareWhatIsOfOneFile) {
+  SceneDocument document = with_sheets(3, {"a.stl", "b.stl"});
+  const MeshModels models = build_meshes(document);
+  EXPECT_EQ(models[0], models[1]);
+  EXPECT_EQ(document.scene.meshes[0].shape, document.scene.meshes[1].shape);
+}
+
+TEST(SceneMeshes, GiveUpWhenAskedToAndSayWhatCannotBeTouched) {
+  SceneDocument document = with_sheets(kSide, {"sheet.stl"});
+  std::atomic<bool> cancel{true};
+  EXPECT_THROW(build_meshes(document, {.cancel = &cancel}), LoadCancelled);
+
+  std::vector<unsigned char> flat = sheet(1);
+  std::fill(flat.begin() + 84, flat.end(), static_cast<unsigned char>(0));
+  document.models["sheet.stl"].bytes =
+      std::make_shared<const std::vector<unsigned char>>(std::move(flat));
+  try {
+    build_meshes(document);
+    FAIL();
+  } catch (const FileError& e) {
+    EXPECT_NE(std::string(e.what()).find("/nowhere/sheet.stl"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace limpid
