@@ -54,6 +54,7 @@ int bring_in(dl_phdr_info* object, std::size_t, void* done) {
     if (segment.p_type != PT_LOAD) continue;
     const std::uintptr_t from = (object->dlpi_addr + segment.p_vaddr) / page * page;
     const std::uintptr_t to = object->dlpi_addr + segment.p_vaddr + segment.p_memsz;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the loader tells where things are.
     if (mlock(reinterpret_cast<const void*>(from), to - from) != 0)
       *static_cast<bool*>(done) = false;
   }

@@ -43,7 +43,7 @@ struct Finish {
   bool two_sided = false;
   bool flat = false;  // each triangle as it lies, not as the vertices' normals say
 
-  auto operator<=>(const Finish&) const = default;
+  auto operator<=>(const Finish&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct Part {
