@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/sanitized.h"
+
 namespace limpid {
 namespace {
 
@@ -74,14 +76,7 @@ int look(dl_phdr_info* object, std::size_t, void* into) {
   return 0;
 }
 
-// Sanitizers let nothing be locked and say that it was.
-bool locked() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return false;
-#else
-  return lock_memory();
-#endif
-}
+bool locked() { return !test::kOnlyPretendsToLock && lock_memory(); }
 
 class CodeOfTicks : public testing::TestWithParam<std::string_view> {};
 
