@@ -104,7 +104,7 @@ void draw_figure(const Figure& figure, const fs::path& dir, const std::string& n
   fs::remove(script, none);
   for (const FigureFile& file : files) {
     const fs::path out = dir / (name + file.out.extension().string());
-    if (status == 0 && !failure) fs::rename(file.out, out, failure);
+    if (status == 0) fs::rename(file.out, out, failure);
     if (status == 0 && !failure) continue;
     for (const FigureFile& each : files) fs::remove(each.out, none);
     throw std::runtime_error(
