@@ -9,9 +9,11 @@ AdjustedDevice::AdjustedDevice(std::unique_ptr<Device> device, std::span<const A
                                double torque_scale)
     : device_(std::move(device)), traits_(device_->traits()), torque_scale_(torque_scale) {
   factor_.fill(1);
+  of_motor_.fill(1);
   for (std::size_t i = 0; i < axes.size() && i < factor_.size(); ++i) {
     factor_[i] = axes[i].factor();
     zero_[i] = axes[i].zero;
+    of_motor_[i] = axes[i].reversed ? -factor_[i] : factor_[i];
   }
   for (std::size_t i = 0; i < traits_.lower.size(); ++i) {
     const double a = factor_[i] * (traits_.lower[i] - zero_[i]);
@@ -38,7 +40,7 @@ bool AdjustedDevice::read(DeviceReading& newest) noexcept {
 void AdjustedDevice::write(std::span<const double> torque) noexcept {
   std::array<double, kMaxDof> out{};
   const std::size_t count = std::min(torque.size(), out.size());
-  for (std::size_t i = 0; i < count; ++i) out[i] = factor_[i] * torque[i] / torque_scale_;
+  for (std::size_t i = 0; i < count; ++i) out[i] = of_motor_[i] * torque[i] / torque_scale_;
   device_->write({out.data(), count});
 }
 

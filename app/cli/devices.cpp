@@ -18,8 +18,10 @@ int devices() {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
                found.missing.empty() ? found.kind->use : found.missing);
+    if (!found.in_use_by.empty()) fmt::print("  in use by {}\n", found.in_use_by);
   }
   if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
+  if (!hub.complaint().empty()) throw UsageError(hub.complaint());
   return 0;
 }
 

@@ -95,6 +95,7 @@ int forget(const IdentifyOptions& options) {
   DeviceHub hub(device_book_file(), {});
   const std::string in_use = hub.in_use();
   if (!options.device.empty()) hub.use(options.device);
+  if (!hub.refusal().empty()) throw UsageError(hub.refusal());
   hub.forget_arm();
   save(hub, in_use);
   fmt::print("forgotten\n");

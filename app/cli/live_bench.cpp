@@ -49,11 +49,19 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
   hub.use(wanted);
   hub.take(hub.found());
   if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", wanted));
-  if (hub.needs_check()) {
-    throw UsageError(fmt::format("{}: its axes must be checked first, in the window's Device panel",
-                                 hub.present()->place.name));
+  if (!hub.refusal().empty()) throw UsageError(hub.refusal());
+  const auto refuse = [&] [[noreturn]] {
+    throw UsageError(fmt::format(
+        "{}: its axes must be checked before it may push; start limpid, choose the device in the "
+        "Device panel and press \"Check the axes\"",
+        hub.present()->place.name));
+  };
+  if (hub.needs_check()) refuse();
+  try {
+    return hub.opening()();
+  } catch (const UncheckedError&) {
+    refuse();
   }
-  return hub.opening()();
 }
 
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <thread>
 
+#include "core/dynamics/arm.h"
 #include "core/realtime/haptic_thread.h"
-#include "core/tick/safety.h"
 
 namespace limpid {
 namespace {
@@ -13,11 +14,60 @@ namespace {
 using std::chrono::milliseconds;
 constexpr milliseconds kTick{1};
 constexpr milliseconds kSilence{400};
+constexpr double kSmooth = 0.004;  // of the velocity that is judged [s]
+
+// The limits that are set for the device, at each tick.
+class Limits {
+ public:
+  using Vector = Vec<kAnyDof>;
+
+  Limits(const ArmDescription& arm, const SafetyLimits& limits)
+      : arm_(arm),
+        safety_(arm),
+        x_(Vector::Zero(arm.dof())),
+        v_(Vector::Zero(arm.dof())),
+        torque_(Vector::Zero(arm.dof())) {
+    safety_.limit(limits);
+  }
+
+  // Where the device is now, T [s] after the tick before; false beyond a limit.
+  bool allow(std::span<const double> x, double T) noexcept {
+    const Vector now = Eigen::Map<const Vector>(x.data(), x_.size());
+    if (!now.allFinite()) return true;  // the check itself ends then
+    if (!started_) x_ = now;
+    started_ = true;
+    const double put_out = torque_.dot(now - x_);
+    v_ += T / (kSmooth + T) * ((now - x_) / T - v_);
+    x_ = now;
+    Arm<kAnyDof>::Frames frames;
+    arm_.frames(x_, frames);
+    arm_.point_jacobian(frames, arm_.dof() - 1, arm_.tip(frames), J_);
+    const Objections against = safety_.judge({.guarded = true}, false, x_, v_, J_, put_out, T);
+    return against.ceiling >= 1 && against.fault == ForceState::on;
+  }
+
+  std::span<const double> within(std::span<const double> torque) noexcept {
+    torque_ = safety_.within_tip_force(Eigen::Map<const Vector>(torque.data(), torque_.size()), J_);
+    return {torque_.data(), torque.size()};
+  }
+
+ private:
+  Arm<kAnyDof> arm_;
+  Safety<kAnyDof> safety_;
+  Jacobian<kAnyDof> J_;
+  Vector x_, v_, torque_;
+  bool started_ = false;
+};
 
 }  // namespace
 
-AxisCheck run_axis_check(Device& device, AxisCheckTalk& talk, const AskForPriority& ask) {
+AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
+                         AxisCheckTalk& talk, const AskForPriority& ask) {
   AxisCheck check(device.traits());
+  if (arm.dof() != check.dof()) {
+    throw std::invalid_argument("a device is checked as an arm of as many joints");
+  }
+  Limits set(arm, limits);
   const auto joints = static_cast<std::size_t>(device.traits().dof);
   std::atomic<bool> done = false;
   {
@@ -29,7 +79,10 @@ AxisCheck run_axis_check(Device& device, AxisCheckTalk& talk, const AskForPriori
       const bool here = device.read(reading);
       const bool well =
           here && reading.hand && !reading.fault && reading.age <= SafetyLimits::kStaleReading;
-      device.write(check.step({std::span(reading.x).first(joints), timing.periods * 1e-3, well}));
+      const std::span<const double> x = std::span(reading.x).first(joints);
+      const double T = timing.periods * 1e-3;
+      if (well && !set.allow(x, T)) check.exceed();
+      device.write(set.within(check.step({x, T, well})));
       talk.axis = check.axis();
       talk.stage = check.stage();
       done = check.done();

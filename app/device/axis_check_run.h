@@ -5,7 +5,9 @@
 #include <atomic>
 #include <chrono>
 
+#include "core/dynamics/arm_description.h"
 #include "core/realtime/realtime.h"
+#include "core/tick/safety.h"
 #include "devices/hid/axis_check.h"
 
 namespace limpid {
@@ -21,9 +23,11 @@ struct AxisCheckTalk {
 };
 
 // Drives the device, which nobody else uses meanwhile, until the check is done or cancelled, or the
-// window has been silent for 0.4 s; it is without torque then. Not for the window's thread.
-// `ask`: see become_realtime().
-AxisCheck run_axis_check(Device& device, AxisCheckTalk& talk, const AskForPriority& ask);
+// window has been silent for 0.4 s; it is without torque then. The force at the tip stays within
+// its limit, and any other limit of `limits` ends the check. `arm`: that the device is taken for,
+// of as many joints. Not for the window's thread. `ask`: see become_realtime().
+AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
+                         AxisCheckTalk& talk, const AskForPriority& ask);
 
 // What came of it, for people.
 std::string report_of(const AxisCheck& check);

@@ -1,32 +1,95 @@
 #include "app/device/device_book.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <toml++/toml.h>
+#include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <span>
 #include <sstream>
+#include <thread>
 
 #include "app/base/user_dirs.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A finite number within its range, else what it was.
-void take(const toml::table& t, const char* key, double least, double most, double& value) {
-  const auto found = t[key].value<double>();
-  if (found && *found >= least && *found <= most) value = *found;
-}
+constexpr std::size_t kMostBytes = 1 << 20;  // of the book
 
-CompensationSettings read_compensation(const toml::table& t) {
+// What stands in the file, or what it is without it. Never a value in place of one that cannot be
+// understood: it might let the device push harder, or the wrong way.
+class Entry {
+ public:
+  Entry(const toml::table& table, const std::string& file, const std::string& path)
+      : table_(table), reader_(table, file, path), file_(file), path_(path) {}
+
+  void take(const char* key, double least, double most, double& value) const {
+    value = reader_.number(key, {least, most}).value_or(value);
+  }
+  void take(const char* key, std::string& value) const {
+    value = reader_.text(key).value_or(value);
+  }
+  void take(const char* key, bool& value) const {
+    const toml::node* node = reader_.find(key);
+    if (node == nullptr) return;
+    if (!node->is_boolean()) reader_.refuse(key, "true or false");
+    value = *node->value<bool>();
+  }
+  void take_one_of(const char* key, std::span<const char* const> names, std::size_t& value) const {
+    const std::optional<std::string> text = reader_.text(key);
+    if (!text) return;
+    const auto found = std::ranges::find(names, *text);
+    if (found == names.end()) reader_.refuse(key, fmt::format("{}", fmt::join(names, ", ")));
+    value = static_cast<std::size_t>(found - names.begin());
+  }
+  // The table below this key, if there is one.
+  std::optional<Entry> below(const char* key) const {
+    const toml::node* node = reader_.find(key);
+    if (node == nullptr) return std::nullopt;
+    if (!node->is_table()) reader_.refuse(key, "a table");
+    return Entry(*node->as_table(), file_, fmt::format("{}.{}", path_, key));
+  }
+  // Each element of a list, one a joint, at most as many as a device can have.
+  template <class Use>
+  void each(const char* key, const char* allowed, const Use& use) const {
+    const toml::node* node = reader_.find(key);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->size() > kMaxDof) reader_.refuse(key, allowed);
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      if (!use(i, *list->get(i))) reader_.refuse(key, allowed);
+    }
+  }
+  Entry element(const char* key, std::size_t i, const toml::table& table) const {
+    return {table, file_, fmt::format("{}.{}[{}]", path_, key, i)};
+  }
+
+ private:
+  const toml::table& table_;
+  TomlTable reader_;
+  std::string file_, path_;
+};
+
+CompensationSettings read_compensation(const Entry& entry) {
   CompensationSettings c;
-  c.holds_weight = t["gravity"].value_exact<bool>().value_or(false);
-  c.holds_springs = t["springs"].value_exact<bool>().value_or(false);
-  take(t, "friction", 0, CompensationSettings::kMostShare, c.friction_share);
-  const auto down = std::ranges::find(kDowns, t["down"].value_or(std::string(kDowns[0])));
-  if (down != kDowns.end()) c.down = static_cast<Down>(down - kDowns.begin());
+  auto down = static_cast<std::size_t>(c.down);
+  entry.take("gravity", c.holds_weight);
+  entry.take("springs", c.holds_springs);
+  entry.take("friction", 0, CompensationSettings::kMostShare, c.friction_share);
+  entry.take_one_of("down", kDowns, down);
+  c.down = static_cast<Down>(down);
   return c;
 }
 
@@ -37,36 +100,44 @@ toml::table write_compensation(const CompensationSettings& c) {
                      {"springs", c.holds_springs}};
 }
 
-DeviceNotes read_notes(const toml::table& t) {
+void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
+  entry.each("axis", "a list of tables, one a joint", [&](std::size_t i, const toml::node& node) {
+    if (!node.is_table()) return false;
+    const Entry each = entry.element("axis", i, *node.as_table());
+    AxisAdjustment& axis = axes.emplace_back();
+    each.take("zero", -100, 100, axis.zero);
+    each.take("scale", 0.1, 10, axis.scale);
+    each.take("inverted", axis.inverted);
+    return true;
+  });
+  entry.each("reverse", "a list of true or false, one a joint",
+             [&](std::size_t i, const toml::node& node) {
+               if (!node.is_boolean()) return false;
+               if (axes.size() <= i) axes.resize(i + 1);
+               axes[i].reversed = *node.value<bool>();
+               return true;
+             });
+}
+
+// Errors: FileError.
+DeviceNotes read_notes(const Entry& entry) {
   DeviceNotes notes;
-  take(t, "range", 0.01, 3.2, notes.pid.range);
-  take(t, "effort", 0.01, 50, notes.pid.effort);
-  for (std::size_t i = 0; i < 2; ++i) {
-    notes.pid.reverse[i] = t["reverse"][i].value_or(false);
-  }
-  if (const toml::table* limits = t["limits"].as_table()) {
+  entry.take("range", 0.01, 3.2, notes.pid.range);
+  entry.take("effort", 0.01, 50, notes.pid.effort);
+  if (const std::optional<Entry> limits = entry.below("limits")) {
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
       double& value = notes.limits.*info.field;
-      take(*limits, info.key, info.least, value, value);
+      limits->take(info.key, info.least, value, value);
     }
   }
-  notes.checked = t["checked"].value_or(false);
-  notes.arm = t["arm"].value_or(std::string());
-  take(t, "delay", 0, 1, notes.delay);
-  take(t, "torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
-  if (const toml::table* forces = t["compensation"].as_table()) {
+  entry.take("checked", notes.checked);
+  entry.take("arm", notes.arm);
+  entry.take("delay", 0, 1, notes.delay);
+  entry.take("torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
+  if (const std::optional<Entry> forces = entry.below("compensation")) {
     notes.compensation = read_compensation(*forces);
   }
-  if (const toml::array* axes = t["axis"].as_array()) {
-    for (const toml::node& node : *axes) {
-      AxisAdjustment& axis = notes.axes.emplace_back();
-      if (const toml::table* each = node.as_table()) {
-        take(*each, "zero", -100, 100, axis.zero);
-        take(*each, "scale", 0.1, 10, axis.scale);
-        axis.inverted = (*each)["inverted"].value_or(false);
-      }
-    }
-  }
+  read_axes(entry, notes.axes);
   return notes;
 }
 
@@ -79,14 +150,15 @@ toml::table write_limits(const SafetyLimits& limits) {
 }
 
 toml::table write_notes(const DeviceNotes& notes) {
-  toml::array axes;
+  toml::array axes, reverse;
   for (const AxisAdjustment& axis : notes.axes) {
     axes.push_back(
         toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
+    reverse.push_back(axis.reversed);
   }
   toml::table table{{"range", notes.pid.range},
                     {"effort", notes.pid.effort},
-                    {"reverse", toml::array{notes.pid.reverse[0], notes.pid.reverse[1]}},
+                    {"reverse", reverse},
                     {"limits", write_limits(notes.limits)},
                     {"checked", notes.checked},
                     {"arm", notes.arm},
@@ -97,13 +169,85 @@ toml::table write_notes(const DeviceNotes& notes) {
   return table;
 }
 
+// What has changed between two tables, into a third; what that has besides stays.
+void merge(const toml::table& before, const toml::table& now, toml::table& into) {
+  for (const auto& [key, node] : before) {
+    if (!now.contains(key.str())) into.erase(key.str());
+  }
+  for (const auto& [key, node] : now) {
+    const toml::node* old = before.get(key.str());
+    toml::node* there = into.get(key.str());
+    if (old != nullptr && old->is_table() && node.is_table() && there != nullptr &&
+        there->is_table()) {
+      merge(*old->as_table(), *node.as_table(), *there->as_table());
+      continue;
+    }
+    node.visit([&](const auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      const auto* same = old != nullptr ? old->as<Value>() : nullptr;
+      if (same == nullptr || !(*same == value)) into.insert_or_assign(key.str(), value);
+    });
+  }
+}
+
+std::string entry_path(std::string_view id) { return fmt::format("device.\"{}\"", id); }
+
+// The file, as TOML. Errors: FileError.
+toml::table parse_book(const fs::path& file) {
+  std::error_code none;
+  if (fs::status(file, none).type() == fs::file_type::not_found) return {};
+  return parse_toml(read_text(file, kMostBytes), file.string());
+}
+
+// Errors: FileError.
+const toml::table* devices_in(const toml::table& book, const fs::path& file) {
+  const toml::node* node = book.get("device");
+  if (node == nullptr) return nullptr;
+  if (!node->is_table()) TomlTable(book, file.string(), "").refuse("device", "a table");
+  return node->as_table();
+}
+
+// Errors: FileError.
+DeviceNotes notes_in(const toml::table& devices, const std::string& id, const fs::path& file) {
+  const toml::node& node = *devices.get(id);
+  if (!node.is_table()) TomlTable(devices, file.string(), "device").refuse(id.c_str(), "a table");
+  return read_notes({*node.as_table(), file.string(), entry_path(id)});
+}
+
+// Whoever reads, changes and writes the book has it alone meanwhile: a lock on a file beside it,
+// since the book is another file each time it is written. Errors: FileError.
+class BookLock {
+ public:
+  explicit BookLock(const fs::path& book) {
+    const std::string path = book.string() + ".lock";
+    file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (file_ < 0) throw FileError(fmt::format("{}: {}", path, std::strerror(errno)));
+    constexpr int kTries = 200;
+    constexpr std::chrono::milliseconds kPause{10};
+    for (int i = 0; flock(file_, LOCK_EX | LOCK_NB) != 0; ++i) {
+      if (i == kTries) {
+        close(file_);
+        throw FileError(book.string() + ": another program has been writing it for 2 s");
+      }
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+  ~BookLock() { close(file_); }
+  BookLock(const BookLock&) = delete;
+  BookLock& operator=(const BookLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
 }  // namespace
 
 bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
-  if (!check.passed() || check.dof() > static_cast<int>(notes.pid.reverse.size())) return false;
+  if (!check.passed()) return false;
+  notes.axes.resize(std::max(notes.axes.size(), static_cast<std::size_t>(check.dof())));
   for (int i = 0; i < check.dof(); ++i) {
-    bool& reverse = notes.pid.reverse[static_cast<std::size_t>(i)];
-    if (check.finding(i).verdict == AxisVerdict::reversed) reverse = !reverse;
+    bool& reversed = notes.axes[static_cast<std::size_t>(i)].reversed;
+    if (check.finding(i).verdict == AxisVerdict::reversed) reversed = !reversed;
   }
   notes.checked = true;
   return true;
@@ -117,31 +261,63 @@ std::string limits_text(const SafetyLimits& limits) {
 
 fs::path device_book_file() { return user_config_dir() / "devices.toml"; }
 
-DeviceBook load_device_book(const fs::path& file, std::string& complaint) {
+std::string DeviceBook::complaint() const {
+  std::string all = refusal;
+  for (const auto& [id, each] : notes) {
+    if (!each.refusal.empty()) all += (all.empty() ? "" : "\n") + each.refusal;
+  }
+  return all;
+}
+
+DeviceBook load_device_book(const fs::path& file) {
   DeviceBook book;
-  std::error_code none;
-  if (!fs::exists(file, none)) return book;
   try {
-    const toml::table table = toml::parse_file(file.string());
-    book.in_use = table["in_use"].value_or(std::string());
-    if (const toml::table* devices = table["device"].as_table()) {
-      for (const auto& [id, node] : *devices) {
-        if (const toml::table* t = node.as_table()) book.notes[std::string(id)] = read_notes(*t);
+    const toml::table table = parse_book(file);
+    book.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
+    const toml::table* devices = devices_in(table, file);
+    if (devices == nullptr) return book;
+    for (const auto& [key, node] : *devices) {
+      const std::string id(key.str());
+      try {
+        book.notes[id] = notes_in(*devices, id, file);
+      } catch (const FileError& error) {
+        book.notes[id].refusal = error.what();
       }
     }
-  } catch (const std::exception& e) {
-    complaint = fmt::format("{}: not read: {}", file.string(), e.what());
+  } catch (const std::exception& error) {
+    book.refusal = error.what();
   }
   return book;
 }
 
-std::string save_device_book(const DeviceBook& book, const fs::path& file) {
-  toml::table devices;
-  for (const auto& [id, notes] : book.notes) devices.insert(id, write_notes(notes));
-  const toml::table all{{"in_use", book.in_use}, {"device", devices}};
-  std::ostringstream text;
-  text << all << '\n';
-  return try_write_atomically(file, text.str());
+std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
+                             const fs::path& file) {
+  try {
+    fs::create_directories(file.parent_path());
+    const BookLock alone(file);
+    toml::table table = parse_book(file);
+    if (now.in_use != before.in_use) table.insert_or_assign("in_use", now.in_use);
+    devices_in(table, file);
+    toml::table& devices = *table.insert("device", toml::table{}).first->second.as_table();
+    for (const auto& [id, notes] : now.notes) {
+      const auto known = before.notes.find(id);
+      const toml::table old =
+          write_notes(known == before.notes.end() ? DeviceNotes{} : known->second);
+      const toml::table changed = write_notes(notes);
+      if (old == changed) continue;
+      if (!devices.contains(id)) {
+        devices.insert(id, changed);
+        continue;
+      }
+      notes_in(devices, id, file);  // nothing is written over that cannot be understood
+      merge(old, changed, *devices.get_as<toml::table>(id));
+    }
+    std::ostringstream text;
+    text << table << '\n';
+    return try_write_atomically(file, text.str());
+  } catch (const std::exception& error) {
+    return fmt::format("not saved: {}", error.what());
+  }
 }
 
 }  // namespace limpid

@@ -47,16 +47,13 @@ ArmDescription identified(const std::string& file) {
   }
 }
 
-}  // namespace
-
-ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
+ArmDescription fitting_arm(const DeviceNotes& notes, const FoundDevice* device,
+                           const DeviceTraits& traits, const ArmDescription& present) {
   ArmDescription arm = present;
-  const DeviceNotes notes = known();
   if (!notes.arm.empty()) {
     arm = identified(notes.arm);
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
   }
-  const FoundDevice* device = DeviceHub::present();
   if (device != nullptr && *device->kind->arm != '\0') {
     const ArmDescription own = read_urdf(data_dir() / "assets/devices" / device->kind->arm);
     if (!alike(arm, own)) arm = own;
@@ -77,8 +74,52 @@ ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescripti
   return arm;
 }
 
+}  // namespace
+
+ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
+  return fitting_arm(known(), DeviceHub::present(), traits, present);
+}
+
 DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
-    : file_(std::move(file)), ask_(std::move(ask)), book_(load_device_book(file_, complaint_)) {}
+    : file_(std::move(file)),
+      ask_(std::move(ask)),
+      written_(load_device_book(file_)),
+      book_(written_) {}
+
+std::string DeviceHub::go_first() {
+  try {
+    if (!first_.held()) first_ = DeviceClaim("first window");
+    return {};
+  } catch (const HidError& error) {
+    return error.what();
+  }
+}
+
+std::string DeviceHub::save() {
+  if (std::string wrong = save_device_book(written_, book_, file_); !wrong.empty()) return wrong;
+  written_.in_use = book_.in_use;
+  read_again();
+  return {};
+}
+
+// In place: whoever refers to notes goes on doing so. What cannot be understood leaves them as they
+// were, as a device may be in the loop with their limits. This program's device in use stays.
+void DeviceHub::read_again() {
+  const DeviceBook now = load_device_book(file_);
+  book_.refusal = now.refusal;
+  if (!now.refusal.empty()) return;
+  for (auto& [id, notes] : book_.notes) {
+    if (!now.notes.contains(id) && id != book_.in_use) notes = {};
+  }
+  for (const auto& [id, notes] : now.notes) {
+    DeviceNotes& known = book_.notes[id];
+    if (notes.refusal.empty()) known = notes;
+    known.refusal = notes.refusal;
+  }
+  const std::string in_use = written_.in_use;
+  written_ = now;
+  written_.in_use = in_use;
+}
 
 std::vector<FoundDevice> DeviceHub::look(const std::string& wanted, bool services) {
   return list_devices({data_dir() / "assets/udev/70-limpid.rules", wanted, services});
@@ -134,11 +175,40 @@ std::optional<FoundDevice> DeviceHub::found_now() const {
   return device == nullptr ? std::nullopt : std::optional(*device);
 }
 
-std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
-  return [id = book_.in_use, found = found_now(), notes = known(), ask = ask_] {
+std::string DeviceHub::refusal() const {
+  const FoundDevice* device = present();
+  const bool pushes = device == nullptr || !device->kind->leads_hand;
+  return pushes && !book_.refusal.empty() ? book_.refusal : known().refusal;
+}
+
+// All that it takes, whatever the hub does meanwhile.
+struct DeviceHub::Opening {
+  std::string id, refusal;
+  std::optional<FoundDevice> found;
+  DeviceNotes notes;
+  AskForPriority ask;
+
+  std::unique_ptr<Device> open() const {
+    if (!refusal.empty()) throw FileError(refusal);
     std::unique_ptr<Device> opened = std::make_unique<AdjustedDevice>(
         open_device(usable(found, id), notes.pid, ask), notes.axes, notes.torque_scale);
     await_reading(*opened, kFirstReading);
+    return opened;
+  }
+};
+
+DeviceHub::Opening DeviceHub::opening_now() const {
+  return {book_.in_use, refusal(), found_now(), known(), ask_};
+}
+
+std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
+  return [opening = opening_now()] {
+    std::unique_ptr<Device> opened = opening.open();
+    const DeviceTraits& traits = opened->traits();
+    if (traits.pushes && traits.guarded && !opening.notes.checked) {
+      throw UncheckedError(
+          fmt::format("{}: its axes must be checked before it may push", traits.name));
+    }
     return opened;
   };
 }
@@ -184,14 +254,16 @@ void DeviceHub::forget_arm() {
 
 bool DeviceHub::needs_check() const {
   const FoundDevice* device = present();
-  return device != nullptr && device->kind->uncalibrated && !known().checked;
+  return device != nullptr && device->kind->pushes && !known().checked;
 }
 
-std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckTalk>& talk) const {
-  return [id = book_.in_use, found = found_now(), pid = known().pid, ask = ask_, talk] {
-    const std::unique_ptr<Device> device = open_device(usable(found, id), pid, ask);
-    await_reading(*device, kFirstReading);
-    return run_axis_check(*device, *talk, ask);
+std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckTalk>& talk,
+                                               const ArmDescription& present) const {
+  return [opening = opening_now(), talk, present] {
+    const std::unique_ptr<Device> device = opening.open();
+    const FoundDevice* found = opening.found ? &*opening.found : nullptr;
+    const ArmDescription arm = fitting_arm(opening.notes, found, device->traits(), present);
+    return run_axis_check(*device, arm, opening.notes.limits, *talk, opening.ask);
   };
 }
 

@@ -10,9 +10,15 @@
 #include "app/device/axis_check_run.h"
 #include "app/device/device_book.h"
 #include "core/dynamics/arm_description.h"
+#include "devices/hid/hid_error.h"
 #include "devices/registry/device_list.h"
 
 namespace limpid {
+
+// It pushes, and nobody has seen yet that its motors move its axes as they are told.
+struct UncheckedError : HidError {
+  using HidError::HidError;
+};
 
 class DeviceHub {
  public:
@@ -36,11 +42,21 @@ class DeviceHub {
   // From now on this one; empty: the virtual arm.
   void use(const std::string& id);
   DeviceNotes& notes(const std::string& id) { return book_.notes[id]; }
+  // Why the device in use is not used for what its book says, or fails to say: an entry, or the
+  // whole file, that cannot be understood. Empty: it may be.
+  std::string refusal() const;
+
+  // The first window that has a device connects to it by itself, any other one when it is told to.
+  // Makes this the first one, until give_way(), unless another program's window is. Returns who has
+  // it then, for people; empty: this one is.
+  std::string go_first();
+  void give_way() { first_ = {}; }
 
   const AskForPriority& ask() const { return ask_; }
 
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
-  // be called from anywhere, later. Errors: HidError.
+  // be called from anywhere, later. Errors: HidError; UncheckedError where it has to be checked
+  // first; FileError where its book refuses it.
   std::function<std::unique_ptr<Device>()> opening() const;
   // The arm for the device in use: what it was identified as, else `present` if it has as many
   // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
@@ -60,23 +76,32 @@ class DeviceHub {
   std::string remembered_report() const;
   // Takes it for its file's again, and nothing of its forces off the hand.
   void forget_arm();
-  // Its axes must be checked and were not yet: it may not push.
+  // It is known to push, and its axes were not checked yet: it may not. Of others only opening()
+  // tells.
   bool needs_check() const;
-  // Connects to it and checks its axes, as opening() and run_axis_check().
-  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckTalk>& talk) const;
-  // Returns what went wrong, empty if nothing did.
-  std::string save() const { return save_device_book(book_, file_); }
-  const std::string& complaint() const { return complaint_; }
+  // Connects to it and checks its axes, as opening() and run_axis_check(), within the limits that
+  // are set for it; `present` as in arm_for().
+  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckTalk>& talk,
+                                      const ArmDescription& present) const;
+  // Writes what was changed here and takes in what other programs have changed. Returns what went
+  // wrong, empty if nothing did.
+  std::string save();
+  // Takes in what the file says by now.
+  void read_again();
+  std::string complaint() const { return book_.complaint(); }  // about the book; empty: none
 
  private:
   DeviceNotes known() const;  // of the device in use
+  struct Opening;
+  Opening opening_now() const;
   std::optional<FoundDevice> found_now() const;
 
   std::filesystem::path file_;
   AskForPriority ask_;
-  std::string complaint_;
+  DeviceBook written_;  // as it was last read or written
   DeviceBook book_;
   std::vector<FoundDevice> found_;
+  DeviceClaim first_;
 };
 
 }  // namespace limpid

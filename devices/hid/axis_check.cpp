@@ -40,6 +40,9 @@ const char* explain(AxisVerdict verdict) {
              "was said, or it does not obey: it cannot be used as an arm.";
     case AxisVerdict::restless:
       return "It moved by itself. Let go of it, or hold it still, and try again.";
+    case AxisVerdict::beyond_limit:
+      return "It passed a limit of speed, range or energy that is set for it. Bring it near its "
+             "middle, let go of it or hold it lightly, and try again.";
     case AxisVerdict::given_up: return "The check was interrupted; nothing is stored.";
   }
   return "";

@@ -1,6 +1,6 @@
 // Finds out with little force whether a device's motors move its own axes the right way: what a
-// joystick's firmware makes of a force its descriptor does not tell, and with the wrong sign every
-// wall is a spring that pushes the hand away.
+// joystick's firmware makes of a force its descriptor does not tell, how a motor is wired nobody
+// does, and with the wrong sign every wall is a spring that pushes the hand away.
 //
 // Each axis in turn is pushed one way and then the other, by a torque that grows from nothing to a
 // tenth of full force and ends as soon as something has moved. Both times the same axis must move,
@@ -35,6 +35,7 @@ enum class AxisVerdict : std::uint8_t {
   too_far,        // it moved further or faster than so little force should move it
   restless,       // it moved by itself
   given_up,       // cancelled, or the device was not well
+  beyond_limit,   // of speed, range or energy, as they are set for the device
 };
 
 enum class AxisStage : std::uint8_t { resting, pushing, done };
@@ -62,6 +63,8 @@ class AxisCheck {
   std::span<const double> step(const Tick& in) noexcept;
   // No torque from the next step on.
   void cancel() noexcept { end(AxisVerdict::given_up); }
+  // The same, as whoever drives it has found a limit passed.
+  void exceed() noexcept { end(AxisVerdict::beyond_limit); }
 
   int dof() const { return dof_; }
   int axis() const { return axis_; }  // being pushed, or the last that was

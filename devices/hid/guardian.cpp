@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -49,13 +49,9 @@ namespace {
 
 constexpr int kTries = 3;  // of each report
 
-int open_locked(const std::string& path) {
+int open_node(const std::string& path) {
   const int device = open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (device < 0) throw HidError(fmt::format("{}: {}", path, std::strerror(errno)));
-  if (flock(device, LOCK_EX | LOCK_NB) != 0) {
-    close(device);
-    throw HidError(fmt::format("{}: another Limpid uses this device", path));
-  }
   return device;
 }
 
@@ -81,10 +77,15 @@ void become_independent() {
 }
 
 // The window's and other devices' files are none of its business.
-void close_all_but(int file) {
-  const auto kept = static_cast<unsigned>(file);
-  if (kept > 0) close_range(0, kept - 1, 0);
-  close_range(kept + 1, ~0u, 0);
+void close_all_but(int device, int claim) {
+  unsigned next = 0;
+  for (const int file : {std::min(device, claim), std::max(device, claim)}) {
+    if (file < 0) continue;
+    const auto kept = static_cast<unsigned>(file);
+    if (kept > next) close_range(next, kept - 1, 0);
+    next = kept + 1;
+  }
+  close_range(next, ~0u, 0);
 }
 
 void stop_device(int device, const std::vector<Report>& reports) {
@@ -97,10 +98,10 @@ void stop_device(int device, const std::vector<Report>& reports) {
 
 }  // namespace
 
-Guardian::Guardian(const std::string& path, const std::vector<Report>& stop_reports)
-    : Guardian(open_locked(path), stop_reports) {}
+Guardian::Guardian(const std::string& path, const std::vector<Report>& stop_reports, int claim)
+    : Guardian(open_node(path), stop_reports, claim) {}
 
-Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
+Guardian::Guardian(int device, const std::vector<Report>& stop_reports, int claim) {
   void* const page =
       mmap(nullptr, sizeof(Watch), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   const pid_t parent = getpid();
@@ -110,7 +111,7 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports) {
   }
   if (child_ == 0) {
     become_independent();
-    close_all_but(device);
+    close_all_but(device, claim);
     watch_->independent = true;
     watch_->wait_for_end(parent);
     if (!watch_->dismissed) stop_device(device, stop_reports);

@@ -18,11 +18,12 @@ namespace limpid {
 
 class Guardian {
  public:
-  // Opens the hidraw node for itself and locks it against other guardians. Throws HidError if
-  // another Limpid has the device, or the system refuses.
-  Guardian(const std::string& path, const std::vector<Report>& stop_reports);
-  // For a device that is open already; takes over the descriptor.
-  Guardian(int device, const std::vector<Report>& stop_reports);
+  // Opens the hidraw node for itself. `claim`: a descriptor that it keeps as long as it lives, so
+  // that nobody else has the device before its stop; -1: none. Throws HidError if the system
+  // refuses.
+  Guardian(const std::string& path, const std::vector<Report>& stop_reports, int claim = -1);
+  // For a device that is open already; takes over its descriptor.
+  Guardian(int device, const std::vector<Report>& stop_reports, int claim = -1);
   // In the thread that made it. Without dismiss() before: the guardian stops the device. Returns
   // when it has ended.
   ~Guardian();

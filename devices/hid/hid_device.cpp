@@ -11,8 +11,11 @@
 namespace limpid {
 
 HidDevice::HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
-                     const HidPlace& place, const AskForPriority& ask)
-    : transport_(std::move(transport)), protocol_(std::move(protocol)), path_(place.path) {
+                     const HidPlace& place, const AskForPriority& ask, DeviceClaim claim)
+    : claim_(std::move(claim)),
+      transport_(std::move(transport)),
+      protocol_(std::move(protocol)),
+      path_(place.path) {
   protocol_->open(*transport_);
   traits_ = protocol_->traits();
   if (traits_.name.empty()) traits_.name = place.name;
@@ -46,10 +49,11 @@ void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexc
     }
     const std::vector<Report>& stop = protocol_->stop_reports();
     if (traits_.pushes && !path_.empty()) {
-      guardian.emplace(path_, stop);
+      guardian.emplace(path_, stop, claim_.descriptor());
     } else if (traits_.pushes) {
       const LastWords words = transport_->last_words(stop);
-      if (words.descriptor >= 0) guardian.emplace(words.descriptor, words.bytes);
+      if (words.descriptor >= 0)
+        guardian.emplace(words.descriptor, words.bytes, claim_.descriptor());
     }
     guarded.set_value();
   } catch (...) {

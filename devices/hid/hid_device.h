@@ -12,6 +12,7 @@
 
 #include "core/realtime/realtime.h"
 #include "devices/device.h"
+#include "devices/hid/device_claim.h"
 #include "devices/hid/hid_exchange.h"
 
 namespace limpid {
@@ -25,10 +26,11 @@ struct HidPlace {
 
 class HidDevice final : public Device {
  public:
-  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). Not
-  // for the haptic thread, nor for one that yielded to it: the device's own thread starts as that.
+  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). `claim`:
+  // of the device, which is given back once the device has had its stop. Not for the haptic thread,
+  // nor for one that yielded to it: the device's own thread starts as that.
   HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
-            const HidPlace& place, const AskForPriority& ask = {});
+            const HidPlace& place, const AskForPriority& ask = {}, DeviceClaim claim = {});
   // The device is without force and its motors are off when this returns, if it can be reached. Of
   // one that hangs the kernel lets go after seconds only; its force was taken away before.
   ~HidDevice() override;
@@ -48,6 +50,7 @@ class HidDevice final : public Device {
  private:
   void run(const AskForPriority& ask, std::promise<void> guarded) noexcept;
 
+  DeviceClaim claim_;  // first: it goes last
   std::unique_ptr<HidTransport> transport_;
   std::unique_ptr<HidProtocol> protocol_;
   DeviceTraits traits_;

@@ -131,6 +131,7 @@ HidExchange::Torque HidExchange::withheld() noexcept {
 bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   const bool delivered = transport_.write(report);
   failures_ = delivered ? 0 : failures_ + 1;
+  if (!delivered) protocol_.undelivered();
   if (failures_ >= kMostFailures) lose();
   receive(0);
   return delivered;

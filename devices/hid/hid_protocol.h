@@ -47,6 +47,9 @@ class HidProtocol {
   virtual void encode(std::span<const double> torque, nanoseconds now,
                       const SendReport& send) noexcept = 0;
 
+  // What encode() has just sent did not get through.
+  virtual void undelivered() noexcept {}
+
   // Output reports that take all force away, whatever was said before; fixed after open().
   virtual const std::vector<Report>& stop_reports() const = 0;
 };

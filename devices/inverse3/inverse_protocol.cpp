@@ -74,24 +74,29 @@ bool ill(const json& status) {
          says_no(status, "power_supply");
 }
 
+bool other_basis(const std::string& basis) { return basis != "XYZ"; }
+bool other_preset(const std::string& preset) {
+  return preset != "defaults" && preset != "arm_front";
+}
+bool moved(const json& transform) {
+  const json& inner = at(transform, "transform").is_null() ? transform : transform["transform"];
+  const Cursor one{1, 1, 1}, zero{};
+  return vector_in(at(inner, "scale")).value_or(one) != one ||
+         vector_in(at(inner, "position")).value_or(zero) != zero ||
+         vector_in(at(inner, "rotation")).value_or(zero) != zero;
+}
+
 // Another frame than the device's own, for people; empty if it is that. What is not said is as it
 // is at first.
-std::string other_frame(const json& device) {
-  const json& config = at(device, "config");
+std::string other_frame(const json& config, const json& workspace) {
   const std::string basis = text_of(at(at(config, "basis"), "permutation"));
-  if (!basis.empty() && basis != "XYZ") return fmt::format("the basis {}; needed: XYZ", basis);
+  if (!basis.empty() && other_basis(basis)) return fmt::format("the basis {}; needed: XYZ", basis);
   const std::string preset = text_of(at(config, "preset"));
-  if (!preset.empty() && preset != "defaults" && preset != "arm_front") {
+  if (!preset.empty() && other_preset(preset)) {
     return fmt::format("the preset {}; needed: defaults or arm_front", preset);
   }
-  for (const json& transform : {at(config, "mount"), at(at(device, "state"), "transform")}) {
-    const json& inner = at(transform, "transform").is_null() ? transform : transform["transform"];
-    const Cursor one{1, 1, 1}, zero{};
-    if (vector_in(at(inner, "scale")).value_or(one) != one ||
-        vector_in(at(inner, "position")).value_or(zero) != zero ||
-        vector_in(at(inner, "rotation")).value_or(zero) != zero) {
-      return "a mount or a workspace that is moved, turned or scaled; needed: as at first";
-    }
+  if (moved(at(config, "mount")) || moved(workspace)) {
+    return "a mount or a workspace that is moved, turned or scaled; needed: as at first";
   }
   return {};
 }
@@ -124,7 +129,9 @@ void InverseProtocol::open(HidTransport& transport) {
     throw HidError(id_.empty() ? "the service has no Inverse3"
                                : fmt::format("the service has no Inverse3 {}", id_));
   }
-  if (const std::string frame = other_frame(device); !frame.empty()) {
+  if (const std::string frame =
+          other_frame(at(device, "config"), at(at(device, "state"), "transform"));
+      !frame.empty()) {
     throw HidError("the service is set to " + frame);
   }
   id_ = text_of(at(device, "device_id"));
@@ -151,18 +158,32 @@ bool InverseProtocol::follows(const Cursor& cursor) {
   return !seen_any_ || distance <= kLeap + kFastest * in_seconds(now_ - seen_);
 }
 
+// Other programs can turn, move or scale the frame at any time. What a message does not say has not
+// changed.
+template <class Json>
+void InverseProtocol::follow_frame(const Json& config, const Json& workspace) {
+  const std::string basis = text_of(at(at(config, "basis"), "permutation"));
+  const std::string preset = text_of(at(config, "preset"));
+  const Json& mount = at(config, "mount");
+  if (!basis.empty()) other_frame_[0] = other_basis(basis);
+  if (!preset.empty()) other_frame_[1] = other_preset(preset);
+  if (!mount.is_null()) other_frame_[2] = moved(mount);
+  if (!workspace.is_null()) other_frame_[3] = moved(workspace);
+}
+
 Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
                                 DeviceReading& reading) noexcept {
   unanswered_ = std::max(0, unanswered_ - 1);
   const json message = parsed(report);
   const json& device = device_in(message, id_);
+  follow_frame(at(device, "config"), at(at(device, "state"), "transform"));
   const auto cursor = vector_in(at(at(device, "state"), "cursor_position"));
   if (!cursor || !follows(*cursor)) return Decoded::unusable;
   cursor_ = *cursor;
   seen_ = now_;
   seen_any_ = true;
   if (const json& status = at(device, "status"); status.is_object()) fault_ = ill(status);
-  reading.fault = fault_;
+  reading.fault = fault_ || other_frame_.any();
   for (std::size_t i = 0; i < cursor_.size(); ++i) reading.x[i] = cursor_[i] / kSlideUnit;
   reading.buttons = 0;
   const json& grips = at(message, "wireless_verse_grip");
@@ -196,13 +217,18 @@ void InverseProtocol::encode(std::span<const double> torque, nanoseconds now,
     force[i] = torque[i] / kSlideUnit;
   }
   const bool any = std::ranges::any_of(force, [](double f) { return f != 0; });
-  const bool lets_go = pushing_ && !any;
+  const bool again = zero_lost_ && now - asked_ >= kZeroAgain;
+  const bool lets_go = !any && (pushing_ || again);
   if (unanswered_ > 0 && !lets_go && now - asked_ < kAskAgain) return;
   if (now - asked_ >= kAskAgain) unanswered_ = 0;
   ++unanswered_;
   asked_ = now;
   pushing_ = any;
+  zero_lost_ = false;
   send(command(force));
 }
+
+// It waits for no answer then.
+void InverseProtocol::undelivered() noexcept { zero_lost_ = !pushing_; }
 
 }  // namespace limpid

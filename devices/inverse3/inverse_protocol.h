@@ -15,10 +15,12 @@
 //
 // Coordinates: joint i is the cursor's x, y or z in slide units (kSlideUnit), as the service has
 // it at first: x to the right, y away from the user, z up, from the middle of the mounting plate.
-// A service that was told to scale or turn them is refused.
+// A service that was told to scale or turn them is refused; one that is told so later is at fault
+// from the message on that says it.
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <string>
 
 #include "devices/hid/hid_protocol.h"
@@ -38,6 +40,9 @@ class InverseProtocol final : public HidProtocol {
   // After so much silence another command is sent, in case the answer was lost.
   static constexpr nanoseconds kAskAgain = std::chrono::milliseconds(100);
 
+  // A zero that did not leave is sent again after this.
+  static constexpr nanoseconds kZeroAgain = std::chrono::milliseconds(1);
+
   // Of the device with this id; empty: of the first that there is.
   explicit InverseProtocol(std::string id) : id_(std::move(id)) {}
 
@@ -47,20 +52,25 @@ class InverseProtocol final : public HidProtocol {
   Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept override;
   void encode(std::span<const double> torque, nanoseconds now,
               const SendReport& send) noexcept override;
+  void undelivered() noexcept override;
   const std::vector<Report>& stop_reports() const override { return stop_reports_; }
 
  private:
   Report command(const std::array<double, 3>& force) const;
   bool follows(const std::array<double, 3>& cursor);
+  template <class Json>
+  void follow_frame(const Json& config, const Json& workspace);
 
   std::string id_;
   DeviceTraits traits_;
   std::vector<Report> stop_reports_;
   nanoseconds now_{}, asked_{}, seen_{};
   int unanswered_ = 0;
-  bool pushing_ = false;  // the newest command was a force
+  bool pushing_ = false;    // the newest command was a force
+  bool zero_lost_ = false;  // or it was no force, and did not leave
   bool seen_any_ = false;
   bool fault_ = false;
+  std::bitset<4> other_frame_;      // than its own: basis, preset, mount, workspace
   std::array<double, 3> cursor_{};  // where it was last seen [m]
 };
 

@@ -2,8 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -11,6 +16,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cstring>
 #include <functional>
 #include <utility>
 
@@ -42,6 +48,19 @@ Report text_frame(std::span<const std::uint8_t> text) {
   frame.insert(frame.end(), 4, 0);
   frame.insert(frame.end(), text.begin(), text.end());
   return frame;
+}
+
+// Only an address of this computer's own can be had.
+bool is_here(const addrinfo& place) {
+  const int file = socket(place.ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return false;
+  sockaddr_storage any_port{};
+  std::memcpy(&any_port, place.ai_addr, place.ai_addrlen);
+  // The port is at the same place in both kinds of addresses.
+  reinterpret_cast<sockaddr_in&>(any_port).sin_port = 0;
+  const bool here = bind(file, reinterpret_cast<const sockaddr*>(&any_port), place.ai_addrlen) == 0;
+  close(file);
+  return here;
 }
 
 // All of it happens in the calls below, on the thread that calls.
@@ -169,6 +188,31 @@ class WebSocketTransport final : public HidTransport {
 };
 
 }  // namespace
+
+std::string resolved(const ServiceAddress& address) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(address.host.c_str(), address.port.c_str(), &wanted, &found) != 0) {
+    return address.text();
+  }
+  // The least of several, since their order changes.
+  std::string least;
+  for (const addrinfo* place = found; place != nullptr; place = place->ai_next) {
+    std::array<char, NI_MAXHOST> text{};
+    if (getnameinfo(place->ai_addr, place->ai_addrlen, text.data(), text.size(), nullptr, 0,
+                    NI_NUMERICHOST) != 0) {
+      continue;
+    }
+    if (is_here(*place)) {
+      least = "here";
+      break;
+    }
+    if (least.empty() || text.data() < least) least = text.data();
+  }
+  freeaddrinfo(found);
+  return fmt::format("{}:{}", least.empty() ? address.host : least, address.port);
+}
 
 std::unique_ptr<HidTransport> open_web_socket(const ServiceAddress& address, int timeout_ms) {
   return std::make_unique<WebSocketTransport>(address, std::chrono::milliseconds(timeout_ms));

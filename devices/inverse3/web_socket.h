@@ -19,6 +19,11 @@ struct ServiceAddress {
   friend bool operator==(const ServiceAddress&, const ServiceAddress&) = default;
 };
 
+// The address and port that it leads to: one text for all names of one place, "here:PORT" for those
+// of this computer. Of a name that nobody knows: the name itself. A name that has to be looked up
+// may take seconds.
+std::string resolved(const ServiceAddress& address);
+
 // Connects within so long [ms]; a name that has to be looked up first may take longer. Throws
 // HidError with the reason.
 std::unique_ptr<HidTransport> open_web_socket(const ServiceAddress& address, int timeout_ms);

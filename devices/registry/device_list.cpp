@@ -1,5 +1,7 @@
 #include "devices/registry/device_list.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 
 #include "devices/hid/hid_error.h"
@@ -27,6 +29,23 @@ constexpr ListDevices kWaysIn[] = {
     of_services,
 };
 
+// Where nobody can tell, opening it says why.
+std::string user_of(const FoundDevice& found) {
+  try {
+    return claimed_by(found.claim_key(found));
+  } catch (const HidError&) {
+    return {};
+  }
+}
+
+DeviceClaim claim(const FoundDevice& found) {
+  try {
+    return DeviceClaim(found.claim_key(found));
+  } catch (const HidError& error) {
+    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<FoundDevice> list_devices(const DeviceSearch& search) {
@@ -36,12 +55,15 @@ std::vector<FoundDevice> list_devices(const DeviceSearch& search) {
     all.insert(all.end(), std::make_move_iterator(found.begin()),
                std::make_move_iterator(found.end()));
   }
+  for (FoundDevice& each : all) {
+    if (each.missing.empty()) each.in_use_by = user_of(each);
+  }
   return all;
 }
 
 std::unique_ptr<Device> open_device(const FoundDevice& found, const PidSettings& settings,
                                     const AskForPriority& ask) {
-  return found.open(found, settings, ask);
+  return found.open(found, settings, ask, claim(found));
 }
 
 }  // namespace limpid

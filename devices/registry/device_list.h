@@ -17,9 +17,12 @@ struct FoundDevice {
   HidPlace place;
   const DeviceKind* kind = nullptr;
   std::string missing;  // why it cannot be opened and what to do; empty if it can
-  // How it is opened; see open_device().
+  // How it is opened, once it is claimed; see open_device().
   std::unique_ptr<Device> (*open)(const FoundDevice& found, const PidSettings& settings,
-                                  const AskForPriority& ask) = nullptr;
+                                  const AskForPriority& ask, DeviceClaim claim) = nullptr;
+  // Names the physical thing, for its claim: the same by whatever way it was found.
+  std::string (*claim_key)(const FoundDevice& found) = nullptr;
+  std::string in_use_by = {};  // another program, for people; empty: none (device_claim.h)
 };
 
 // What is looked for, and where.
@@ -32,7 +35,9 @@ struct DeviceSearch {
 // All that there are now.
 std::vector<FoundDevice> list_devices(const DeviceSearch& search);
 
-// Connects to it. Throws HidError. `settings` matter to uncalibrated devices only.
+// Claims it and connects to it: the only way to a device. Throws HidError; where another program
+// has the device, nothing is opened and nothing sent. `settings` matter to uncalibrated devices
+// only.
 std::unique_ptr<Device> open_device(const FoundDevice& found, const PidSettings& settings = {},
                                     const AskForPriority& ask = {});
 

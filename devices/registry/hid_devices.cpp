@@ -1,6 +1,8 @@
 #include "devices/registry/hid_devices.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -72,8 +74,17 @@ std::string what_is_missing(const std::string& path, const fs::path& udev_rule) 
       path, udev_rule.string());
 }
 
+// The node's number is the device's, whatever names lead to it.
+std::string claim_key(const FoundDevice& found) {
+  struct stat is {};
+  if (stat(found.place.path.c_str(), &is) != 0 || !S_ISCHR(is.st_mode)) {
+    return "hidraw:" + found.place.path;
+  }
+  return fmt::format("hidraw:{}:{}", major(is.st_rdev), minor(is.st_rdev));
+}
+
 std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSettings& settings,
-                                        const AskForPriority& ask) {
+                                        const AskForPriority& ask, DeviceClaim claim) {
   try {
     auto transport = open_hidraw(found.place.path);
     const auto descriptor = parse_report_descriptor(transport->report_descriptor());
@@ -81,7 +92,8 @@ std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSetti
     // Another device may have come to this path since the list was made.
     if (entry == nullptr || &entry->kind != found.kind) throw HidError("it has been unplugged");
     auto protocol = entry->make(descriptor, settings);
-    return std::make_unique<HidDevice>(std::move(transport), std::move(protocol), found.place, ask);
+    return std::make_unique<HidDevice>(std::move(transport), std::move(protocol), found.place, ask,
+                                       std::move(claim));
   } catch (const HidError& error) {
     throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
   }
@@ -108,7 +120,8 @@ std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRo
     found.push_back({{value_of(uevent, "HID_NAME"), product.id, path},
                      &protocol->kind,
                      missing,
-                     open_hid_device});
+                     open_hid_device,
+                     claim_key});
   }
   std::sort(found.begin(), found.end(),
             [](const FoundDevice& a, const FoundDevice& b) { return a.place.path < b.place.path; });

@@ -18,6 +18,7 @@ constexpr std::string_view kKey = "inverse3";
 constexpr DeviceKind kKind{.key = "inverse3",
                            .name = "Haply Inverse3",
                            .use = "its tip in three directions, pushes",
+                           .pushes = true,
                            .arm = "inverse3.urdf",
                            .service = true};
 
@@ -29,15 +30,34 @@ bool is_port(const std::string& text) {
 }
 
 std::unique_ptr<Device> open_inverse(const FoundDevice& found, const PidSettings&,
-                                     const AskForPriority& ask) {
+                                     const AskForPriority& ask, DeviceClaim claim) {
   try {
     const auto name = inverse_name(found.place.id);
     return std::make_unique<HidDevice>(open_web_socket(name.value().address, kConnect),
                                        std::make_unique<InverseProtocol>(name->id),
-                                       HidPlace{found.place.name, found.place.id, ""}, ask);
+                                       HidPlace{found.place.name, found.place.id, ""}, ask,
+                                       std::move(claim));
   } catch (const HidError& error) {
     throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
   }
+}
+
+std::vector<std::string> ids_at(const ServiceAddress& address) {
+  const auto service = open_web_socket(address, kLook);
+  Report first(HidTransport::kMaxMessage);
+  const int size = service->read(first, kLook);
+  return inverse_ids(std::span(first).first(static_cast<std::size_t>(std::max(size, 0))));
+}
+
+// Whoever names none of a service's devices gets its first, and claims that one.
+std::string claim_key(const FoundDevice& found) {
+  const InverseName name = inverse_name(found.place.id).value();
+  std::string id = name.id;
+  if (id.empty()) {
+    const std::vector<std::string> ids = ids_at(name.address);
+    if (!ids.empty()) id = ids.front();
+  }
+  return fmt::format("inverse3:{}:{}", resolved(name.address), id);
 }
 
 FoundDevice entry(const InverseName& name, bool only, const std::string& missing) {
@@ -46,14 +66,8 @@ FoundDevice entry(const InverseName& name, bool only, const std::string& missing
   return {{fmt::format("Haply Inverse3{} ({})", which, place), name.text(), place},
           &kKind,
           missing,
-          open_inverse};
-}
-
-std::vector<std::string> ids_at(const ServiceAddress& address) {
-  const auto service = open_web_socket(address, kLook);
-  Report first(HidTransport::kMaxMessage);
-  const int size = service->read(first, kLook);
-  return inverse_ids(std::span(first).first(static_cast<std::size_t>(std::max(size, 0))));
+          open_inverse,
+          claim_key};
 }
 
 }  // namespace

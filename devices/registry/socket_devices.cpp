@@ -37,13 +37,19 @@ bool somebody_listens(const fs::path& path) {
   return !refused;
 }
 
+std::string claim_key(const FoundDevice& found) {
+  std::error_code error;
+  const fs::path path = fs::canonical(found.place.path, error);
+  return "socket:" + (error ? found.place.path : path.string());
+}
+
 std::unique_ptr<Device> open_socket_device(const FoundDevice& found, const PidSettings&,
-                                           const AskForPriority& ask) {
+                                           const AskForPriority& ask, DeviceClaim claim) {
   try {
     // Without a path: the end of this process closes the connection, nobody has to watch over it.
-    return std::make_unique<HidDevice>(open_socket(found.place.path),
-                                       std::make_unique<RawProtocol>(),
-                                       HidPlace{found.place.name, found.place.id, ""}, ask);
+    return std::make_unique<HidDevice>(
+        open_socket(found.place.path), std::make_unique<RawProtocol>(),
+        HidPlace{found.place.name, found.place.id, ""}, ask, std::move(claim));
   } catch (const HidError& error) {
     throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
   }
@@ -64,7 +70,8 @@ std::vector<FoundDevice> list_socket_devices(const fs::path& folder) {
     const fs::path& path = entry->path();
     if (path.extension() != ".device" || !somebody_listens(path)) continue;
     const std::string name = path.stem().string();
-    found.push_back({{name, "socket:" + name, path.string()}, &kKind, {}, open_socket_device});
+    found.push_back(
+        {{name, "socket:" + name, path.string()}, &kKind, {}, open_socket_device, claim_key});
   }
   std::ranges::sort(found, {}, [](const FoundDevice& one) { return one.place.path; });
   return found;

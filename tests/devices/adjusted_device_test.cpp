@@ -80,5 +80,24 @@ TEST_F(Adjusted, Stops) {
   EXPECT_TRUE(fake->stopped);
 }
 
+// Told the opposite, it does what it is told; what is read of it stays.
+TEST(AdjustedDevice, TurnsTheTorqueOfAReversedMotorRoundAndNothingElse) {
+  auto inner = std::make_unique<test::FakeDevice>(3);
+  test::FakeDevice& fake = *inner;
+  const std::array<AxisAdjustment, 3> axes{
+      {{.reversed = true}, {}, {.scale = 2, .inverted = true, .reversed = true}}};
+  AdjustedDevice device(std::move(inner), axes, 0.5);
+  fake.reading.x = {0.1, 0.2, 0.3};
+  DeviceReading reading;
+  device.read(reading);
+  EXPECT_EQ(reading.x[0], 0.1);
+  EXPECT_EQ(reading.x[2], -0.6);
+  device.write(std::array{0.1, 0.2, 0.05});
+  EXPECT_DOUBLE_EQ(fake.told[0], -0.1 / 0.5);
+  EXPECT_DOUBLE_EQ(fake.told[1], 0.2 / 0.5);
+  EXPECT_DOUBLE_EQ(fake.told[2], 2 * 0.05 / 0.5);
+  EXPECT_EQ(device.traits().effort, (std::vector{0.25, 0.25, 0.125}));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -87,6 +87,11 @@ class InverseService {
       }
     }
   }
+  // Whether it has said such a line since; none is forgotten.
+  bool heard(const std::function<bool(const std::string&)>& wanted) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(said_, wanted);
+  }
   std::string wait_for(const std::string& line) {
     return wait_for([&](const std::string& each) { return each == line; });
   }

@@ -24,18 +24,60 @@ void DeviceDesk::update() {
       desk_.loop().holds_device() || Clock::now() < retry_at_) {
     return;
   }
-  const FoundDevice* found = hub_.present();
-  if (found == nullptr) {
-    problem_ = "not connected";
-  } else if (!found->missing.empty()) {
-    problem_ = found->missing;
-  } else if (hub_.needs_check()) {
-    if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
-  } else if (must_wait()) {
-    problem_ = "waits for the end of the recording";
-  } else {
-    connect();
+  decide_who_chooses();
+  if (!hub_.refusal().empty()) {  // until somebody mends the file
+    hub_.read_again();
+    retry_at_ = Clock::now() + kRetry;
   }
+  if (std::string why = obstacle(); !why.empty()) {
+    problem_ = std::move(why);
+    blocked_ = true;
+    return;
+  }
+  if (std::exchange(blocked_, false)) problem_.clear();
+  if (!awaits_check()) return connect();
+  if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
+}
+
+std::string DeviceDesk::obstacle() const {
+  const FoundDevice* found = hub_.present();
+  if (found == nullptr) return "not connected";
+  if (!found->missing.empty()) return found->missing;
+  if (std::string refusal = hub_.refusal(); !refusal.empty()) return refusal;
+  std::string why = waits_;
+  if (!found->in_use_by.empty()) {
+    why += fmt::format("{}The device is in use by {}.", why.empty() ? "" : " ", found->in_use_by);
+  }
+  if (!why.empty()) return why;
+  return must_wait() ? "waits for the end of the recording" : "";
+}
+
+void DeviceDesk::decide_who_chooses() {
+  if (std::exchange(decided_, true) || !waits_.empty()) return;
+  if (const std::string other = hub_.go_first(); !other.empty()) {
+    wait_for_choice(
+        fmt::format("Another window has a device already ({}), so that this one connects to none "
+                    "by itself.",
+                    other));
+  }
+}
+
+// If another window is the first, it stays that.
+void DeviceDesk::choose() {
+  decided_ = true;
+  waits_.clear();
+  retry_at_ = {};
+  hub_.go_first();
+}
+
+bool DeviceDesk::waits_for_choice() const {
+  const FoundDevice* found = hub_.present();
+  return !waits_.empty() && found != nullptr && found->missing.empty();
+}
+
+bool DeviceDesk::awaits_check() const {
+  const bool unchecked = hub_.needs_check() || unchecked_ == hub_.in_use();
+  return unchecked && !hub_.in_use().empty() && !check_.valid() && hub_.refusal().empty();
 }
 
 bool DeviceDesk::must_wait() const {
@@ -97,6 +139,9 @@ void DeviceDesk::take_connected() {
             ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
                           traits.name)
             : fmt::format("{} leads the hand.", traits.name));
+  } catch (const UncheckedError&) {
+    unchecked_ = connecting_id_;
+    problem_.clear();
   } catch (const std::exception& e) {
     problem_ = e.what();
     retry_at_ = Clock::now() + kRetry;
@@ -114,10 +159,11 @@ void DeviceDesk::plugged() {
 }
 
 void DeviceDesk::start_check() {
+  choose();
   talk_ = std::make_shared<AxisCheckTalk>();
   problem_.clear();
   connecting_id_ = hub_.in_use();
-  check_ = desk_.device_errands().run(hub_.checking(talk_));
+  check_ = desk_.device_errands().run(hub_.checking(talk_, desk_.stage().arm()));
 }
 
 void DeviceDesk::follow_check() {
@@ -132,6 +178,7 @@ void DeviceDesk::follow_check() {
     }
     notices_.say("Its axes move as they are pushed.\n" + problem_);
     problem_.clear();
+    unchecked_.clear();
     save();
   } catch (const std::exception& e) {
     problem_ = e.what();
@@ -144,10 +191,16 @@ void DeviceDesk::use(const std::string& id) {
     notices_.say("Stop the recording before changing the device.", true);
     return;
   }
+  if (id.empty()) {
+    hub_.give_way();
+  } else {
+    choose();
+  }
   if (id == hub_.in_use()) return;
   hub_.use(id);
   cancel_check();
   problem_.clear();
+  unchecked_.clear();
   retry_at_ = services_at_ = {};
   requests_.close();
   save();

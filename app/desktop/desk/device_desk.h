@@ -37,6 +37,10 @@ class DeviceDesk {
   void plugged();
   // Another device; empty: the virtual arm.
   void use(const std::string& id);
+  // From now on it connects to what the user chooses only; `why`, for people: a sentence.
+  void wait_for_choice(std::string why) { waits_ = std::move(why); }
+  // The device in use is there, and the user may choose it by use().
+  bool waits_for_choice() const;
   // After the notes on the device in use have changed.
   void save();
   // The same, where it has to be connected anew for it.
@@ -44,8 +48,8 @@ class DeviceDesk {
 
   const std::string& problem() const { return problem_; }  // why it is not in the loop
 
-  // The check of a joystick's axes, which has to come before it may push.
-  bool awaits_check() const { return hub_.needs_check() && !check_.valid(); }
+  // The check of a device's axes, which has to come before it may push.
+  bool awaits_check() const;
   void start_check();
   void cancel_check() {
     if (talk_) talk_->cancel = true;
@@ -68,6 +72,11 @@ class DeviceDesk {
   void take_connected();
   void watch();
   void follow_check();
+  // Why it is not connected to at present, for people; empty: nothing keeps it from that.
+  std::string obstacle() const;
+  // The first window that has a device connects to it by itself.
+  void decide_who_chooses();
+  void choose();
   // A recording goes on with the device that it began with only.
   bool must_wait() const;
 
@@ -83,6 +92,10 @@ class DeviceDesk {
   bool asking_services_ = false, lent_ = false;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;
+  std::string unchecked_;  // id of one that pushes, as its opening has shown
+  std::string waits_;      // why the user has to choose; empty: need not, or has chosen
+  bool decided_ = false;   // whether the user has to
+  bool blocked_ = false;   // the problem is an obstacle
   std::future<AxisCheck> check_;
   std::shared_ptr<AxisCheckTalk> talk_;
 };

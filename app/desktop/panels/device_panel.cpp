@@ -55,9 +55,10 @@ void choices(DeviceDesk& devices, const PadChoice& pads) {
   hand_choices(devices, pads);
   bool known = devices.hub().in_use().empty();
   for (const FoundDevice& found : devices.hub().found()) {
-    const std::string help = found.missing.empty()
-                                 ? fmt::format("{}, {}", found.kind->name, found.place.id)
-                                 : found.missing;
+    std::string help = found.missing.empty()
+                           ? fmt::format("{}, {}", found.kind->name, found.place.id)
+                           : found.missing;
+    if (!found.in_use_by.empty()) help += fmt::format("\nIn use by {}.", found.in_use_by);
     ImGui::PushID(found.place.path.c_str());
     choice(devices, found.place.name.c_str(), found.place.id, help.c_str());
     ImGui::PopID();
@@ -66,7 +67,7 @@ void choices(DeviceDesk& devices, const PadChoice& pads) {
   if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
 }
 
-// The guided check of a joystick that has not been used before; true while there is one to show.
+// The guided check of a device that has not been used before; true while there is one to show.
 bool axis_check(DeviceDesk& devices) {
   if (const AxisCheckTalk* check = devices.check()) {
     ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
@@ -78,7 +79,7 @@ bool axis_check(DeviceDesk& devices) {
   if (ImGui::Button("Check the axes")) devices.start_check();
   tooltip(
       "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
-      "stick stand free, the hands beside it; Esc stops it.");
+      "device stand free, the hands beside it; Esc stops it.");
   return true;
 }
 
@@ -91,6 +92,9 @@ void status(DeviceDesk& devices, const LiveLoop& loop) {
     const FoundDevice* found = devices.hub().present();
     const std::string missing = found != nullptr ? found->missing : std::string();
     const std::size_t from = missing.find('\''), to = missing.rfind('\'');
+    if (devices.waits_for_choice() && ImGui::Button("Connect to it")) {
+      devices.use(devices.hub().in_use());
+    }
     if (from < to && ImGui::SmallButton("copy the command")) {
       ImGui::SetClipboardText(missing.substr(from + 1, to - from - 1).c_str());
     }
@@ -183,6 +187,12 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
   tooltip("Turns the axis round, its torque with it.");
   ImGui::SameLine();
+  changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
+  tooltip(
+      "For a motor that pushes the wrong way, which the check of the axes finds by itself. The "
+      "axes "
+      "are checked again then: with the wrong sign the loop is unstable.");
+  ImGui::SameLine();
   if (ImGui::SmallButton("zero here")) {
     axis.zero += angle / axis.factor();
     changed = true;
@@ -216,14 +226,6 @@ bool joystick_settings(PidSettings& pid) {
   tooltip("How far the stick tilts to each side.");
   pid.effort = static_cast<double>(effort);
   pid.range = static_cast<double>(range) / kDegrees;
-  for (std::size_t i = 0; i < 2; ++i) {
-    changed =
-        ImGui::Checkbox(i == 0 ? "reverse force X" : "reverse force Y", &pid.reverse[i]) || changed;
-    tooltip(
-        "For a device that pushes the wrong way. Try with little force: with the wrong sign "
-        "the loop is unstable.");
-    if (i == 0) ImGui::SameLine();
-  }
   return changed;
 }
 
@@ -258,16 +260,19 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
   const bool in_place = desk.loop().device_in_place();
   const std::size_t joints = in_place ? of_arm.size() : 6;
   notes.axes.resize(std::max(notes.axes.size(), joints));
+  const std::vector<AxisAdjustment> before = notes.axes;
   bool changed = false;
   for (std::size_t i = 0; i < joints; ++i) {
     changed = axis_row(notes.axes[i], i, reading.x[i], in_place ? &of_arm[i] : nullptr) || changed;
   }
+  if (!std::ranges::equal(before, notes.axes, {}, &AxisAdjustment::reversed,
+                          &AxisAdjustment::reversed)) {
+    notes.checked = false;
+  }
   if (found->kind->uncalibrated) {
-    const auto reverse = notes.pid.reverse;
     const double effort = notes.pid.effort;
     changed = joystick_settings(notes.pid) || changed;
     if (notes.pid.effort != effort) notes.torque_scale = 1;  // which was found with the other one
-    if (notes.pid.reverse != reverse) notes.checked = false;
   }
   if (changed) devices.connect_anew();
   if (!desk.loop().device_in_place()) return;

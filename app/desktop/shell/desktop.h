@@ -171,6 +171,8 @@ class Desktop {
   NamedTexts layouts_, presets_;
   std::size_t chosen_plot_ = 0;
   std::string device_file_, device_tip_;
+  std::optional<ArmDescription>
+      arm_of_file_;          // of the device in the arm's place, as its file has it
   std::string first_scene_;  // the start's, while its models come in
   std::optional<TipsToChoose> tips_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit

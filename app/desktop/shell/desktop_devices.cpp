@@ -1,6 +1,7 @@
 // What the desktop does when devices come and go.
 #include <imgui.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/base/assets.h"
@@ -11,6 +12,16 @@
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid {
+namespace {
+
+// What the loop takes from an arm once, when it is opened.
+bool same_limits(const ArmDescription& one, const ArmDescription& other) {
+  return one.delay == other.delay &&
+         std::ranges::equal(one.joints, other.joints, {}, &Joint::effort, &Joint::effort);
+}
+
+}  // namespace
+
 void Desktop::open_device(std::unique_ptr<Device> device) {
   devices_.plugged();
   const DeviceTraits& traits = device->traits();
@@ -22,12 +33,20 @@ void Desktop::open_device(std::unique_ptr<Device> device) {
     }
     return desk_.loop().plug(std::move(device));
   }
-  const ArmDescription arm = devices_.hub().arm_for(traits, present);
-  if (desk_.loop().device_in_place() && arm.urdf == present.urdf) {
-    return desk_.loop().plug(std::move(device));
-  }
+  // A device lowers the arm's limits to its own: the next one begins with those of the arm's file.
+  const bool in_place = desk_.loop().device_in_place();
+  const bool lowered = in_place && arm_of_file_ && arm_of_file_->urdf == present.urdf;
+  const ArmDescription before = lowered ? *arm_of_file_ : present;
+  const ArmDescription arm = devices_.hub().arm_for(traits, before);
+  DeviceTraits without_limits = traits;
+  without_limits.effort.clear();
+  arm_of_file_ = devices_.hub().arm_for(without_limits, before);
+  const bool same_arm = in_place && arm.urdf == present.urdf;
+  if (same_arm && same_limits(arm, present)) return desk_.loop().plug(std::move(device));
   playback_.close();
-  change_arm(arm, std::move(device));
+  if (!same_arm) return change_arm(arm, std::move(device));
+  const SceneEditor& editor = document_.editor();
+  open(arm, editor.document(), editor.models(), std::move(device), !editor.dirty());
 }
 
 // Of a device it is the device's, remembered with it: nothing of it is left to an arm that comes

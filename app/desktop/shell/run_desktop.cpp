@@ -86,13 +86,19 @@ void Application::open() {
   desktop_.automatic_quality() = AutoQuality(Quality::automatic_level(window_.renderer()));
   desktop_.open_last_world(options_.device, options_.tip, options_.scene,
                            options_.parameters.has_value());
+  // A double click on a file asks for the file and for nothing else.
+  if (!options_.session.empty() || !options_.files.empty()) {
+    desktop_.devices().wait_for_choice(
+        "This window was started with a file, so that it connects to no device by itself.");
+  }
   if (!options_.in_use.empty()) desktop_.devices().use(options_.in_use);
 }
 
 void Application::run(const std::string& complaint) {
   Notices& notices = desktop_.notices();
   for (const std::string& each :
-       {complaint, desktop_.layouts().complaint(), desktop_.presets().complaint()}) {
+       {complaint, desktop_.layouts().complaint(), desktop_.presets().complaint(),
+        desktop_.devices().hub().complaint()}) {
     if (!each.empty()) notices.say(each, true);
   }
   desktop_.playback().recover_leftovers(sessions_dir());

@@ -18,7 +18,8 @@ struct DeviceKind {
   const char* name = "";      // for people
   const char* use = "";       // for people: what it is good for
   bool leads_hand = false;    // of the virtual arm; else it takes the arm's place
-  bool uncalibrated = false;  // only its owner knows its PidSettings, and its axes must be checked
+  bool uncalibrated = false;  // only its owner knows its PidSettings
+  bool pushes = false;        // always; others say so themselves once they are opened
   const char* arm = "";       // file of its own arm, in assets/devices; none: any with its joints
   bool service = false;       // found by asking a program, which is not to be done all the time
 };

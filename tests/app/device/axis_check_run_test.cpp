@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "app/device/device_book.h"
+#include "core/dynamics/arm.h"
+#include "devices/files/arm/urdf_file.h"
 #include "tests/support/device_traits.h"
 #include "tests/support/fake_device.h"
 
@@ -41,8 +43,11 @@ class Yielding final : public Device {
   std::uint64_t count_ = 0;
 };
 
+ArmDescription stick() { return read_urdf(LIMPID_ASSETS_DIR "/devices/joystick.urdf"); }
+
 // The window, as it is seen while it runs.
-AxisCheck checked(Yielding& device, AxisCheckTalk& talk, bool window_hangs = false) {
+AxisCheck checked(Yielding& device, AxisCheckTalk& talk, bool window_hangs = false,
+                  const SafetyLimits& limits = {}) {
   std::atomic<bool> done = false;
   std::thread window([&] {
     while (!done) {
@@ -50,7 +55,7 @@ AxisCheck checked(Yielding& device, AxisCheckTalk& talk, bool window_hangs = fal
       std::this_thread::sleep_for(16ms);
     }
   });
-  AxisCheck check = run_axis_check(device, talk, {});
+  AxisCheck check = run_axis_check(device, stick(), limits, talk, {});
   done = true;
   window.join();
   return check;
@@ -68,8 +73,8 @@ TEST(AxisCheckRun, FindsOutWhichWayEachAxisMoves) {
   DeviceNotes notes;
   EXPECT_TRUE(remember_check(check, notes));
   EXPECT_TRUE(notes.checked);
-  EXPECT_FALSE(notes.pid.reverse[0]);
-  EXPECT_TRUE(notes.pid.reverse[1]);
+  EXPECT_FALSE(notes.axes.at(0).reversed);
+  EXPECT_TRUE(notes.axes.at(1).reversed);
 }
 
 TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
@@ -101,9 +106,68 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   device.reading.age = 0.006;
   AxisCheckTalk talk;
   talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
-  const AxisCheck check = run_axis_check(device, talk, {});
+  const AxisCheck check = run_axis_check(device, stick(), {}, talk, {});
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
   EXPECT_TRUE(device.stopped);
+}
+
+// The stick's tip is on a lever of so many metres: a torque of tau is a force of tau over the
+// lever.
+TEST(AxisCheckRun, PushesWithNoMoreThanTheForceThatIsSet) {
+  const ArmDescription arm = stick();
+  double reach = 0;  // of the second joint's axis, straight up
+  {
+    Arm<kAnyDof> frames_of(arm);
+    Arm<kAnyDof>::Frames frames;
+    frames_of.frames(rest_pose(arm), frames);
+    Jacobian<kAnyDof> J;
+    frames_of.point_jacobian(frames, 1, frames_of.tip(frames), J);
+    reach = J.colwise().norm().minCoeff();
+  }
+  ASSERT_GT(reach, 0.01);
+  Yielding device({0.5, 0.5});
+  AxisCheckTalk talk;
+  checked(device, talk);
+  const double usual = device.largest;
+  ASSERT_GT(usual, 0.1 * reach);
+  Yielding gentle({0.5, 0.5});
+  AxisCheckTalk again;
+  const AxisCheck check = checked(gentle, again, false, {.tip_force = 0.1});
+  EXPECT_GT(gentle.largest, 0);
+  EXPECT_LE(gentle.largest, 0.1 * reach * 1.1) << report_of(check);
+}
+
+TEST(AxisCheckRun, EndsAtALimitThatIsSet) {
+  // A stick beyond the part of its range that is allowed.
+  class Astray final : public Device {
+   public:
+    const DeviceTraits& traits() const override { return traits_; }
+    bool read(DeviceReading& newest) noexcept override {
+      newest.x[0] = newest.x[1] = 0.3;
+      newest.count = ++count_;
+      return true;
+    }
+    void write(std::span<const double> torque) noexcept override {
+      for (const double tau : torque) largest = std::max(largest, std::abs(tau));
+    }
+    void stop() noexcept override {}
+    double largest = 0;
+
+   private:
+    DeviceTraits traits_ = test::pushing(2, 0.35);
+    std::uint64_t count_ = 0;
+  } device;
+  AxisCheckTalk talk;
+  talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const AxisCheck check = run_axis_check(device, stick(), {.range = 0.5}, talk, {});
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::beyond_limit);
+  EXPECT_EQ(device.largest, 0);
+}
+
+TEST(AxisCheckRun, IsOfAnArmWithAsManyJoints) {
+  test::FakeDevice device(3);
+  AxisCheckTalk talk;
+  EXPECT_THROW(run_axis_check(device, stick(), {}, talk, {}), std::invalid_argument);
 }
 
 }  // namespace

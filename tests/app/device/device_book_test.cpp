@@ -1,6 +1,10 @@
 #include "app/device/device_book.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -8,18 +12,23 @@
 #include "app/device/urdf_writer.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
-#include "tests/support/device_traits.h"
+#include "tests/support/built_in.h"
+#include "tests/support/fake_device.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
 
 DeviceBook written_and_read(const DeviceBook& book, const std::filesystem::path& file) {
-  EXPECT_EQ(save_device_book(book, file), "");
-  std::string complaint;
-  DeviceBook read = load_device_book(file, complaint);
-  EXPECT_EQ(complaint, "");
+  EXPECT_EQ(save_device_book({}, book, file), "");
+  DeviceBook read = load_device_book(file);
+  EXPECT_EQ(read.complaint(), "");
   return read;
+}
+
+std::string text_in(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
@@ -27,26 +36,27 @@ TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
   DeviceBook book;
   book.in_use = "1209:4c50:a \"serial\" number";
   DeviceNotes& notes = book.notes[book.in_use];
-  notes.axes = {{0.25, 1, true}, {-1.5, 0.4, false}};
+  notes.axes = {{.zero = 0.25, .inverted = true},
+                {.zero = -1.5, .scale = 0.4, .reversed = true},
+                {.reversed = true}};
   notes.pid.effort = 1.75;
   notes.pid.range = 0.6;
-  notes.pid.reverse = {false, true};
   const DeviceBook read = written_and_read(book, dir / "below/devices.toml");
   EXPECT_EQ(read.in_use, book.in_use);
   ASSERT_EQ(read.notes.count(book.in_use), 1U);
   const DeviceNotes& again = read.notes.at(book.in_use);
-  ASSERT_EQ(again.axes.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
+  ASSERT_EQ(again.axes.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(again.axes[i].zero, notes.axes[i].zero);
     EXPECT_EQ(again.axes[i].scale, notes.axes[i].scale);
     EXPECT_EQ(again.axes[i].inverted, notes.axes[i].inverted);
+    EXPECT_EQ(again.axes[i].reversed, notes.axes[i].reversed);
   }
   EXPECT_EQ(again.pid.effort, 1.75);
   EXPECT_EQ(again.pid.range, 0.6);
-  EXPECT_EQ(again.pid.reverse, notes.pid.reverse);
 }
 
-TEST(DeviceBook, LowersLimitsAndNeverRaisesThem) {
+TEST(DeviceBook, LowersLimits) {
   const test::TempDir dir;
   DeviceBook book;
   book.notes["id"].limits = {.tip_speed = 0.5, .tip_force = 3, .range = 0.8};
@@ -55,21 +65,145 @@ TEST(DeviceBook, LowersLimitsAndNeverRaisesThem) {
   EXPECT_EQ(read.tip_force, 3);
   EXPECT_EQ(read.range, 0.8);
   EXPECT_EQ(read.joint_speed, 15);
-  std::ofstream(dir / "by_hand.toml") << R"(
-[device.id.limits]
-joint_speed = 100
-tip_speed = nan
-tip_force = -1
-energy = "much"
-range = 2
-)";
-  std::string complaint;
-  const SafetyLimits most = load_device_book(dir / "by_hand.toml", complaint).notes["id"].limits;
-  EXPECT_EQ(most.joint_speed, 15);
-  EXPECT_EQ(most.tip_speed, 2);
-  EXPECT_EQ(most.tip_force, 10);
-  EXPECT_EQ(most.energy, 1.5);
-  EXPECT_EQ(most.range, 1);
+}
+
+// Each of these once meant the widest limit, or an axis that is not inverted.
+TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  const struct {
+    const char *line, *key, *found, *allowed;
+  } kWrong[] = {{"limits = {tip_force = 0.05}", "limits.tip_force", "0.05", "from 0.1 up to 10"},
+                {"limits = {tip_force = 100}", "limits.tip_force", "100", "from 0.1 up to 10"},
+                {"limits = {tip_force = \"1\"}", "limits.tip_force", "\"1\"", "a number"},
+                {"limits = {tip_speed = nan}", "limits.tip_speed", "nan", "a number"},
+                {"limits = {energy = -1}", "limits.energy", "-1", "a number"},
+                {"limits = 3", "limits", "3", "a table"},
+                {"effort = -3.0", "effort", "-3", "a number from 0.01 up to 50"},
+                {"range = \"20 degrees\"", "range", "\"20 degrees\"", "a number"},
+                {"axis = [{inverted = \"yes\"}]", "axis[0].inverted", "\"yes\"", "true or false"},
+                {"axis = [{}, {scale = 0.0}]", "axis[1].scale", "0", "a number"},
+                {"axis = [7]", "axis", "[7]", "a list of tables"},
+                {"reverse = [true, 1]", "reverse", "[true, 1]", "true or false"},
+                {"reverse = true", "reverse", "true", "a list"},
+                {"checked = 1", "checked", "1", "true or false"},
+                {"arm = 7", "arm", "7", "text in quotes"},
+                {"delay = \"2 ms\"", "delay", "\"2 ms\"", "a number"},
+                {"torque_scale = 1e9", "torque_scale", "1e+09", "a number"},
+                {"compensation = {friction = 1.5}", "compensation.friction", "1.5", "a number"},
+                {"compensation = {down = 'up'}", "compensation.down", "\"up\"", "file, -z, +z"},
+                {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"}};
+  for (const auto& [line, key, found, allowed] : kWrong) {
+    std::ofstream(file) << "[device.good]\nchecked = true\n[device.\"1:2\"]\n" << line << "\n";
+    const DeviceBook book = load_device_book(file);
+    const std::string said = book.notes.at("1:2").refusal;
+    EXPECT_THAT(said, testing::StartsWith(file.string() + ":4: device.\"1:2\"." + key + ": "));
+    EXPECT_THAT(said, testing::HasSubstr(found)) << line;
+    EXPECT_THAT(said, testing::HasSubstr(std::string("allowed: "))) << line;
+    EXPECT_THAT(said, testing::HasSubstr(allowed)) << line;
+    EXPECT_EQ(book.notes.at("good").refusal, "") << "it concerns one device only";
+    EXPECT_TRUE(book.notes.at("good").checked);
+    EXPECT_EQ(book.complaint(), said);
+    EXPECT_EQ(book.refusal, "");
+  }
+}
+
+TEST(DeviceBook, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  for (const char* text : {"in_use = \n", "in_use = 7\n", "device = 3\n",
+                           "[device.a]\nchecked = true\n[device.a]\n", "\xff\xfe"}) {
+    std::ofstream(file) << text;
+    const DeviceBook book = load_device_book(file);
+    EXPECT_THAT(book.refusal, testing::StartsWith(file.string() + ":")) << text;
+    EXPECT_EQ(book.complaint(), book.refusal);
+  }
+  std::filesystem::remove(file);
+  std::filesystem::create_directory(file);
+  EXPECT_NE(load_device_book(file).refusal, "") << "a folder in its place";
+  EXPECT_EQ(load_device_book(dir / "none.toml").complaint(), "") << "a first start";
+}
+
+TEST(DeviceBook, IsNeverWrittenOverWhereItCannotBeUnderstood) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  for (const std::string text : {"in_use = \n[device.a.limits]\ntip_force = 1\n",
+                                 "[device.a.limits]\ntip_force = \"1\"\n", "device = 3\n"}) {
+    std::ofstream(file) << text;
+    const DeviceBook before = load_device_book(file);
+    DeviceBook now = before;
+    now.notes["a"].pid.effort = 2;
+    EXPECT_THAT(save_device_book(before, now, file), testing::HasSubstr(file.string()));
+    EXPECT_EQ(text_in(file), text);
+  }
+}
+
+TEST(DeviceBook, KeepsWhatOthersHaveWrittenMeanwhileAndKeysThatNobodyKnows) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "future = 1\nin_use = \"a\"\n[device.a]\neffort = 1.0\nwarmth = 3\n"
+                         "[device.a.limits]\ntip_force = 5.0\nsmell = 2\n[device.b]\nrange = 0.5\n";
+  const DeviceBook start = load_device_book(file);
+  EXPECT_EQ(start.complaint(), "");
+  DeviceBook window = start, identify = start, other = start;
+  identify.notes["a"].delay = 0.002;
+  identify.notes["a"].arm = "/found.urdf";
+  other.notes["a"].limits.tip_force = 1;
+  other.in_use = "b";
+  window.notes["a"].limits.tip_speed = 0.5;
+  window.notes["c"].checked = true;
+  EXPECT_EQ(save_device_book(start, identify, file), "");
+  EXPECT_EQ(save_device_book(start, other, file), "");
+  EXPECT_EQ(save_device_book(start, window, file), "");
+  const DeviceBook all = load_device_book(file);
+  EXPECT_EQ(all.complaint(), "");
+  EXPECT_EQ(all.in_use, "b");
+  EXPECT_EQ(all.notes.at("a").delay, 0.002);
+  EXPECT_EQ(all.notes.at("a").arm, "/found.urdf");
+  EXPECT_EQ(all.notes.at("a").limits.tip_force, 1);
+  EXPECT_EQ(all.notes.at("a").limits.tip_speed, 0.5);
+  EXPECT_EQ(all.notes.at("a").pid.effort, 1);
+  EXPECT_EQ(all.notes.at("b").pid.range, 0.5);
+  EXPECT_TRUE(all.notes.at("c").checked);
+  for (const char* key : {"future = 1", "warmth = 3", "smell = 2"}) {
+    EXPECT_THAT(text_in(file), testing::HasSubstr(key));
+  }
+}
+
+TEST(DeviceBook, ForgetsADelayThatWasTakenBack) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  std::ofstream(file) << "[device.a]\ndelay = 0.002\n";
+  const DeviceBook before = load_device_book(file);
+  DeviceBook now = before;
+  now.notes["a"].delay = -1;
+  EXPECT_EQ(save_device_book(before, now, file), "");
+  EXPECT_LT(load_device_book(file).notes.at("a").delay, 0);
+}
+
+// Many programs at once, each with an entry of its own; without the lock some would be lost.
+TEST(DeviceBook, LosesNothingWhereManyWriteAtOnce) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  constexpr int kPrograms = 4, kEntries = 12;
+  std::vector<pid_t> programs;
+  for (int program = 0; program < kPrograms; ++program) {
+    programs.push_back(fork());
+    if (programs.back() != 0) continue;
+    for (int i = 0; i < kEntries; ++i) {
+      const DeviceBook before = load_device_book(file);
+      DeviceBook now = before;
+      now.notes[std::to_string(program * 100 + i)].checked = true;
+      if (!save_device_book(before, now, file).empty()) _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t program : programs) {
+    int status = -1;
+    waitpid(program, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(load_device_book(file).notes.size(), std::size_t{kPrograms * kEntries});
 }
 
 // Joints that give way by so much a newton metre.
@@ -83,28 +217,35 @@ AxisCheck checked(const std::vector<double>& give) {
   return check;
 }
 
-TEST(DeviceBook, RemembersWhatACheckHasFound) {
+std::vector<bool> reversed(const DeviceNotes& notes) {
+  std::vector<bool> all;
+  for (const AxisAdjustment& axis : notes.axes) all.push_back(axis.reversed);
+  return all;
+}
+
+TEST(DeviceBook, RemembersWhatACheckHasFoundOfAnyNumberOfJoints) {
   const test::TempDir dir;
   DeviceBook book;
   DeviceNotes& notes = book.notes["a"];
-  notes.pid.reverse = {false, true};
+  notes.axes = {{.zero = 0.25}, {.reversed = true}};
   EXPECT_FALSE(notes.checked);
-  EXPECT_TRUE(remember_check(checked({0.5, -0.5}), notes));
+  EXPECT_TRUE(remember_check(checked({0.5, -0.5, -0.5}), notes));
   EXPECT_TRUE(notes.checked);
-  EXPECT_EQ(notes.pid.reverse, (std::array{false, false})) << "reversed once more";
-  EXPECT_TRUE(remember_check(checked({-0.5, 0.5}), notes));
-  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+  EXPECT_EQ(reversed(notes), (std::vector{false, false, true})) << "the second: reversed once more";
+  EXPECT_TRUE(remember_check(checked({-0.5, 0.5, 0.5}), notes));
+  EXPECT_EQ(reversed(notes), (std::vector{true, false, true}));
+  EXPECT_EQ(notes.axes[0].zero, 0.25);
   const DeviceNotes again = written_and_read(book, dir / "devices.toml").notes.at("a");
   EXPECT_TRUE(again.checked);
-  EXPECT_EQ(again.pid.reverse, (std::array{true, false}));
+  EXPECT_EQ(reversed(again), (std::vector{true, false, true}));
 }
 
 TEST(DeviceBook, RemembersNothingOfACheckThatFailed) {
   DeviceNotes notes;
-  notes.pid.reverse = {true, false};
+  notes.axes = {{.reversed = true}, {}};
   EXPECT_FALSE(remember_check(checked({-0.5, 0}), notes));
   EXPECT_FALSE(notes.checked);
-  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+  EXPECT_EQ(reversed(notes), (std::vector{true, false}));
 }
 
 // Written before there were checks.
@@ -114,58 +255,128 @@ TEST(DeviceBook, TakesTheJoysticksOfOldBooksForUnchecked) {
   std::ofstream(file) << "in_use = \"a\"\n[device.a]\nrange = 0.6\neffort = 1.75\n"
                          "reverse = [true, false]\naxis = [{zero = 0.25, scale = 1.0, inverted = "
                          "true}]\n";
-  std::string complaint;
-  const DeviceNotes notes = load_device_book(file, complaint).notes.at("a");
-  EXPECT_EQ(complaint, "");
+  EXPECT_EQ(load_device_book(file).complaint(), "");
+  const DeviceNotes notes = load_device_book(file).notes.at("a");
   EXPECT_FALSE(notes.checked);
-  EXPECT_EQ(notes.pid.reverse, (std::array{true, false}));
+  EXPECT_EQ(reversed(notes), (std::vector{true, false}));
   EXPECT_EQ(notes.pid.range, 0.6);
   EXPECT_EQ(notes.pid.effort, 1.75);
   EXPECT_TRUE(notes.axes.at(0).inverted);
 }
 
-TEST(DeviceBook, LeavesOutWhatMakesNoSense) {
+// A hub with a device in use of this kind that is opened as a fake one.
+struct AHub : testing::Test {
+  static constexpr DeviceKind kPushes{.pushes = true};
+  static constexpr DeviceKind kSaysSoItself{};
+  static constexpr DeviceKind kLeadsHand{.leads_hand = true};
+  static inline int opened = 0;
+  static inline bool pushes = true;
+
+  void SetUp() override {
+    opened = 0;
+    pushes = true;
+  }
+  void write(const std::string& text) const { std::ofstream(file) << text; }
+  DeviceHub& hub(const DeviceKind& kind) {
+    FoundDevice found;
+    found.place = {"A device", "a", ""};
+    found.kind = &kind;
+    found.open = [](const FoundDevice&, const PidSettings&, const AskForPriority&, DeviceClaim) {
+      ++opened;
+      auto device = std::make_unique<test::FakeDevice>(3);
+      device->own_traits().pushes = pushes;
+      return std::unique_ptr<Device>(std::move(device));
+    };
+    found.claim_key = [](const FoundDevice&) { return fmt::format("test:{}", getpid()); };
+    hub_.emplace(file, AskForPriority{});
+    hub_->take({found});
+    hub_->use("a");
+    return *hub_;
+  }
+  std::string refusal_to_open() {
+    try {
+      hub_->opening()();
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
   const test::TempDir dir;
-  const auto file = dir / "devices.toml";
-  std::ofstream(file) << "in_use = \"a\"\n[device.a]\neffort = -3.0\nrange = nan\n"
-                         "axis = [{scale = 0.0, zero = 1.0}, 7]\n";
-  std::string complaint;
-  const DeviceBook book = load_device_book(file, complaint);
-  EXPECT_EQ(complaint, "");
-  const DeviceNotes& notes = book.notes.at("a");
-  EXPECT_EQ(notes.pid.effort, PidSettings{}.effort);
-  EXPECT_EQ(notes.pid.range, PidSettings{}.range);
-  ASSERT_EQ(notes.axes.size(), 2U);
-  EXPECT_EQ(notes.axes[0].scale, 1);
-  EXPECT_EQ(notes.axes[0].zero, 1);
+  const std::filesystem::path file = dir / "devices.toml";
+  std::optional<DeviceHub> hub_;
+};
+
+TEST_F(AHub, LetsNoDeviceIntoTheLoopThatPushesAndWasNotChecked) {
+  EXPECT_TRUE(hub(kPushes).needs_check());
+  EXPECT_FALSE(hub(kSaysSoItself).needs_check()) << "nobody knows yet";
+  EXPECT_THROW(hub_->opening()(), UncheckedError);
+  EXPECT_EQ(opened, 1);
+  hub_->notes("a").checked = true;
+  EXPECT_NO_THROW(hub_->opening()());
+  hub_->notes("a").checked = false;
+  pushes = false;
+  EXPECT_NO_THROW(hub_->opening()()) << "what has no motors needs no check";
+  EXPECT_FALSE(hub(kLeadsHand).needs_check());
+  hub_->use("");
+  EXPECT_FALSE(hub_->needs_check()) << "none is in use";
 }
 
-TEST(DeviceBook, SaysWhyAFileIsNotRead) {
-  const test::TempDir dir;
-  const auto file = dir / "devices.toml";
-  std::ofstream(file) << "in_use = \n";
-  std::string complaint;
-  EXPECT_TRUE(load_device_book(file, complaint).notes.empty());
-  EXPECT_NE(complaint.find(file.string()), std::string::npos);
+TEST_F(AHub, OpensNothingThatItsBookRefuses) {
+  write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = \"1\"\n");
+  EXPECT_THAT(hub(kPushes).refusal(), testing::HasSubstr("limits.tip_force"));
+  EXPECT_EQ(refusal_to_open(), hub_->refusal());
+  EXPECT_THROW(hub_->checking(std::make_shared<AxisCheckTalk>(), test::omni())(), FileError);
+  hub_->use("b");
+  EXPECT_EQ(hub_->refusal(), "") << "another device";
+  write("in_use = \n");
+  EXPECT_NE(hub(kPushes).refusal(), "");
+  EXPECT_NE(refusal_to_open(), "");
+  EXPECT_EQ(hub(kLeadsHand).refusal(), "") << "it has no force";
+  EXPECT_EQ(opened, 0);
 }
 
-TEST(DeviceHub, WantsAJoystickCheckedBeforeItPushes) {
-  const test::TempDir dir;
-  DeviceHub hub(dir / "devices.toml", {});
-  const DeviceKind unknown{.uncalibrated = true}, known{};
-  FoundDevice joystick, mouse;
-  joystick.place.id = "joystick";
-  joystick.kind = &unknown;
-  mouse.place.id = "mouse";
-  mouse.kind = &known;
-  hub.take({joystick, mouse});
-  EXPECT_FALSE(hub.needs_check()) << "none is in use";
-  hub.use("mouse");
-  EXPECT_FALSE(hub.needs_check());
-  hub.use("joystick");
-  EXPECT_TRUE(hub.needs_check());
-  hub.notes("joystick").checked = true;
-  EXPECT_FALSE(hub.needs_check());
+TEST_F(AHub, TakesTheDeviceOnceTheFileIsMended) {
+  write("[device.a]\nchecked = 7\n");
+  hub(kPushes);
+  EXPECT_NE(hub_->refusal(), "");
+  EXPECT_NE(hub_->complaint(), "");
+  write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = 1.0\n");
+  hub_->read_again();
+  EXPECT_EQ(hub_->refusal(), "");
+  EXPECT_EQ(hub_->notes("a").limits.tip_force, 1);
+  EXPECT_NO_THROW(hub_->opening()());
+}
+
+// A device may be in the loop with them.
+TEST_F(AHub, GoesOnWithTheLimitsThatItHasWhenTheFileBreaks) {
+  write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = 1.0\n");
+  DeviceNotes& notes = hub(kPushes).notes("a");
+  for (const char* broken : {"[device.a.limits]\ntip_force = \"1\"\n", "in_use = \n", ""}) {
+    write(broken);
+    hub_->read_again();
+    EXPECT_EQ(notes.limits.tip_force, 1) << broken;
+  }
+}
+
+TEST_F(AHub, TakesInWhatOthersHaveWrittenWhenItSaves) {
+  DeviceHub& one = hub(kPushes);
+  DeviceHub other(file, {});
+  DeviceNotes& notes = one.notes("a");
+  notes.checked = true;
+  EXPECT_EQ(one.save(), "");
+  other.use("b");
+  other.read_again();
+  other.notes("a").limits.tip_force = 2;
+  EXPECT_EQ(other.save(), "");
+  notes.pid.effort = 1.5;
+  EXPECT_EQ(one.save(), "");
+  EXPECT_EQ(notes.limits.tip_force, 2) << "through the reference that was had before";
+  EXPECT_EQ(one.in_use(), "a") << "each window has a device of its own";
+  const DeviceBook read = load_device_book(file);
+  EXPECT_EQ(read.notes.at("a").limits.tip_force, 2);
+  EXPECT_EQ(read.notes.at("a").pid.effort, 1.5);
+  EXPECT_EQ(read.in_use, "b");
 }
 
 DeviceTraits joints(int count, double effort) {
@@ -223,15 +434,6 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   EXPECT_LT(hub.notes("1209:4c50:a/b c").delay, 0);
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, CompensationSettings{});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
-}
-
-TEST(DeviceBook, TakesNoCompensationThatIsOutOfRange) {
-  const test::TempDir dir;
-  std::ofstream(dir / "devices.toml")
-      << "[device.a.compensation]\nfriction = 1.5\ndown = 'up'\ngravity = true\nsprings = 3\n";
-  std::string complaint;
-  const DeviceBook book = load_device_book(dir / "devices.toml", complaint);
-  EXPECT_EQ(book.notes.at("a").compensation, CompensationSettings{.holds_weight = true});
 }
 
 }  // namespace

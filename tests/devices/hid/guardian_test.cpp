@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 
+#include "devices/hid/device_claim.h"
 #include "devices/hid/hid_error.h"
 #include "tests/support/temp_dir.h"
 
@@ -103,13 +104,21 @@ TEST_F(GuardedPipe, SurvivesInterruptsSentToTheWholeGroup) {
   EXPECT_EQ(received(), kStopBytes);
 }
 
-TEST(Guardian, HoldsADeviceForItself) {
+// Whoever claims the device next must not be stopped by the guardian of the one before.
+TEST_F(GuardedPipe, IsClaimedUntilItHasItsStopReports) {
   const test::TempDir dir;
-  const std::string path = (dir / "device").string();
-  std::ofstream(path).put('\n');
-  Guardian first(path, kStop);
-  EXPECT_THROW(Guardian(path, kStop), HidError);
-  first.dismiss();
+  const auto claimed = [&] { return !claimed_by("device", dir / "").empty(); };
+  // More than a pipe holds: the guardian cannot get rid of it until somebody reads.
+  const std::vector<Report> long_stop(40, Report(4096, 7));
+  in_another_process([&](int device) {
+    const DeviceClaim claim("device", dir / "");
+    const Guardian guardian(device, long_stop, claim.descriptor());
+    raise(SIGKILL);
+  });
+  EXPECT_TRUE(claimed());
+  EXPECT_THROW(DeviceClaim("device", dir / ""), HidError);
+  EXPECT_EQ(received().size(), 40u * 4096);
+  EXPECT_NO_THROW(DeviceClaim("device", dir / ""));
 }
 
 TEST(Guardian, SaysWhyItCannotOpenADevice) {

@@ -30,9 +30,11 @@ class OneByte final : public HidProtocol {
     const std::array<std::uint8_t, 1> report{static_cast<std::uint8_t>(torque[0] > 0 ? 1 : 0)};
     send(report);
   }
+  void undelivered() noexcept override { ++lost; }
   const std::vector<Report>& stop_reports() const override { return stops; }
 
   std::vector<Report> stops;
+  int lost = 0;
 
  private:
   DeviceTraits traits_;
@@ -112,6 +114,18 @@ TEST_F(ExchangeLimits, SendsInTheMidstOfAnEndlessFlood) {
   step();
   EXPECT_EQ(transport.newest, 0);
   EXPECT_EQ(transport.writes, 2);
+}
+
+TEST_F(ExchangeLimits, TellsTheProtocolWhatDidNotGetThrough) {
+  step();
+  EXPECT_EQ(protocol.lost, 0);
+  transport.accepts = false;
+  step();
+  step();
+  EXPECT_EQ(protocol.lost, 2);
+  transport.accepts = true;
+  step();
+  EXPECT_EQ(protocol.lost, 2);
 }
 
 }  // namespace

@@ -34,6 +34,18 @@ bool turn(Device& device, const std::vector<double>& torque,
   }
 }
 
+// Ticks for so many milliseconds as if nothing had happened; whether the condition held.
+bool turn_for(Device& device, int ticks, const std::function<bool()>& holds) {
+  for (int i = 0; i < ticks; ++i) {
+    DeviceReading reading;
+    device.read(reading);
+    device.write(std::vector{0.1, 0.0, -0.05});
+    if (holds()) return true;
+    std::this_thread::sleep_for(1ms);
+  }
+  return false;
+}
+
 struct AnInverseService : testing::Test {
   // A force is on it when this returns.
   void push(Device& device) {
@@ -152,6 +164,52 @@ TEST_F(AnInverseService, ThatIsStartedAnewIsAnotherConnection) {
   InverseService again(service.address().port);
   device = open(again.address());
   EXPECT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
+}
+
+TEST_F(AnInverseService, ThatIsToldAnotherFrameMeanwhileHasAZeroForce) {
+  const auto device = open(service.address());
+  push(*device);
+  service.tell(R"(merge {"config": {"basis": {"permutation": "XZY"}}})");
+  EXPECT_TRUE(turn(*device, {0.1, 0, 0}, [](const DeviceReading& r, bool) { return r.fault; }));
+  service.wait_for("force 0 0 0");
+  service.tell("count");
+  EXPECT_FALSE(turn_for(*device, 100, [&] { return service.heard(pushes); }));
+}
+
+// Whatever a name leads to: a second stream of forces would pull it to and fro.
+TEST_F(AnInverseService, IsHadByOneAndHearsNothingOfAnother) {
+  const auto device = open(service.address());
+  push(*device);
+  const ServiceAddress other_name{"localhost", service.address().port};
+  for (const ServiceAddress& address : {service.address(), other_name}) {
+    const FoundDevice found{{"An Inverse3", InverseName{"049D", address}.text(), ""},
+                            list_inverse_devices({}, service.address()).at(0).kind,
+                            "",
+                            list_inverse_devices({}, service.address()).at(0).open,
+                            list_inverse_devices({}, service.address()).at(0).claim_key};
+    try {
+      open_device(found);
+      FAIL();
+    } catch (const HidError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("in use by process"));
+    }
+  }
+  EXPECT_FALSE(turn_for(*device, 100, [&] {
+    return service.heard([](const std::string& line) {
+      return line == "session" || line == "force 0 0 0" || line == "end";
+    });
+  })) << "its force stream went on unbroken, and no other began";
+}
+
+TEST_F(AnInverseService, OfWhichNoDeviceIsNamedIsClaimedAsItsFirst) {
+  const FoundDevice first = list_inverse_devices({}, service.address()).at(0);
+  FoundDevice unnamed = first;
+  unnamed.place.id = InverseName{"", service.address()}.text();
+  EXPECT_EQ(unnamed.claim_key(unnamed), first.claim_key(first));
+  service.tell("devices 049D 04BA");
+  const auto both = list_inverse_devices({}, service.address());
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_NE(both[0].claim_key(both[0]), both[1].claim_key(both[1])) << "each has one of its own";
 }
 
 TEST_F(AnInverseService, HasAZeroForceWhenWeAreKilled) {

@@ -255,5 +255,56 @@ TEST_F(AnInverse3, IsStoppedByAForceOfZero) {
   EXPECT_EQ(json::parse(stop.begin() + 1, stop.end()), force("a\"b", 0, 0, 0));
 }
 
+// The service lets other programs turn, move and scale its frame at any time.
+TEST_F(AnInverse3, IsAtFaultWhileAMessageSaysAnotherFrame) {
+  const json turned{{"config", {{"basis", {{"permutation", "XZY"}}}}}};
+  const json preset{{"config", {{"preset", "led_front"}}}};
+  const json mount{
+      {"config", {{"mount", {{"transform", {{"position", {{"x", 0.1}, {"y", 0}, {"z", 0}}}}}}}}}};
+  const json workspace{{"state", {{"transform", {{"scale", {{"x", 1}, {"y", 2}, {"z", 1}}}}}}}};
+  const json usual{{"config",
+                    {{"basis", {{"permutation", "XYZ"}}},
+                     {"preset", "defaults"},
+                     {"mount", {{"position", {{"x", 0}, {"y", 0}, {"z", 0}}}}}}},
+                   {"state", {{"transform", {{"scale", {{"x", 1}, {"y", 1}, {"z", 1}}}}}}}};
+  const auto said = [](const json& more) {
+    json one = device("049D", 0, -0.12, 0.16);
+    one.merge_patch(more);
+    return message({one});
+  };
+  for (const json& other : {turned, preset, mount, workspace}) {
+    open();
+    EXPECT_EQ(decode(said({})), Decoded::reading);
+    EXPECT_FALSE(reading.fault);
+    EXPECT_EQ(decode(said(other)), Decoded::reading);
+    EXPECT_TRUE(reading.fault) << other;
+    decode(said({}));
+    EXPECT_TRUE(reading.fault) << "what is not said again has not changed: " << other;
+    decode(said(usual));
+    EXPECT_FALSE(reading.fault) << other;
+  }
+}
+
+TEST_F(AnInverse3, RepeatsAZeroThatDidNotLeaveAtTheNextChance) {
+  open();
+  EXPECT_EQ(encode({0.1, 0, 0}, 0ms).size(), 1u);
+  EXPECT_EQ(encode({0, 0, 0}, 1ms).size(), 1u);
+  EXPECT_TRUE(encode({0, 0, 0}, 2ms).empty()) << "it has left";
+  protocol->undelivered();
+  const auto again = encode({0, 0, 0}, 3ms);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0], force("049D", 0, 0, 0));
+  EXPECT_TRUE(encode({0, 0, 0}, 4ms).empty());
+}
+
+// Two of them could queue up behind a slow service.
+TEST_F(AnInverse3, RepeatsNoForceThatDidNotLeave) {
+  open();
+  EXPECT_EQ(encode({0.1, 0, 0}, 0ms).size(), 1u);
+  protocol->undelivered();
+  EXPECT_TRUE(encode({0.1, 0, 0}, 1ms).empty());
+  EXPECT_EQ(encode({0.1, 0, 0}, InverseProtocol::kAskAgain).size(), 1u);
+}
+
 }  // namespace
 }  // namespace limpid

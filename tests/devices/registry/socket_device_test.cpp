@@ -157,8 +157,40 @@ TEST_F(ASocketDevice, SpeaksToOneProgramAtATime) {
     open_device(found);
     FAIL();
   } catch (const HidError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("another program may use it"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("in use by process"));
   }
+  // By another name for the same socket, too.
+  std::filesystem::create_symlink(found.place.path, dir / "link.device");
+  FoundDevice linked = found;
+  linked.place.path = (dir / "link.device").string();
+  EXPECT_EQ(linked.claim_key(linked), found.claim_key(found));
+  EXPECT_THROW(open_device(linked), HidError);
+  DeviceReading before, after;
+  ASSERT_TRUE(comes([&] { return device->read(before) && before.count > 0; }));
+  EXPECT_TRUE(comes([&] { return device->read(after) && after.count > before.count + 20; }))
+      << "nothing has disturbed it";
+}
+
+TEST_F(ASocketDevice, IsListedWithWhoHasIt) {
+  const FoundDevice found = find();
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t other = fork();
+  if (other == 0) {
+    const DeviceClaim claim(found.claim_key(found));
+    [[maybe_unused]] const auto said = write(ready[1], "x", 1);
+    for (;;) pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  const auto listed = [&] {
+    const auto all = list_devices({.udev_rule = "rules", .services = false});
+    return *std::ranges::find(all, found.place.id, [](const auto& one) { return one.place.id; });
+  };
+  EXPECT_THAT(listed().in_use_by, testing::HasSubstr("process " + std::to_string(other)));
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+  EXPECT_EQ(listed().in_use_by, "");
 }
 
 // Its first joint a little inside a stop, which pushes it back against its spring.

@@ -32,8 +32,10 @@ struct Wire {
 
 class WiredDevice final : public Device {
  public:
-  WiredDevice(int dof, std::shared_ptr<Wire> wire)
-      : traits_(test::pushing(dof)), rest_(static_cast<std::size_t>(dof)), wire_(std::move(wire)) {
+  WiredDevice(int dof, std::shared_ptr<Wire> wire, double effort = 0.5)
+      : traits_(test::pushing(dof, 1, effort)),
+        rest_(static_cast<std::size_t>(dof)),
+        wire_(std::move(wire)) {
     if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
   }
   ~WiredDevice() override { ++wire_->closed; }
@@ -305,6 +307,35 @@ TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
   ASSERT_EQ(recordings().size(), 1u);
   EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
+}
+
+// Plugged in again with another full force, as its settings have it by then.
+TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
+  const auto efforts = [&] {
+    std::vector<double> all;
+    for (const Joint& joint : desktop->desk().stage().arm().joints) all.push_back(joint.effort);
+    return all;
+  };
+  const std::vector<double> of_file = efforts();
+  const auto within = [&](double most) {
+    std::vector<double> all = of_file;
+    for (double& each : all) each = std::min(each, most);
+    return all;
+  };
+  const std::string arm = desktop->desk().stage().arm().urdf;
+  for (const double effort : {0.2, 0.05, 0.4, 100.0, 0.1}) {
+    const auto wire = std::make_shared<Wire>();
+    desktop->open_device(std::make_unique<WiredDevice>(3, wire, effort));
+    await_device();
+    EXPECT_EQ(efforts(), within(effort)) << effort;
+    EXPECT_EQ(desktop->desk().stage().arm().urdf, arm);
+    wire->angle = 0.3;  // its proxy pulls with all that there is
+    ASSERT_TRUE(armed());
+    frames(80);
+    EXPECT_LE(wire->torque, std::min(effort, *std::ranges::max_element(of_file)) + 1e-12);
+    desktop->desk().start_over();
+    ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
+  }
 }
 
 TEST_F(ADesktop, WritesBesideTheWindowAndSaysWhatBecameOfIt) {
