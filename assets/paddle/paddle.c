@@ -59,6 +59,7 @@ static void seal(uint8_t report[PADDLE_REPORT]) {
 void paddle_begin(Paddle* paddle, const PaddleBuild* build, uint64_t now) {
   memset(paddle, 0, sizeof *paddle);
   paddle->build = *build;
+  paddle->part = 1;
   paddle->fed = paddle->ticked = now;
 }
 
@@ -66,6 +67,10 @@ void paddle_turn(Paddle* paddle, uint8_t pins) {
   // By the pins before and now: a step up, a step down, none, or 2 for two at once.
   static const int8_t steps[16] = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};
   const int8_t step = steps[(paddle->pins & 3) << 2 | (pins & 3)];
+  for (int line = 0; line < 2; ++line) {
+    const bool changed = (paddle->pins ^ pins) >> line & 1;
+    if (changed) paddle->edges[line] = paddle->edges[line] + 1;
+  }
   paddle->pins = pins & 3;
   if (step == 2) {
     paddle->skipped = paddle->skipped + 1;
@@ -88,9 +93,10 @@ float paddle_position(const Paddle* paddle) {
   return paddle->build.lower + (float)(paddle->count - paddle->home) / paddle->build.counts;
 }
 
-// It is not where it believes to be once it has skipped a step.
+// It is not where it believes to be once it has skipped a step, or lost a line of its encoder.
 static bool faulty(const Paddle* paddle) {
-  return paddle->driver_fault || (paddle->homed && paddle->skipped != paddle->skipped_known);
+  return paddle->driver_fault || (paddle->homed && paddle->skipped != paddle->skipped_known) ||
+         paddle->still >= 2 * PADDLE_STILL_US;
 }
 
 static bool usable(const uint8_t* report) {
@@ -107,7 +113,7 @@ bool paddle_command(Paddle* paddle, const uint8_t report[PADDLE_REPORT], uint64_
   if (!usable(report)) return false;
   const uint32_t sequence = get_u32(report + 4);
   const bool push = report[3] == 1;
-  // After a restart it waits for a session to begin, and that is without torque.
+  // After a restart or a cut it waits for a session to begin, and that is without torque.
   if (push && (!paddle->addressed || (int32_t)(sequence - paddle->command) <= 0)) return false;
   paddle->addressed = true;
   paddle->command = sequence;
@@ -148,13 +154,34 @@ void paddle_feature(const Paddle* paddle, uint8_t report[PADDLE_REPORT]) {
   seal(report);
 }
 
+// What part of the torque is left by how long it did not move. A paddle that is held still moves as
+// its torque fades, and has it back; one without its encoder, or without one of the lines, of which
+// the other alone counts up and down, does not. That ends once both have changed.
+static float part_left(Paddle* paddle, uint32_t passed, float torque) {
+  const float least = 0.05f * paddle->build.limit, fades_in = 500000;  // [N m, us]
+  uint32_t* known = paddle->edges_known;
+  if (paddle->edges[0] != known[0] && paddle->edges[1] != known[1]) {
+    for (int line = 0; line < 2; ++line) known[line] = paddle->edges[line];
+    paddle->still = 0;
+  } else if (fabsf(torque) > least || paddle->still > PADDLE_STILL_US) {
+    paddle->still += passed < PADDLE_STILL_US ? passed : PADDLE_STILL_US;
+    if (paddle->still > 2 * PADDLE_STILL_US) paddle->still = 2 * PADDLE_STILL_US;
+  }
+  const float left = 2 - (float)paddle->still / PADDLE_STILL_US;
+  const float grown = paddle->part + (float)passed / fades_in;
+  paddle->part = fmaxf(fminf(fminf(left, grown), 1), 0);
+  return paddle->part;
+}
+
 float paddle_drive(Paddle* paddle, uint64_t now) {
   const PaddleBuild* build = &paddle->build;
-  const float dt = 1e-6f * (float)(now - paddle->ticked);
+  const uint64_t passed = now - paddle->ticked;  // [us]
+  const float dt = 1e-6f * (float)passed;
   paddle->ticked = now;
   if (paddle->pushing && now > paddle->fed + PADDLE_WATCHDOG_US) {
     paddle->pushing = false;
     paddle->cut = true;
+    paddle->addressed = false;
   }
   const float x = paddle_position(paddle);
   const float beyond = 0.05f;  // of its ends, as play and cables allow [rad]
@@ -165,6 +192,7 @@ float paddle_drive(Paddle* paddle, uint64_t now) {
     const float most = paddle->heat < 1 ? build->limit : build->lasting;
     torque = fminf(fmaxf(paddle->torque, -most), most);
   }
+  torque *= part_left(paddle, (uint32_t)(passed < 1000000 ? passed : 1000000), torque);
   const float warmth = torque / build->lasting;
   paddle->heat += (warmth * warmth - paddle->heat) * fminf(dt / build->warming, 1);
   return fminf(fmaxf(torque / build->peak, -1), 1);

@@ -15,10 +15,11 @@ extern "C" {
 #endif
 
 enum {
-  PADDLE_REPORT = 64,         // bytes of each report, without an id
-  PADDLE_DESCRIPTOR = 29,     // bytes of the report descriptor
-  PADDLE_PERIOD_US = 1000,    // between two readings
-  PADDLE_WATCHDOG_US = 10000  // without a command, until the torque is cut
+  PADDLE_REPORT = 64,          // bytes of each report, without an id
+  PADDLE_DESCRIPTOR = 29,      // bytes of the report descriptor
+  PADDLE_PERIOD_US = 1000,     // between two readings
+  PADDLE_WATCHDOG_US = 10000,  // without a command, until the torque is cut
+  PADDLE_STILL_US = 300000  // of torque without motion, until it fades; at twice of it it is gone
 };
 extern const uint8_t paddle_descriptor[PADDLE_DESCRIPTOR];
 
@@ -37,7 +38,8 @@ typedef struct {
   PaddleBuild build;
   // Of the encoder.
   volatile int32_t count;
-  volatile uint32_t skipped;  // steps that it was too fast for
+  volatile uint32_t skipped;   // steps that it was too fast for
+  volatile uint32_t edges[2];  // changes of A, of B
   uint8_t pins;
   // Of the switches and the driver.
   bool homed, hand, driver_fault;
@@ -49,6 +51,10 @@ typedef struct {
   uint32_t command, sequence;  // newest of each
   uint64_t fed;                // when the newest usable command came [us]
   float torque;                // that it asked for [N m]
+  // Of torque without motion.
+  uint32_t edges_known[2];
+  uint32_t still;  // how long it was given since A and B last changed [us]
+  float part;      // of it that is left, 0 to 1
   // Of the winding.
   float heat;  // 1: as warm as it may be for hours
   uint64_t ticked;

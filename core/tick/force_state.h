@@ -19,6 +19,7 @@ enum class ForceState : std::uint8_t {
   diverged,   // the command was not finite
   unwatched,  // the window does not answer; fades
   stalled,    // the loop or the device stood still; fades in anew
+  frozen,     // the readings stand still while the motors push; fades
 };
 const char* explain(ForceState state);  // for people, a short clause
 

@@ -1,9 +1,7 @@
 // The last stage before the motors: torques leave finite, within limits, and without jumps.
 #pragma once
 
-#include <algorithm>
-
-#include "core/math/sizes.h"
+#include "core/tick/torque_limits.h"
 
 namespace limpid {
 
@@ -21,22 +19,25 @@ class MotorStage {
   void begin_slew() { slewing_ = true; }
   bool steady() const { return !slewing_; }
 
-  // The torque the motors get for this command [N m]; limit > 0 for each joint. `gain`: the part of
-  // what is within the limits that may leave, 0 to 1; at 0 it is zero at once. `slew`: from no
-  // torque to the limit, always [s]; 0: only while a coupling is being switched. `dt`: since the
-  // last torque left [s].
-  const Vec<N>& pass(const Vec<N>& command, const Vec<N>& limit, double gain, double dt,
+  // The torque the motors get for this command [N m]. `gain`: the part of what is within the limits
+  // that may leave, 0 to 1; at 0 it is zero at once. `slew`: from no torque to a joint's limit,
+  // always [s]; 0: only while a coupling is being switched. `dt`: since the last torque left [s].
+  const Vec<N>& pass(const Vec<N>& command, const TorqueLimits<N>& limits, double gain, double dt,
                      double slew = 0) {
-    Vec<N> target = gain * command.cwiseMin(limit).cwiseMax(-limit);
-    if (!(gain > 0) || !target.allFinite()) {
+    Vec<N> target = gain * limits.within(command);
+    if (!(gain > 0) || command.hasNaN() || !target.allFinite()) {
       start();
       return tau_;
     }
     if (slewing_ || slew > 0) {
-      const Vec<N> step = limit * (dt / (slewing_ ? kSlew : slew));
-      const Vec<N> slewed = (target - tau_).cwiseMin(step).cwiseMax(-step) + tau_;
-      slewing_ = slewing_ && (slewed - target).cwiseAbs().maxCoeff() > 0;
-      target = slewed;
+      // Straight towards it, all joints together: both ends of the way are within the limits, and
+      // so is what lies between. The last torque may no longer be, where limits or pose changed.
+      const Vec<N> from = limits.within(tau_);
+      const Vec<N> way = target - from;
+      const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
+      const double steps = way.cwiseAbs().cwiseQuotient(step).maxCoeff();  // for the slowest joint
+      slewing_ = slewing_ && steps > 1;
+      if (steps > 1) target = from + way / steps;
     }
     tau_ = target;
     return tau_;

@@ -1,8 +1,9 @@
 #include "core/tick/safety.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "core/tick/torque_limits.h"
 
 namespace limpid {
 namespace {
@@ -42,6 +43,8 @@ const char* explain(ForceState state) {
     case ForceState::diverged: return "the loop became unstable";
     case ForceState::unwatched: return "the window did not answer for 0.2 s";
     case ForceState::stalled: return "the loop stood still for more than 5 ms";
+    case ForceState::frozen:
+      return "the readings stand still while the motors push: move the device";
   }
   return "";
 }
@@ -57,19 +60,17 @@ SafetyLimits allowed(SafetyLimits wanted) {
 
 template <int N>
 Safety<N>::Safety(const ArmDescription& arm)
-    : arm_lower_(Vec<N>::Zero(arm.dof())), arm_upper_(Vec<N>::Zero(arm.dof())) {
-  for (int i = 0; i < arm.dof(); ++i) {
-    arm_lower_[i] = arm.joints[static_cast<std::size_t>(i)].lower;
-    arm_upper_[i] = arm.joints[static_cast<std::size_t>(i)].upper;
-  }
+    : arm_lower_(of_joints<N>(arm, &Joint::lower)),
+      arm_upper_(of_joints<N>(arm, &Joint::upper)),
+      arm_effort_(of_joints<N>(arm, &Joint::effort)) {
   limit({});
   start();
 }
 
 template <int N>
 void Safety<N>::start() {
-  v_ = Vec<N>::Zero(lower_.size());
-  energy_ = 0;
+  v_ = x_ = Vec<N>::Zero(lower_.size());
+  energy_ = still_ = 0;
 }
 
 // A joint without a stop on one side keeps its range as it is.
@@ -87,14 +88,32 @@ void Safety<N>::limit(const SafetyLimits& wanted) {
 }
 
 template <int N>
-Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Vec<N>& x,
-                            const Vec<N>& v, const Jacobian<N>& J, double put_out, double T) {
+bool Safety<N>::pushed(const DrivenTick<N>& last) const {
+  constexpr double kLeastForce = SafetyLimits::kPush * SafetyLimits{}.tip_force;  // [N]
+  return (last.tau.cwiseAbs().array() > SafetyLimits::kPush * arm_effort_.array()).any() ||
+         limpid::tip_force<N>(last.tau, last.J) > kLeastForce;
+}
+
+// What fades counts on however little torque is left, and is forgotten when something moves.
+template <int N>
+void Safety<N>::watch_readings(const DrivenTick<N>& last) {
+  if (last.x != x_) {
+    still_ = 0;
+    x_ = last.x;
+  } else if (still_ > SafetyLimits::kStill || pushed(last)) {
+    still_ += last.T;
+  }
+}
+
+template <int N>
+Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const DrivenTick<N>& last) {
   Objections against;
   if (diverged) against.fault = ForceState::diverged;
   if (!health.guarded) return against;
-  if (health.gap) v_ = v;
-  v_ += std::min(1.0, T / kSmooth) * (v - v_);
-  energy_ = std::max(0.0, energy_ * std::max(0.0, 1 - T / kForget) + put_out);
+  if (health.gap) v_ = last.v;
+  v_ += std::min(1.0, last.T / kSmooth) * (last.v - v_);
+  energy_ = std::max(0.0, energy_ * std::max(0.0, 1 - last.T / kForget) + last.put_out);
+  watch_readings(last);
   against.hand = health.hand;
   against.gap = health.gap;
   if (against.fault == ForceState::on) against.fault = fault_of(health);
@@ -106,27 +125,20 @@ Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Vec
   const auto gone = [](double limit) { return SafetyLimits::kFade * limit; };
   fade(against, ForceState::too_fast, v_.cwiseAbs().maxCoeff(), limits_.joint_speed,
        gone(limits_.joint_speed));
-  fade(against, ForceState::too_fast, (J * v_).norm(), limits_.tip_speed, gone(limits_.tip_speed));
-  fade(against, ForceState::too_far, std::max((x - upper_).maxCoeff(), (lower_ - x).maxCoeff()), 0,
+  fade(against, ForceState::too_fast, (last.J * v_).norm(), limits_.tip_speed,
+       gone(limits_.tip_speed));
+  fade(against, ForceState::too_far,
+       std::max((last.x - upper_).maxCoeff(), (lower_ - last.x).maxCoeff()), 0,
        SafetyLimits::kOverrun);
   fade(against, ForceState::energy, energy_, limits_.energy, gone(limits_.energy));
   fade(against, ForceState::unwatched, health.silence, SafetyLimits::kSilence,
        2 * SafetyLimits::kSilence);
+  fade(against, ForceState::frozen, still_, SafetyLimits::kStill, 2 * SafetyLimits::kStill);
   if (against.fault != ForceState::on) return against;
   if (energy_ > gone(limits_.energy)) against.fault = ForceState::energy;
+  if (still_ >= 2 * SafetyLimits::kStill) against.fault = ForceState::frozen;
   if (health.silence >= 2 * SafetyLimits::kSilence) against.fault = ForceState::unwatched;
   return against;
-}
-
-// The smallest force at the tip that makes this torque, as far as a force there can.
-template <int N>
-Vec<N> Safety<N>::within_tip_force(const Vec<N>& tau, const Jacobian<N>& J) const {
-  Mat3 A = J * J.transpose();
-  A.diagonal().array() += 1e-9 * (A.trace() + 1e-12);  // stretched out, or in a plane
-  const Vec3 b = J * tau;
-  const double force = A.ldlt().solve(b).norm();
-  if (!(force > limits_.tip_force)) return tau;
-  return tau * (limits_.tip_force / force);
 }
 
 template class Safety<3>;

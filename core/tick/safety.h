@@ -26,6 +26,10 @@ struct SafetyLimits {
   static constexpr double kSlew = 0.02;    // from no torque to the limit [s]
   static constexpr double kGap = 0.005;    // between two ticks; more is a stall [s]
   static constexpr double kSilence = 0.2;  // of the window; at twice of it force is gone [s]
+  // Of readings while the motors push; at twice of it force is gone [s].
+  static constexpr double kStill = 0.3;
+  // What is less of a joint's limit, and of the most force at the tip, is no push [-].
+  static constexpr double kPush = 0.05;
 
   double joint_speed = 15;  // [rad/s]
   double tip_speed = 2;     // [m/s]
@@ -55,7 +59,25 @@ inline constexpr std::array<SafetyLimitInfo, 5> kSafetyLimitInfo{{
 // Within what can be set; what is no number is as by default.
 SafetyLimits allowed(SafetyLimits wanted);
 
+// What a device did over a tick, and under which torque.
+template <int N>
+struct DrivenTick {
+  const Vec<N>& x;       // where it is after it, as measured [rad]
+  const Vec<N>& v;       // [rad/s]
+  const Jacobian<N>& J;  // of the tip
+  const Vec<N>& tau;     // that the motors held [N m]
+  double put_out;        // their work [J]
+  double T;              // [s]
+};
+
 // Judges once a tick. What is dangerous to come back from by itself trips.
+//
+// Readings that come but stand still, as those of an encoder with a broken wire or of a service
+// that repeats itself, look like a device that is held still. A device that is well shows it: its
+// force is faded out as if its readings were frozen, and as soon as any of them moves, the force
+// comes back. Where a hand holds it against a wall that takes a few milliseconds, as the hand moves
+// on when the wall yields. Where nothing has moved when the force is gone, it trips, and arming
+// helps no sooner than something has moved.
 template <int N>
 class Safety {
  public:
@@ -64,18 +86,21 @@ class Safety {
   void start();
   void limit(const SafetyLimits& wanted);
 
-  // `v` [rad/s]; `J` of the tip. `put_out`: work of the motors over the last tick of T [J].
-  Objections judge(const DeviceHealth& health, bool diverged, const Vec<N>& x, const Vec<N>& v,
-                   const Jacobian<N>& J, double put_out, double T);
+  Objections judge(const DeviceHealth& health, bool diverged, const DrivenTick<N>& last);
 
-  // The torque with the force at the tip within its limit.
-  Vec<N> within_tip_force(const Vec<N>& tau, const Jacobian<N>& J) const;
+  double tip_force() const { return limits_.tip_force; }  // that the tip may have [N]
 
  private:
+  void watch_readings(const DrivenTick<N>& last);
+  bool pushed(const DrivenTick<N>& last) const;
+
   SafetyLimits limits_;
   Vec<N> arm_lower_, arm_upper_, lower_, upper_;  // [rad]
+  Vec<N> arm_effort_;                             // [N m]
   Vec<N> v_;                                      // smoothed [rad/s]
+  Vec<N> x_;                                      // the last reading [rad]
   double energy_ = 0;
+  double still_ = 0;  // how long the motors have pushed since a reading last moved [s]
 };
 
 extern template class Safety<3>;

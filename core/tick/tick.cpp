@@ -75,6 +75,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   proxy_.set_ratio(p.inertia_ratio);
   b_d_ = resolve<N>(p.damping, arm_damping_);
   limit_ = resolve<N>(p.torque_limit, arm_limit_);
+  // What the virtual arm is given to try is no more torque for a real one.
+  if (in.health.guarded) limit_ = limit_.cwiseMin(arm_limit_);
 
   // The device, (5), as the controller believes it to be.
   const bool goes_on = k_ > 0 && !in.health.gap;
@@ -159,15 +161,16 @@ template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
                       double T) {
   if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
-  const Objections against =
-      safety_.judge(in.health, diverged_, in.measured, velocity_.estimate(), J_, put_out, T);
+  const Objections against = safety_.judge(
+      in.health, diverged_, {in.measured, velocity_.estimate(), J_, tau1_, put_out, T});
   // As much time as really passed, and no more than a tick's.
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool limited = in.health.guarded && !diverged_;
   const Vec<N> all = command_ + loads_;
-  tau1_ = motors_.pass(limited ? safety_.within_tip_force(all, J_) : all, limit_, gate_.gain(), dt,
-                       limited ? SafetyLimits::kSlew : 0);
+  const TorqueLimits<N> most =
+      limited ? TorqueLimits<N>(limit_, J_, safety_.tip_force()) : TorqueLimits<N>(limit_);
+  tau1_ = motors_.pass(all, most, gate_.gain(), dt, limited ? SafetyLimits::kSlew : 0);
 }
 
 template <int N>

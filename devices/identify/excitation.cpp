@@ -194,9 +194,10 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   Jacobian<kAnyDof> J;
   arm_.frames(x, f);
   arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
-  const Objections against = safety_.judge(in.health, !torque.allFinite(), x, v_, J, put_out, in.T);
+  const Objections against =
+      safety_.judge(in.health, !torque.allFinite(), {x, v_, J, torque_, put_out, in.T});
   gate_.step(first ? ForceWish::arm : ForceWish::as_it_is, against, in.T);
-  torque_ = motors_.pass(safety_.within_tip_force(torque, J), limit_, gate_.gain(), in.T,
+  torque_ = motors_.pass(torque, {limit_, J, safety_.tip_force()}, gate_.gain(), in.T,
                          SafetyLimits::kSlew);
 
   // An open switch cuts the device's torque, which looks like a gap as well.

@@ -41,6 +41,7 @@ cp "$deb" "$root/tmp/limpid.deb"
 quiet_apt install -y /tmp/limpid.deb
 quiet_apt install -y desktop-file-utils shared-mime-info libglib2.0-bin man-db
 quiet_apt purge -y limpid
+inside groupmod -g 1500 realtime  # an ordinary group, as people with ROS have it
 files >"$place/before"
 
 say "installed"

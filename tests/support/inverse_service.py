@@ -11,7 +11,7 @@ It says on stdout what happens, a line each: "port N" once it listens; "session"
 session that sends something; "force X Y Z" whenever the force that a session asks for is another one;
 "messages N" as an answer. It is told on stdin: "move X Y Z", "spring N/M", "devices ID...",
 "merge JSON" (into each device's entry), "grip JSON", "silent", "slow SECONDS", "say TEXT" (instead of each
-answer), "answer" (as usual again), "drop" (all connections, without a word), "count".
+answer), "repeat" (its last answer, again and again), "answer" (as usual again), "drop" (all connections, without a word), "count".
 """
 
 from __future__ import annotations
@@ -226,6 +226,8 @@ class Server:
             service.grip = json.loads(rest)
         elif word in ("silent", "say", "answer"):
             service.mode, service.words, service.delay = word, rest, 0.0
+        elif word == "repeat":
+            service.mode, service.words, service.delay = "say", service.message(whole=False), 0.0
         elif word == "slow":
             service.delay = float(rest)
         elif word == "drop":

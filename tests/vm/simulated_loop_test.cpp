@@ -72,6 +72,46 @@ TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsGarbage) {
   EXPECT_LE(*zero, kReadingLife);
 }
 
+// Its encoders' wires are broken: new reports come, and all say the same.
+TYPED_TEST(SimulatedLoop, EndsForceWhenReadingsStandStillThoughReportsGoOn) {
+  auto& here = this->desk;
+  ASSERT_TRUE(here.push());
+  const Time moment = here.now;
+  here.model->hand().break_encoders(true);
+  here.run(200);
+  EXPECT_LT(here.torque(), -0.1) << "it may be held still for a while";
+  here.run(500);
+  const auto zero = here.model->forces().zero_after(moment);
+  ASSERT_TRUE(zero);
+  EXPECT_LE(*zero, 605ms);
+  EXPECT_EQ(here.rig.force_state(), ForceState::frozen);
+  here.armed = false;
+  here.run(5);
+  here.armed = true;
+  here.run(700);
+  EXPECT_EQ(here.model->forces().largest(moment + 605ms), 0) << "armed again, but not moved";
+  here.model->hand().break_encoders(false);
+  here.run(700);
+  EXPECT_EQ(here.torque(), 0) << "it pushes again without having been armed";
+  here.armed = false;
+  here.run(5);
+  EXPECT_EQ(here.rig.force_state(), ForceState::off);
+  EXPECT_TRUE(here.push());
+}
+
+// Held against the wall for ten seconds by a hand that does not tremble.
+TYPED_TEST(SimulatedLoop, PushesOnWhereAHandHoldsTheDeviceStill) {
+  auto& here = this->desk;
+  ASSERT_TRUE(here.push());
+  const double full = here.torque();
+  const std::size_t first = here.row.size();
+  here.run(10'000);
+  EXPECT_NEAR(here.torque(), full, 0.1 * std::abs(full));
+  for (std::size_t k = first; k < here.row.size(); ++k) {
+    ASSERT_LT(here.row.vec(k, Column::motor_torque)[0], 0.85 * full) << k;
+  }
+}
+
 TYPED_TEST(SimulatedLoop, EndsForceWhenNoTickComes) {
   ASSERT_TRUE(this->desk.push());
   const auto zero = this->time_to_zero([&] { this->desk.ticking = false; });
@@ -134,6 +174,25 @@ TEST_F(SimulatedRawLoop, EndsForceWhenReadingsRepeatThemselves) { expect_end(Fau
 
 TEST_F(SimulatedRawLoop, EndsForceWhenTheDeviceReportsAFault) {
   expect_end([](RawDeviceModel& model, bool on) { model.set_unwell(on); }, ForceState::fault, 3ms);
+}
+
+// Nothing reaches it for a while, until its watchdog cuts; then everything does again.
+TEST_F(SimulatedRawLoop, FadesInFromNothingAfterTheDevicesWatchdogHasCut) {
+  for (const int deaf : {11, 15, 40, 400}) {
+    ASSERT_TRUE(desk.push());
+    const double full = std::abs(desk.torque());
+    desk.model->set_fault(Fault::deaf);
+    desk.run(deaf);
+    ASSERT_TRUE(desk.model->cut()) << "its watchdog takes 10 ms";
+    EXPECT_EQ(desk.torque(), 0);
+    desk.model->set_fault(Fault::none);
+    for (int ms = 1; ms <= 500; ++ms) {
+      desk.run(1);
+      ASSERT_LE(std::abs(desk.torque()), 1.3 * full * (ms + 3) / 500 + 1e-3) << deaf << ", " << ms;
+    }
+    desk.run(200);
+    EXPECT_NEAR(std::abs(desk.torque()), full, 0.1 * full) << "it is still armed";
+  }
 }
 
 TEST_F(SimulatedRawLoop, EndsForceWhileNoHandIsThere) {

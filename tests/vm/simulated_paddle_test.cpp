@@ -134,9 +134,55 @@ TEST_F(OnTheDesk, CutsTheTorqueByItselfAndSaysSo) {
   EXPECT_LE(*zero, 10.2ms);
   EXPECT_GE(*zero, 8ms);
   EXPECT_TRUE(model.input(now += 1ms).front()[3] & 16) << "its watchdog has cut the torque";
-  EXPECT_TRUE(send(command(1, 1u << 30, 0.2f))) << "until the next command";
+  EXPECT_FALSE(send(command(1, 1u << 30, 0.2f))) << "the computer may not know that it was gone";
+  EXPECT_TRUE(model.input(now += 1ms).front()[3] & 16);
+  EXPECT_EQ(model.forces().newest()[0], 0);
+  EXPECT_TRUE(send(command(0, (1u << 30) + 1, 0))) << "until the next command without torque";
   EXPECT_FALSE(model.input(now += 1ms).front()[3] & 16);
+  EXPECT_TRUE(send(command(1, (1u << 30) + 2, 0.2f)));
+  model.input(now += 1ms);
   EXPECT_NEAR(model.forces().newest()[0], 0.2, 1e-6);
+}
+
+// With line A, B or both broken, and a hand that does not hold still.
+TEST_F(OnTheDesk, LosesItsTorqueWhereALineOfItsEncoderDoesNotChange) {
+  for (const std::uint8_t lines : {1, 2, 3}) {
+    model.power(false, now);
+    model.power(true, now);
+    begin();
+    model.hand().axis(0).path = [](double t) { return 0.1 + 0.02 * std::sin(10 * t); };
+    EXPECT_NEAR(push(0.3, 2000), 0.3, 1e-6);
+    model.break_lines(lines);
+    EXPECT_NEAR(push(0.3, 250), 0.3, 1e-6);
+    EXPECT_GT(push(0.3, 300), 0.01) << "it fades";
+    EXPECT_EQ(push(0.3, 100), 0) << int{lines};
+    EXPECT_TRUE(reading().fault);
+    EXPECT_EQ(push(0.3, 1000), 0);
+    model.break_lines(0);
+    push(0, 500);
+    EXPECT_FALSE(reading().fault) << "both lines have changed";
+    EXPECT_NEAR(push(0.3, 10), 0.3, 1e-6);
+  }
+}
+
+// As its torque fades, the hand moves it, and it comes back at a bounded rate.
+TEST_F(OnTheDesk, PushesOnWhereAHandHoldsItStill) {
+  model.hand().axis(0).stiffness = 7;
+  begin();
+  push(0.3, 1000);
+  double before = 0.3;
+  for (int ms = 0; ms < 10'000; ++ms) {
+    const double now_given = push(0.3, 1);
+    ASSERT_GT(now_given, 0.85 * 0.3) << ms;
+    ASSERT_LE(now_given - before, 0.3 * 2e-3 + 1e-6) << ms;
+    before = now_given;
+  }
+  EXPECT_FALSE(reading().fault);
+}
+
+TEST_F(OnTheDesk, MayStandStillForEverWithLittleTorque) {
+  begin();
+  EXPECT_NEAR(push(0.035, 5000), 0.035, 1e-6);
 }
 
 TEST_F(OnTheDesk, UsesNoCommandThatIsNotRight) {
@@ -205,6 +251,7 @@ TEST_F(OnTheDesk, IsAtFaultOnceItsEncoderHasSkippedAStep) {
 // 1 - exp(-t/10 s) of (0.8/0.3)^2: after 1.52 s it is as warm as it may be.
 TEST_F(OnTheDesk, SparesItsWinding) {
   model.hand().axis(0).stiffness = 20;
+  model.hand().axis(0).path = [](double t) { return 0.1 + 0.01 * std::sin(20 * t); };
   begin();
   EXPECT_NEAR(push(0.8, 1480), 0.8, 1e-6);
   EXPECT_NEAR(push(0.8, 80), 0.3, 1e-6);

@@ -16,7 +16,12 @@ constexpr Usage kApplication = make_usage(0xFF4C, 0x01);
 constexpr std::uint8_t kMagic = 0x4C;
 constexpr std::uint8_t kVersion = 1;
 
-enum StatusBit : std::uint8_t { kHand = 1 << 1, kCalibrated = 1 << 2, kFault = 1 << 3 };
+enum StatusBit : std::uint8_t {
+  kHand = 1 << 1,
+  kCalibrated = 1 << 2,
+  kFault = 1 << 3,
+  kCut = 1 << 4
+};
 enum Mode : std::uint8_t { kNoTorque = 0, kTorque = 1 };
 
 // Places in a report, its id not counted.
@@ -158,6 +163,8 @@ Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading&
   const std::uint8_t status = body[kAtFlags];
   reading.hand = status & kHand;
   reading.fault = (status & kFault) || !(status & kCalibrated);
+  // As long as it says so, it did not get what was sent.
+  if (status & kCut) ++reading.lapses;
   reading_sequence_ = sequence;
   time_stamp_ = load_le<std::uint64_t>(body, kAtTimeStamp);
   return Decoded::reading;

@@ -46,8 +46,10 @@
 // whose sequence did not go up; obey mode 0 whatever its sequence is, and count on from that (a
 // session begins with mode 0, sequence 1 and ends with mode 0, sequence 0); limit torques itself;
 // cut the torque when no usable command came for the watchdog's time, and say so in bit 4 until the
-// next. The computer does the same: a reading that is damaged, is not finite or whose sequence did
-// not go up is not used, and 5 ms without a usable one mean mode 0.
+// next; better still, use none in mode 1 then before one in mode 0 has come, as the computer may
+// not have heard of it. The computer does the same: a reading that is damaged, is not finite or
+// whose sequence did not go up is not used, and 5 ms without a usable one mean mode 0; one with bit
+// 4 has it send mode 0, and torques that begin at nothing.
 #pragma once
 
 #include <array>

@@ -146,5 +146,24 @@ TEST(Compensation, GoesOverToAnotherSettingWithinHalfASecondAndNoFaster) {
   EXPECT_LT((before - full).norm(), 1e-9);
 }
 
+TEST(Compensation, IsNotSteadyWhileAnyOfItIsOnItsWay) {
+  const Bench bench(3);
+  for (const CompensationSettings& one :
+       {CompensationSettings{.holds_weight = true}, CompensationSettings{.friction_share = 0.95},
+        CompensationSettings{.holds_springs = true}}) {
+    Compensation<kAnyDof> c(bench.description);
+    c.start({});
+    const int ticks = one.friction_share > 0 ? 475 : 500;
+    for (int k = 1; k < ticks; ++k) {
+      bench.at(c, one, bench.zero);
+      ASSERT_FALSE(c.steady()) << k;
+    }
+    for (int k = 0; k < 3; ++k) bench.at(c, one, bench.zero);
+    EXPECT_TRUE(c.steady());
+    bench.at(c, {}, bench.zero);
+    EXPECT_FALSE(c.steady());
+  }
+}
+
 }  // namespace
 }  // namespace limpid

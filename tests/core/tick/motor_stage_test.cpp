@@ -55,6 +55,30 @@ TEST(MotorStage, ArrivesAtTheNewCommandAndFollowsItFromThenOn) {
   EXPECT_EQ(motors.pass(Vector::Constant(1, 0.5), limit, 1, T)[0], 0.5);
 }
 
+// 0.1 s from no torque to the limit: the joint with the longer way takes 90 ms, and no joint jumps.
+TEST(MotorStage, SlewsUntilTheLastJointHasArrived) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(0.5, 0.5, 0.5);
+  motors.pass(three(0.1, 0.4, 0), limit, 1, T);
+  motors.begin_slew();
+  Vector before = three(0.1, 0.4, 0);
+  int ticks = 0;
+  for (; !motors.steady() && ticks < 1000; ++ticks) {
+    const Vector tau = motors.pass(three(0.1, -0.05, 0.2), limit, 1, T);
+    ASSERT_LE((tau - before).cwiseAbs().maxCoeff(), 0.5 * T / kSlew * (1 + 1e-9)) << ticks;
+    before = tau;
+  }
+  EXPECT_NEAR(ticks * T, 0.09, 1.5 * T);
+  EXPECT_EQ(before, three(0.1, -0.05, 0.2));
+}
+
+TEST(MotorStage, ObeysALimitThatIsLoweredAtOnce) {
+  MotorStage<kAnyDof> motors(2);
+  const Vector before = Vector::Constant(2, 0.5), lower = Vector::Constant(2, 0.1);
+  for (int k = 0; k < 100; ++k) motors.pass(before, before, 1, T, 0.02);
+  EXPECT_LE(motors.pass(-before, lower, 1, T, 0.02).cwiseAbs().maxCoeff(), 0.1);
+}
+
 TEST(MotorStage, IsZeroAtOnceWhenForceIsCutAndHasForgottenItsSlewThen) {
   MotorStage<kAnyDof> motors(3);
   const Vector limit = three(1, 1, 1), command = three(0.3, -0.4, 0.5);

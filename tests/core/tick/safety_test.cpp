@@ -22,7 +22,8 @@ struct SafeArm : testing::Test {
   }
   // So many ticks with all that the test has changed: what there is to say against force.
   ForceState judge(int ticks = 1) {
-    for (int i = 0; i < ticks; ++i) against = safety->judge(health, diverged, x, v, J, put_out, T);
+    for (int i = 0; i < ticks; ++i)
+      against = safety->judge(health, diverged, {x, v, J, tau, put_out, T});
     return against.fault != ForceState::on ? against.fault : against.limited;
   }
   void expect_trips(ForceState reason) {
@@ -34,7 +35,7 @@ struct SafeArm : testing::Test {
   std::unique_ptr<Safety<kAnyDof>> safety;
   DeviceHealth health{.guarded = true};
   bool diverged = false;
-  Vector x = Vector::Zero(2), v = Vector::Zero(2);
+  Vector x = Vector::Zero(2), v = Vector::Zero(2), tau = Vector::Zero(2);
   Jacobian<kAnyDof> J = Jacobian<kAnyDof>::Identity(3, 2);
   double put_out = 0;
   Objections against;
@@ -238,8 +239,7 @@ TEST_F(SafeArm, CanBeHeldToLowerLimits) {
   EXPECT_EQ(judge(), ForceState::on);
   put_out = 0.36 * T;
   EXPECT_EQ(judge(5000), ForceState::energy);
-  J = Jacobian<kAnyDof>::Identity(3, 2);
-  EXPECT_NEAR(safety->within_tip_force(Vec3(6, 8, 0).head(2), J).norm(), 2, 1e-6);
+  EXPECT_EQ(safety->tip_force(), 2);
 }
 
 TEST_F(SafeArm, CannotBeHeldToHigherLimitsThanItsOwn) {
@@ -259,31 +259,99 @@ TEST_F(SafeArm, CannotBeHeldToHigherLimitsThanItsOwn) {
   EXPECT_GT(allowed({-1, -1, -1, -1, -1}).tip_force, 0);
 }
 
-// tau = J^T F: the force is the torque where J is the identity.
-TEST_F(SafeArm, KeepsTheForceAtTheTipWithinItsLimit) {
-  const double limit = 10.0;
-  const Vector direction = Vec3(0.6, -0.8, 0).head(2);
-  EXPECT_EQ(safety->within_tip_force(0.9 * limit * direction, J), 0.9 * limit * direction);
-  const Vector held = safety->within_tip_force(7 * limit * direction, J);
-  EXPECT_NEAR((held - limit * direction).norm(), 0, 1e-6 * limit);
+// As it is until the test says otherwise: 0.2 N m of 0.4 to 0.8, at readings that stand still.
+struct SafeArmThatPushes : SafeArm {
+  SafeArmThatPushes() { tau = Vec3(0.2, -0.1, 0).head(2); }
+};
+
+TEST_F(SafeArmThatPushes, FadesAndTripsWhereNoReadingMovesForThreeTenthsOfASecond) {
+  EXPECT_EQ(judge(299), ForceState::on);
+  EXPECT_EQ(against.ceiling, 1);
+  EXPECT_EQ(judge(151), ForceState::frozen);
+  EXPECT_NEAR(against.ceiling, 0.5, 1e-6);  // halfway from 0.3 to 0.6 s
+  EXPECT_EQ(against.fault, ForceState::on);
+  judge(149);
+  EXPECT_NEAR(against.ceiling, 1.0 / 300, 1e-6);
+  EXPECT_EQ(against.fault, ForceState::on);
+  judge(2);
+  EXPECT_EQ(against.ceiling, 0);
+  EXPECT_EQ(against.fault, ForceState::frozen);
 }
 
-TEST_F(SafeArm, ScalesTheTorquesOfAnyArmByTheForceTheyMake) {
-  test::Random random(7);
-  for (int i = 0; i < 200; ++i) {
-    const Vec3 force = 100 * Vec3(random.vector(3, 1));
-    Eigen::Matrix3d square;
-    for (int c = 0; c < 3; ++c) square.col(c) = Vec3(random.vector(3, 1));
-    if (std::abs(square.determinant()) < 1e-2) continue;
-    const Jacobian<kAnyDof> jacobian = square;
-    const Vector tau = jacobian.transpose() * force;
-    const double part = std::min(1.0, 10.0 / force.norm());
-    EXPECT_LT((safety->within_tip_force(tau, jacobian) - part * tau).norm(), 1e-3 * tau.norm());
+TEST_F(SafeArmThatPushes, HasItsForceBackAsSoonAsAnyReadingMovesByTheLeast) {
+  for (const int joint : {0, 1}) {
+    judge(500);
+    EXPECT_EQ(against.limited, ForceState::frozen);
+    x[joint] = std::nextafter(x[joint], 1);
+    EXPECT_EQ(judge(300), ForceState::on) << joint;
+    EXPECT_EQ(against.ceiling, 1);
+    x[joint] = std::nextafter(x[joint], 1);
+    judge();
   }
 }
 
+// However little of it is left: else it would come back.
+TEST_F(SafeArmThatPushes, FadesOnWhenTheTorqueHasBecomeSmall) {
+  judge(350);
+  tau.setZero();
+  judge(250);
+  EXPECT_EQ(against.fault, ForceState::frozen);
+}
+
+TEST_F(SafeArmThatPushes, StaysWithoutForceUntilSomethingHasMoved) {
+  judge(600);
+  tau.setZero();
+  EXPECT_EQ(judge(5000), ForceState::frozen);
+  health.gap = true;
+  judge();
+  health.gap = false;
+  EXPECT_EQ(judge(), ForceState::frozen) << "a stall is no sign of life";
+  x[1] += 1e-6;
+  EXPECT_EQ(judge(), ForceState::on);
+}
+
+TEST_F(SafeArmThatPushes, CountsTheTimeInWhichItPushesAlone) {
+  for (int k = 0; k < 299; ++k) {
+    tau[0] = 0.2;
+    EXPECT_EQ(judge(), ForceState::on) << k;
+    tau[0] = 0;
+    tau[1] = 0;
+    EXPECT_EQ(judge(), ForceState::on) << k;
+  }
+  tau[0] = -0.2;
+  EXPECT_EQ(judge(10), ForceState::frozen);
+}
+
+TEST_F(SafeArmThatPushes, MayStandStillForEverWithLittleTorque) {
+  tau = 0.04 * of_joints<kAnyDof>(arm, &Joint::effort);
+  EXPECT_EQ(judge(20000), ForceState::on);
+}
+
+// 5 % of its 20 N m would be 10 N at a tenth of a metre.
+TEST_F(SafeArmThatPushes, JudgesStrongMotorsByTheForceAtTheTip) {
+  for (Joint& joint : arm.joints) joint.effort = 20;
+  safety = std::make_unique<Safety<kAnyDof>>(arm);
+  J *= 0.1;
+  tau = Vec3(0, 0.04, 0).head(2);  // 0.4 N
+  EXPECT_EQ(judge(5000), ForceState::on);
+  tau = Vec3(0, 0.06, 0).head(2);  // 0.6 N
+  EXPECT_EQ(judge(400), ForceState::frozen);
+}
+
+TEST_F(SafeArmThatPushes, IsNotJudgedWhereItIsNotGuarded) {
+  health.guarded = false;
+  EXPECT_EQ(judge(5000), ForceState::on);
+}
+
+TEST_F(SafeArmThatPushes, ForgetsThatItStoodStillWhenItStarts) {
+  judge(600);
+  EXPECT_EQ(against.fault, ForceState::frozen);
+  safety->start();
+  EXPECT_EQ(judge(), ForceState::on);
+}
+
 TEST(ForceState, IsExplainedInWords) {
-  for (int i = 0; i <= static_cast<int>(ForceState::stalled); ++i) {
+  for (int i = 0; i <= static_cast<int>(ForceState::frozen); ++i) {
     EXPECT_STRNE(explain(static_cast<ForceState>(i)), "") << i;
   }
 }

@@ -308,5 +308,38 @@ TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
   }
 }
 
+// Whatever is set to try the virtual arm with.
+TEST(Tick, GivesARealArmNoMoreThanItsOwnLimitNorFaster) {
+  const ArmDescription arm = random_arm(3, 130);
+  for (const double setting : {100.0, 0.3, kFromArm}) {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    p.k_vc = 500;
+    p.torque_limit = setting;
+    Tick<3> tick(arm, stop());
+    tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+    Rows rows(tick.layout());
+    for (std::size_t k = 0; k < 1500; ++k) {
+      const Vec<3> x = led(3, k, p.tick);
+      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = true}}, ForceWish::as_it_is, rows.add());
+    }
+    Vector largest = Vector::Zero(3), fastest = Vector::Zero(3);
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      const Vector now = rows.vec(k, Column::motor_torque);
+      const Vector before = rows.vec(k - 1, Column::motor_torque);
+      largest = largest.cwiseMax(now.cwiseAbs());
+      fastest = fastest.cwiseMax(now.cwiseAbs() - before.cwiseAbs());
+    }
+    for (int i = 0; i < 3; ++i) {
+      const double effort = arm.joints[static_cast<std::size_t>(i)].effort;
+      const double limit = std::isnan(setting) ? effort : std::min(effort, setting);
+      EXPECT_LE(largest[i], limit) << setting;
+      EXPECT_LE(fastest[i], limit * p.tick / 0.02 * (1 + 1e-9)) << setting;
+    }
+    EXPECT_GT(largest.maxCoeff(), 0.25) << setting;
+    EXPECT_GT(fastest.maxCoeff(), 0.2 * p.tick / 0.02) << setting;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -350,5 +350,30 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
   EXPECT_GT(pushed, 600);
 }
 
+// 0.34 of m_n/T is the most that a wall may damp, 0.2 of it what it does by itself; m_n is what the
+// tip weighs along the normal.
+TEST(ContactSolve, BoundsTheDamperOfAWall) {
+  Random random(213);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 normal = random.direction(), push = random.point(5);
+    const double depth = random.between(1e-4, 2e-3);
+    const auto force = [&](double damping) {
+      Scene scene;
+      const Material material{.stiffness = 3000, .damping = damping};
+      scene.planes.push_back(Bench::plane(normal, depth, material));
+      Bench bench(scene, 214);
+      bench.tick(push);
+      const Vec3 along = bench.tip_jacobian().transpose() * normal;
+      const double mass = 1 / along.dot(bench.answer.M.inverse() * along);
+      return std::pair(bench.contacts.list()[0].force, mass);
+    };
+    const double bound = (0.34 - 0.2) * force(0).second / T;
+    const double at_bound = force(bound).first;
+    EXPECT_NEAR(force(1e6).first, at_bound, 1e-9 * (1 + at_bound));
+    EXPECT_NEAR(force(1.01 * bound).first, at_bound, 1e-9 * (1 + at_bound));
+    EXPECT_GT(std::abs(force(0.5 * bound).first - at_bound), 1e-6) << "below it it counts";
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -513,5 +513,50 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   }
 }
 
+// From end to end, 0.75 radii apart at most, but no more than 24.
+TEST(Contacts, OfACapsuleAndAMeshAreARowOfBallsFromEndToEnd) {
+  World w(3);
+  w.scene.meshes.push_back(test::obstacle(test::sheet(4, 0.3), 900));
+  for (const auto& [length, radius, balls] : {std::tuple(0.1, 0.01, 15),
+                                              {0.015, 0.01, 3},
+                                              {0.001, 0.01, 2},
+                                              {0.0, 0.01, 1},
+                                              {1.0, 0.001, 24}}) {
+    const Vec3 from(0.01, -0.02, 0.03), to = from + length * Vec3(0.6, 0, -0.8);
+    w.scene.probes = {{"", 1, from, to, radius}};
+    const Contacts<kAnyDof> contacts(w.description, w.scene);
+    const auto all = contacts.meshes();
+    ASSERT_EQ(all.size(), 1u + static_cast<std::size_t>(balls)) << length;
+    EXPECT_LT((all[1].on_link - from).norm(), 1e-15);
+    EXPECT_LT((all.back().on_link - to).norm(), 1e-15) << length;
+    for (std::size_t i = 2; i < all.size(); ++i) {
+      EXPECT_NEAR((all[i].on_link - all[i - 1].on_link).norm(), length / (balls - 1), 1e-15);
+      EXPECT_EQ(all[i].link, 1);
+      EXPECT_EQ(all[i].touch.radius(), radius);
+    }
+  }
+}
+
+// Bit for bit, wherever both are led from there: nothing of what it knows is left behind.
+TEST_F(TipBehindASheet, GoesOnAsTheOneItWasTakenOverFrom) {
+  add_sheet(-0.002);
+  Contacts<kAnyDof> first = came_through();
+  Contacts<kAnyDof> next = placed(led(x_, tip_ - 3 * kWay * out_[2]));
+  next.take_over(first);
+  EXPECT_EQ(next.recoverable(), first.recoverable());
+  Random random(29);
+  Vec3 at = -kWay * out_[2];
+  for (int k = 0; k < 400; ++k) {
+    at += random.point(k % 7 == 0 ? 0.01 : 0.001);
+    at *= 0.98;
+    const Vec<kAnyDof> x = led(x_, tip_ + at);
+    find(first, x);
+    find(next, x);
+    ASSERT_EQ(pull(next), pull(first)) << k;
+    ASSERT_EQ(next.meshes()[0].rank, first.meshes()[0].rank) << k;
+    ASSERT_EQ(next.potential(), first.potential()) << k;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -37,6 +37,8 @@ struct RealRig : testing::Test {
   ForceState step(int ticks = 1) {
     for (int i = 0; i < ticks; ++i) {
       if (alive) ++device.reading.count;
+      // As the last bit of any encoder that is well does now and then.
+      if (trembles) device.reading.x[2] = x0[2] + (device.reading.count % 2 == 0 ? 1e-9 : 0);
       input.hand = {rig.tip(), 1};
       input.force = wisher.at(armed);
       rig.step({}, input, rows.add());
@@ -61,7 +63,7 @@ struct RealRig : testing::Test {
   const ArmDescription arm = test::omni();
   const Eigen::Vector3d x0 = rest_pose(arm);
   test::FakeDevice device{3};
-  bool armed = false, alive = true;
+  bool armed = false, alive = true, trembles = true;
   test::Wisher wisher;
   RigInput input;  // what else a tick is told
   Rig rig;
@@ -353,6 +355,66 @@ TEST_F(RealRig, FadesAndTripsWhenTheWindowIsSilent) {
   EXPECT_FALSE(pushes());
   input.silence = 0;
   expect_stays_off(ForceState::unwatched);
+}
+
+// New readings keep coming, and all say the same.
+TEST_F(RealRig, FadesAndStaysOffWhereItsReadingsStandStill) {
+  push();
+  const double full = std::abs(device.told[0]);
+  trembles = false;
+  EXPECT_EQ(step(295), ForceState::on);
+  EXPECT_NEAR(std::abs(device.told[0]), full, 1e-3 * full);
+  EXPECT_EQ(step(155), ForceState::frozen);
+  EXPECT_NEAR(std::abs(device.told[0]), 0.5 * full, 0.02 * full);
+  EXPECT_EQ(step(155), ForceState::frozen);
+  EXPECT_FALSE(pushes());
+  EXPECT_EQ(rows.at(rows.size() - 1, Column::force_state), 12);
+  armed = false;
+  step();
+  armed = true;
+  EXPECT_EQ(step(1000), ForceState::frozen) << "arming helps no sooner than it has moved";
+  EXPECT_FALSE(pushes());
+  trembles = true;
+  expect_stays_off(ForceState::frozen);
+}
+
+// A hand that holds still against a wall, and an encoder of so coarse steps that it says the same
+// for seconds: 300 N/m at 0.13 m, a stick of 3e-4 kg m^2 with dry friction.
+TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
+  constexpr double kStep = 5e-4, kInertia = 2e-3, kHand = 5, kHandDamping = 0.1, kDry = 0.004;
+  for (const double dry : {0.0, kDry}) {
+    double x = x0[0], v = 0, least = 1e9, most = 0;
+    int still = 0, longest = 0;
+    const auto live = [&](int ticks, bool watch) {
+      for (int k = 0; k < ticks; ++k) {
+        for (int i = 0; i < 10; ++i) {
+          const double f = device.told[0] + kHand * (x0[0] + 0.02 - x) - kHandDamping * v;
+          const double after = v + 1e-4 / kInertia * f, brake = 1e-4 / kInertia * dry;
+          v = std::abs(after) <= brake ? 0 : after - std::copysign(brake, after);
+          x += 1e-4 * v;
+        }
+        const double read = kStep * std::round(x / kStep);
+        still = read == device.reading.x[0] ? still + 1 : 0;
+        longest = std::max(longest, still);
+        device.reading.x[0] = read;
+        step();
+        if (!watch) continue;
+        least = std::min(least, std::abs(device.told[0]));
+        most = std::max(most, std::abs(device.told[0]));
+      }
+    };
+    trembles = false;
+    armed = true;
+    live(2000, false);
+    live(10000, true);
+    EXPECT_GT(longest, 250) << "it stood still for a while";
+    EXPECT_EQ(rig.force().armed(), true);
+    EXPECT_GT(least, 0.85 * most) << "dry friction " << dry;
+    std::printf("held still: dips to %.3f of the force, dry friction %.3f N m\n", least / most,
+                dry);
+    armed = false;
+    step(10);
+  }
 }
 
 TEST_F(RealRig, ObeysLowerLimits) {

@@ -43,8 +43,13 @@ void PaddleModel::turn_encoder() {
   while (count_ != there) {
     count_ += count_ < there ? 1 : -1;
     if (skipping_ > 0 && skipping_-- > 0) continue;
-    paddle_turn(&firmware_, pins_of(count_));
+    see(pins_of(count_));
   }
+}
+
+void PaddleModel::see(std::uint8_t pins) {
+  const int seen = (pins & ~broken_) | (firmware_.pins & broken_);
+  paddle_turn(&firmware_, static_cast<std::uint8_t>(seen));
 }
 
 // The board's loop and the paddle's mechanics, in steps of 0.1 ms.

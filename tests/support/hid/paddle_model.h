@@ -21,6 +21,8 @@ class PaddleModel final : public ReferenceDevice {
   void lay_at_its_end() { at_end_ = true; }  // as one does after switching it on
   void swap_the_motors_wires() { swapped_ = true; }
   void skip_steps(int steps) { skipping_ = steps; }
+  // Bit 0 line A, bit 1 line B: stays as it is.
+  void break_lines(std::uint8_t lines) { broken_ = lines; }
   int rejected() const { return rejected_; }
 
  private:
@@ -32,12 +34,14 @@ class PaddleModel final : public ReferenceDevice {
   bool on_set_feature(ReportView, Time) override { return false; }
 
   void turn_encoder();
+  void see(std::uint8_t pins);
 
   SprungHand hand_;
   Paddle firmware_{};
   Time start_{};
   long count_ = 0;  // of the encoder's steps, as they are
   int skipping_ = 0, rejected_ = 0;
+  std::uint8_t broken_ = 0;
   bool at_end_ = false, driver_fault_ = false, swapped_ = false;
 };
 

@@ -117,7 +117,7 @@ Report PidJoystickModel::stick() const {
   Report report = reports_.writer.blank(Kind::input, reports_.x.id);
   for (int axis = 0; axis < 2; ++axis) {
     const Field field = reports_.x.at(axis);
-    const double x = std::clamp(hand_.position(axis) / hand_.axis(axis).upper, -1.0, 1.0);
+    const double x = std::clamp(hand_.encoder(axis) / hand_.axis(axis).upper, -1.0, 1.0);
     const bool broken = fault() == Fault::not_a_number;
     put(report, field, broken ? field.min - 1 : std::lround(x * field.max));
   }

@@ -90,7 +90,7 @@ std::vector<Report> RawDeviceModel::next_input(Time now) {
   write_at(report, 4, ++sequence_);
   write_at(report, 8, stamp_);
   for (int joint = 0; joint < layout_.joints; ++joint) {
-    double x = hand_.position(joint);
+    double x = hand_.encoder(joint);
     if (layout_.resolution > 0) x = std::round(x / layout_.resolution) * layout_.resolution;
     if (fault() == Fault::not_a_number) x = std::numeric_limits<double>::quiet_NaN();
     write_at(report, 16 + 4 * static_cast<std::size_t>(joint), static_cast<float>(x));

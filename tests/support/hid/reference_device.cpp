@@ -26,7 +26,7 @@ void ReferenceDevice::output(ReportView report, Time now) {
   if (!powered_) return;
   now = forward(now);
   run(now);
-  if (fault_ != Fault::frozen) on_output(report, now);
+  if (fault_ != Fault::frozen && fault_ != Fault::deaf) on_output(report, now);
 }
 
 std::optional<Report> ReferenceDevice::feature(std::uint8_t id, Time now) {

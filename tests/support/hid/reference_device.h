@@ -27,6 +27,7 @@ enum class Fault {
   none,
   silent,        // sends nothing, answers no question, but hears
   frozen,        // the firmware hangs: sends nothing, hears nothing, the motors keep their torque
+  deaf,          // hears nothing, but says where it is
   stuck,         // sends its newest report again and again
   garbage,       // random bytes
   cut_short,     // half of each report

@@ -34,10 +34,15 @@ class SprungHand {
 
   int size() const { return static_cast<int>(axes_.size()); }
   double position(int axis) const { return states_[static_cast<std::size_t>(axis)].x; }  // [rad]
+  // As the encoder has it: where it was when its wire broke [rad].
+  double encoder(int axis) const {
+    return broken_.empty() ? position(axis) : broken_[static_cast<std::size_t>(axis)].x;
+  }
   double velocity(int axis) const { return states_[static_cast<std::size_t>(axis)].v; }  // [rad/s]
   AxisPhysics& axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
   const AxisPhysics& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   void hold(bool held) { held_ = held; }  // or let go
+  void break_encoders(bool broken) { broken_ = broken ? states_ : std::vector<State>{}; }
   bool held() const { return held_; }
 
  private:
@@ -47,7 +52,7 @@ class SprungHand {
   void step(std::size_t axis, double t, double torque);
 
   std::vector<AxisPhysics> axes_;
-  std::vector<State> states_;
+  std::vector<State> states_, broken_;
   Time start_{}, now_{};
   bool held_ = true;
 };
