@@ -9,26 +9,12 @@
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
 #include "render/model/simplify.h"
+#include "render/upright.h"
 
 namespace limpid {
 namespace {
 
-using Models = std::map<std::string, std::shared_ptr<const Model>>;
-
-// glTF has y up; arms have z up, and so have STL, OBJ and Collada in URDF, whatever they say.
-bool is_gltf(const std::filesystem::path& file) {
-  std::string suffix = file.extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return suffix == ".glb" || suffix == ".gltf";
-}
-
-Model upright(Model model) {
-  for (Vertex& v : model.vertices) {
-    v.position = Eigen::Vector3f(v.position.x(), -v.position.z(), v.position.y());
-    v.normal = Eigen::Vector3f(v.normal.x(), -v.normal.z(), v.normal.y());
-  }
-  return model;
-}
+constexpr double kSeen = 1e-3;  // shorter links are not missed where others have pictures [m]
 
 float linear(float srgb) {
   return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
@@ -84,15 +70,49 @@ Model model_of(const Visual& visual) {
 }
 
 // Empty files and files of nothing but a point show nothing.
-std::shared_ptr<const Model> read(const Visual& visual, const LoadProgress& progress) {
-  Model model = load_model_file(visual.mesh, progress);
-  if (is_gltf(visual.mesh)) model = upright(std::move(model));
+Model read(const std::string& file, const LoadProgress& progress) {
+  Model model = load_model_file(file, progress);
   const Bounds box = model.bounds();
   if (model.indices.empty() || box.isEmpty() || !(box.diagonal().norm() > 0)) {
-    throw std::runtime_error(visual.mesh + ": nothing to see in it");
+    throw std::runtime_error(file + ": nothing to see in it");
   }
-  add_coarse(model);
-  return std::make_shared<const Model>(std::move(model));
+  return model;
+}
+
+// The models of the visuals that have none, as their files have them; what cannot be read is a line
+// in the arm's warnings.
+std::map<std::string, Model> read_models(ArmDescription& arm, const LoadProgress& progress) {
+  std::map<std::string, Model> models;
+  std::set<std::string> tried;
+  double done = 0;
+  for (const Visual& visual : arm.visuals) {
+    if (progress.part) *progress.part = done++ / static_cast<double>(arm.visuals.size());
+    if (visual.shape != Visual::Shape::mesh || visual.model) continue;
+    if (!tried.insert(visual.mesh).second) continue;
+    try {
+      models[visual.mesh] = read(visual.mesh, {.part = nullptr, .cancel = progress.cancel});
+    } catch (const LoadCancelled&) {
+      throw;
+    } catch (const std::exception& e) {
+      arm.warnings.push_back(std::string(e.what()) + "; a plain shape stands for it");
+    }
+  }
+  return models;
+}
+
+void say_z_up(ArmDescription& arm, const std::set<std::string>& files) {
+  if (files.empty()) return;
+  std::string names;
+  std::size_t named = 0;
+  for (const std::string& file : files) {
+    if (++named > 3) continue;
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  if (named > 3) names += " and " + std::to_string(named - 3) + " more";
+  arm.warnings.push_back(names + (named == 1 ? " has" : " have") +
+                         " z up, where glTF says y up: not turned, because " +
+                         (named == 1 ? "it fits its link" : "they fit their links") + " as " +
+                         (named == 1 ? "it is" : "they are"));
 }
 
 Item body(const ArmDescription& arm, std::size_t i, double reach) {
@@ -126,23 +146,21 @@ Vec3 end_of(const ArmDescription& arm, std::size_t i) {
                                    : Vec3(arm.tip.translation());
 }
 
-void load_visuals(ArmDescription& arm, const LoadProgress& progress) {
-  Models known;
-  double done = 0;
+void load_visuals(ArmDescription& arm, std::span<const Visual> collisions,
+                  const LoadProgress& progress) {
+  std::map<std::string, Model> models = read_models(arm, progress);
+  // STL, OBJ and Collada have z up in URDF, whatever they say.
+  const std::set<std::string> z_up = with_z_up(arm, models, collisions, progress);
+  say_z_up(arm, z_up);
+  std::map<std::string, std::shared_ptr<const Model>> ready;
+  for (auto& [file, model] : models) {
+    if (is_gltf(file) && !z_up.contains(file)) stand_upright(model);
+    add_coarse(model);
+    ready[file] = std::make_shared<const Model>(std::move(model));
+  }
   for (Visual& visual : arm.visuals) {
-    if (progress.part) *progress.part = done++ / static_cast<double>(arm.visuals.size());
     if (visual.shape != Visual::Shape::mesh || visual.model) continue;
-    const auto [at, fresh] = known.try_emplace(visual.mesh);
-    if (fresh) {
-      try {
-        at->second = read(visual, {.part = nullptr, .cancel = progress.cancel});
-      } catch (const LoadCancelled&) {
-        throw;
-      } catch (const std::exception& e) {
-        arm.warnings.push_back(std::string(e.what()) + "; a plain shape stands for it");
-      }
-    }
-    visual.model = at->second;
+    visual.model = ready[visual.mesh];
     if (!visual.model) visual.shape = Visual::Shape::stand_in;
   }
 }
@@ -158,8 +176,12 @@ void add_arm(const ArmDescription& arm, SceneItems& items) {
     auto& list = visual.link < 0 ? items.base : items.moving;
     list.push_back({model_of(visual), visual.origin, visual.link});
   }
-  if (arm.visuals.empty()) {
-    for (int i = -1; i < arm.dof(); ++i) wanted.insert(i);
+  if (arm.visuals.empty()) wanted.insert(-1);
+  for (int i = 0; i < arm.dof(); ++i) {
+    if (arm.visuals.empty() || end_of(arm, static_cast<std::size_t>(i)).norm() > kSeen ||
+        arm.slides(static_cast<std::size_t>(i))) {
+      wanted.insert(i);
+    }
   }
   for (const int i : wanted) {
     if (seen.contains(i)) continue;

@@ -12,10 +12,11 @@
 #include "app/run/fitted_gains.h"
 #include "app/run/model_report.h"
 #include "core/dynamics/arm.h"
-#include "core/dynamics/inverse_kinematics.h"
+#include "core/dynamics/farthest_tip.h"
 #include "core/tick/safety.h"
-#include "devices/files/arm/urdf_file.h"
-#include "render/arm_look.h"
+#include "devices/files/file_error.h"
+#include "devices/files/scene/model_units.h"
+#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -83,9 +84,27 @@ void list_limits(const Parameters& p, Report& report) {
       1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
 }
 
+// Beyond this the travel of a slide is meant for "as far as you like" [m].
+constexpr double kFar = 100;
+
+void list_reach(const ArmDescription& arm, double mass, Report& report) {
+  const double most = farthest_tip(arm).distance;
+  report.facts.push_back(fmt::format(
+      "reach        {:.3g} m from the origin of joint '{}' to '{}', {:.3g} kg in motion", most,
+      arm.joints.front().name, arm.tip_link, mass));
+  if (most < kFar) return;
+  for (const Joint& joint : arm.joints) {
+    if (joint.kind != Joint::Kind::prismatic) continue;
+    const double travel = kSlideUnit * (joint.upper - joint.lower);
+    if (travel < kFar) continue;
+    report.warnings.push_back(fmt::format(
+        "joint '{}': a slide of {:.3g} m; give it the travel that it has in its <limit>",
+        joint.name, travel));
+  }
+}
+
 Report on_arm(const std::string& file, const InputOptions& input) {
-  ArmDescription arm = read_urdf(file, input.tip);
-  load_visuals(arm);
+  const ArmDescription arm = load_arm(file, input.tip).arm;
   Report report{{}, arm.warnings};
   double mass = 0;
   for (const Link& link : arm.links) mass += link.mass;
@@ -93,8 +112,7 @@ Report on_arm(const std::string& file, const InputOptions& input) {
       arm.visuals, [](const Visual& v) { return v.shape != Visual::Shape::stand_in; }));
   report.facts.push_back(
       fmt::format("arm          {}, {} joints to '{}'", arm.name, arm.dof(), arm.tip_link));
-  report.facts.push_back(
-      fmt::format("reach        {:.3g} m, {:.3g} kg in motion", reach(arm), mass));
+  list_reach(arm, mass, report);
   report.facts.push_back(pictures == 0 ? "picture      capsules from joint to joint"
                                        : fmt::format("picture      {} shapes", pictures));
   const Eigen::VectorXd rest = rest_pose(arm);
@@ -106,8 +124,8 @@ Report on_arm(const std::string& file, const InputOptions& input) {
   return report;
 }
 
-void list_mesh(const MeshObstacle& mesh, const Model& model, double scale, Report& report) {
-  const Vec3 size = scale * model.bounds().sizes();
+void list_mesh(const MeshObstacle& mesh, const Model& model, Report& report) {
+  const Vec3 size = mesh.size() * model.bounds().sizes();
   report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g} m",
                                      mesh.name, model.indices.size() / 3, size.x(), size.y(),
                                      size.z()));
@@ -123,7 +141,7 @@ Report on_scene(const std::string& file, const InputOptions& input) {
                   scene.planes.size(), scene.spheres.size(), scene.boxes.size(),
                   scene.meshes.size(), scene.joint_contacts.size()));
   for (std::size_t i = 0; i < loaded.models.size(); ++i) {
-    list_mesh(scene.meshes[i], *loaded.models[i], scene.meshes[i].scale, report);
+    list_mesh(scene.meshes[i], *loaded.models[i], report);
   }
   return report;
 }
@@ -134,16 +152,37 @@ Report on_model(const std::string& file) {
 }
 
 Report on(const CheckOptions& options) {
-  std::string suffix = fs::path(options.file).extension().string();
-  std::ranges::transform(suffix, suffix.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const fs::path file = options.file;
+  if (const std::string why = why_not_found(file, "no such file"); !why.empty()) {
+    throw FileError(fmt::format("{}: {}", options.file, why));
+  }
+  const std::string suffix = small_suffix(file);
   if (suffix == ".urdf" || suffix == ".xacro") return on_arm(options.file, options.input);
   if (suffix == ".toml") return on_scene(options.file, options.input);
-  return on_model(options.file);
+  if (is_model_file(file)) return on_model(options.file);
+  if (suffix == ".h5") {
+    throw FileError(
+        fmt::format("{0}: a recording or a table; `limpid info {0}` says what a recording holds",
+                    options.file));
+  }
+  throw FileError(fmt::format(
+      "{}: no file that is known; needed: an arm (.urdf, .xacro), a scene (.toml) or a model ({})",
+      options.file, kModelSuffixes));
+}
+
+// Whatever cannot be opened is refused, whoever found that out.
+Report opened(const CheckOptions& options) {
+  try {
+    return on(options);
+  } catch (const std::bad_alloc&) {
+    throw FileError(options.file + ": takes more memory than there is");
+  } catch (const std::exception& e) {
+    throw FileError(e.what());
+  }
 }
 
 int check(const CheckOptions& options) {
-  const Report report = on(options);
+  const Report report = opened(options);
   for (const std::string& fact : report.facts) fmt::print("{}\n", fact);
   for (const std::string& warning : report.warnings) fmt::print("warning      {}\n", warning);
   const std::size_t n = report.warnings.size();

@@ -65,6 +65,9 @@ std::string size_text(const Model& model, double unit) {
                      large ? "m" : "mm");
 }
 
+// What is touched with a hand is neither as large as a house nor as small as a grain of sand.
+constexpr double kLargest = 10, kSmallest = 1e-3;  // [m]
+
 std::size_t materials(const Model& model) {
   std::set<std::array<float, 4>> looks;
   for (const Vertex& v : model.vertices)
@@ -105,6 +108,17 @@ std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& 
   return lines;
 }
 
+std::string size_warning(const Model& model, double unit) {
+  const double longest = unit * model.bounds().sizes().maxCoeff();
+  if (longest <= kLargest && longest >= kSmallest) return {};
+  const bool large = longest > kLargest;
+  return fmt::format(
+      "it is {:.3g} {} long, {}: its unit (m, cm, mm, in or ft) or its scale may be "
+      "wrong",
+      large ? longest : 1e3 * longest, large ? "m" : "mm",
+      large ? "more than 10 m" : "less than 1 mm");
+}
+
 ModelReport report_on_model(const std::filesystem::path& file, const LoadProgress& progress) {
   const Model model = load_model_file(file, progress);
   const auto shape = shape_of(model, file.string(), progress.cancel);
@@ -120,6 +134,9 @@ ModelReport report_on_model(const std::filesystem::path& file, const LoadProgres
   fact("materials", fmt::format("{}", materials(model)));
   fact("textures", counted(model.images.size(), "picture"));
   report.warnings = model.warnings;
+  if (std::string odd = size_warning(model, axes.unit); !odd.empty()) {
+    report.warnings.push_back("read as " + text_of(axes) + ", " + odd);
+  }
   for (const std::string& line : touch_warnings(model, *shape)) report.warnings.push_back(line);
   return report;
 }

@@ -25,6 +25,10 @@ std::shared_ptr<const TriangleMesh> shape_of(const Model& model, const std::stri
 // What touching will feel odd: holes, branches, sheets, walls turned inside out. A line each.
 std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& shape);
 
+// Whether a model of this unit [m] is larger than 10 m or smaller than 1 mm, for people: then the
+// unit was likely another one. Else empty.
+std::string size_warning(const Model& model, double unit);
+
 // Reads the file and builds its shape. Errors: FileError and std::runtime_error naming the file;
 // LoadCancelled.
 ModelReport report_on_model(const std::filesystem::path& file, const LoadProgress& progress = {});

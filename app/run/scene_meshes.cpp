@@ -72,6 +72,9 @@ std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& mod
     for (const std::string& warning : models[i]->warnings) {
       lines.push_back(mesh.name + ": " + warning);
     }
+    if (const std::string odd = size_warning(*models[i], mesh.size()); !odd.empty()) {
+      lines.push_back(mesh.name + ": " + odd);
+    }
     for (const std::string& line : touch_warnings(*models[i], *mesh.shape)) {
       lines.push_back(mesh.name + ": " + line);
     }

@@ -19,7 +19,8 @@ using MeshModels = std::vector<std::shared_ptr<const Model>>;
 // Errors: FileError naming the file; LoadCancelled.
 MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress = {});
 
-// What the loader and the builder mended or left out, a line each for people.
+// What the loader and the builder mended or left out, and sizes that may be wrong, a line each for
+// people.
 std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& models);
 
 }  // namespace limpid

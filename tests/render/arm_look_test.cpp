@@ -94,12 +94,28 @@ TEST(ArmLook, PutsACapsuleInThePlaceOfALinkThatCannotBeShown) {
   SceneItems items;
   items.reach = 0.3;
   add_arm(arm, items);
-  ASSERT_EQ(items.moving.size(), 2u) << "the triangle of link 0, a capsule for link 1";
+  ASSERT_EQ(items.moving.size(), 3u) << "the triangle of link 0, capsules for links 1 and 2";
   EXPECT_EQ(items.moving[1].link, 1);
   const Bounds capsule = items.moving[1].model.bounds();
   const Vec3 end = arm.joints[2].origin.translation();
   EXPECT_TRUE(capsule.contains(Vec3::Zero()) && capsule.contains(end));
   EXPECT_LT(capsule.diagonal().norm(), end.norm() + 0.2);
+  EXPECT_TRUE(items.base.empty());
+}
+
+// A link that is not drawn would leave a gap in the arm.
+TEST(ArmLook, DrawsLinksWithoutAPictureWhereOthersHaveOne) {
+  ArmDescription arm = test::random_arm(4, 1);
+  arm.joints[2].origin.translation().setZero();  // link 1 ends where it begins: a wrist's frame
+  arm.visuals = {mesh(Vec3::Ones())};
+  SceneItems items;
+  items.reach = 0.4;
+  add_arm(arm, items);
+  std::vector<int> links;
+  for (const Item& item : items.moving) links.push_back(item.link);
+  EXPECT_THAT(links, testing::ElementsAre(0, 2, 3));
+  const Bounds capsule = items.moving[1].model.bounds();
+  EXPECT_TRUE(capsule.contains(arm.joints[3].origin.translation()));
   EXPECT_TRUE(items.base.empty());
 }
 

@@ -103,6 +103,107 @@ class AnyArm(SystemTest):
         self.assertEqual(len(refused.error_lines), 1)
         self.assertIn("<inertial>", refused.err)
 
+    def refused(self, file: Path | str, *words: str) -> None:
+        """`limpid check` ends with 2 and one line that names the file, and says nothing else."""
+        found = limpid("check", file)
+        self.assertEqual(found.status, 2, f"{file}: {found.out}{found.err}")
+        self.assertEqual(found.out, "")
+        self.assertEqual(len(found.error_lines), 1, found.err)
+        for word in (Path(file).name, *words):
+            self.assertIn(word, found.err)
+
+    def test_check_ends_with_2_for_whatever_cannot_be_opened(self) -> None:
+        for suffix in ("urdf", "xacro", "toml", "glb", "gltf", "stl", "obj", "ply", "dae", "h5", "txt"):
+            with self.subTest(suffix=suffix):
+                self.refused(self.directory / f"not there.{suffix}", "no such file")
+                folder = self.directory / f"folder.{suffix}"
+                folder.mkdir()
+                self.refused(folder)
+                self.refused(self.write(f"empty.{suffix}", ""))
+                self.refused(self.write(f"nonsense.{suffix}", "\x01\x02 nothing"))
+        self.refused(self.directory, "needed: an arm")
+        self.refused("/dev/null")
+        session = self.record("--duration", "0.1")
+        self.refused(session, "limpid info")
+        self.refused(self.write("plan.toml", 'title = "a plan"\n[[axis]]\nkey = "coupling.eta"\n'),
+                     "axis")
+        self.refused(self.write("scene.toml", '[[mesh]]\nname = "part"\nmodel = "gone.stl"\n'),
+                     "gone.stl")
+        unreadable = self.write("unreadable.stl", "solid x")
+        unreadable.chmod(0)
+        self.refused(unreadable)
+
+    def test_check_has_models_at_the_size_at_which_a_run_has_them(self) -> None:
+        corners = (((0, 0, 0), (0, 40, 0), (30, 0, 0)), ((0, 0, 0), (30, 0, 0), (0, 0, 20)),
+                   ((0, 0, 0), (0, 0, 20), (0, 40, 0)), ((30, 0, 0), (0, 40, 0), (0, 0, 20)))
+        self.write("part.stl", "solid part\n" + "".join(
+            "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in facet)
+            + "endloop\nendfacet\n" for facet in corners) + "endsolid part\n")  # fmt: skip
+        for more, size in (("", "0.03 x 0.04 x 0.02 m"), ("scale = 2.0\n", "0.06 x 0.08 x 0.04 m"),
+                           ('unit = "m"\nscale = 0.01\n', "0.3 x 0.4 x 0.2 m")):
+            scene = self.write("one.toml", '[[mesh]]\nname = "part"\nmodel = "part.stl"\n'
+                               "stiffness = 600.0\nposition = [0.1, 0.0, 0.0]\n" + more)
+            found = limpid("check", scene)
+            self.assertEqual(found.status, 0, found.out + found.err)
+            self.assertIn(size, found.out)
+        for unit, length in (('"m"', "40 m long, more than 10 m"),):
+            scene = self.write("large.toml", '[[mesh]]\nname = "part"\nmodel = "part.stl"\n'
+                               f"stiffness = 600.0\nunit = {unit}\n")
+            found = limpid("check", scene)
+            self.assertEqual(found.status, 1, found.out + found.err)
+            self.assertIn(f"part: it is {length}", found.out)
+
+    def test_check_says_how_far_the_tip_gets_and_from_where(self) -> None:
+        # Links of 0.3 and 0.25 m in a plane, the tip 0.02 m beside and 0.05 m below, 0.2 m of slide.
+        found = limpid("check", self.write("scara.urdf", SCARA))
+        far = float(np.hypot(0.3 + 0.25 + 0.02, 0.05 + 0.2))
+        self.assertIn(f"reach        {far:.3g} m from the origin of joint 'base_inner' to 'tool0'",
+                      found.out)
+        self.assertEqual(found.status, 0, found.out)
+        endless = SCARA.replace('lower="0" upper="0.2"', 'lower="-1e6" upper="1e6"')
+        found = limpid("check", self.write("endless.urdf", endless))
+        self.assertEqual(found.status, 1, found.err)
+        self.assertIn("joint 'outer_spindle': a slide of 2e+06 m", found.out)
+
+    def test_check_says_what_cannot_move(self) -> None:
+        stuck = SCARA.replace('<limit lower="-2.4" upper="2.4" effort="60"',
+                              '<dynamics friction="75"/><limit lower="-2.4" upper="2.4" effort="60"')
+        found = limpid("check", self.write("stuck.urdf", stuck))
+        self.assertEqual(found.status, 1, found.err)
+        for words in ("'inner_outer'", "friction 75 N m", "effort 60 N m"):
+            self.assertIn(words, found.out)
+        shaft = ('<robot name="shaft">' + _link("base")
+                 + _joint("continuous", "base", "shaft", '<axis xyz="0 0 1"/>') + _link("shaft", 1)
+                 + _joint("fixed", "shaft", "end", '<origin xyz="0 0 0.1"/>') + _link("end")
+                 + "</robot>")  # fmt: skip
+        found = limpid("check", self.write("shaft.urdf", shaft))
+        self.assertEqual(found.status, 1, found.err)
+        self.assertIn("the tip lies on the axis of 'base_shaft'", found.out)
+
+    def test_an_arm_runs_whose_last_link_has_no_mass(self) -> None:
+        light = re.sub('<link name="flange">.*?</link>', '<link name="flange"/>', SCARA)
+        arm = self.write("light.urdf", light)
+        found = limpid("check", arm)
+        self.assertEqual(found.status, 1, found.err)
+        for words in ("3 joints to 'tool0'", "'flange'", "has no inertia", "'spindle_flange'"):
+            self.assertIn(words, found.out)
+        session = self.directory / "light.h5"
+        done = limpid("run", "--device", arm, "--duration", "0.2", "--record", session)
+        self.assertEqual(done.status, 0, done.err)
+
+    def test_an_arm_that_branches_lists_all_of_its_tips(self) -> None:
+        ways = ("".join(
+            _joint("revolute", "base", f"{name}_1", '<axis xyz="0 0 1"/>' + _limit(-1, 1, 5))
+            + _link(f"{name}_1", 1, at="0.1 0 0")
+            + "".join(_joint("revolute", f"{name}_{k}", f"{name}_{k + 1}",
+                             '<origin xyz="0.1 0 0"/>' + _limit(-1, 1, 5))
+                      + _link(f"{name}_{k + 1}", 1, at="0.1 0 0") for k in range(1, joints))
+            for name, joints in (("short", 2), ("long", 4), ("middle", 3))))  # fmt: skip
+        found = limpid("check", self.write("tree.urdf", f'<robot name="tree">{_link("base")}{ways}</robot>'))
+        self.assertEqual(found.status, 2, found.out)
+        self.assertEqual(len(found.error_lines), 1, found.err)
+        self.assertIn("'long_4' (4), 'middle_3' (3), 'short_2' (2)", found.err)
+
     def test_check_knows_scenes_and_models(self) -> None:
         for file, words in (("assets/scenes/gears.toml", "triangles"), ("assets/scenes/gear.glb", "triangles")):
             found = limpid("check", Path(__file__).resolve().parents[2] / file)

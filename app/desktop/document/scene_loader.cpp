@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/arm/urdf_collisions.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
@@ -47,16 +48,16 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   model.path = mesh.model;
   model.bytes = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
   const MeshModels models = build_meshes(one, progress);
-  std::vector<std::string> warnings = mesh_warnings(one.scene, models);
   const ModelAxes axes = axes_of(*models.front(), file);
   mesh.unit = axes.unit;
   mesh.y_up = axes.y_up;
+  std::vector<std::string> warnings = mesh_warnings(one.scene, models);
   return {std::move(mesh), std::move(model), models.front(), axes, std::move(warnings)};
 }
 
 LoadedArm load_arm(const fs::path& file, const std::string& tip, const LoadProgress& progress) {
   LoadedArm loaded{file, tip, read_urdf(file, tip)};
-  load_visuals(loaded.arm, progress);
+  load_visuals(loaded.arm, read_collisions(loaded.arm, file), progress);
   return loaded;
 }
 

@@ -45,7 +45,7 @@ void Desktop::open_world(const std::string& device, const std::string& tip,
                          const std::string& scene) {
   device_file_ = device.empty() ? default_device().string() : device;
   device_tip_ = tip;
-  ArmDescription arm = read_urdf(device_file_, tip);
+  ArmDescription arm = load_arm(device_file_, tip).arm;
   const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
   SceneDocument whole = read_scene(file, arm);
   if (whole.scene.meshes.empty()) {

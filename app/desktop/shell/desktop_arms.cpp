@@ -5,6 +5,7 @@
 #include "app/desktop/shell/desktop.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
+#include "core/dynamics/farthest_tip.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
@@ -82,8 +83,9 @@ void Desktop::take_arm(const LoadedArm& loaded) {
 
 void Desktop::say_about_arm() {
   const ArmDescription& arm = desk_.stage().arm();
-  std::string text = fmt::format("Arm: {}, {} joint{} to {}, reach {:.2g} m.", arm.name, arm.dof(),
-                                 arm.dof() == 1 ? "" : "s", arm.tip_link, reach(arm));
+  std::string text =
+      fmt::format("Arm: {}, {} joint{} to {}, reach {:.2g} m.", arm.name, arm.dof(),
+                  arm.dof() == 1 ? "" : "s", arm.tip_link, farthest_tip(arm).distance);
   if (!fit_text(fitted(arm)).empty()) text += " Gains are fitted to it.";
   notices_.say(text);
   for (std::size_t i = 0; i < std::min(kSaid, arm.warnings.size()); ++i) {

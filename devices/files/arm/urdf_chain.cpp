@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "devices/files/arm/body.h"
+#include "devices/files/arm/immobile.h"
+#include "devices/files/arm/massless_end.h"
 #include "devices/files/arm/missing_numbers.h"
 #include "devices/files/arm/urdf_path.h"
 
@@ -37,7 +39,7 @@ double limit_of(const urdf::Joint& joint, double urdf::JointLimits::*field, doub
 class Chain {
  public:
   Chain(const urdf::ModelInterface& model, const std::vector<urdf::JointConstSharedPtr>& way,
-        const LinkVisuals& visuals, UrdfPlaces& places)
+        const LinkShapes& visuals, UrdfPlaces& places)
       : model_(model), way_(way), visuals_(visuals), places_(places) {}
 
   ArmDescription build() {
@@ -55,13 +57,18 @@ class Chain {
       link = model_.getLink(on->child_link_name);
     }
     if (arm_.joints.empty()) {
-      places_.refuse(fmt::format("no joint that moves; needed: 1 to {}", kMaxDof));
+      places_.refuse(fmt::format(
+          "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with "
+          "limits that leave room (lower below upper)",
+          kMaxDof));
     }
     arm_.tip = here;
     arm_.tip_link = way_.back()->child_link_name;
     say_held();
+    shorten_to_mass(arm_, places_);
     complete_inertias(arm_, places_);
     complete_efforts(arm_, places_);
+    warn_of_immobile(arm_, places_);
     return std::move(arm_);
   }
 
@@ -212,7 +219,7 @@ class Chain {
 
   const urdf::ModelInterface& model_;
   const std::vector<urdf::JointConstSharedPtr>& way_;
-  const LinkVisuals& visuals_;
+  const LinkShapes& visuals_;
   UrdfPlaces& places_;
   ArmDescription arm_;
   std::size_t last_moving_ = 0;
@@ -223,7 +230,7 @@ class Chain {
 
 ArmDescription chain_of(const urdf::ModelInterface& model,
                         const std::vector<urdf::JointConstSharedPtr>& way,
-                        const LinkVisuals& visuals, UrdfPlaces& places) {
+                        const LinkShapes& visuals, UrdfPlaces& places) {
   return Chain(model, way, visuals, places).build();
 }
 

@@ -141,7 +141,7 @@ ArmDescription parse_urdf(const std::string& text, const std::string& where,
   const TiXmlElement& robot = *document.RootElement();
   const urdf::ModelInterfaceSharedPtr model = parse_dynamics(robot, places);
   MeshFinder meshes(base_dir);
-  const LinkVisuals visuals = urdf_visuals(robot, meshes, places);
+  const LinkShapes visuals = urdf_visuals(robot, meshes, places);
   const std::string own = own_tip(robot);
   ArmDescription arm =
       chain_of(*model, way_to_tip(*model, tip.empty() ? own : tip, places), visuals, places);

@@ -18,11 +18,11 @@ namespace limpid {
 // What else the text says of the device is in <limpid>, see urdf_own.h.
 //
 // What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
-// MeshFinder) or read, efforts of 0, links without inertia between others that have some.
+// MeshFinder) or read, efforts of 0, links without inertia, joints that cannot move.
 // Errors: TipsToChoose where a name has to say which tip; FileError "FILE:LINE: ..." for what is
 // not URDF or xacro that cannot be expanded, floating and planar joints in the chain, a zero axis,
-// numbers that are not finite, negative damping, friction, effort or mass, crossed limits, and ends
-// that no torque could hold back, because they have no inertia.
+// numbers that are not finite, negative damping, friction, effort or mass, crossed limits, and arms
+// without any inertia.
 ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {});
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the

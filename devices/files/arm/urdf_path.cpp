@@ -72,11 +72,16 @@ class Search {
     std::vector<ArmTip> tips;
     list_tips(*model_.getRoot(), 0, tips);
     std::ranges::stable_sort(tips, std::ranges::greater{}, &ArmTip::joints);
+    std::string all;
+    for (const ArmTip& tip : tips) {
+      all += fmt::format("{}'{}' ({})", all.empty() ? "" : ", ", tip.link, tip.joints);
+    }
     try {
-      places_.refuse_link(link.name,
-                          fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
-                                      "--tip LINK, and the other branches are held still",
-                                      one, other));
+      places_.refuse_link(
+          link.name, fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
+                                 "--tip LINK, and the other branches are held still; its tips, "
+                                 "with the joints to each: {}",
+                                 one, other, all));
     } catch (const FileError& error) {
       throw TipsToChoose(error, places_.where, std::move(tips));
     }

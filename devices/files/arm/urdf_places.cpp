@@ -33,6 +33,10 @@ void UrdfPlaces::warn(const std::string& what) {
   warnings.push_back(one_line(fmt::format("{}: {}", where, what)));
 }
 
+void UrdfPlaces::warn_joint(const std::string& name, const std::string& what) {
+  warnings.push_back(at(where, joint_lines, "joint", name, what));
+}
+
 void UrdfPlaces::warn_link(const std::string& name, const std::string& what) {
   warnings.push_back(at(where, link_lines, "link", name, what));
 }

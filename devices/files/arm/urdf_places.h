@@ -19,6 +19,7 @@ struct UrdfPlaces {
   [[noreturn]] void refuse_link(const std::string& name, const std::string& why) const;
   // What an arm can do without, or with a guess.
   void warn(const std::string& what);
+  void warn_joint(const std::string& name, const std::string& what);
   void warn_link(const std::string& name, const std::string& what);
 };
 

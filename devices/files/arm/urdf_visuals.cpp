@@ -64,6 +64,20 @@ class Reader {
     }
   }
 
+  // Those that can be read.
+  std::vector<Visual> collisions_of(const TiXmlElement& link) {
+    std::vector<Visual> all;
+    for (auto* each = link.FirstChildElement("collision"); each;
+         each = each->NextSiblingElement("collision")) {
+      try {
+        all.push_back(read(*each));
+      } catch (const NotShown&) {
+        continue;
+      }
+    }
+    return all;
+  }
+
   std::vector<Visual> visuals_of(const TiXmlElement& link, const std::string& name) {
     std::vector<Visual> all;
     for (auto* each = link.FirstChildElement("visual"); each;
@@ -140,14 +154,24 @@ class Reader {
 
 }  // namespace
 
-std::map<std::string, std::vector<Visual>> urdf_visuals(const TiXmlElement& robot,
-                                                        MeshFinder& meshes, UrdfPlaces& places) {
+LinkShapes urdf_visuals(const TiXmlElement& robot, MeshFinder& meshes, UrdfPlaces& places) {
   Reader reader(meshes, places);
   reader.learn_colours(robot);
-  std::map<std::string, std::vector<Visual>> all;
+  LinkShapes all;
   for (auto* link = robot.FirstChildElement("link"); link;
        link = link->NextSiblingElement("link")) {
     if (const char* name = link->Attribute("name")) all[name] = reader.visuals_of(*link, name);
+  }
+  return all;
+}
+
+LinkShapes urdf_collisions(const TiXmlElement& robot, MeshFinder& meshes) {
+  UrdfPlaces unused;
+  Reader reader(meshes, unused);
+  LinkShapes all;
+  for (auto* link = robot.FirstChildElement("link"); link;
+       link = link->NextSiblingElement("link")) {
+    if (const char* name = link->Attribute("name")) all[name] = reader.collisions_of(*link);
   }
   return all;
 }

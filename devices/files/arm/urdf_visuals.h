@@ -13,9 +13,13 @@ class TiXmlElement;
 
 namespace limpid {
 
-// By the link's name, each in the link's own frame. Nothing is refused: what cannot be shown is a
-// Visual::Shape::stand_in, and a warning.
-std::map<std::string, std::vector<Visual>> urdf_visuals(const TiXmlElement& robot,
-                                                        MeshFinder& meshes, UrdfPlaces& places);
+// By the link's name, each in the link's own frame.
+using LinkShapes = std::map<std::string, std::vector<Visual>>;
+
+// Nothing is refused: what cannot be shown is a Visual::Shape::stand_in, and a warning.
+LinkShapes urdf_visuals(const TiXmlElement& robot, MeshFinder& meshes, UrdfPlaces& places);
+
+// The shapes of <collision>, without those that cannot be read.
+LinkShapes urdf_collisions(const TiXmlElement& robot, MeshFinder& meshes);
 
 }  // namespace limpid

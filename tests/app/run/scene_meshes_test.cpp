@@ -69,6 +69,33 @@ TEST(SceneMeshes, ShareWhatIsOfOneFile) {
   EXPECT_EQ(document.scene.meshes[0].shape, document.scene.meshes[1].shape);
 }
 
+// A sheet of 3 units, at the size at which it stands in the scene.
+TEST(SceneMeshes, WarnOfSizesThatNoHandTouches) {
+  SceneDocument document = with_sheets(3, {"sheet.stl"});
+  const MeshModels models = build_meshes(document);
+  MeshObstacle& mesh = document.scene.meshes[0];
+  mesh.name = "sheet";
+  const auto size_lines = [&](double unit, double scale) {
+    mesh.unit = unit;
+    mesh.scale = scale;
+    std::vector<std::string> lines = mesh_warnings(document.scene, models);
+    std::erase_if(
+        lines, [](const std::string& line) { return line.find(" long, ") == std::string::npos; });
+    return lines;
+  };
+  EXPECT_TRUE(size_lines(1, 1).empty());
+  EXPECT_TRUE(size_lines(1, 3.3).empty()) << "9.9 m";
+  EXPECT_TRUE(size_lines(0.001, 0.34).empty()) << "1.02 mm";
+  const auto large = size_lines(1, 100), small = size_lines(0.001, 0.1);
+  ASSERT_EQ(large.size(), 1u);
+  ASSERT_EQ(small.size(), 1u);
+  EXPECT_NE(large[0].find("sheet: it is 300 m long"), std::string::npos) << large[0];
+  EXPECT_NE(small[0].find("sheet: it is 0.3 mm long"), std::string::npos) << small[0];
+  for (const std::string& line : {large[0], small[0]}) {
+    EXPECT_NE(line.find("unit (m, cm, mm, in or ft)"), std::string::npos) << line;
+  }
+}
+
 TEST(SceneMeshes, GiveUpWhenAskedToAndSayWhatCannotBeTouched) {
   SceneDocument document = with_sheets(kSide, {"sheet.stl"});
   std::atomic<bool> cancel{true};

@@ -1,9 +1,13 @@
 #include "app/desktop/document/scene_loader.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <thread>
 
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/arm/urdf_file.h"
+#include "render/model/model_file.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {
@@ -40,6 +44,57 @@ TEST(LoadModel, RefusesInOneLineThatNamesTheFile) {
     EXPECT_THAT(said, HasSubstr(name));
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   }
+}
+
+// STL without a unit is taken for metres where its numbers are small, for millimetres otherwise.
+TEST(LoadModel, WarnsOfSizesThatAreLikelyAnotherUnit) {
+  test::TempDir dir;
+  const auto stl = [&](double size) {
+    test::write_file(dir / "part.stl",
+                     fmt::format("solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                 "vertex {0} 0 0\nvertex 0 {0} 0\nendloop\nendfacet\nendsolid\n",
+                                 size));
+    std::vector<std::string> lines = load_model(dir / "part.stl").warnings;
+    std::erase_if(
+        lines, [](const std::string& line) { return line.find(" long, ") == std::string::npos; });
+    return lines;
+  };
+  EXPECT_THAT(stl(50), testing::IsEmpty());
+  EXPECT_THAT(stl(494'000), testing::ElementsAre(HasSubstr("494 m long")));
+  EXPECT_THAT(stl(2e-5), testing::ElementsAre(HasSubstr("0.02 mm long")));
+}
+
+// The way the window, `limpid check` and a recording's arm read pictures.
+TEST(LoadArm, KnowsByItsCollisionShapesWhichWayUpItsPicturesAre) {
+  test::TempDir dir;
+  fs::copy_file(test::assets() / "devices/omni/forearm.glb", dir / "forearm.glb");
+  const Model model = load_model_file(dir / "forearm.glb");
+  // A collision box around the picture as it is in its file, which has y up, or turned to z up.
+  const auto arm = [&](bool as_it_is) {
+    const Eigen::AlignedBox3d box = model.bounds();
+    const Vec3 c = box.center(), s = box.sizes();
+    const Vec3 at = as_it_is ? c : Vec3(c.x(), -c.z(), c.y());
+    const Vec3 size = as_it_is ? s : Vec3(s.x(), s.z(), s.y());
+    const auto text = [](const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); };
+    test::write_file(
+        dir / "arm.urdf",
+        "<robot name='r'><link name='a'/><joint name='j' type='revolute'><parent link='a'/>"
+        "<child link='b'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+        "<link name='b'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0'"
+        " izz='1'/></inertial><visual><geometry><mesh filename='forearm.glb'/></geometry></visual>"
+        "<collision><origin xyz='" +
+            text(at) + "'/><geometry><box size='" + text(size) +
+            "'/></geometry></collision><collision><geometry><mesh filename='gone.stl'/></geometry>"
+            "</collision></link></robot>");
+    return load_arm(dir / "arm.urdf", "").arm;
+  };
+  const auto z_up = [](const ArmDescription& arm) {
+    return std::ranges::any_of(
+        arm.warnings, [](const std::string& w) { return w.find("z up") != std::string::npos; });
+  };
+  EXPECT_FALSE(z_up(arm(false)));
+  EXPECT_TRUE(z_up(arm(true)));
+  EXPECT_LT((arm(true).visuals[0].model->bounds().max() - model.bounds().max()).norm(), 1e-9);
 }
 
 TEST(SceneLoader, BringsInOneAfterTheOther) {

@@ -63,7 +63,7 @@ TEST(UrdfTree, TakesASlideAtTheEndOfTheChainForAJoint) {
   const ArmDescription arm = parse(
       link("a") + joint("a", "b") + link("b") +
       joint("b", "c", "prismatic",
-            "<axis xyz='0 0 -1'/>" + limit(-0.05, 0.2) + "<dynamics damping='3' friction='4'/>") +
+            "<axis xyz='0 0 -1'/>" + limit(-0.05, 0.2) + "<dynamics damping='3' friction='1'/>") +
       link("c"));
   ASSERT_THAT(joints_of(arm), ElementsAre("a_b", "b_c"));
   EXPECT_TRUE(arm.warnings.empty());
@@ -73,7 +73,7 @@ TEST(UrdfTree, TakesASlideAtTheEndOfTheChainForAJoint) {
   EXPECT_NEAR(slide.lower, -0.5, 1e-15);
   EXPECT_NEAR(slide.upper, 2, 1e-15);
   EXPECT_NEAR(slide.effort, 2 * 0.1, 1e-15);
-  EXPECT_NEAR(slide.friction, 4 * 0.1, 1e-15);
+  EXPECT_NEAR(slide.friction, 1 * 0.1, 1e-15);
   EXPECT_NEAR(slide.damping, 3 * 0.1 * 0.1, 1e-15);
 }
 
@@ -152,7 +152,8 @@ TEST(UrdfTree, PassesByWhatMovesWithoutAMass) {
 TEST(UrdfTree, GivesAFrameWithoutInertiaAThousandthOfWhatHangsOnIt) {
   const ArmDescription arm =
       parse(link("a") + joint("a", "b") + link("b", "") +
-            joint("b", "c", "revolute", kLimit + at("0 0 0")) + link("c", kBall));
+            joint("b", "c", "revolute", kLimit + at("0 0 0")) + link("c", kBall) +
+            joint("c", "hand", "fixed", at("0 0 0.1")) + link("hand", ""));
   EXPECT_NEAR(arm.links[0].inertia(2, 2), 1e-4, 1e-18);
   EXPECT_EQ(arm.links[0].mass, 0);
   ASSERT_EQ(arm.warnings.size(), 1u);
@@ -180,7 +181,8 @@ TEST(UrdfTree, TakesAnEffortOfZeroForNotSaid) {
 
 TEST(UrdfTree, TakesLimitsOfNothingButZerosForNone) {
   const std::string zeros = "<limit lower='0' upper='0.0' effort='0' velocity='0'/>";
-  const ArmDescription arm = parse(link("a") + joint("a", "b", "revolute", zeros) + link("b"));
+  const ArmDescription arm = parse(link("a") + joint("a", "b", "revolute", zeros) + link("b") +
+                                   joint("b", "hand", "fixed", at("0 0.1 0")) + link("hand", ""));
   EXPECT_EQ(arm.joints.at(0).lower, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(arm.warnings.size(), 2u) << "limits, and effort";
 }
