@@ -7,6 +7,7 @@
 #include "devices/files/arm/body.h"
 #include "devices/files/arm/missing_numbers.h"
 #include "devices/files/arm/urdf_path.h"
+#include "devices/files/rpy.h"
 
 namespace limpid {
 namespace {
@@ -124,7 +125,7 @@ class Chain {
     if (joint.type == urdf::Joint::PRISMATIC) {
       there.translate(Vec3(at * axis.normalized()));
     } else {
-      there.rotate(Eigen::AngleAxisd(at, axis.normalized()));
+      there.rotate(turn(at, axis.normalized()));
     }
     return there;
   }
