@@ -7,6 +7,7 @@
 
 #include "app/base/assets.h"
 #include "core/dynamics/arm.h"
+#include "core/math/elementary.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
 
@@ -15,7 +16,7 @@ namespace limpid {
 double Multisine::at(double t) const {
   double sum = 0;
   for (const Line& line : lines) {
-    sum += line.amplitude * std::sin(2 * std::numbers::pi * frequency(line) * t + line.phase);
+    sum += line.amplitude * sine(2 * std::numbers::pi * frequency(line) * t + line.phase);
   }
   return sum;
 }
@@ -26,7 +27,7 @@ Multisine multisine(double base, double low, double high, int count, double spee
   std::mt19937_64 random(seed);
   Multisine signal{base, {}};
   for (int i = 0; i < count; ++i) {
-    const double wanted = low * std::pow(high / low, static_cast<double>(i) / (count - 1));
+    const double wanted = low * power(high / low, static_cast<double>(i) / (count - 1));
     const int multiple = std::max(1, static_cast<int>(std::lround(wanted / base)));
     if (!signal.lines.empty() && multiple <= signal.lines.back().multiple) continue;
     const double phase = 2 * std::numbers::pi * static_cast<double>(random() >> 11) * 0x1p-53;

@@ -7,6 +7,7 @@
 
 #include "app/experiments/rough_walls.h"
 #include "app/experiments/series.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 namespace {
@@ -65,7 +66,7 @@ Trial wander(const RoughWalls& walls, double eta, double grip) {
   in.normalize();
   const auto at = [press, in](double t) {
     const double part = minimum_jerk(t / 0.3);
-    const Vec3 about(std::sin(6 * t), std::sin(9 * t), std::cos(7 * t));
+    const Vec3 about(sine(6 * t), sine(9 * t), cosine(7 * t));
     return Vec3(kMeet - 0.01 * (1 - part) * in + part * press * in +
                 0.5 * press * minimum_jerk((t - 0.3) / 0.3) * about);
   };

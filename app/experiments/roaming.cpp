@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "app/experiments/series.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 namespace {
@@ -24,7 +25,7 @@ struct Wobble {
 
   double eta(double t) const {
     if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kLowest : 1;
-    return kLowest + (1 - kLowest) / 2 * (1 + std::sin(5 * t));
+    return kLowest + (1 - kLowest) / 2 * (1 + sine(5 * t));
   }
 };
 
@@ -36,7 +37,7 @@ Trial roaming(const Wobble& wobble) {
   p.hand_damping = 0;
   p.torque_limit = 100;
   const auto at = [](double t) {
-    return Vec3(kHome + 0.02 * Vec3(std::sin(9 * t), std::sin(7 * t), std::sin(8 * t)));
+    return Vec3(kHome + 0.02 * Vec3(sine(9 * t), sine(7 * t), sine(8 * t)));
   };
   Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kTick, kRoaming, at), p)};
   trial.keep = false;

@@ -8,6 +8,7 @@
 
 #include "app/experiments/excitation.h"
 #include "app/experiments/series.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 namespace {
@@ -45,7 +46,7 @@ Trial swinging(CouplingKind kind, double stop) {
   Parameters p;
   p.kind = kind;
   const auto at = [](double t) {
-    return Vec3(kAhead, -kSwing * std::cos(2 * std::numbers::pi * kSwinging * t), 0);
+    return Vec3(kAhead, -kSwing * cosine(2 * std::numbers::pi * kSwinging * t), 0);
   };
   const std::string source = fmt::format("swinging {} m at {} Hz", kSwing, kSwinging);
   return {fmt::format("stop-{}-{}", stop, name(kind)),

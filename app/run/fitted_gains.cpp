@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "app/run/analysis.h"
 #include "core/dynamics/arm.h"
 #include "core/math/eigen.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 namespace {
@@ -19,13 +21,21 @@ constexpr double kRate = 50;
 constexpr double kLeastMeasured = 1e-3;  // gains need some damping to go by [N m s/rad]
 constexpr double kSpread = 100;  // heaviest mode over the one that the damping is for, at most
 
+// What the second digit of a number counts: a power of ten.
+double unit_of(double x) {
+  const double digits = std::floor(logarithm(x) / std::numbers::ln10);
+  // The quotient may round across a power of ten.
+  const double above = power(10, digits + 1), below = power(10, digits);
+  return power(10, digits - (x >= above ? 0 : x < below ? 2 : 1));
+}
+
 // Rounded to two digits, downwards or upwards.
 double down(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  const double unit = unit_of(x);
   return std::floor(x / unit * (1 + 1e-12)) * unit;
 }
 double up(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  const double unit = unit_of(x);
   return std::ceil(x / unit * (1 - 1e-12)) * unit;
 }
 
@@ -44,7 +54,9 @@ double wanted_damping(const ArmDescription& arm, double tick) {
   }
   if (said > 0) return said;
   const Eigen::VectorXd modes = symmetric_eigen(arm_at(arm, rest_pose(arm)).M).values;
-  const double mean = std::exp(modes.array().max(1e-300).log().mean());
+  double sum = 0;
+  for (const double mode : modes) sum += logarithm(std::max(mode, 1e-300));
+  const double mean = exponential(sum / static_cast<double>(modes.size()));
   const double wanted = kRate * std::max(mean, modes.maxCoeff() / kSpread);
   return up(std::min(wanted, 2 * modes[0] / tick));
 }

@@ -7,6 +7,7 @@
 #include "app/base/assets.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "core/math/elementary.h"
 #include "devices/files/hand/hand_through.h"
 
 namespace limpid {
@@ -45,13 +46,13 @@ SmallPath small_path(const ArmDescription& description) {
   // Each joint swings at a rate of its own, all of them from rest to rest; the swing is what keeps
   // the tip near.
   const auto pose = [&](double swing, double t) {
-    const double gate = std::pow(std::sin(std::numbers::pi * t / kLongest), 2);
+    const double wave = sine(std::numbers::pi * t / kLongest), gate = wave * wave;
     Eigen::VectorXd x = rest;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Joint& joint = description.joints[static_cast<std::size_t>(i)];
       const double rate = 2 * std::numbers::pi * (1 + static_cast<double>(i % 3)) / 4;
       const double room = 0.9 * std::min(rest[i] - joint.lower, joint.upper - rest[i]);
-      x[i] += std::clamp(swing * gate * std::sin(rate * t + static_cast<double>(i)), -room, room);
+      x[i] += std::clamp(swing * gate * sine(rate * t + static_cast<double>(i)), -room, room);
     }
     return Vec<kAnyDof>(x);
   };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/elementary.h"
 #include "devices/rig/rig.h"
 
 namespace limpid {
@@ -116,8 +117,8 @@ void swing(Stand& stand, const Parameters& p, Truth& truth) {
     VectorXd wanted = stand.rest();
     for (Index j = 0; j < wanted.size(); ++j) {
       wanted[j] += kSwing * begin *
-                   (std::sin(kTwoPi * kSlow * u + static_cast<double>(j)) -
-                    0.5 * std::cos(kTwoPi * kFast * u + 2 * static_cast<double>(j)));
+                   (sine(kTwoPi * kSlow * u + static_cast<double>(j)) -
+                    0.5 * cosine(kTwoPi * kFast * u + 2 * static_cast<double>(j)));
     }
     stand.step(wanted);
     if (u < 1) continue;

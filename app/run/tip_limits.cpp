@@ -8,6 +8,7 @@
 #include <span>
 
 #include "app/run/analysis.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 namespace {
@@ -33,7 +34,7 @@ double delayed(std::span<const double> walls, double delay) {
 }
 
 TipLimits::Wall predictive_wall(const TipLimits& l, const WallSetting& s, const Parameters& p) {
-  TipLimits::Wall wall{kTried * std::min(1.0, std::pow(kTriedTick / p.tick, 2.5)),
+  TipLimits::Wall wall{kTried * std::min(1.0, power(kTriedTick / p.tick, 2.5)),
                        "the stiffest wall that was tried"};
   const auto bound = [&](double stiffness, std::string by) {
     if (stiffness < wall.stiffness) wall = {stiffness, std::move(by)};

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "core/math/elementary.h"
+
 namespace limpid {
 namespace {
 
@@ -47,7 +49,7 @@ Vec3 tremor_at(const Manner& m, double t) {
   Vec3 sum = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     for (const Sine& s : m.tremor[static_cast<std::size_t>(axis)]) {
-      sum[axis] += kTremor * std::sin(2 * std::numbers::pi * s.frequency * t + s.phase);
+      sum[axis] += kTremor * sine(2 * std::numbers::pi * s.frequency * t + s.phase);
     }
   }
   return sum;
@@ -64,11 +66,11 @@ HandPath varied(const HandPath& path, std::uint64_t seed, std::uint64_t variatio
   std::string csv = "time_s,x_m,y_m,z_m\n";
   for (int i = 0; i <= last; ++i) {
     const double u = static_cast<double>(i) / last;
-    const double pace = u + m.hurry * std::sin(2 * std::numbers::pi * u) / (2 * std::numbers::pi);
+    const double pace = u + m.hurry * sine(2 * std::numbers::pi * u) / (2 * std::numbers::pi);
     const double t = i / kRate;
     // The tremor grows from and fades to nothing, so that a trial starts and ends at rest.
     const Vec3 p = start + factor.cwiseProduct(path.at(pace * path.duration()) - start) +
-                   std::sin(std::numbers::pi * u) * tremor_at(m, t);
+                   sine(std::numbers::pi * u) * tremor_at(m, t);
     csv += fmt::format("{},{},{},{}\n", t, p.x(), p.y(), p.z());
   }
   return parse_hand_csv(csv,

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "app/sweep/sampling.h"
+#include "core/math/elementary.h"
 #include "devices/files/config/config_file.h"
 
 namespace limpid {
@@ -116,7 +117,7 @@ AxisRange read_range(const TomlTable& table, const SweepAxis& axis) {
 double scaled(const AxisRange& range, double part, bool logarithmic) {
   if (part == 0) return range.from;
   if (part == 1) return range.to;
-  return logarithmic ? range.from * std::pow(range.to / range.from, part)
+  return logarithmic ? range.from * power(range.to / range.from, part)
                      : range.from + (range.to - range.from) * part;
 }
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Records a session of every scene in the gallery beside this file, and draws each scene's
-thumbnail (../scenes/thumbnails). Run after the scenes, the hands or the program have changed:
+thumbnail (../scenes/thumbnails). Those that were led by the mouse are run again with their own hand
+and settings. Run after the scenes, the hands or the program have changed, for a session fed back in
+gives the same rows bit for bit only in the program that made it (tests/system/test_same_rows.py):
 
-    python3 assets/sessions/make_sessions.py [PROGRAM] [SCENE ...]
+    python3 assets/sessions/make_sessions.py [--sessions] [PROGRAM] [SCENE ...]
 
-PROGRAM is build/release/app/limpid if not given. Needs h5repack (Debian: hdf5-tools)."""
+--sessions draws no thumbnails. PROGRAM is build/release/app/limpid if not given. Needs h5repack (Debian: hdf5-tools)."""
 
 import os
 import subprocess
@@ -19,7 +21,7 @@ ASSETS = HERE.parent
 sys.path.insert(0, str(ASSETS))
 import png  # noqa: E402
 
-SCENES = {  # scene: hand, seconds recorded (0: a thumbnail only)
+SCENES = {  # scene: hand, seconds recorded (0: the session was led by the mouse)
     "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 4.6),
     "proximal": ("proximal", 4.4), "spheres": ("spheres", 4.2), "relief": ("relief", 4.6),
     "gears": ("gears", 4), "leaf": ("leaf", 5.2),
@@ -46,7 +48,7 @@ def thumbnail(picture, out):
     out.write_bytes(png.encode(np.round(small)))
 
 
-def make(program, scene, folder):
+def make(program, scene, folder, draws):
     hand, seconds = SCENES[scene]
     print(f"-- {scene}", flush=True)
     world = ["--scene", f"assets/scenes/{scene}.toml", "--hand", f"assets/hands/{hand}.csv",
@@ -55,13 +57,13 @@ def make(program, scene, folder):
         world += ["--coupling", "predictive"]
     if scene == "gears":  # a light hand: the teeth are of brass, and the motors of an Omni
         world += ["--set", "hand.stiffness=50"]
-    picture = folder / f"{scene}.png"
-    limpid(program, *world, "--picture", picture)
-    thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
-    if seconds == 0:
-        return
+    if draws:
+        picture = folder / f"{scene}.png"
+        limpid(program, *world, "--picture", picture)
+        thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
     recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
-    limpid(program, *world, "--duration", seconds, "--record", recording)
+    again = ["--hand", f"assets/sessions/{scene}.h5"]
+    limpid(program, *([*world, "--duration", seconds] if seconds else again), "--record", recording)
     subprocess.run(["h5repack", "-S", "FSM_AGGR", "-P", "0", "-f", "SHUF", "-f", "GZIP=9",
                     recording, session], check=True)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
@@ -69,9 +71,11 @@ def make(program, scene, folder):
 
 if __name__ == "__main__":
     wanted = sys.argv[1:]
+    draws = "--sessions" not in wanted
+    wanted = [word for word in wanted if word != "--sessions"]
     program = ASSETS.parent / "build/release/app/limpid"
     if wanted and wanted[0] not in SCENES:
         program = Path(wanted.pop(0)).resolve()
     with tempfile.TemporaryDirectory() as temporary:
         for name in wanted or SCENES:
-            make(program, name, Path(temporary))
+            make(program, name, Path(temporary), draws)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/coupling/setting.h"
+#include "core/math/elementary.h"
 #include "core/math/solve.h"
 
 namespace limpid {
@@ -101,7 +102,7 @@ class Predictor {
   // A reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; inside a cell
   // an encoder says nothing.
   void correct(const Vec<N>& y, double elapsed, double q, double p, bool both) {
-    const double forget = std::exp(-elapsed / kJudged);
+    const double forget = exponential(-elapsed / kJudged);
     for (Track& t : tracks_) {
       t.x_ahead = t.x + elapsed * t.w;  // as foretold
       t.v_ahead = 2 * t.w - t.v;
@@ -130,7 +131,7 @@ class Predictor {
              const PredictorGains& g, double hand_mass, int delay) {
     T_ = T;
     delay_ = delay;
-    const double gain = std::pow(1 - g.p, 3) / (T * T);
+    const double fresh = 1 - g.p, gain = fresh * fresh * fresh / (T * T);
     for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
       Track& t = tracks_[m];
       t.Mp = g.mu * M;

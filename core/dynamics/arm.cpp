@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/elementary.h"
+
 namespace limpid {
 template <int N>
 Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
@@ -61,8 +63,7 @@ typename Arm<N>::Angles Arm<N>::angles(const Vec<N>& x) const {
 template <int N>
 template <class S>
 void Arm<N>::renew(Eigen::Index joint, double x, AnglesOf<S>& a) const {
-  // Both whatever moves: compilers ask for them at once.
-  const double sin = std::sin(x), cos = std::cos(x);
+  const auto [sin, cos] = sine_cosine(x);
   a.sin[joint] = joints_[static_cast<std::size_t>(joint)].slides ? x : sin;
   a.cos[joint] = cos;
 }
@@ -78,8 +79,8 @@ typename Arm<N>::template AnglesOf<S> Arm<N>::turned(const Angles& a, const VecO
     S s = d * (1. - d2 * (1. / 6) * (1. - d2 * (1. / 20)));
     S c = 1. - d2 * (1. / 2) * (1. - d2 * (1. / 12) * (1. - d2 * (1. / 30)));
     if (std::max(std::abs(of(d, 0)), std::abs(of(d, 1))) >= kSmall) {
-      s = each(d, [](double angle) { return std::sin(angle); });
-      c = each(d, [](double angle) { return std::cos(angle); });
+      s = each(d, sine);
+      c = each(d, cosine);
     }
     b.sin[i] = sin[i] * c + cos[i] * s;
     b.cos[i] = cos[i] * c - sin[i] * s;

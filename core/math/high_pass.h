@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <numbers>
+
+#include "core/math/elementary.h"
 
 namespace limpid {
 
@@ -16,9 +17,9 @@ class HighPass {
     constexpr double kQ[] = {0.54119610014619698, 1.3065629648763766};
     const double w = 2 * std::numbers::pi * corner / rate;
     for (std::size_t i = 0; i < 2; ++i) {
-      const double slope = std::sin(w) / (2 * kQ[i]), a0 = 1 + slope;
-      sections_[i].b = (1 + std::cos(w)) / 2 / a0;
-      sections_[i].a1 = -2 * std::cos(w) / a0;
+      const double slope = sine(w) / (2 * kQ[i]), a0 = 1 + slope;
+      sections_[i].b = (1 + cosine(w)) / 2 / a0;
+      sections_[i].a1 = -2 * cosine(w) / a0;
       sections_[i].a2 = (1 - slope) / a0;
     }
   }

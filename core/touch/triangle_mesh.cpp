@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/touch/mesh_edges.h"
@@ -16,6 +15,9 @@ namespace {
 
 // Embree's tree rounds to floats: searches reach further by this part of the mesh's radius.
 constexpr double kRounding = 1e-6;
+// Triangles whose distances differ by less than this part of the mesh's radius are all looked at,
+// in whichever order they come: the processor's kind of vectors decides on that.
+constexpr double kNearlyTied = 1e-13;
 // A triangle lower than this part of its longest edge has no direction.
 constexpr double kSliver = 1e-9;
 
@@ -126,7 +128,6 @@ TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
   // No tick is to be the first that needs Embree's code in memory.
   MeshPoint near;
   nearest(corner(0, 0), radius_, MeshPoint::kNone, near);
-  crossing(Vec3::Constant(2 * radius_), Vec3::Constant(-2 * radius_), near);
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
@@ -201,8 +202,8 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
   struct Search {
     const TriangleMesh& mesh;
     Vec3 at, point;
-    double best2, margin;
-    std::uint32_t triangle = MeshPoint::kNone;
+    double best2, margin, tied;
+    std::uint32_t triangle = MeshPoint::kNone;  // of those equally near the first
     // No nearer than the nearest so far is what lies beyond the plane there: out . x <= level.
     Vec3 out = Vec3::Zero();
     double level = -1;
@@ -216,16 +217,17 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
       if (height * height > (1 + 1e-7) * best2 * n.squaredNorm()) return false;
       const Vec3 q = nearest_on_triangle(at, a, b, c);
       const double d2 = (q - at).squaredNorm();
-      if (!(d2 < best2)) return false;
+      if (!(d2 < best2 || (d2 == best2 && t < triangle))) return false;
       best2 = d2;
       point = q;
       triangle = t;
       out = d2 > 0 ? Vec3((at - q) / std::sqrt(d2)) : Vec3::Zero();
-      level = out.dot(q);
+      level = out.dot(q) - tied;
       return true;
     }
   };
-  Search search{*this, at, Vec3::Zero(), within * within, kRounding * (radius_ + at.norm())};
+  const double size = radius_ + at.norm();
+  Search search{*this, at, Vec3::Zero(), within * within, kRounding * size, kNearlyTied * size};
   if (hint < triangles()) search.consider(hint);
   RTCPointQuery query;
   query.x = static_cast<float>(at.x());
@@ -253,28 +255,61 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
   return true;
 }
 
+// Embree only says which triangles are near the way. Its own rays are of floats, and which of two
+// neighbours they hit, and where, depends on the processor.
 bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) const noexcept {
-  RTCRayHit ray;
-  const Eigen::Vector3f org = from.cast<float>(), dir = (to - from).cast<float>();
-  if (!(dir.squaredNorm() > 0)) return false;
-  std::memset(&ray, 0, sizeof ray);
-  ray.ray.org_x = org.x(), ray.ray.org_y = org.y(), ray.ray.org_z = org.z();
-  ray.ray.dir_x = dir.x(), ray.ray.dir_y = dir.y(), ray.ray.dir_z = dir.z();
-  ray.ray.tfar = 1;
-  ray.ray.mask = ~0u;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(tree_->scene, &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  const std::uint32_t t = ray.hit.primID;
-  const Vec3 a = corner(t, 0);
-  out.normal = (corner(t, 1) - a).cross(corner(t, 2) - a).normalized();
-  out.distance = static_cast<double>(ray.ray.tfar) * (to - from).norm();
-  out.point = from + static_cast<double>(ray.ray.tfar) * (to - from);
-  out.point -= out.normal.dot(out.point - a) * out.normal;  // onto the triangle, in doubles
-  out.triangle = t;
+  struct Search {
+    const TriangleMesh& mesh;
+    Vec3 from, way;
+    double part = std::numeric_limits<double>::infinity();  // of the way
+    std::uint32_t triangle = MeshPoint::kNone;              // of those equally far the first
+
+    void consider(std::uint32_t t) {
+      const Vec3 a = mesh.corner(t, 0) - from, b = mesh.corner(t, 1) - from,
+                 c = mesh.corner(t, 2) - from;
+      const Vec3 n = (b - a).cross(c - a);
+      const double height = n.dot(a), whole = n.dot(way);
+      if (whole == 0 ||
+          !(whole > 0 ? 0 <= height && height <= whole : whole <= height && height <= 0)) {
+        return;
+      }
+      // On which side of each edge the way passes; neighbours find the same of the edge they share,
+      // so that no way slips through between them.
+      const double ab = way.dot(a.cross(b)), bc = way.dot(b.cross(c)), ca = way.dot(c.cross(a));
+      const bool inside = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+      if (!inside) return;
+      const double there = height / whole;
+      if (!(there < part || (there == part && t < triangle))) return;
+      part = there;
+      triangle = t;
+    }
+  };
+  Search search{*this, from, to - from};
+  const Vec3 middle = 0.5 * (from + to);
+  const double length = search.way.norm();
+  if (!(length > 0)) return false;
+  RTCPointQuery query;
+  query.x = static_cast<float>(middle.x());
+  query.y = static_cast<float>(middle.y());
+  query.z = static_cast<float>(middle.z());
+  query.time = 0;
+  query.radius = static_cast<float>(length / 2 + kRounding * (radius_ + middle.norm()));
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(
+      tree_->scene, &query, &context,
+      [](RTCPointQueryFunctionArguments* args) {
+        static_cast<Search*>(args->userPtr)->consider(args->primID);
+        return false;
+      },
+      &search);
+  if (search.triangle == MeshPoint::kNone) return false;
+  const Vec3 a = corner(search.triangle, 0);
+  out.normal = (corner(search.triangle, 1) - a).cross(corner(search.triangle, 2) - a).normalized();
+  out.distance = search.part * length;
+  out.point = from + search.part * search.way;
+  out.point -= out.normal.dot(out.point - a) * out.normal;  // onto the triangle, to round-off
+  out.triangle = search.triangle;
   return true;
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math/elementary.h"
+
 namespace limpid {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kHalfTurn = std::numbers::pi;
 Vec3 nearby(const Mat3& R) {
   const double across = std::hypot(R(0, 0), R(1, 0));
   const double yaw = across < 1e-9 ? 0 : std::atan2(R(1, 0), R(0, 0));
-  const double s = std::sin(yaw), c = std::cos(yaw);
+  const auto [s, c] = sine_cosine(yaw);
   return {std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1)),
           std::atan2(-R(2, 0), across), yaw};
 }
@@ -29,11 +31,16 @@ double further(double x, int steps) {
 
 }  // namespace
 
-Mat3 rotation(const Vec3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-      .toRotationMatrix();
+Eigen::Quaterniond turn(double angle, const Vec3& axis) {
+  const auto [s, c] = sine_cosine(angle / 2);
+  return {c, s * axis.x(), s * axis.y(), s * axis.z()};
 }
+
+Eigen::Quaterniond turn(const Vec3& rpy) {
+  return turn(rpy.z(), Vec3::UnitZ()) * turn(rpy.y(), Vec3::UnitY()) * turn(rpy.x(), Vec3::UnitX());
+}
+
+Mat3 rotation(const Vec3& rpy) { return turn(rpy).toRotationMatrix(); }
 
 Vec3 rpy_of(const Mat3& R) {
   const Vec3 about = nearby(R);

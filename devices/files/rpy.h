@@ -6,6 +6,8 @@
 namespace limpid {
 
 Mat3 rotation(const Vec3& rpy);
+Eigen::Quaterniond turn(const Vec3& rpy);
+Eigen::Quaterniond turn(double angle, const Vec3& axis);  // about a unit axis
 
 // Angles with rotation(rpy_of(R)) == R if there are simple ones, of at most nine decimals; others
 // mostly so, else to round-off.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/elementary.h"
 #include "devices/hand_input.h"
 
 namespace limpid {
@@ -31,7 +32,7 @@ class MouseHand {
       // x(t) = goal + (c0 + c1 t) exp(-w t)
       const Vec3 c0 = target_ - goal;
       const Vec3 c1 = rate_ + kBandwidth * c0;
-      const double decay = std::exp(-kBandwidth * T);
+      const double decay = exponential(-kBandwidth * T);
       target_ = goal + (c0 + c1 * T) * decay;
       rate_ = (c1 - kBandwidth * (c0 + c1 * T)) * decay;
       const double stretch = (target_ - tip).norm();

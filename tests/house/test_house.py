@@ -37,6 +37,9 @@ class TheHouse(unittest.TestCase):
     def test_headers_are_guarded(self) -> None:
         self.assert_kept(house.headers_without_guard(ROOT))
 
+    def test_rows_come_from_functions_that_are_the_same_everywhere(self) -> None:
+        self.assert_kept(house.inexact_functions(ROOT))
+
     def test_pages_name_files_that_are_there(self) -> None:
         for page in ("README.md", "CONTRIBUTING.md"):
             self.assert_kept(house.named_files_that_are_missing(ROOT, page))
@@ -68,6 +71,7 @@ class ARuleIsSeenBroken(unittest.TestCase):
             *house.long_files(self.root),
             *house.long_functions(self.root),
             *house.headers_without_guard(self.root),
+            *house.inexact_functions(self.root),
         ]
 
     def assert_broken_once(self, words: str) -> None:
@@ -151,6 +155,13 @@ class ARuleIsSeenBroken(unittest.TestCase):
         self.write("core/class.cpp", f"class A final {{\n{members}}};\n")
         self.assertEqual(self.broken(), [])
 
+    def test_a_function_of_the_library_where_rows_come_from(self) -> None:
+        self.allowed["core/tick"] = set()
+        for call in ("std::exp(x)", "each(d, std::sin)", "v.array().log()", "AngleAxisd(x, a)"):
+            self.write("core/tick/tick.cpp", f"double f(double x) {{ return {call}; }}\n")
+            self.assert_broken_once("core/tick/tick.cpp:1: ")
+        self.write("core/tick/tick.cpp", "double f(double x) { return std::sqrt(x); }  // no exp()\n")
+        self.assertEqual(self.broken(), [])
 
 
 if __name__ == "__main__":

@@ -16,6 +16,9 @@ import unittest
 from dataclasses import dataclass
 from pathlib import Path
 
+import h5py
+import numpy as np
+
 import arms
 from limpid_check.checks import verify
 from limpid_check.report import table
@@ -38,6 +41,12 @@ class Result:
     @property
     def error_lines(self) -> list[str]:
         return [line for line in self.err.splitlines() if line.strip()]
+
+
+def datasets(file: h5py.File) -> list[str]:
+    names: list[str] = []
+    file.visititems(lambda name, item: names.append(name) if hasattr(item, "shape") else None)
+    return names
 
 
 def limpid(*words: str | Path, timeout: float = 120, cwd: Path | None = None) -> Result:
@@ -115,6 +124,21 @@ class SystemTest(unittest.TestCase):
 
     def run_and_read(self, *options: str | Path) -> Session:
         return read_session(self.record(*options))
+
+    def assert_same_rows(self, first: Path, second: Path) -> None:
+        """To the last bit of every dataset, but how long the ticks took and when they began."""
+        with h5py.File(first, "r") as a, h5py.File(second, "r") as b:
+            self.assertEqual(datasets(a), datasets(b))
+            for name in datasets(a):
+                # The sums are of all columns, those of the timing as well.
+                if name.startswith(("timing/", "check/")):
+                    continue
+                x, y = a[name][()], b[name][()]
+                self.assertEqual(x.shape, y.shape, name)
+                if x.tobytes() != y.tobytes():
+                    rows = np.flatnonzero((x != y).reshape(len(x), -1).any(axis=1))
+                    self.fail(f"{first.name}: {name} differs in {len(rows)} of {len(x)} rows, "
+                              f"first in row {rows[0] if len(rows) else 'of another 0 or nan'}")
 
     def assert_verified(self, session: Session) -> None:
         """Every recomputation of the session agrees."""

@@ -7,7 +7,6 @@ import unittest
 from collections.abc import Iterable
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 import arms
@@ -193,16 +192,6 @@ class Replay(SystemTest):
             options += [option, text]
         options += ["--seed", str(int(attributes["seed"]))]
         return self.record(*options)
-
-    def assert_same_rows(self, first: Path, second: Path) -> None:
-        with h5py.File(first, "r") as a, h5py.File(second, "r") as b:
-            names: list[str] = []
-            a.visititems(lambda name, item: names.append(name) if hasattr(item, "shape") else None)
-            for name in names:
-                # The sums are of all columns, those of the timing as well.
-                if not name.startswith(("timing/", "check/")):
-                    same = a[name][()].tobytes() == b[name][()].tobytes()
-                    self.assertTrue(same, f"{name} differs")
 
     def test_a_run_as_fast_as_it_goes(self) -> None:
         files = arms.write_arm(self.directory, 3)

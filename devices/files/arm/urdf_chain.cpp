@@ -9,6 +9,7 @@
 #include "devices/files/arm/massless_end.h"
 #include "devices/files/arm/missing_numbers.h"
 #include "devices/files/arm/urdf_path.h"
+#include "devices/files/rpy.h"
 
 namespace limpid {
 namespace {
@@ -131,7 +132,7 @@ class Chain {
     if (joint.type == urdf::Joint::PRISMATIC) {
       there.translate(Vec3(at * axis.normalized()));
     } else {
-      there.rotate(Eigen::AngleAxisd(at, axis.normalized()));
+      there.rotate(turn(at, axis.normalized()));
     }
     return there;
   }

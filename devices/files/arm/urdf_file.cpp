@@ -11,6 +11,7 @@
 #include "devices/files/arm/urdf_dynamics.h"
 #include "devices/files/arm/urdf_own.h"
 #include "devices/files/arm/urdf_path.h"
+#include "devices/files/arm/urdf_turns.h"
 #include "devices/files/arm/urdf_visuals.h"
 #include "devices/files/arm/xacro.h"
 #include "devices/files/file_error.h"
@@ -122,6 +123,7 @@ urdf::ModelInterfaceSharedPtr parse_dynamics(const TiXmlElement& robot, UrdfPlac
     const std::string what = complaints.one_line();
     throw FileError(fmt::format("{}: {}", place_named_in(what, places), what));
   }
+  set_turns(robot, *model);
   return model;
 }
 
