@@ -68,4 +68,13 @@ void update_file_under_lock(const fs::path& file,
   write_atomically(file, {reinterpret_cast<const unsigned char*>(now.data()), now.size()});
 }
 
+void keep_unread(const fs::path& file) {
+  const std::string beside = file.string() + ".unread";
+  fs::path kept = beside;
+  for (int number = 2; fs::exists(kept); ++number) kept = fmt::format("{}-{}", beside, number);
+  std::error_code error;
+  fs::copy_file(file, kept, error);
+  if (error) throw FileError(fmt::format("{}: {}", kept.string(), error.message()));
+}
+
 }  // namespace limpid

@@ -15,4 +15,8 @@ namespace limpid {
 void update_file_under_lock(const std::filesystem::path& file,
                             const std::function<std::string(const std::string& text)>& change);
 
+// Before something else takes the place of a file that cannot be read: its bytes stay beside it, as
+// FILE.unread, or with the first number that makes it a new one. Errors: FileError.
+void keep_unread(const std::filesystem::path& file);
+
 }  // namespace limpid

@@ -80,6 +80,15 @@ TEST_F(FileUpdate, SaysThatAnotherProgramHoldsTheFileAndDoesNotWaitForEver) {
   EXPECT_EQ(test::file_bytes(file_), "one\n");
 }
 
+TEST_F(FileUpdate, KeepsWhatCannotBeReadAndNoEarlierOneIsReplaced) {
+  append("first");
+  keep_unread(file_);
+  append("second");
+  keep_unread(file_);
+  EXPECT_EQ(test::file_bytes(file_.string() + ".unread"), "first\n");
+  EXPECT_EQ(test::file_bytes(file_.string() + ".unread-2"), "first\nsecond\n");
+}
+
 TEST_F(FileUpdate, NamesAFolderThatCannotBeMade) {
   test::write_file(dir_ / "folder", "in the way");
   try {
