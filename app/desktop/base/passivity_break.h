@@ -12,6 +12,8 @@ Parameters without_passivity(const Parameters& p, const ArmDescription& arm);
 
 // From now on the run that is edited has these. Once more changes nothing.
 void break_passivity(Settings& settings, const ArmDescription& arm);
+inline constexpr const char* kBreakEnded =
+    "Passivity is whole again: all settings are what they were before it was broken.";
 inline bool passivity_broken(const Settings& settings) { return settings.before_break.has_value(); }
 // All settings of both runs are what they were before; nothing where it is not broken.
 void end_passivity_break(Settings& settings);
