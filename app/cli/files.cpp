@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/cli/commands.h"
+#include "app/run/force_tally.h"
 #include "app/run/summary.h"
 #include "app/story/told_steps.h"
 #include "devices/files/session/session.h"
@@ -49,6 +50,7 @@ int info(const InfoOptions& options) {
   } else {
     fmt::print("{}", summary.text());
   }
+  fmt::print("{}", force_tally(session));
   fmt::print("contacts                 {}\n", contacts(session));
   if (const ToldSteps told = told_in(options.session); !told.steps.empty()) {
     fmt::print("story                    {}, {} steps\n", told.title, told.steps.size());

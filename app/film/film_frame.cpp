@@ -65,6 +65,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   draw_legend(at.picture, overlaid ? stage.names() : RunNames());
   draw_caption(at.caption, caption);
   draw_told(caption.told, at.picture, list);
+  draw_sign(caption.sign, at.picture, beside.has_value(), list);
   if (at.plots.height() > 0) draw_plots(at.plots, stage);
   ImGuiGl::render();
   return read_rgba(look_.width, look_.height);

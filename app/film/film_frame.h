@@ -26,6 +26,7 @@ struct FilmCaption {
   std::string text;       // what is in force
   std::string aside;      // at the right, if there is room
   std::string told = {};  // over the picture, in lines as they fit
+  std::string sign = {};  // there, at the top: what must not be missed
 };
 
 // Draws without a display, in an OpenGL context of its own: make it before the stages it draws, on

@@ -8,6 +8,7 @@
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
 #include "core/coupling/laws.h"
+#include "core/tick/force_text.h"
 
 namespace limpid {
 namespace {
@@ -81,6 +82,8 @@ class Shown {
                         .aside = order_.title};
     if (twin_shown()) caption.text = stage_.names().first + "  |  " + stage_.names().second;
     if (step_ != nullptr) caption.told = step_->caption;
+    const double force = session_.layout.in(row, Column::force_state)[0];
+    caption.sign = force_text(static_cast<ForceState>(force));
     return caption;
   }
   Stage& stage() { return stage_; }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/plot/band_stretches.h"
 #include "app/plot/plot_frame.h"
 #include "app/style/ticks.h"
 
@@ -168,23 +169,13 @@ void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<
 
 namespace {
 
-// One stretch after the other in which the band's channel says the same, as it does at its end:
-// what it says, and from where to where.
+// Each with its edges on the screen.
 template <class Draw>
 void for_stretches(const PlotFrame& frame, const Band& band, const History& history,
                    const std::vector<SampleIndex>& rows, Draw&& draw) {
-  const auto most = static_cast<int>(band.names.size()) - 1;
-  const auto at = [&](std::size_t pixel) {
-    if (rows[pixel] >= rows[pixel + 1]) return -1;
-    const Extent said = history.extent(band.channel, rows[pixel], rows[pixel + 1]);
-    return said.empty() ? -1 : std::min(static_cast<int>(std::lround(said.high)), most);
-  };
-  for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
-    const int now = at(pixel);
-    if (now < 0) continue;
-    const float left = frame.area.min.x + static_cast<float>(pixel);
-    while (pixel + 2 < rows.size() && at(pixel + 1) == now) ++pixel;
-    draw(now, left, frame.area.min.x + static_cast<float>(pixel) + 1);
+  for (const BandStretch& stretch : band_stretches(band, history, rows)) {
+    draw(stretch.said, frame.area.min.x + static_cast<float>(stretch.from),
+         frame.area.min.x + static_cast<float>(stretch.to));
   }
 }
 
@@ -195,45 +186,54 @@ void draw_names(const PlotFrame& frame, const Band& band, const History& history
   for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
     const std::string& name = band.names[static_cast<std::size_t>(now)];
     const ImVec2 label = text_size(Face::small, name);
-    const float x = std::min(left, frame.area.max.x - label.x - 6 * frame.scale) + 2 * frame.scale;
+    const float x =
+        std::max(std::min(left, frame.area.max.x - label.x - 6 * frame.scale), frame.area.min.x) +
+        2 * frame.scale;
     if (name.empty() || std::exchange(before, now) == now || x < free_from) return;
     // Where the plot is low, names would fill it.
     if (frame.area.height() < 6 * label.y) return;
     // A moment under another law is a line without a name.
     if (!band.names.front().empty() && right - left < label.x) return;
-    draw_backed_text(frame, {x, frame.area.min.y}, frame.palette.muted, name, 0.85f);
+    // Below the names of others.
+    const float y = frame.area.min.y + (band.striped ? label.y : 0);
+    draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
+                     0.85f);
     free_from = x + label.x + 12 * frame.scale;
   });
 }
 
-template <class Draw>
-void for_bands(const PlotSpec& spec, const History& history, const std::vector<SampleIndex>& rows,
-               Draw&& draw) {
-  if (history.empty()) return;
-  for (const Band& band : spec.bands) {
-    const Extent said = history.extent(band.channel, rows.front(), rows.back());
-    const bool changes = said.low < said.high;
-    if (changes || band.names.front().empty()) draw(band);
+// From lower left to upper right; stretches side by side fit together.
+void draw_stripes(const PlotFrame& frame, float left, float right) {
+  const float gap = 7 * frame.scale, high = frame.area.height();
+  const ImU32 rgba = colour(frame.palette.muted, 0.5f);
+  frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                           colour(frame.palette.muted, 0.1f));
+  frame.list.PushClipRect({left, frame.area.min.y}, {right, frame.area.max.y}, true);
+  for (float x = gap * std::floor((left - high) / gap); x < right; x += gap) {
+    frame.list.AddLine({x, frame.area.max.y}, {x + high, frame.area.min.y}, rgba, frame.scale);
   }
+  frame.list.PopClipRect();
 }
 
 }  // namespace
 
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows) {
-  for_bands(spec, history, rows, [&](const Band& band) {
+  for (const Band& band : spec.bands) {
     const auto most = static_cast<float>(std::max<std::size_t>(2, band.names.size()) - 1);
     for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
+      if (band.striped && now > 0) return draw_stripes(frame, left, right);
+      if (now == 0) return;
       frame.list.AddRectFilled(
           {left, frame.area.min.y}, {right, frame.area.max.y},
           colour(frame.palette.accent, band.tint * static_cast<float>(now) / most));
     });
-  });
+  }
 }
 
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      const std::vector<SampleIndex>& rows) {
-  for_bands(spec, history, rows, [&](const Band& band) { draw_names(frame, band, history, rows); });
+  for (const Band& band : spec.bands) draw_names(frame, band, history, rows);
 }
 
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {

@@ -37,6 +37,8 @@ struct Band {
   int channel = 0;
   std::vector<std::string> names = {};
   float tint = 0.13f;  // of the last one; those before have less
+  // All but 0 look alike, striped: what is behind them is not what it seems.
+  bool striped = false;
 };
 
 // How an axis is written while it shows no more than `most` [the channels' unit].

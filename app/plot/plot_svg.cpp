@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "app/base/markup.h"
 #include "app/plot/axis_places.h"
+#include "app/plot/band_stretches.h"
 #include "app/plot/plot_export.h"
 #include "app/plot/trace.h"
 #include "app/style/ticks.h"
@@ -34,7 +36,11 @@ class SvgPlot {
     spec_.kind == PlotKind::time ? time_axis() : across_axis();
     value_axis();
     add("<g clip-path=\"url(#area)\">\n");
-    if (spec_.kind == PlotKind::time) marks();
+    see_columns();
+    if (spec_.kind == PlotKind::time) {
+      bands();
+      marks();
+    }
     curves();
     thresholds();
     add("</g>\n");
@@ -79,6 +85,11 @@ class SvgPlot {
         picture_.width, picture_.height, kFont);
     add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
         left_, top_, right_ - left_, bottom_ - top_);
+    add("<pattern id=\"stripes\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
+        "patternTransform=\"rotate(45)\"><rect width=\"7\" height=\"7\" fill=\"{0}\" "
+        "fill-opacity=\"0.1\"/><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"{0}\" "
+        "stroke-opacity=\"0.5\"/></pattern>\n",
+        hex(kLightPalette.muted));
     label(left_, 20, "start", kLightPalette.text,
           spec_.title + "  [" + unit_text(spec_.y, picture_.y) + "]", "600");
   }
@@ -134,23 +145,50 @@ class SvgPlot {
     }
   }
 
-  void curves() {
+  void see_columns() {
     columns_ = kColumnsPerPixel * static_cast<int>(right_ - left_);
     const double per_column = (picture_.stop - picture_.start) / columns_;
-    const PixelWindow window{per_column,
-                             static_cast<std::int64_t>(std::floor(picture_.start / per_column)),
-                             columns_ + 1};
-    std::vector<SampleIndex> rows;
-    pixel_rows(history_, window, rows);
+    window_ = {per_column, static_cast<std::int64_t>(std::floor(picture_.start / per_column)),
+               columns_ + 1};
+    pixel_rows(history_, window_, rows_);
+    if (spec_.kind != PlotKind::time) return;
+    first_column_ = picture_.start / per_column - static_cast<double>(window_.first_pixel);
+  }
+  double column(double number) const { return x_at((number - first_column_) / columns_); }
+
+  void bands() {
+    for (const Band& each : spec_.bands) {
+      const auto most = static_cast<double>(std::max<std::size_t>(2, each.names.size()) - 1);
+      int before = -1;
+      for (const BandStretch& stretch : band_stretches(each, history_, rows_)) {
+        const bool named = std::exchange(before, stretch.said) != stretch.said;
+        if (stretch.said == 0) continue;
+        const double left = column(static_cast<double>(stretch.from));
+        add("<rect x=\"{:.2f}\" y=\"{}\" width=\"{:.2f}\" height=\"{}\" ", left, top_,
+            column(static_cast<double>(stretch.to)) - left, bottom_ - top_);
+        if (each.striped) {
+          add("fill=\"url(#stripes)\"/>\n");
+        } else {
+          add("fill=\"{}\" fill-opacity=\"{:.3f}\"/>\n", hex(kLightPalette.accent),
+              static_cast<double>(each.tint) * stretch.said / most);
+        }
+        if (!named) continue;
+        label(std::max(left, left_) + 3, top_ + (each.striped ? 26 : 13), "start",
+              kLightPalette.text, each.names[static_cast<std::size_t>(stretch.said)]);
+      }
+    }
+  }
+
+  void curves() {
     const TraceArea area{picture_.x, picture_.y, columns_,
                          kColumnsPerPixel * static_cast<int>(bottom_ - top_)};
     Trace trace;
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
       switch (spec_.kind) {
-        case PlotKind::time: make_trace(history_, curve, window, rows, trace); break;
+        case PlotKind::time: make_trace(history_, curve, window_, rows_, trace); break;
         case PlotKind::cross:
-          make_cross_trace(history_, curve, rows.front(), rows.back(), area, trace);
+          make_cross_trace(history_, curve, rows_.front(), rows_.back(), area, trace);
           break;
         case PlotKind::spectrum:
           make_spectrum_trace(
@@ -158,9 +196,6 @@ class SvgPlot {
               trace);
           break;
       }
-      first_column_ = spec_.kind == PlotKind::time
-                          ? picture_.start / per_column - static_cast<double>(window.first_pixel)
-                          : 0;
       for (const TraceRun& run : trace.runs) {
         const auto points = std::span(trace.points).subspan(run.first, run.count);
         const Rgb rgb = ink(kLightPalette, curve.ink, curve.shade);
@@ -214,6 +249,8 @@ class SvgPlot {
   double bottom_;
   int columns_ = 1;          // of the traces, over the area's width
   double first_column_ = 0;  // that stands at its left end
+  PixelWindow window_{};
+  std::vector<SampleIndex> rows_;  // of the columns
   std::string text_;
 };
 

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <set>
 
+#include "core/tick/force_text.h"
+
 namespace limpid {
 namespace {
 
@@ -104,8 +106,17 @@ std::string slug(const std::string& title) {
   return text.empty() ? "plot" : text;
 }
 
-// Where a single run had which law, and where a motor was at its limit.
-std::vector<Band> bands(bool single) {
+// Where there was no force, or less of it.
+Band force_band(int channel) {
+  Band band{.channel = channel, .names = {""}, .striped = true};
+  for (std::uint8_t i = 1; *explain(ForceState{i}) != '\0'; ++i) {
+    band.names.push_back(force_text(ForceState{i}));
+  }
+  return band;
+}
+
+// Where a single run had which law, where a motor was at its limit, and where force was off.
+std::vector<Band> bands(const TraceChannels& channels, bool single) {
   std::vector<Band> bands;
   if (single) {
     Band laws{.channel = static_cast<int>(Channel::kind), .tint = 0.09f};
@@ -113,6 +124,7 @@ std::vector<Band> bands(bool single) {
     bands.push_back(std::move(laws));
   }
   bands.push_back({static_cast<int>(Channel::limited), {"", "motor at its limit"}});
+  bands.push_back(force_band(*channels.find("device/force_state")));
   return bands;
 }
 
@@ -188,7 +200,7 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     spec.x = axis_for({at(*across)}, false);
     spec.x.label = at(*across).label;
   }
-  spec.bands = bands(names.second.empty());
+  spec.bands = bands(channels, names.second.empty());
   spec.end_labels = !names.second.empty();
   return spec;
 }

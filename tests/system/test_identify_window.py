@@ -42,9 +42,14 @@ class Identify(WindowTest):
         self.key("space")  # no force, and nothing is lost by it
         self.settled()
         self.assertEqual(self.state()["identify"]["phase"], "found")
-        self.key("Escape")
-        self.wait("no dialog", lambda s: s["dialog"] == "")
-        self.wait("nothing found", lambda s: s["identify"]["phase"] == "asking")
+        for way in ("Escape", "cross", "button"):
+            with self.subTest(way):
+                places = self.wait("a dialog that can be closed", lambda s: s["closing"])["closing"]
+                self.key("Escape") if way == "Escape" else self.click(*places[way])
+                self.wait("no dialog", lambda s: s["dialog"] == "" and s["closing"] is None)
+                self.assertEqual(self.settled()["identify"]["phase"], "found", "it is kept")
+                self.key("F7")
+                self.wait("the findings again", lambda s: s["dialog"] == "identify")
 
 
 class IdentifyDevice(WindowTest):

@@ -1,5 +1,6 @@
 """Keys, dialogs and what may go wrong in the window, under Xvfb with xdotool."""
 
+import re
 import shutil
 import signal
 import subprocess
@@ -29,11 +30,10 @@ def make_a_change(test: WindowTest) -> None:
 
 class Keys(WindowTest):
     def escape_from(self, dialog: str) -> None:
+        """On the virtual arm that closes it, and no more."""
         self.key("Escape")
-        self.wait(f"{dialog} to close", lambda s: s["dialog"] == "" and not s["force"])
-        self.wait_for_notice("Force off")
-        self.key("f")
-        self.wait("force on", lambda s: s["force"])
+        self.wait(f"{dialog} to close", lambda s: s["dialog"] == "")
+        self.assertTrue(self.settled()["force"], dialog)
 
     def test_what_is_typed_into_a_field_does_nothing_else(self) -> None:
         before = lasting(self.state())
@@ -67,14 +67,17 @@ class Keys(WindowTest):
         self.key("ctrl+z")
         self.wait_for_notice("Nothing to undo")
 
-        # Escape gives typing up, and cuts the force.
+        # Escape gives typing up; once more, it cuts the force.
         self.click(*ETA, times=2)
         self.wait("typing", lambda s: s["typing"])
         self.type("7")
         self.key("Escape")
-        state = self.wait("no typing", lambda s: not s["typing"] and not s["force"])
+        self.wait("no typing", lambda s: not s["typing"])
+        state = self.settled()
         self.assertEqual(state["eta"], before["eta"])
-        self.wait_for_notice("Force off")
+        self.assertTrue(state["force"])
+        self.key("Escape")
+        self.wait("force off", lambda s: not s["force"])
 
     def test_what_is_typed_into_an_objects_name_does_nothing_else(self) -> None:
         self.key("Tab")
@@ -210,12 +213,47 @@ class WhatGoesWrong(WindowTest):
         self.assertEqual(kept.read_text().count("[[plane]]"), 2)
 
         self.start()
-        self.wait_for_notice("table-recovered.toml")
+        self.wait("the offer", lambda s: any("table-recovered.toml" in b["text"]
+                                             for b in s["banners"]))
         self.assertFalse(kept.exists())
         self.assertTrue(kept.with_name("table-recovered.toml").exists())
         self.app.send_signal(signal.SIGINT)
         self.assertEqual(self.app.wait(30), 0)
         self.assertFalse(kept.exists(), "nothing was changed this time")
+
+    def test_a_terminal_that_is_closed_keeps_unsaved_changes_and_they_are_offered(self) -> None:
+        make_a_change(self)
+        self.key("bracketleft")
+        eta = self.wait("a smaller eta", lambda s: s["eta"] < 1)["eta"]
+        self.app.send_signal(signal.SIGHUP)
+        self.assertEqual(self.app.wait(30), 0)
+        self.start()
+        state = self.wait("the offer", lambda s: any("Open" in b["buttons"] for b in s["banners"]))
+        self.assertEqual(state["eta"], eta)
+        self.click(*next(b["buttons"]["Open"] for b in state["banners"] if "Open" in b["buttons"]))
+        self.wait("the changed scene", lambda s: s["objects"] == 2 and not s["loading"]
+                  and s["scene"].endswith("table-recovered.toml"))
+        self.assertEqual(self.state()["banners"], [])
+
+    def test_a_display_that_goes_loses_neither_scene_nor_settings_nor_recording(self) -> None:
+        import h5py
+
+        make_a_change(self)
+        self.key("bracketleft")
+        eta = self.wait("a smaller eta", lambda s: s["eta"] < 1)["eta"]
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        self.go_on(1)
+        self.xvfb.kill()
+        self.assertEqual(self.app.wait(30), 1)
+        data = self.home / "data/limpid"
+        self.assertEqual(list((data / "sessions").glob("*.part")), [])
+        with h5py.File(*(data / "sessions").glob("*.h5")) as session:
+            self.assertGreater(len(session["time"]), 500)
+        kept = data / "scenes/table-unsaved.toml"
+        self.assertEqual(kept.read_text().count("[[plane]]"), 2)
+        settings = (self.home / "config/limpid/settings.toml").read_text()
+        self.assertEqual(float(re.search(r"\beta = ([0-9.e-]+)", settings)[1]), eta)
 
     def test_ctrl_c_keeps_unsaved_changes_even_while_they_are_asked_about(self) -> None:
         make_a_change(self)

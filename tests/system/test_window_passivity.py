@@ -19,9 +19,11 @@ class Energy(WindowTest):
 
     def test_passivity_is_broken_by_a_button_and_repaired_by_it_or_by_undo(self) -> None:
         before = self.state()
-        for end in ("Repair", "undo"):
+        for end in ("Repair", "undo", "C", "End it (C)"):
             with self.subTest(end):
                 self.click(*BREAK)
+                self.wait("a banner", lambda s: any("End it (C)" in b["buttons"]
+                                                    for b in s["banners"]))
                 broken = self.wait("a small eta", lambda s: s["eta"] < 0.6 and s["kind"] == 1)
                 self.hold()
                 self.wait("energy that grows",
@@ -30,12 +32,29 @@ class Energy(WindowTest):
                 self.wait("the hand to let go", lambda s: s["grip"] == 0)
                 if end == "undo":
                     self.key("ctrl+z")
-                else:
+                elif end == "C":
+                    self.key("c")
+                elif end == "Repair":
                     self.click(*BREAK)
+                else:
+                    self.click(*next(b["buttons"][end] for b in self.state()["banners"]
+                                     if end in b["buttons"]))
                 self.wait("what was before",
-                          lambda s: s["eta"] == before["eta"] and s["kind"] == before["kind"])
+                          lambda s: s["eta"] == before["eta"] and s["kind"] == before["kind"]
+                          and s["hand"] == before["hand"])
                 self.key("BackSpace")
                 self.wait("a new start", lambda s: s["energy_total"] == 0)
+
+    def test_what_is_left_broken_is_whole_at_the_next_start(self) -> None:
+        before = self.state()
+        self.click(*BREAK)
+        self.wait("a stiff grip", lambda s: s["hand"] == {"stiffness": 3000, "damping": 0})
+        self.key("ctrl+q", closes=True)
+        self.assertEqual(self.app.wait(30), 0)
+        self.start()
+        after = self.wait("a frame", lambda s: s["frames"] > 0)
+        for key in ("hand", "kind", "eta"):
+            self.assertEqual(after[key], before[key], key)
 
     def test_switching_while_pressing_is_no_fault_of_a_coupling(self) -> None:
         self.press_onto_table()

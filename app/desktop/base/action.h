@@ -8,7 +8,7 @@ namespace limpid {
 
 enum class Action : std::uint8_t {
   none,
-  escape,  // force off, and what is open first is closed
+  escape,  // closes what is open first; force off where nothing is, and on a real device
   cut_force,
   save_and_leave,
   discard_and_leave,
@@ -28,6 +28,8 @@ enum class Action : std::uint8_t {
   softer_grip,
   stiffer_grip,
   toggle_force,
+  break_passivity,
+  end_passivity_break,
   start_over,
   back_to_live,
   toggle_recording,
@@ -69,6 +71,9 @@ enum class Action : std::uint8_t {
   remove_selected,
   duplicate_selected,
   frame_selected,
+  open_kept,  // the scene of the last time that nobody had saved
+  leave_kept,
+  discard_kept,
 };
 
 // Has it carried out.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
+#include "devices/files/file_update.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -23,40 +23,42 @@ std::string text_of(const toml::table& table) {
   return text.str();
 }
 
-std::vector<NamedTexts::Entry> read(const fs::path& file, bool shipped) {
-  std::vector<NamedTexts::Entry> entries;
-  const toml::table whole = parse_toml(read_text(file, kLongest), file.string());
-  for (const auto& [name, node] : whole) {
-    if (!node.is_table()) {
-      throw FileError(fmt::format("{}:{}: {}: {} is not allowed; allowed: a table, [\"a name\"]",
-                                  file.string(), name.source().begin.line, name.str(),
-                                  found_text(node)));
-    }
-    entries.push_back({std::string(name.str()), text_of(*node.as_table()), shipped});
-  }
-  return entries;
-}
-
 }  // namespace
 
+struct NamedTexts::Tables {
+  toml::table all;
+};
+
+NamedTexts::Tables NamedTexts::tables_of(const std::string& text, const fs::path& file) {
+  Tables tables{parse_toml(text, file.string())};
+  for (const auto& [name, node] : tables.all) {
+    if (node.is_table()) continue;
+    throw FileError(fmt::format("{}:{}: {}: {} is not allowed; allowed: a table, [\"a name\"]",
+                                file.string(), name.source().begin.line, name.str(),
+                                found_text(node)));
+  }
+  return tables;
+}
+
 NamedTexts::NamedTexts(const fs::path& shipped, fs::path own) : own_(std::move(own)) {
-  const auto take = [this](const fs::path& file, bool from_program) {
-    for (NamedTexts::Entry& entry : read(file, from_program)) {
-      if (find(entry.name) == nullptr) entries_.push_back(std::move(entry));
+  const auto read = [this](const fs::path& file, bool from_program) {
+    try {
+      take(tables_of(read_text(file, kLongest), file), from_program);
+    } catch (const std::exception& e) {
+      complaint_ = e.what();
     }
   };
-  try {
-    take(shipped, true);
-  } catch (const std::exception& e) {
-    complaint_ = e.what();
-  }
+  read(shipped, true);
   std::error_code none;
-  if (!fs::exists(own_, none)) return;
-  try {
-    take(own_, false);
-  } catch (const std::exception& e) {
-    complaint_ = e.what();
-    unread_ = true;
+  if (fs::exists(own_, none)) read(own_, false);
+}
+
+// Those that come along hide the user's own of the same name, which stay in their file.
+void NamedTexts::take(const Tables& tables, bool shipped) {
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.shipped == shipped; });
+  for (const auto& [name, node] : tables.all) {
+    const std::string text(name.str());
+    if (find(text) == nullptr) entries_.push_back({text, text_of(*node.as_table()), shipped});
   }
 }
 
@@ -71,44 +73,46 @@ bool NamedTexts::may_change(const std::string& name) const {
 }
 
 std::string NamedTexts::keep(const std::string& name, const std::string& text) {
-  std::vector<Entry> entries = entries_;
-  const auto found = std::ranges::find(entries, name, &Entry::name);
-  if (found == entries.end()) {
-    entries.push_back({name, text});
-  } else {
-    found->text = text;
-  }
-  return replace(std::move(entries));
+  return change([&](Tables& own) { own.all.insert_or_assign(name, toml::parse(text)); });
 }
 
 std::string NamedTexts::rename(const std::string& from, const std::string& to) {
-  std::vector<Entry> entries = entries_;
-  const auto found = std::ranges::find(entries, from, &Entry::name);
-  if (found == entries.end() || from == to) return {};
-  found->name = to;
-  return replace(std::move(entries));
+  if (from == to) return {};
+  return change([&](Tables& own) {
+    const toml::table* renamed = own.all[from].as_table();
+    if (renamed == nullptr) {
+      throw FileError(fmt::format("{} is not there any more: another window changed it.", from));
+    }
+    if (own.all.contains(to)) throw FileError(fmt::format("There is one called {} already.", to));
+    own.all.insert(to, *renamed);
+    own.all.erase(from);
+  });
 }
 
 std::string NamedTexts::remove(const std::string& name) {
-  std::vector<Entry> entries = entries_;
-  std::erase_if(entries, [&](const Entry& entry) { return entry.name == name; });
-  return replace(std::move(entries));
+  return change([&](Tables& own) { own.all.erase(name); });
 }
 
-std::string NamedTexts::replace(std::vector<Entry> entries) {
-  toml::table whole;
-  for (const Entry& entry : entries) {
-    if (!entry.shipped) whole.insert(entry.name, toml::parse(entry.text));
+// Of the file as it is now: another window may have changed it.
+std::string NamedTexts::change(const std::function<void(Tables&)>& what) {
+  try {
+    Tables own;
+    update_file_under_lock(own_, [&](const std::string& text) {
+      try {
+        own = tables_of(text, own_);
+      } catch (const FileError&) {
+        keep_unread(own_);
+      }
+      what(own);
+      std::ostringstream out;
+      out << own.all << '\n';
+      return out.str();
+    });
+    take(own, false);
+    return {};
+  } catch (const std::exception& e) {
+    return e.what();
   }
-  std::error_code error;
-  if (unread_) fs::rename(own_, own_.string() + ".unread", error);
-  if (error) return fmt::format("{}: {}", own_.string(), error.message());
-  unread_ = false;
-  std::ostringstream text;
-  text << whole << '\n';
-  std::string wrong = try_write_atomically(own_, text.str());
-  if (wrong.empty()) entries_ = std::move(entries);
-  return wrong;
 }
 
 }  // namespace limpid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,18 +26,22 @@ class NamedTexts {
   const Entry* find(const std::string& name) const;           // null: there is none
   bool may_change(const std::string& name) const;             // or have anew
 
-  // Each writes the file and returns what went wrong, empty if nothing did; then nothing has
-  // changed. A file that could not be read is kept beside it, with ".unread" behind its name.
+  // Each changes this one only, in the file as it is by then, which another window may have
+  // changed, and takes over what that left. Returns what went wrong, empty if nothing did; nothing
+  // has changed then. A file that could not be read is kept beside it, with ".unread" behind its
+  // name.
   std::string keep(const std::string& name, const std::string& text);  // also in place of another
   std::string rename(const std::string& from, const std::string& to);
   std::string remove(const std::string& name);
 
  private:
-  std::string replace(std::vector<Entry> entries);
+  struct Tables;  // of a file
+  static Tables tables_of(const std::string& text, const std::filesystem::path& file);
+  void take(const Tables& tables, bool shipped);
+  std::string change(const std::function<void(Tables&)>& what);
 
   std::filesystem::path own_;
   std::string complaint_;
-  bool unread_ = false;
   std::vector<Entry> entries_;
 };
 

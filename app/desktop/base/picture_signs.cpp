@@ -78,6 +78,19 @@ void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {
   list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
 }
 
+void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list) {
+  if (sign.empty()) return;
+  const Palette& colours = current_palette();
+  ImFont* face = font(Face::semibold);
+  const ImVec2 size = face->CalcTextSizeA(face->FontSize, 1e9f, 0, sign.c_str());
+  const float pad = 0.5f * face->FontSize;
+  const ImVec2 at(std::round((picture.min.x + picture.max.x - size.x) / 2),
+                  std::round(picture.min.y + 2 * pad + (below_names ? 2.2f * size.y : 0)));
+  list.AddRectFilled({at.x - 2 * pad, at.y - pad}, {at.x + size.x + 2 * pad, at.y + size.y + pad},
+                     colour(colours.accent), 4);
+  list.AddText(face, face->FontSize, at, colour(colours.panel), sign.c_str());
+}
+
 void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list) {
   if (told.empty()) return;
   ImFont* face = font(Face::semibold);

@@ -27,6 +27,9 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
 // What a run of a twin is called, at the top of its half.
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
 
+// What must not be missed, at the top of a picture, or below the names of a twin's halves.
+void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list);
+
 // A sentence at the bottom of a picture, in lines as they fit.
 void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list);
 

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "app/base/user_dirs.h"
 #include "app/desktop/base/plot_toml.h"
-#include "devices/files/atomic_file.h"
 #include "devices/files/config/config_file.h"
+#include "devices/files/file_update.h"
+#include "devices/files/text_file.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -22,6 +25,7 @@ fs::path made(const fs::path& dir) {
 }
 
 constexpr std::size_t kMostRecent = 8;
+constexpr std::size_t kLongest = 1 << 20;  // of the file [bytes]
 
 fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 
@@ -63,13 +67,12 @@ void remember_recent(Settings& settings, const std::string& file) {
   if (settings.recent.size() > kMostRecent) settings.recent.resize(kMostRecent);
 }
 
-Settings load_settings(std::string& complaint) {
+namespace {
+
+Settings settings_of(const std::string& text, const fs::path& file, std::string& complaint) {
   Settings s;
-  const fs::path file = settings_file();
-  std::error_code none;
-  if (!fs::exists(file, none)) return s;
   try {
-    const toml::table table = toml::parse_file(file.string());
+    const toml::table table = parse_toml(text, file.string());
     each(s, [&](const char* key, auto& value) {
       using T = std::remove_reference_t<decltype(value)>;
       if (const auto found = table["window"][key].value<T>()) value = *found;
@@ -90,9 +93,9 @@ Settings load_settings(std::string& complaint) {
     const auto parameters = [&](const char* key, Parameters& p) {
       const toml::table* found = table[key].as_table();
       if (found == nullptr) return;
-      std::ostringstream text;
-      text << toml::toml_formatter(*found);
-      apply_config_text(p, text.str(), file.string());
+      std::ostringstream part;
+      part << toml::toml_formatter(*found);
+      apply_config_text(p, part.str(), file.string());
     };
     read([&] { parameters("parameters", s.parameters); });
     s.parameters.tick = Parameters{}.tick;
@@ -105,7 +108,7 @@ Settings load_settings(std::string& complaint) {
   return s;
 }
 
-std::string save_settings(const Settings& settings) {
+toml::table table_of(const Settings& settings) {
   toml::table window;
   each(settings, [&](const char* key, const auto& value) { window.insert(key, value); });
   toml::array recent;
@@ -117,9 +120,96 @@ std::string save_settings(const Settings& settings) {
   all.insert("plot", plots_toml(settings.plot_choices));
   all.insert("parameters", toml::parse(config_text(settings.parameters)));
   all.insert("twin", toml::parse(config_text(settings.twin.parameters)));
-  std::ostringstream text;
-  text << all << '\n';
-  return try_write_atomically(settings_file(), text.str());
+  return all;
+}
+
+bool same(const toml::node& a, const toml::node& b) {
+  return a.visit([&](const auto& value) {
+    const auto* other = dynamic_cast<const std::remove_cvref_t<decltype(value)>*>(&b);
+    return other != nullptr && value == *other;
+  });
+}
+
+// Puts into `there` what is otherwise `now` than it `began`.
+void put_changes(toml::table& there, const toml::table& now, const toml::table& began) {
+  for (const auto& [key, node] : now) {
+    const toml::node* before = began.get(key);
+    toml::node* present = there.get(key);
+    if (node.is_table() && present != nullptr && present->is_table()) {
+      const bool known = before != nullptr && before->is_table();
+      put_changes(*present->as_table(), *node.as_table(),
+                  known ? *before->as_table() : toml::table());
+    } else if (present == nullptr || before == nullptr || !same(node, *before)) {
+      there.insert_or_assign(key, node);
+    }
+  }
+  for (const auto& [key, node] : began) {
+    if (!now.contains(key)) there.erase(key);
+  }
+}
+
+// What this window opened, what others opened meanwhile, and what was there before.
+std::vector<std::string> recent_of_all(const Settings& now, const Settings& began,
+                                       const Settings& there) {
+  if (there.recent == began.recent) return now.recent;
+  const auto in = [](const std::vector<std::string>& list, const std::string& file) {
+    return std::ranges::find(list, file) != list.end();
+  };
+  Settings all;
+  const auto add = [&](const std::string& file) {
+    if (!in(all.recent, file)) all.recent.push_back(file);
+  };
+  for (const std::string& file : now.recent) {
+    if (!in(began.recent, file)) add(file);
+  }
+  for (const std::string& file : there.recent) {
+    if (!in(began.recent, file)) add(file);
+  }
+  for (const std::string& file : now.recent) add(file);
+  if (all.recent.size() > kMostRecent) all.recent.resize(kMostRecent);
+  return all.recent;
+}
+
+// The text of a settings file, brought up to date.
+std::string text_with(const Settings& settings, const Settings& began, const std::string& text) {
+  toml::table all = table_of(settings);
+  std::string complaint;
+  const Settings there = settings_of(text, settings_file(), complaint);
+  if (!complaint.empty()) {
+    keep_unread(settings_file());
+  } else if (!text.empty()) {
+    Settings now = settings;
+    now.recent = recent_of_all(settings, began, there);
+    all = toml::parse(text);
+    put_changes(all, table_of(now), table_of(began));
+  }
+  std::ostringstream out;
+  out << all << '\n';
+  return out.str();
+}
+
+}  // namespace
+
+Settings load_settings(std::string& complaint) {
+  const fs::path file = settings_file();
+  std::error_code none;
+  if (!fs::exists(file, none)) return {};
+  try {
+    return settings_of(read_text(file, kLongest), file, complaint);
+  } catch (const std::exception& e) {
+    complaint = fmt::format("settings not read: {}", e.what());
+    return {};
+  }
+}
+
+std::string save_settings(const Settings& settings, const Settings& began) {
+  try {
+    update_file_under_lock(
+        settings_file(), [&](const std::string& text) { return text_with(settings, began, text); });
+    return {};
+  } catch (const std::exception& e) {
+    return e.what();
+  }
 }
 
 fs::path sessions_dir() { return made(user_data_dir() / "sessions"); }

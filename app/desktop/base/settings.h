@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct TwinSettings {
     p.kind = CouplingKind::standard;
     return p;
   }();
+};
+
+// While passivity is broken to be looked at: the settings of both runs as they were before. They
+// come back whole, whatever is changed meanwhile, and they are the ones that are kept and undone.
+struct BeforeBreak {
+  Parameters first, twin;
+  bool of_twin = false;  // it is the twin that is broken
 };
 
 struct Settings {
@@ -48,7 +56,8 @@ struct Settings {
     p.kind = CouplingKind::predictive;
     return p;
   }();
-  TwinSettings twin;  // starts switched off
+  TwinSettings twin;                        // starts switched off
+  std::optional<BeforeBreak> before_break;  // while passivity is broken, see passivity_break.h
 };
 
 // This file was opened last.
@@ -57,9 +66,11 @@ void remember_recent(Settings& settings, const std::string& file);
 // $XDG_CONFIG_HOME/limpid/settings.toml. What cannot be read is left at its default; `complaint`
 // then says why.
 Settings load_settings(std::string& complaint);
-// Never throws; a settings file that cannot be written is not worth losing work over. Returns what
-// went wrong, empty if nothing did.
-std::string save_settings(const Settings& settings);
+// Of the file as it is by now only what is otherwise than it `began` changes: another window may
+// have written it meanwhile. One that cannot be read is kept beside it, with ".unread" behind its
+// name. Never throws; a settings file that cannot be written is not worth losing work over. Returns
+// what went wrong, empty if nothing did.
+std::string save_settings(const Settings& settings, const Settings& began);
 
 // Where recordings and scenes go: below $XDG_DATA_HOME/limpid, made if need be.
 std::filesystem::path sessions_dir();

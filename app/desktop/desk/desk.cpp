@@ -27,13 +27,7 @@ Vec3 home(const ArmDescription& arm) {
 Desk::~Desk() {
   loop_.close();
   try {
-    if (opening_.valid()) {  // it never began
-      const std::unique_ptr<Recorder> empty = opening_.get();
-      empty->finish();
-      fs::remove(empty->out());
-    }
-    loop_.finish_recording();
-    if (closing_.valid()) closing_.get();
+    complete_recording();
   } catch (const std::exception& e) {
     fmt::print(stderr, "limpid: {}\n", e.what());
   }
@@ -42,6 +36,16 @@ Desk::~Desk() {
       fmt::print(stderr, "limpid: {}\n", notice.text);
     }
   }
+}
+
+void Desk::complete_recording() {
+  if (opening_.valid()) {  // it never began
+    const std::unique_ptr<Recorder> empty = opening_.get();
+    empty->finish();
+    fs::remove(empty->out());
+  }
+  loop_.finish_recording();
+  if (closing_.valid()) closing_.get();
 }
 
 void Desk::open(ArmDescription arm, SceneDocument document, const MeshModels& models,

@@ -60,6 +60,8 @@ class Desk {
   // In a new file of the folder.
   void record(const RunPlan& plan, const std::filesystem::path& folder);
   void stop_recording() { loop_.stop_recording(); }
+  // Waits until what is recorded is complete, after the loop has been closed. Errors: FileError.
+  void complete_recording();
   // The file of the recording that has just ended, once.
   std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <utility>
 
 #include "app/base/user_dirs.h"
 #include "app/identify/identify_report.h"
@@ -139,6 +140,9 @@ void IdentifyDesk::follow_work() {
   if (auto done = take_ready(working_)) {
     done_ = std::move(*done);
     phase_ = Phase::found;
+    if (std::exchange(left_, false)) {
+      notices_.say(fmt::format("{} is identified. F7 shows what was found.", name_));
+    }
   }
 }
 
@@ -151,6 +155,7 @@ void IdentifyDesk::stop() {
   talk_->cancel = true;
   if (phase_ == Phase::asking) return;
   wrong_ = busy() ? "stopped" : "";
+  left_ = false;
   phase_ = Phase::asking;
   moving_ = {};
   working_ = {};
@@ -158,12 +163,18 @@ void IdentifyDesk::stop() {
   devices_.take_back();
 }
 
+void IdentifyDesk::leave() {
+  if (moving()) return stop();
+  left_ = phase_ == Phase::working;
+  devices_.take_back();
+}
+
 void IdentifyDesk::keep() {
   if (phase_ != Phase::found || simulated()) return;
   const std::string wrong = devices_.hub().remember(nature_of(done_->identification));
   if (!wrong.empty()) return fail(wrong);
-  devices_.save();
   stop();
+  devices_.connect_anew();  // it may be in the loop already, as what it was
   notices_.say("Remembered: " + name_ + " is what was found from now on.");
 }
 

@@ -33,6 +33,8 @@ class IdentifyDesk {
 
   Phase phase() const { return phase_; }
   bool busy() const { return phase_ != Phase::asking && phase_ != Phase::found; }
+  // The device is, or will be, moved by itself.
+  bool moving() const { return phase_ == Phase::moving || phase_ == Phase::load; }
   bool simulated() const { return devices_.hub().in_use().empty(); }
   // Why it cannot begin; empty: it can.
   std::string why_not() const;
@@ -44,6 +46,9 @@ class IdentifyDesk {
   void go_on();  // the load is fixed to the tip
   // No motion; what was found is forgotten, and the device comes back into the loop.
   void stop();
+  // Nobody looks at it any more: what moves stops, what was found stays to be looked at again, and
+  // the device comes back into the loop.
+  void leave();
   // What was found is the device's from now on.
   void keep();
 
@@ -63,6 +68,7 @@ class IdentifyDesk {
   Phase phase_ = Phase::asking;
   IdentifyOrder order_;
   SimulatedBench bench_;  // in place of the virtual arm
+  bool left_ = false;     // before it was found
   std::string name_, id_, wrong_;
   std::shared_ptr<IdentifyTalk> talk_ = std::make_shared<IdentifyTalk>();
   std::future<IdentifyRun> moving_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/passivity_break.h"
 #include "app/run/twin_settings.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/scene/scene_file.h"
@@ -112,9 +113,14 @@ Bounds Document::selected_bounds() const {
   return bounds_of(object_of(scene(), ref), model);
 }
 
-// The world that a twin shares with the first run is no setting of its own.
+// The world that a twin shares with the first run is no setting of its own; what breaks passivity
+// for a while is no step.
 Document::EditState Document::present() const {
   EditState now{settings_.parameters, settings_.twin.parameters, editor_.version()};
+  if (const auto& before = settings_.before_break) {
+    now.parameters = before->first;
+    now.twin = before->twin;
+  }
   share_world(now.parameters, now.twin);
   return now;
 }
@@ -153,12 +159,21 @@ void Document::go_to(const std::optional<EditState>& state) {
   known_ = *state;
 }
 
+bool Document::end_break() {
+  if (!passivity_broken(settings_)) return false;
+  end_passivity_break(settings_);
+  notices_.say(kBreakEnded);
+  return true;
+}
+
 void Document::undo() {
+  if (end_break()) return;
   note_changes();
   if (may_go_to(history_.next_undo(), "Nothing to undo.")) go_to(history_.undo(known_));
 }
 
 void Document::redo() {
+  end_break();
   note_changes();
   if (may_go_to(history_.next_redo(), "Nothing to redo.")) go_to(history_.redo(known_));
 }

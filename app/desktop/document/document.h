@@ -52,7 +52,7 @@ class Document {
   void duplicate_selected();
   Bounds selected_bounds() const;  // [m]; empty for what has none, or with nothing selected
 
-  void undo();
+  void undo();  // where passivity is broken, it ends that
   void redo();
   // Once a frame: notices what a panel, a key or a mouse changed, for undo.
   void note_changes();
@@ -94,6 +94,7 @@ class Document {
     SceneEditor::Version scene;
   };
   EditState present() const;
+  bool end_break();
   bool may_go_to(const EditState* state, const char* otherwise);
   void go_to(const std::optional<EditState>& state);
 

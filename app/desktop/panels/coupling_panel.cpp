@@ -233,38 +233,41 @@ void draw_limited(const std::vector<int>& joints) {
            "or raise Device > Motors' largest torque.");
 }
 
-}  // namespace
-
-void CouplingPanel::draw_break(Parameters& p, const ArmDescription& arm) {
+void draw_break(bool broken, const Act& act) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
-  if (break_.broken(p)) {
-    if (ImGui::Button("Repair", size)) break_.repair(p);
-    tooltip(
-        "Puts law, inertia and grip back to what they were. Or press C: the predictive law holds "
-        "in this grip, too.");
-    return;
+  if (ImGui::Button(broken ? "Repair" : "Break passivity", size)) {
+    act(broken ? Action::end_passivity_break : Action::break_passivity);
   }
-  if (ImGui::Button("Break passivity", size)) break_.break_it(p, arm);
-  tooltip(
-      "Takes the proposed law, a stiff grip without damping, and so small an inertia \xCE\xB7 that "
-      "the "
-      "loop gives energy without end. Then hold the arm: it begins to tremble, and E_c climbs. "
-      "Ctrl+Z or Repair undo it.");
+  tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
+                   "law, scene, arm or recording."
+                 : "Takes the proposed law, a stiff grip without damping, and so small an inertia "
+                   "\xCE\xB7 that the loop gives energy without end. Then hold the arm: it begins "
+                   "to tremble, and E_c climbs. Repair puts everything back.");
 }
 
-void CouplingPanel::draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-                         const ArmDescription& arm, bool real) {
+}  // namespace
+
+void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
+  if (info(p.kind).keeps_ledger) draw_ledger(reading);
+  draw_energy(reading.energy, p, analysis);
+  draw_limited(reading.limited);
+}
+
+void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
+                   const Act& act) {
   kind_buttons(p);
   ImGui::Spacing();
-  draw_sliders(p, analysis, arm);
-  if (!real) draw_break(p, arm);
-  if (info(p.kind).keeps_ledger) {
-    draw_ledger(now);
-  } else {
-    draw_passivity(p, analysis, real);
-  }
-  draw_energy(now.energy, p, analysis);
-  draw_limited(now.limited);
+  draw_sliders(p, now.analysis, now.arm);
+  if (!now.real) draw_break(now.broken, act);
+  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
+  draw_reading(reading, p, now.analysis);
+}
+
+void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now) {
+  kind_buttons(p);
+  ImGui::Spacing();
+  draw_sliders(p, now.analysis, now.arm);
+  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
 }
 
 }  // namespace limpid

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "app/desktop/panels/passivity_break.h"
+#include "app/desktop/base/action.h"
 #include "app/plot/plot_frame.h"
 #include "app/run/analysis.h"
 #include "app/session/energy_account.h"
@@ -19,17 +19,21 @@ struct CouplingReading {
   double damping_governor;
 };
 
-class CouplingPanel {
- public:
-  // Draws into the ImGui window that is open. `analysis` of these parameters; `real`: a device is
-  // in the arm's place, whose grip is nobody's to choose.
-  void draw(Parameters& p, const Analysis& analysis, const CouplingReading& now,
-            const ArmDescription& arm, bool real);
+// Both draw into the ImGui window that is open.
 
- private:
-  void draw_break(Parameters& p, const ArmDescription& arm);
-
-  PassivityBreak break_;
+// Of the loop that runs. `analysis` of these parameters; `real`: a device is in the arm's place,
+// whose grip is nobody's to choose; `broken`: its passivity is, on purpose.
+struct CouplingSituation {
+  const Analysis& analysis;
+  const ArmDescription& arm;
+  bool real = false;
+  bool broken = false;
 };
+void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
+                   const Act& act);
+// What the next re-run of a recording is to have.
+void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now);
+// What a recording says of energy and motors at the row that is shown.
+void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis);
 
 }  // namespace limpid

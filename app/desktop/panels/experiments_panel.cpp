@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/desktop/base/settings.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -77,10 +78,11 @@ fs::path ExperimentsPanel::draw(bool& open) {
   const ImVec2 room = ImGui::GetMainViewport()->Size;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
-  if (ImGui::Begin("Experiments", &open,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+  if (begin_dialog("Experiments", open, ImGuiWindowFlags_None)) {
     ImGui::BeginChild("list", {19 * ImGui::GetFontSize(), 0});
     draw_list();
+    ImGui::SameLine();
+    close_button("Close (Esc)", open);
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("verdict", {0, 0});

@@ -91,8 +91,11 @@ fs::path Gallery::draw(bool& open) {
       if (!file.empty()) chosen = file;
     }
   };
+  ImGui::BeginChild("cards", {0, -ImGui::GetFrameHeightWithSpacing()});
   cards("Yours", own_);
   cards("Shipped with Limpid", shipped_);
+  ImGui::EndChild();
+  close_button("Close (Esc)", open);
   ImGui::EndPopup();
   if (!chosen.empty()) open = false;
   return chosen;

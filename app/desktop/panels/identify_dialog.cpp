@@ -179,7 +179,7 @@ void IdentifyDialog::draw(bool& open, IdentifyDesk& desk, Down down, const ArmDe
   const float em = ImGui::GetFontSize();
   const float wide = desk.phase() == Phase::found ? 52 * em : 36 * em;
   if (!begin_modal("Identify the device", open, {std::min(wide, 0.94f * room.x), 0})) {
-    if (std::exchange(was_open_, false)) desk.stop();
+    if (std::exchange(was_open_, false)) desk.leave();
     return;
   }
   if (!std::exchange(was_open_, true)) down_ = down;
@@ -189,6 +189,10 @@ void IdentifyDialog::draw(bool& open, IdentifyDesk& desk, Down down, const ArmDe
     case Phase::load: draw_load(desk, order_.load); break;
     case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
     case Phase::found: open = !draw_found(desk); break;
+  }
+  if (!desk.moving()) {  // what moves is stopped first
+    if (desk.phase() != Phase::working) ImGui::SameLine();
+    close_button("Close (Esc)", open);
   }
   ImGui::EndPopup();
 }

@@ -47,6 +47,7 @@ NamedDialog::Asked NamedDialog::draw(bool& open, NamedTexts& texts) {
     ImGui::TextWrapped("%s", complaint_.c_str());
     ImGui::PopStyleColor();
   }
+  close_button("Close (Esc)", open);
   if (asked.wish == Wish::use) open = false;
   ImGui::EndPopup();
   return asked;

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/tooltip.h"
@@ -62,9 +63,7 @@ bool PlotChooser::draw(bool& open, PlotChoice& choice, const TraceChannels& chan
     ImGui::SetNextWindowFocus();
     filter_.clear();
   }
-  ImGui::Begin("What the plot shows", &open,
-               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+  begin_dialog("What the plot shows", open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
   draw_kinds(choice, channels);
   if (appears) ImGui::SetKeyboardFocusHere();
   draw_filter(choice, channels);
@@ -72,7 +71,8 @@ bool PlotChooser::draw(bool& open, PlotChoice& choice, const TraceChannels& chan
   draw_list(choice, channels);
   ImGui::EndChild();
   const float button = 7 * em;
-  if (ImGui::Button("Done", {button, 0}) || done_) open = false;
+  close_button("Done (Esc)", open);
+  if (done_) open = false;
   ImGui::SameLine();
   if (ImGui::Button("None", {button, 0})) choice.channels.clear();
   tooltip("Takes all channels out of the plot.");

@@ -77,6 +77,9 @@ fs::path SessionDialog::draw(bool& open) {
     if (const fs::path clicked = list(name, dir); !clicked.empty()) chosen = clicked;
   }
   ImGui::EndChild();
+  if (ImGui::Button("Open (Enter)")) chosen = expanded(typed_);
+  ImGui::SameLine();
+  close_button("Cancel (Esc)", open);
   ImGui::EndPopup();
   std::error_code none;
   if (chosen.empty()) return {};

@@ -31,7 +31,7 @@ StatusPart force_part(const Snapshot& now) {
       return {"force off [F]", colours.broken, "Force is off: " + why + ". F arms it again."};
     case Arming::off: break;
   }
-  return {"force off [F]", colours.muted, "F arms it"};
+  return {"force off [F]", colours.text, "F arms it"};
 }
 
 // Rate, missed ticks and coupling, the most important last.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -13,9 +14,10 @@
 namespace limpid {
 namespace {
 
-constexpr float kChoice = 12;     // width of a list [em]
-constexpr float kSlider = 10;     // [em]
-constexpr float kNumber = 4;      // beside it [em]
+constexpr float kChoice = 12;  // width of a list [em]
+constexpr float kSlider = 10;  // [em]
+constexpr float kNumber = 4;   // beside it [em]
+constexpr const char* kClose = "Close (Esc)";
 constexpr float kLeastMap = 120;  // [px at scale 1]
 
 // Beside what was drawn last, or below it where there is no room for `width` more.
@@ -199,13 +201,22 @@ void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
 }
 
 // What a click does, what goes on, or what is in the way.
-void draw_state(const OpenedSweep& sweep, Playback& playback) {
+void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   const Palette& colours = current_palette();
+  const float left = ImGui::GetCursorPosX();
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(kClose).x -
+                       2 * ImGui::GetStyle().FramePadding.x);
+  close_button(kClose, open);
+  const ImVec2 at = ImGui::GetItemRectMin();
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(left);
+  ImGui::PushClipRect({ImGui::GetWindowPos().x, at.y},
+                      {at.x - ImGui::GetStyle().ItemSpacing.x, ImGui::GetItemRectMax().y}, true);
   if (playback.loading()) {
     progress_bar(playback.loading_part(), 22 * ImGui::GetFontSize(), playback.what());
     ImGui::SameLine();
     if (ImGui::Button("Cancel")) playback.cancel_loading();
-    return;
+    return ImGui::PopClipRect();
   }
   ImGui::AlignTextToFramePadding();
   if (!sweep.why_no_run.empty()) {
@@ -220,9 +231,10 @@ void draw_state(const OpenedSweep& sweep, Playback& playback) {
     ImGui::TextColored(colour_vector(colours.muted),
                        "A click runs that point again and plays it; F6 comes back here.");
   }
+  ImGui::PopClipRect();
 }
 
-MapWish draw_contents(SweepDesk& desk, Playback& playback) {
+MapWish draw_contents(SweepDesk& desk, Playback& playback, bool& open) {
   const OpenedSweep& sweep = *desk.sweep();
   MapChoice choice = desk.choice();
   draw_choosers(sweep, choice);
@@ -237,7 +249,7 @@ MapWish draw_contents(SweepDesk& desk, Playback& playback) {
   const MapMouse mouse = draw_sweep_map(*map, sweep, size);
   desk.on_screen = {mouse.inside, {}};
   draw_legend(*map, sweep);
-  draw_state(sweep, playback);
+  draw_state(sweep, playback, open);
   if (mouse.spot == nullptr) return {};
   desk.on_screen->pointed_at = mouse.spot->point;
   draw_values(sweep, *map, mouse);
@@ -262,13 +274,12 @@ MapWish draw_sweep_panel(SweepDesk& desk, Playback& playback, bool& open) {
   ImGui::SetNextWindowSize({0.94f * room.x, 0.94f * room.y}, ImGuiCond_Always);
   const std::string title =
       desk.sweep() ? fmt::format("Sweep: {}###sweep", desk.sweep()->plan->title) : "Sweep###sweep";
-  if (ImGui::Begin(title.c_str(), &open,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                       ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  if (begin_dialog(title.c_str(), open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
     if (desk.sweep()) {
-      wish = draw_contents(desk, playback);
+      wish = draw_contents(desk, playback, open);
     } else {
       ImGui::TextUnformatted(desk.loading() ? "loading the table ..." : "No sweep is open.");
+      close_button(kClose, open);
     }
   }
   ImGui::End();

@@ -44,7 +44,7 @@ std::string TipQuestion::draw(bool& open, const TipsToChoose& choice) {
   ImGui::EndChild();
   taken = ImGui::Button("Open (Enter)") || taken;
   ImGui::SameLine();
-  if (ImGui::Button("Cancel (Esc)")) open = false;
+  close_button("Cancel (Esc)", open);
   ImGui::EndPopup();
   if (!taken || chosen_ >= choice.tips.size()) return {};
   open = false;

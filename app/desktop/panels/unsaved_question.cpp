@@ -19,7 +19,7 @@ Action draw_unsaved_question(bool& open, bool has_file) {
   ImGui::SameLine();
   if (ImGui::Button("Discard (D)")) answer = Action::discard_and_leave;
   ImGui::SameLine();
-  if (ImGui::Button("Cancel (Esc)")) open = false;
+  close_button("Cancel (Esc)", open);
   ImGui::EndPopup();
   return answer;
 }

@@ -112,13 +112,13 @@ std::optional<VideoOrder> VideoDialog::draw(bool& open, const Playback& playback
   ImGui::PopStyleColor();
   ImGui::Spacing();
   std::optional<VideoOrder> asked;
-  if (ImGui::Button("Write") || accepted()) {
+  if (ImGui::Button("Write (Enter)") || accepted()) {
     asked = order_;
     asked->overlaid = order_.overlaid && session->player().session().twin;
     if (to_ < session->player().duration()) asked->to = to_;
   }
   ImGui::SameLine();
-  if (ImGui::Button("Cancel")) open = false;
+  close_button("Cancel (Esc)", open);
   if (asked) open = false;
   ImGui::EndPopup();
   return asked;

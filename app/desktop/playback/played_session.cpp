@@ -122,6 +122,21 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
   return {std::move(rows), end, std::move(history)};
 }
 
+RecordedSettings::RecordedSettings(const Session& session, const std::string& where)
+    : session_(session), began_(session_parameters(session, where)), now_(began_) {}
+
+const Parameters& RecordedSettings::at(std::size_t row) {
+  const std::vector<SettingChange>& changes = session_.changes;
+  if (made_ > 0 && changes[made_ - 1].row > row) {
+    made_ = 0;
+    now_ = began_;
+  }
+  for (; made_ < changes.size() && changes[made_].row <= row; ++made_) {
+    apply_change(now_, changes[made_]);
+  }
+  return now_;
+}
+
 PlayedSession::PlayedSession(LoadedSession loaded)
     : file_(std::move(loaded.file)),
       player_(std::move(loaded.session)),
@@ -129,7 +144,11 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       document_(std::move(loaded.document)),
       models_(std::move(loaded.models)),
       steps_(std::move(loaded.steps)),
-      stage_(make_stage(std::move(loaded.history))) {}
+      facts_(std::move(loaded.facts)),
+      first_(player_.session(), file_.string()),
+      stage_(make_stage(std::move(loaded.history))) {
+  if (const auto& twin = player_.session().twin) second_.emplace(*twin, file_.string());
+}
 
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
   auto stage = std::make_unique<Stage>(arm_, document_, models_, std::move(history),

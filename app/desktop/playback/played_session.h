@@ -15,6 +15,11 @@
 
 namespace limpid {
 
+// A line of what is known of a recording.
+struct Fact {
+  std::string name, value;
+};
+
 // A session as it comes from its file.
 struct LoadedSession {
   std::filesystem::path file;
@@ -26,6 +31,21 @@ struct LoadedSession {
   std::vector<StoryStep> steps = {};  // of the story that it tells; none: it is no story
   std::string said = {};              // to be told once it is shown; empty: nothing
   bool bad = false;                   // what is said is something wrong
+  std::vector<Fact> facts = {};       // what it is a recording of, beside its settings
+};
+
+// The settings of one of a recording's runs, as they were at a row.
+class RecordedSettings {
+ public:
+  // Errors: FileError, where the session says something else than settings.
+  RecordedSettings(const Session& session, const std::string& where);
+
+  const Parameters& at(std::size_t row);
+
+ private:
+  const Session& session_;
+  Parameters began_, now_;
+  std::size_t made_ = 0;  // changes in `now_`
 };
 
 // A second run of a recording's hand.
@@ -69,6 +89,12 @@ class PlayedSession {
   // Where it is pressed hardest: what its small picture shows.
   std::size_t row_to_show() const;
 
+  // Which run of a sweep it is, say; or nothing.
+  const std::vector<Fact>& facts() const { return facts_; }
+  // Its settings at the player's time, and the second run's; null: it has one run.
+  const Parameters& settings() { return first_.at(player_.index()); }
+  const Parameters* twin_settings() { return second_ ? &second_->at(player_.index()) : nullptr; }
+
   // From now on beside the recording. Errors: as Stage.
   void show(Rerun again);
   bool has_rerun() const { return !rerun_.empty(); }
@@ -86,6 +112,9 @@ class PlayedSession {
   SceneDocument document_;
   MeshModels models_;
   std::vector<StoryStep> steps_;
+  std::vector<Fact> facts_;
+  RecordedSettings first_;
+  std::optional<RecordedSettings> second_;
   std::vector<double> rerun_;  // rows of the second run; or none
   std::unique_ptr<Stage> stage_;
 };

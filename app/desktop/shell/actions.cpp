@@ -2,8 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <imgui.h>
-#include <imgui_internal.h>
 
 #include <algorithm>
 #include <ctime>
@@ -46,30 +44,6 @@ void toggle_sweep(Desktop& desktop) {
   }
   desktop.notices().say(
       "No sweep is open. Drop a sweep's folder or its table.h5 here, or open it with Ctrl+O.");
-}
-
-void cut_force(Desktop& desktop) {
-  if (desktop.desk().loop().snapshot().arming != Arming::off) {
-    desktop.notices().say("Force off. F switches it on again.");
-  }
-  desktop.cut_force();
-}
-
-// Closes what is open first: a menu, then typing outside of dialogs (which ImGui ends), the
-// question, a run that goes on beside the window, the dialog.
-void close_one(Desktop& desktop) {
-  const Focus focus = desktop.focus();
-  if (focus.popup) {
-    // Lists inside of a dialog go, the dialog stays.
-    const int level = ImGui::GetTopMostPopupModal() != nullptr ? 1 : 0;
-    ImGui::ClosePopupToLevel(level, true);
-  } else if (focus.question) {
-    desktop.document().stay();
-  } else if (desktop.playback().loading_part() > 0 && desktop.playback().loading()) {
-    desktop.playback().cancel_loading();
-  } else if (!focus.text || modal(focus.dialog) || focus.dialog == Dialog::plot) {
-    desktop.close_dialog();
-  }
 }
 
 void save_picture(Window& window) {
@@ -140,18 +114,13 @@ bool act_on_window(Action action, Window& window) {
   }
 }
 
-// What is moved by itself stops, and says so where it was asked for.
-void escape(Desktop& d) {
-  const bool moving = d.identify().busy();
-  cut_force(d);
-  if (!moving) close_one(d);
-}
-
 void act_on_desktop(Action action, Desktop& d) {
   switch (action) {
-    case Action::escape: escape(d); break;
-    case Action::cut_force: cut_force(d); break;
+    case Action::escape: d.escape(); break;
+    case Action::cut_force: d.cut_force(); break;
     case Action::toggle_force: d.desk().toggle_force(); break;
+    case Action::break_passivity: d.break_passivity(); break;
+    case Action::end_passivity_break: d.end_break(); break;
     case Action::start_over: d.desk().start_over(); break;
     case Action::toggle_coupling: d.toggle_coupling(); break;
     case Action::toggle_twin: d.toggle_twin(); break;
@@ -175,6 +144,9 @@ void act_on_desktop(Action action, Desktop& d) {
     case Action::add_model: d.open_dialog(Dialog::add_model); break;
     case Action::open_arm: d.open_dialog(Dialog::open_arm); break;
     case Action::save_scene_as: d.open_dialog(Dialog::save_scene); break;
+    case Action::open_kept: d.open_kept(); break;
+    case Action::leave_kept: d.leave_kept(); break;
+    case Action::discard_kept: d.discard_kept(); break;
     default: break;
   }
 }

@@ -6,6 +6,7 @@
 
 #include "app/base/assets.h"
 #include "app/base/user_dirs.h"
+#include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/sweep/sweep_desk.h"
 #include "app/run/fitted_gains.h"
@@ -82,6 +83,7 @@ void Desktop::open_last_world(const std::string& device, const std::string& tip,
 
 void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models,
                    std::unique_ptr<Device> device, bool saved) {
+  end_break();
   fit_to(arm);
   take_compensation(device != nullptr);
   desk_.open(std::move(arm), std::move(document), models, settings_.parameters,
@@ -118,6 +120,7 @@ void Desktop::drop_pictures() {
 }
 
 void Desktop::update(double dt) {
+  if (end_break_by_law(settings_)) notices_.say(kBreakEnded);
   document_.note_changes();
   follow_twin();
   follow_parameters();
@@ -223,12 +226,27 @@ Focus Desktop::focus() const {
           .playback = playback_.on()};
 }
 
-void Desktop::toggle_coupling() { edited().kind = next(edited().kind); }
+void Desktop::toggle_coupling() {
+  if (passivity_broken(settings_)) return end_break();
+  edited().kind = next(edited().kind);
+}
+
+void Desktop::break_passivity() {
+  if (desk_.loop().device_in_place() || playback_.on()) return;
+  limpid::break_passivity(settings_, desk_.stage().arm());
+}
+
+void Desktop::end_break() {
+  if (!passivity_broken(settings_)) return;
+  end_passivity_break(settings_);
+  notices_.say(kBreakEnded);
+}
 
 void Desktop::toggle_twin() {
   if (const std::string why = desk_.why_twin_is_fixed(); !why.empty()) {
     return notices_.say(why, true);
   }
+  end_break();
   playback_.close();
   TwinSettings& twin = settings_.twin;
   twin.on = !twin.on;
@@ -245,10 +263,11 @@ void Desktop::toggle_twin() {
 void Desktop::cut_force() {
   desk_.loop().cut();
   devices_.cancel_check();
-  if (identify_.busy()) identify_.stop();  // what was found stays
+  if (identify_.moving()) identify_.stop();  // what was found stays
 }
 
 void Desktop::reset_parameters() {
+  end_break();
   settings_.parameters = fitted(desk_.stage().arm());
   const bool usual = settings_.parameters == Parameters{};
   notices_.say(usual

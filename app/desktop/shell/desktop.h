@@ -11,6 +11,7 @@
 #include "app/desktop/desk/identify_desk.h"
 #include "app/desktop/desk/pad_hand.h"
 #include "app/desktop/document/document.h"
+#include "app/desktop/panels/banners.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/focus.h"
 #include "app/run/analysis.h"
@@ -65,7 +66,9 @@ class Desktop {
   Parameters& edited();
   bool edits_twin() const { return settings_.twin.on && settings_.twin.edited && !playback_.on(); }
   const Analysis& analysis() const { return analysis_; }  // of these, at the arm's rest pose
-  int quality_level() const;                              // of Quality, as the settings want it
+  // The same of what is played, as it was recorded.
+  const Analysis& recorded_analysis() const { return recorded_analysis_; }
+  int quality_level() const;  // of Quality, as the settings want it
 
   Dialog dialog() const { return dialog_; }  // that is open
   void open_dialog(Dialog dialog) { dialog_ = dialog; }
@@ -94,6 +97,12 @@ class Desktop {
   void toggle_coupling();
   void toggle_twin();
   void cut_force();
+  // Closes what is open first; where nothing is, and on a real device, it cuts the force.
+  void escape();
+  // Settings under which the loop gives energy without end, to be looked at. All that changes the
+  // coupling, the world or what is shown ends it, and everything is as it was before.
+  void break_passivity();
+  void end_break();
   void reset_parameters();
   void toggle_recording();
   void toggle_playing();
@@ -116,6 +125,14 @@ class Desktop {
   // Where the scene has no file of the user's own, its name is asked for.
   void save_scene();
   void save_and_leave();
+  // Scenes of the last time whose changes nobody had saved: the newest is offered.
+  void offer_kept(std::vector<std::filesystem::path> files) { kept_ = std::move(files); }
+  void open_kept();
+  void leave_kept();  // in its folder, for another time
+  void discard_kept();
+
+  // What stands over the picture as long as it is so.
+  std::vector<Banner> banners() const;
 
   // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
   // along with all its changes, or, if it cannot, the user is asked first.
@@ -123,6 +140,7 @@ class Desktop {
   void close_device();
 
  private:
+  bool close_one();
   void accept(LoadedArm& loaded);
   void take_arm(const LoadedArm& loaded);
   void say_about_arm();
@@ -146,6 +164,7 @@ class Desktop {
   void follow_parameters();
   void follow_twin();
   void follow_playback(double dt);
+  void follow_recorded(bool another);
   void follow_story();
   void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
   void show_scene();
@@ -174,6 +193,7 @@ class Desktop {
   std::optional<ArmDescription>
       arm_of_file_;          // of the device in the arm's place, as its file has it
   std::string first_scene_;  // the start's, while its models come in
+  std::vector<std::filesystem::path> kept_;
   std::optional<TipsToChoose> tips_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   // While a device in the arm's place has its own compensation: its id, and the virtual arm's.
@@ -181,6 +201,8 @@ class Desktop {
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;
+  Analysis recorded_analysis_;
+  std::optional<Parameters> recorded_analysed_;  // that it is of
   SceneEditor::Version shown_;
   std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
   std::chrono::steady_clock::time_point touched_since_;

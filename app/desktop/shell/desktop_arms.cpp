@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
@@ -108,6 +109,7 @@ void Desktop::fit_to(const ArmDescription& arm) {
 
 Settings Desktop::settings_to_keep() const {
   Settings kept = settings_;
+  end_passivity_break(kept);
   if (compensated_) static_cast<CompensationSettings&>(kept.parameters) = compensated_->second;
   if (!fitted_for_) return kept;
   refit(kept.parameters, &*fitted_for_, nullptr);

@@ -8,6 +8,7 @@
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/sweep/sweep_desk.h"
+#include "core/dynamics/arm.h"
 #include "devices/files/scene/model_units.h"
 #include "render/model/model_file.h"
 
@@ -77,10 +78,25 @@ void Desktop::open_sweep(const fs::path& table) {
   open_dialog(Dialog::sweep);
 }
 
+// What is known of the settings at the row that is shown.
+void Desktop::follow_recorded(bool another) {
+  PlayedSession* session = playback_.shown();
+  if (session == nullptr || another) recorded_analysed_.reset();
+  if (session == nullptr) return;
+  const Parameters& now = session->settings();
+  if (recorded_analysed_ && *recorded_analysed_ == now) return;
+  recorded_analysed_ = now;
+  const ArmDescription& arm = session->stage().arm();
+  recorded_analysis_ = analyze(arm, rest_pose(arm), now, std::nullopt);
+}
+
 // What has been asked for and is there now: a recording, a point of a sweep, a sweep.
 void Desktop::follow_playback(double dt) {
   if (sweep_->update()) remember_recent(settings_, sweep_->sweep()->file.string());
-  if (!playback_.update(dt)) return;
+  const bool another = playback_.update(dt);
+  follow_recorded(another);
+  if (!another) return;
+  end_break();
   const PlayedSession& opened = *playback_.shown();
   const std::size_t k = opened.row_to_show();
   const Session& session = opened.player().session();

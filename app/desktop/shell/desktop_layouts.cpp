@@ -35,6 +35,7 @@ void Desktop::use_layout(const std::string& name) {
 void Desktop::use_preset(const std::string& name) {
   const NamedTexts::Entry* preset = presets_.find(name);
   if (preset == nullptr) return;
+  end_break();
   apply_preset(edited(), preset->text, name);
   notices_.say(fmt::format("Settings: {}. Ctrl+Z brings back what was before.", name));
 }

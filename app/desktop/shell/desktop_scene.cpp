@@ -57,6 +57,7 @@ void Desktop::take_loaded() {
 }
 
 void Desktop::accept(LoadedScene& loaded) {
+  end_break();
   if (desk_.loop().device_in_place()) {
     cut_force();
     desk_.open_beside(std::move(loaded.document), loaded.models, settings_.parameters,

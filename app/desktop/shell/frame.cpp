@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/desktop/base/passivity_break.h"
+#include "app/desktop/panels/banners.h"
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/loading_bar.h"
 #include "app/desktop/panels/notice_list.h"
 #include "app/desktop/panels/parameter_rows.h"
+#include "app/desktop/panels/recorded_panel.h"
 #include "app/desktop/panels/story_bar.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
@@ -19,6 +22,7 @@
 #include "app/desktop/sweep/sweep_desk.h"
 #include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
@@ -45,6 +49,9 @@ void Frame::draw() {
   part([&] { draw_loading(desktop_.document().loader(), at.view); });
   part([&] { draw_video_bar(desktop_.playback(), at.view); });
   part([&] {
+    below_banners_ = draw_banners(desktop_.banners(), at.view, signs_box(at.view), act_);
+  });
+  part([&] {
     if (desktop_.dialog() == Dialog::sweep) return;  // which it would cover
     const bool hinted = desktop_.twin_row().empty();
     if (story_asked_for(desktop_.playback(), settings, at.view, hinted)) desktop_.play_story();
@@ -54,7 +61,7 @@ void Frame::draw() {
   part([&] { dialogs_.draw_sessions(); });
   part([&] { dialogs_.draw_named(); });
   part([&] { dialogs_.draw_identify(); });
-  draw_notices(desktop_.notices(), at.view, signs_box(at.view));
+  draw_notices(desktop_.notices(), at.view, below_banners_);
 }
 
 // What notices leave free: the legend's corner, or all that is at the top of the view.
@@ -139,23 +146,47 @@ void Frame::draw_coupling(ScreenRect rect) {
   const bool of_twin = desktop_.edits_twin() && !twin.empty();
   const std::span<const double> row = of_twin ? twin : desktop_.row();
   const auto at = [&](Column c) { return layout.in(row, c)[0]; };
-  CouplingReading now{shown.energy,
-                      {},
-                      at(Column::energy_ledger),
-                      at(Column::governor),
-                      at(Column::damping_governor)};
+  CouplingReading reading{shown.energy,
+                          {},
+                          at(Column::energy_ledger),
+                          at(Column::governor),
+                          at(Column::damping_governor)};
   for (int j = 0; j < layout.dof(); ++j) {
-    if (channels.limited(row, j)) now.limited.push_back(j);
+    if (channels.limited(row, j)) reading.limited.push_back(j);
   }
-  const bool real = desktop_.desk().loop().device_in_place();
+  const CouplingSituation now{.analysis = desktop_.analysis(),
+                              .arm = shown.arm(),
+                              .real = desktop_.desk().loop().device_in_place(),
+                              .broken = passivity_broken(desktop_.settings())};
   begin_panel("coupling", rect);
   if (!twin.empty()) {
     TwinSettings& settings = desktop_.settings().twin;
     draw_twin(shown, desktop_.row(), twin, desktop_.playback().on() ? nullptr : &settings.edited,
               desktop_.settings().twin_overlaid);
   }
-  coupling_.draw(desktop_.edited(), desktop_.analysis(), now, shown.arm(), real);
+  if (PlayedSession* session = desktop_.playback().shown()) {
+    draw_played(*session, reading, now);
+  } else {
+    limpid::draw_coupling(desktop_.edited(), now, reading, act_);
+  }
   ImGui::End();
+}
+
+// Two things apart: what was recorded, which nobody moves any more, and what a re-run will have.
+void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
+                        const CouplingSituation& now) {
+  if (section("In this recording", true)) {
+    draw_recorded(session);
+    draw_reading(reading, session.settings(), desktop_.recorded_analysis());
+  }
+  if (section("For the re-run (E)", true)) draw_coupling_of_rerun(desktop_.edited(), now);
+}
+
+void Frame::say_for_rerun() const {
+  if (!desktop_.playback().on()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
+  ImGui::TextWrapped("For the re-run; what was recorded is on the left.");
+  ImGui::PopStyleColor();
 }
 
 // Scene, hand, device, analysis and timing.
@@ -174,6 +205,7 @@ void Frame::draw_side(ScreenRect rect) {
     }
   }
   if (section("Hand", true)) {
+    say_for_rerun();
     draw_parameters(parameters, shown.arm(), {"hand.stiffness", "hand.damping", "hand.mass"});
     ImGui::Checkbox("hold where released", &settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
@@ -183,6 +215,7 @@ void Frame::draw_side(ScreenRect rect) {
                           parameters)) {
       desktop_.open_dialog(Dialog::identify);
     }
+    say_for_rerun();
     if (!desk.loop().device_in_place()) {
       draw_parameters(
           parameters, shown.arm(),
@@ -196,9 +229,10 @@ void Frame::draw_side(ScreenRect rect) {
   }
   if (section("Analysis", false)) {
     const auto pose = shown.channels().layout().in(desktop_.row(), Column::device_position);
-    const PlayedSession* session = desktop_.playback().shown();
+    PlayedSession* session = desktop_.playback().shown();
     const Scene& scene = session ? session->document().scene : desktop_.document().scene();
-    analysis_.draw(desktop_.edited(), shown.arm(), scene, pose, settings.band);
+    analysis_.draw(session ? session->settings() : desktop_.edited(), shown.arm(), scene, pose,
+                   settings.band);
   }
   if (section("Timing", true)) {
     draw_timing(desk.loop(), quality_text(), window_.frame_time());

@@ -42,6 +42,9 @@ class Frame {
   ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
   void draw_coupling(ScreenRect rect);
+  void draw_played(PlayedSession& session, const CouplingReading& reading,
+                   const CouplingSituation& now);
+  void say_for_rerun() const;
   void draw_side(ScreenRect rect);
   void draw_plot_row(ScreenRect rect);
   void draw_splitters(const Layout& at);
@@ -56,11 +59,11 @@ class Frame {
   RecentMenu recent_;
   ViewPanel view_;
   ScenePanel scene_;
-  CouplingPanel coupling_;
   AnalysisPanel analysis_;
   DeviceTiming device_timing_;
   Dialogs dialogs_;
   std::uint64_t seen_of_sweep_ = 0;  // its revision
+  ScreenRect below_banners_{};       // what notices leave free
 };
 
 }  // namespace limpid

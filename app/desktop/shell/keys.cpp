@@ -21,7 +21,9 @@ constexpr std::array kShortcuts{
     Shortcut{"Shift+[, Shift+]", "smaller or larger observer gain, alpha"},
     Shortcut{"Ctrl+[, Ctrl+]", "softer or stiffer coupling spring, k_vc"},
     Shortcut{"Alt+[, Alt+]", "softer or stiffer grip"},
-    Shortcut{"Esc, Space", "force off at once; Esc closes what is open, too"},
+    Shortcut{"Space", "force off at once"},
+    Shortcut{"Esc",
+             "closes what is open; with nothing open, and always on a real device, force off"},
     Shortcut{"F", "force on or off"},
     Shortcut{"Backspace", "start over; in playback: back to live"},
     Shortcut{"R", "record, stop recording"},
@@ -132,7 +134,8 @@ constexpr std::array kBindings{
 std::span<const Shortcut> shortcuts() { return kShortcuts; }
 
 Action action_of(KeyOwner owner, int key, int modifiers, bool repeated) {
-  // Nobody who wants the force off looks for the right modifiers first.
+  // Nobody who wants the force off looks for the right modifiers first. What Esc is for is up to
+  // what is open.
   if (key == GLFW_KEY_ESCAPE) return repeated ? Action::none : Action::escape;
   if (key == GLFW_KEY_SPACE && owner != KeyOwner::text) return Action::cut_force;
   const int held = modifiers & (kShift | kControl | GLFW_MOD_ALT | GLFW_MOD_SUPER);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/desktop/sweep/sweep_desk.h"
+#include "app/desktop/widgets/modal.h"
 
 namespace limpid {
 
@@ -58,6 +59,40 @@ nlohmann::json state_of(const IdentifyDesk& desk, bool plugged) {
           {"plugged", plugged}};
 }
 
+nlohmann::json place(const ImVec2& at) { return {at.x, at.y}; }
+
+// What stands over the picture, and where its buttons are [px].
+nlohmann::json banners_of(const Desktop& d) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Banner& banner : d.banners()) {
+    nlohmann::json buttons = nlohmann::json::object();
+    for (const Banner::Button& button : banner.buttons) {
+      if (const auto at = noted_place(banner.id, button.label)) buttons[button.label] = place(*at);
+    }
+    all.push_back({{"text", banner.text}, {"bad", banner.bad}, {"buttons", buttons}});
+  }
+  return all;
+}
+
+// Where the topmost dialog is closed; null without one.
+nlohmann::json closing() {
+  const auto places = dialog_places();
+  if (!places) return nullptr;
+  nlohmann::json all{{"cross", place(places->cross)}, {"button", nullptr}};
+  if (places->button) all["button"] = place(*places->button);
+  return all;
+}
+
+// Of the recording that is played, at the row shown; null without one.
+nlohmann::json recorded(Desktop& d) {
+  PlayedSession* session = d.playback().shown();
+  if (session == nullptr) return nullptr;
+  const Parameters& p = session->settings();
+  nlohmann::json facts = nlohmann::json::object();
+  for (const Fact& fact : session->facts()) facts[fact.name] = fact.value;
+  return {{"kind", name(p.kind)}, {"eta", p.eta}, {"facts", facts}};
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -92,7 +127,9 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
-      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}}}\n",
+      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"banners\": {}, \"closing\": "
+      "{}, "
+      "\"recorded\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -108,7 +145,8 @@ void print_state(Desktop& d, const WindowState& window) {
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
       d.pads().size(), window.frames, window.input_waits,
       d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump(),
-      state_of(d.identify(), desk.loop().device_plugged()).dump());
+      state_of(d.identify(), desk.loop().device_plugged()).dump(), banners_of(d).dump(),
+      closing().dump(), recorded(d).dump(), p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }
 

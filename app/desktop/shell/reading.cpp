@@ -12,15 +12,14 @@
 namespace limpid {
 namespace {
 
-// Pairs with ImGui::End().
-void begin_reading(const char* title, float width, bool& open) {
+// `width` [em]; `height`: part of the window's, 0: as the text needs. Pairs with ImGui::End().
+void begin_reading(const char* title, float width, float height, bool& open) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {0.96f * room.x, 0.9f * room.y});
-  ImGui::SetNextWindowSize({std::min(width * ImGui::GetFontSize(), 0.96f * room.x), 0});
-  ImGui::Begin(
-      title, &open,
-      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize);
+  ImGui::SetNextWindowSize(
+      {std::min(width * ImGui::GetFontSize(), 0.96f * room.x), height * room.y});
+  begin_dialog(title, open, ImGuiWindowFlags_NoResize);
   if (accepted()) open = false;
 }
 
@@ -28,7 +27,8 @@ void begin_reading(const char* title, float width, bool& open) {
 
 void draw_help(bool& open) {
   if (!open) return;
-  begin_reading("Keys and mouse", 46, open);
+  begin_reading("Keys and mouse", 46, 0.9f, open);
+  ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
   if (ImGui::BeginTable("keys", 2)) {
     ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
     for (const Shortcut& shortcut : shortcuts()) {
@@ -40,12 +40,14 @@ void draw_help(bool& open) {
     }
     ImGui::EndTable();
   }
+  ImGui::EndChild();
+  close_button("Close (Esc)", open);
   ImGui::End();
 }
 
 void draw_about(bool& open) {
   if (!open) return;
-  begin_reading("About Limpid", 34, open);
+  begin_reading("About Limpid", 34, 0, open);
   ImGui::PushFont(font(Face::semibold));
   ImGui::Text("Limpid %s", program_version());
   ImGui::PopFont();
@@ -61,6 +63,7 @@ void draw_about(bool& open) {
   ImGui::TextWrapped(
       "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. Text "
       "is set in Inter (SIL Open Font License).");
+  close_button("Close (Esc)", open);
   ImGui::End();
 }
 

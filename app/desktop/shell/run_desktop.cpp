@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <cstdlib>
+
 #include "app/base/interrupt.h"
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/shell/actions.h"
 #include "app/desktop/shell/frame.h"
+#include "app/desktop/shell/lost_display.h"
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
 #include "app/live/rtkit.h"
@@ -34,13 +37,19 @@ void keep_changes(const SceneDocument& document, const ArmDescription& arm,
   }
 }
 
+Settings with(Settings settings, const std::optional<Parameters>& by_hand) {
+  if (by_hand) settings.parameters = *by_hand;
+  return settings;
+}
+
 class Application {
  public:
   // The haptic thread comes first: what its scheduling allows decides how the window behaves, and
   // OpenGL's own threads inherit that.
-  Application(const DesktopOptions& options, Settings settings)
+  Application(const DesktopOptions& options, const Settings& settings)
       : options_(options),
-        desktop_(std::move(settings),
+        began_(settings),
+        desktop_(with(settings, options.parameters),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
         frame_(desktop_, window_, [this](Action action) { carry_out(action, desktop_, window_); }) {
@@ -55,14 +64,17 @@ class Application {
   void open();
   void run(const std::string& complaint);  // about the settings
   void keep();                             // what is for the next start
+  void leave_without_display();
 
  private:
   Window::Options prepare_window();
   void turn();
   bool asked_to_close();  // true: at once
+  void keep_scene();      // with the changes that nobody was asked about
   void say_what_was_saved();
 
   const DesktopOptions& options_;
+  const Settings began_;  // as they were read
   std::string why_;
   Desktop desktop_;
   Window window_;
@@ -102,12 +114,7 @@ void Application::run(const std::string& complaint) {
     if (!each.empty()) notices.say(each, true);
   }
   desktop_.playback().recover_leftovers(sessions_dir());
-  for (const std::filesystem::path& file : take_unsaved(scenes_dir())) {
-    notices.say(
-        fmt::format("Limpid was ended while a scene had unsaved changes. They are in {}: "
-                    "open it from the gallery (Ctrl+G).",
-                    file.filename().string()));
-  }
+  desktop_.offer_kept(take_unsaved(scenes_dir()));
   if (!options_.session.empty()) desktop_.playback().open(options_.session);
   desktop_.open_files(options_.files);
   last_ = glfwGetTime();
@@ -124,14 +131,32 @@ void Application::run(const std::string& complaint) {
 bool Application::asked_to_close() {
   Document& document = desktop_.document();
   if (interrupted) {
-    if (document.editor().dirty()) {
-      keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
-    }
+    keep_scene();
     return true;
   }
   document.leave([this] { leaving_ = true; });
   window_.keep_open();
   return false;
+}
+
+void Application::keep_scene() {
+  const Document& document = desktop_.document();
+  if (!document.editor().dirty()) return;
+  keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
+}
+
+// The motors first, then what has to be complete, then what is for the next start.
+void Application::leave_without_display() {
+  fmt::print(stderr, "limpid: the display is gone\n");
+  try {
+    desktop_.desk().loop().close();
+    desktop_.desk().complete_recording();
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "limpid: {}\n", e.what());
+  }
+  keep_scene();
+  keep();
+  std::_Exit(1);
 }
 
 // The desktop goes on in every turn; a frame is drawn where there is something new to see.
@@ -185,7 +210,8 @@ void Application::keep() {
   }
   Settings& settings = desktop_.settings();
   if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
-  if (const std::string error = save_settings(desktop_.settings_to_keep()); !error.empty()) {
+  if (const std::string error = save_settings(desktop_.settings_to_keep(), began_);
+      !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);
   }
 }
@@ -195,10 +221,10 @@ void Application::keep() {
 void run_desktop(const DesktopOptions& options) {
   give_back_what_is_freed();
   std::string complaint;
-  Settings settings = load_settings(complaint);
-  if (options.parameters) settings.parameters = *options.parameters;
-  Application application(options, std::move(settings));
+  const Settings settings = load_settings(complaint);
+  Application application(options, settings);
   catch_interrupts();
+  when_display_is_lost([&application] { application.leave_without_display(); });
   application.open();
   application.run(complaint);
   application.keep();

@@ -15,17 +15,35 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kBetweenLooks{500};
 
-// "kind predictive, stiffness 100 N/m"
-std::string named(const SweepPlan& plan, std::uint64_t number) {
+// Where it lies on each axis.
+std::vector<Fact> axes_of(const SweepPlan& plan, std::uint64_t number) {
   const SweepPoint point = point_of(plan, number);
-  std::string text;
+  std::vector<Fact> facts;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
     const SweepAxis& axis = plan.axes[a];
     const bool plain = axis.unit == "-" || !axis.words.empty();
-    text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", axis.name,
-                        value_text(axis, point.place[a]), plain ? "" : " " + axis.unit);
+    facts.push_back({axis.name, value_text(axis, point.place[a]) + (plain ? "" : " " + axis.unit)});
   }
-  return plan.repeats > 1 ? fmt::format("{}, repeat {}", text, point.repeat) : text;
+  if (plan.repeats > 1) facts.push_back({"repeat", fmt::format("{}", point.repeat)});
+  return facts;
+}
+
+// "kind predictive, stiffness 100 N/m"
+std::string named(const SweepPlan& plan, std::uint64_t number) {
+  std::string text;
+  for (const Fact& axis : axes_of(plan, number)) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", axis.name, axis.value);
+  }
+  return text;
+}
+
+std::vector<Fact> facts_of(const SweepPlan& plan, std::uint64_t number, std::optional<double> at) {
+  std::vector<Fact> facts{{"Point of the sweep", fmt::format("{}", number)}};
+  for (Fact& axis : axes_of(plan, number)) facts.push_back(std::move(axis));
+  if (at && plan.boundary) {
+    facts.push_back({plan.boundary->axis.name, fmt::format("{:.4g}", *at)});
+  }
+  return facts;
 }
 
 // Beside the table, or, where nothing can be written, among the user's own sessions.
@@ -157,6 +175,7 @@ void SweepDesk::play(std::uint64_t point, std::optional<double> at, Playback& pl
                   if (!recorded) return std::nullopt;
                   LoadedSession loaded = load_session(out);
                   compare(*sweep, point, at, recorded->values, loaded);
+                  loaded.facts = facts_of(*sweep->plan, point, at);
                   return loaded;
                 });
 }

@@ -2,8 +2,41 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <imgui_internal.h>
+
+#include <string>
 
 namespace limpid {
+namespace {
+
+constexpr const char* kClosing = "the closing button";  // among a dialog's noted ones
+
+// What is noted is in the storage that ImGui keeps for each window.
+ImGuiID key(const char* label, const char* what) {
+  return ImHashStr((std::string(label) + "###noted " + what).c_str());
+}
+constexpr const char* kDialog = "is a dialog";
+
+void note_dialog() {
+  ImGuiWindow* window = ImGui::GetCurrentWindow();
+  window->StateStorage.SetBool(key(kDialog, ""), true);
+}
+
+void note(const char* label) {
+  ImGuiStorage& notes = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  notes.SetFloat(key(label, "x"), 0.5f * (from.x + to.x));
+  notes.SetFloat(key(label, "y"), 0.5f * (from.y + to.y));
+  notes.SetInt(key(label, "frame"), ImGui::GetFrameCount());
+}
+
+std::optional<ImVec2> noted_in(const ImGuiWindow& window, const char* label) {
+  const ImGuiStorage& notes = window.StateStorage;
+  if (notes.GetInt(key(label, "frame"), -1) != ImGui::GetFrameCount()) return std::nullopt;
+  return ImVec2(notes.GetFloat(key(label, "x")), notes.GetFloat(key(label, "y")));
+}
+
+}  // namespace
 
 bool begin_modal(const char* title, bool& open, const ImVec2& size) {
   if (open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
@@ -11,16 +44,31 @@ bool begin_modal(const char* title, bool& open, const ImVec2& size) {
   ImGui::SetNextWindowSize(size);
   const ImGuiWindowFlags fit = size.y == 0 ? ImGuiWindowFlags_AlwaysAutoResize : 0;
   bool wanted = true;
-  if (!ImGui::BeginPopupModal(title, &wanted,
-                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | fit)) {
-    return false;
+  const bool drawn =
+      ImGui::BeginPopupModal(title, &wanted,
+                             ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | fit);
+  if (!wanted) open = false;  // by its cross; ImGui has closed it itself then
+  if (!drawn) return false;
+  if (open) {
+    note_dialog();
+    return true;
   }
-  if (open && wanted) return true;
-  open = false;
   ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   return false;
+}
+
+bool begin_dialog(const char* title, bool& open, ImGuiWindowFlags flags) {
+  const bool drawn = ImGui::Begin(
+      title, &open, flags | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  note_dialog();
+  return drawn;
+}
+
+void close_button(const char* label, bool& open) {
+  if (ImGui::Button(label)) open = false;
+  note(kClosing);
 }
 
 bool accepted() {
@@ -29,6 +77,33 @@ bool accepted() {
   return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
          (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) ||
           ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
+}
+
+bool noted_button(const char* label) {
+  const bool pressed = ImGui::Button(label);
+  note(label);
+  return pressed;
+}
+
+std::optional<ImVec2> noted_place(const char* window, const char* label) {
+  const ImGuiWindow* found = ImGui::FindWindowByName(window);
+  return found != nullptr ? noted_in(*found, label) : std::nullopt;
+}
+
+std::optional<DialogPlaces> dialog_places() {
+  const ImVector<ImGuiWindow*>& windows = ImGui::GetCurrentContext()->Windows;
+  for (int i = windows.Size - 1; i >= 0; --i) {
+    const ImGuiWindow& window = *windows[i];
+    if (!window.Active || window.Hidden) continue;
+    if (!window.StateStorage.GetBool(key(kDialog, ""))) continue;
+    const ImRect bar = window.TitleBarRect();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float half = 0.5f * ImGui::GetFontSize();
+    return DialogPlaces{
+        .cross = {bar.Max.x - style.FramePadding.x - half, bar.Min.y + style.FramePadding.y + half},
+        .button = noted_in(window, kClosing)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace limpid

@@ -1,15 +1,36 @@
-// Dialogs that ask something: what is behind them is dimmed and waits.
+// Dialogs: how they open and close, and where that is clicked.
 #pragma once
 
 #include <imgui.h>
 
+#include <optional>
+
 namespace limpid {
 
-// To be called in every frame, outside of other windows. True while the dialog is to be drawn; it
-// pairs with ImGui::EndPopup() then. Its cross clears `open`. `size` [px]; 0: as the content needs.
+// One that asks something: what is behind it is dimmed and waits. To be called in every frame,
+// outside of other windows. True while the dialog is to be drawn; it pairs with ImGui::EndPopup()
+// then. Its cross clears `open`. `size` [px]; 0: as the content needs.
 bool begin_modal(const char* title, bool& open, const ImVec2& size);
+
+// A window beside the others; pairs with ImGui::End() whatever it returns. Its cross clears `open`.
+bool begin_dialog(const char* title, bool& open, ImGuiWindowFlags flags);
+
+// The button that closes the dialog being drawn, as its cross and Esc do.
+void close_button(const char* label, bool& open);
 
 // Enter was pressed in the dialog being drawn, and not in a text field, which takes it itself.
 bool accepted();
+
+// A button that says where it is to who drives the window from outside.
+bool noted_button(const char* label);
+// The middle of one that was drawn in the last frame, in a window [px]; nothing: it was not.
+std::optional<ImVec2> noted_place(const char* window, const char* label);
+
+// Where the topmost dialog is closed [px].
+struct DialogPlaces {
+  ImVec2 cross;
+  std::optional<ImVec2> button;
+};
+std::optional<DialogPlaces> dialog_places();
 
 }  // namespace limpid

@@ -78,7 +78,7 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
   ImGui::EndChild();
   const bool pressed = ImGui::Button(replaced_.empty() ? options_.action : "Replace it");
   ImGui::SameLine();
-  if (ImGui::Button("Cancel")) open = false;
+  close_button("Cancel (Esc)", open);
   if (entered || pressed || picked || accepted()) chosen = choose();
   if (!complaint_.empty()) {
     ImGui::SameLine();

@@ -105,6 +105,30 @@ TEST_F(FilmFrames, HaveCurvesThatEndAtThePresent) {
   EXPECT_NEAR(static_cast<double>(half - from) / (whole - from), 0.5, 0.02);
 }
 
+// How many pixels of the upper part of the picture have the sign's colour.
+int sign_pixels(const Picture& picture) {
+  int count = 0;
+  for (int y = 0; y < picture.height / 5; ++y) {
+    for (int x = picture.width / 4; x < picture.width * 3 / 4; ++x) {
+      count += picture.at(x, y) == kDarkPalette.accent ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST_F(FilmFrames, SayOverThePictureWhatMustNotBeMissed) {
+  ASSERT_NO_FATAL_FAILURE(begin({}));
+  if (!frame_) return;
+  const ViewState view = stage_->rows().view(layout_, row_at(layout_, 0));
+  const auto with = [&](const std::string& sign) {
+    FilmCaption caption;
+    caption.sign = sign;
+    return Picture{look_.width, look_.height, frame_->draw(*stage_, view, camera_, caption, 0.1)};
+  };
+  const int without = sign_pixels(with(""));
+  EXPECT_GT(sign_pixels(with("force off: not armed")), without + 1000);
+}
+
 TEST_F(FilmFrames, KeepNoCurvesInTheLegendThatNobodyCanSwitchOn) {
   ASSERT_NO_FATAL_FAILURE(begin({}));
   if (!frame_) return;

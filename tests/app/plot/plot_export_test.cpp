@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -115,6 +116,34 @@ TEST(PlotSvg, DrawsBandsFromAfarAndLinesFromClose) {
   EXPECT_EQ(far.find("<polyline"), std::string::npos);
   const std::string close = plot_svg(spec(), two_channels(), {1.0, 1.1, {}, {{-3, 3}}});
   EXPECT_NE(close.find("<polyline"), std::string::npos);
+}
+
+TEST(PlotSvg, StripesWhatABandMarksFromWhereToWhere) {
+  History history({.channels = 2, .seconds = 5});
+  for (int i = 0; i < 3000; ++i) {
+    history.append(i * 0.001, std::array{0.0, i >= 1000 && i < 2000 ? 1.0 : 0.0});
+  }
+  PlotSpec marked = spec();
+  marked.bands = {{.channel = 1, .names = {"", "force off: <why>"}, .striped = true}};
+  const std::string svg = plot_svg(marked, history, {0, 3, {}, {{-3, 3}}});
+  expect_well_formed(svg);
+  EXPECT_NE(svg.find("force off: &lt;why&gt;"), std::string::npos);
+  // The curves' area is the clip path's rectangle; a third of it is marked, in the middle.
+  double left = 0, width = 0, from = 0, wide = 0, other = 0;
+  const auto number = [&](std::size_t at, const char* format, auto*... into) {
+    ASSERT_NE(at, std::string::npos);
+    ASSERT_GT(std::sscanf(svg.c_str() + at, format, into...), 0);
+  };
+  number(svg.find("<rect x", svg.find("clipPath")), "<rect x=\"%lf\" y=\"%lf\" width=\"%lf\"",
+         &left, &other, &width);
+  const std::size_t filled = svg.find("fill=\"url(#stripes)\"");
+  number(svg.rfind("<rect x", filled), "<rect x=\"%lf\" y=\"%lf\" width=\"%lf\"", &from, &other,
+         &wide);
+  EXPECT_NEAR(from, left + width / 3, 2);
+  EXPECT_NEAR(wide, width / 3, 2);
+  marked.bands[0].channel = 0;
+  EXPECT_EQ(plot_svg(marked, history, {0, 3, {}, {{-3, 3}}}).find("url(#stripes)"),
+            std::string::npos);
 }
 
 TEST(PlotSvg, LeavesHiddenCurvesOut) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace limpid {
@@ -33,6 +34,23 @@ TEST_P(PlotChoiceOfJoints, ShowsOnlyChannelsThatThereAre) {
     EXPECT_EQ(plot_spec(choices[4], channels, names).curves.size(),
               static_cast<std::size_t>(runs * (GetParam() >= 7 ? 2 : 1)));
     EXPECT_TRUE(plot_spec(choices[5], channels, names).curves.empty());
+  }
+}
+
+// Whatever a plot shows, and of however many runs: without force it is not what it seems.
+TEST(PlotChoice, MarksWhereTheForceWasOffInEveryPlot) {
+  const TraceChannels channels{RowLayout(3)};
+  for (const RunNames& names : {RunNames{}, kTwin, kRerun}) {
+    for (const PlotChoice& choice : default_plots()) {
+      const PlotSpec spec = plot_spec(choice, channels, names);
+      const auto marked = std::ranges::find_if(spec.bands, &Band::striped);
+      ASSERT_NE(marked, spec.bands.end());
+      EXPECT_EQ(marked->channel, channels.find("device/force_state"));
+      EXPECT_EQ(marked->names.at(0), "");
+      EXPECT_EQ(marked->names.at(1), "force off: not armed");
+      EXPECT_EQ(marked->names.at(6), "force held back: the device moves too fast");
+      for (std::size_t i = 1; i < marked->names.size(); ++i) EXPECT_NE(marked->names[i], "");
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "tests/devices/files/test_files.h"
@@ -63,7 +65,7 @@ TEST_F(SettingsFile, KeepsTheFilesOpenedLastTheNewestFirstAndEachOnce) {
   EXPECT_EQ(s.recent[0], "/a/session 15.h5");
   EXPECT_EQ(s.recent[1], "/a/session 19.h5");
   EXPECT_EQ(std::ranges::count(s.recent, "/a/session 15.h5"), 1);
-  EXPECT_EQ(save_settings(s), "");
+  EXPECT_EQ(save_settings(s, {}), "");
   EXPECT_EQ(load().recent, s.recent);
 }
 
@@ -91,7 +93,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   s.parameters.eta = 0.1 + 0.2;
   s.parameters.damping = 0.017;
   s.parameters.velocity = VelocitySource::adaptive;
-  EXPECT_EQ(save_settings(s), "");
+  EXPECT_EQ(save_settings(s, {}), "");
   const Settings again = load();
   EXPECT_EQ(complaint_, "");
   EXPECT_EQ(again.theme, s.theme);
@@ -114,7 +116,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
 TEST_F(SettingsFile, RemembersThatNoPlotIsLeft) {
   Settings s;
   s.plot_choices.clear();
-  EXPECT_EQ(save_settings(s), "");
+  EXPECT_EQ(save_settings(s, {}), "");
   EXPECT_TRUE(load().plot_choices.empty());
 }
 
@@ -148,9 +150,73 @@ TEST_F(SettingsFile, WithAParameterOutOfRangeNamesIt) {
   EXPECT_EQ(s.parameters.eta, 1);
 }
 
+// Both were started with the same file; each knows only what was done in it.
+TEST_F(SettingsFile, OfTwoWindowsHasWhatWasChangedInEither) {
+  Settings began;
+  began.parameters.eta = 0.7;
+  began.twin.parameters.damping = 0.02;
+  began.recent = {"/a/old.h5"};
+  ASSERT_EQ(save_settings(began, {}), "");
+  began = load();
+  Settings first = began, second = began;
+  first.theme = Theme::light;
+  first.parameters.alpha = 0.05;
+  first.plot_choices.clear();
+  remember_recent(first, "/a/first.h5");
+  second.width = 1555;
+  second.parameters.eta = 1;
+  second.twin.parameters.damping = std::numeric_limits<double>::quiet_NaN();  // the arm's own
+  remember_recent(second, "/a/second.h5");
+  ASSERT_EQ(save_settings(first, began), "");
+  ASSERT_EQ(save_settings(second, began), "");
+  const Settings both = load();
+  EXPECT_EQ(complaint_, "");
+  EXPECT_EQ(both.theme, Theme::light);
+  EXPECT_EQ(both.parameters.alpha, 0.05);
+  EXPECT_TRUE(both.plot_choices.empty());
+  EXPECT_EQ(both.width, 1555);
+  EXPECT_EQ(both.parameters.eta, 1);
+  EXPECT_TRUE(std::isnan(both.twin.parameters.damping));
+  EXPECT_EQ(both.recent, (std::vector<std::string>{"/a/second.h5", "/a/first.h5", "/a/old.h5"}));
+}
+
+TEST_F(SettingsFile, KeepsTheOrderOfAFileThatIsOpenedOnceMore) {
+  Settings began;
+  began.recent = {"/a/1.h5", "/a/2.h5"};
+  ASSERT_EQ(save_settings(began, {}), "");
+  Settings now = began;
+  remember_recent(now, "/a/3.h5");
+  remember_recent(now, "/a/2.h5");
+  ASSERT_EQ(save_settings(now, began), "");
+  EXPECT_EQ(load().recent, (std::vector<std::string>{"/a/2.h5", "/a/3.h5", "/a/1.h5"}));
+}
+
+TEST_F(SettingsFile, ThatIsOfANewerProgramKeepsWhatThisOneDoesNotKnow) {
+  write("[window]\nwidth = 1444\nof_later = 3\n[later]\na = 1\n");
+  Settings s = load();
+  const Settings began = s;
+  s.height = 888;
+  ASSERT_EQ(save_settings(s, began), "");
+  EXPECT_THAT(test::file_bytes(file()), testing::HasSubstr("of_later = 3"));
+  EXPECT_THAT(test::file_bytes(file()), testing::HasSubstr("[later]"));
+  EXPECT_EQ(load().height, 888);
+  EXPECT_EQ(load().width, 1444);
+}
+
+TEST_F(SettingsFile, ThatCannotBeReadIsNotLost) {
+  const std::string broken = "[parameters]\ncoupling.eta = -4\nobserver.alpha = 0.02\n";
+  write(broken);
+  const Settings s = load();
+  EXPECT_EQ(save_settings(s, s), "");
+  EXPECT_EQ(test::file_bytes(file().string() + ".unread"), broken);
+  complaint_.clear();
+  load();
+  EXPECT_EQ(complaint_, "");
+}
+
 TEST_F(SettingsFile, ThatCannotBeWrittenIsReportedNotThrown) {
   test::write_file(dir_ / "limpid", "a file where the folder should be");
-  EXPECT_NE(save_settings(Settings{}), "");
+  EXPECT_NE(save_settings({}, {}), "");
 }
 
 TEST_F(SettingsFile, StandsBesideAFolderForSessions) {

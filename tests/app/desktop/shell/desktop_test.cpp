@@ -2,12 +2,15 @@
 #include "app/desktop/shell/desktop.h"
 
 #include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
 
+#include "app/desktop/document/unsaved.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
 #include "render/gl/offscreen.h"
@@ -483,6 +486,227 @@ TEST_F(ADesktop, TakesBackAPresetOfEitherRunOfATwin) {
     EXPECT_EQ(edited.eta, 0.3);
     frames(5);
   }
+}
+
+// With ImGui, whose menus and text fields Esc may be meant for.
+struct ADesktopWithKeys : ADesktop {
+  void SetUp() override {
+    ImGui::CreateContext();
+    ADesktop::SetUp();
+  }
+  void TearDown() override {
+    ADesktop::TearDown();
+    ImGui::DestroyContext();
+  }
+  bool stays(Arming wanted) {
+    frames(20);
+    return arming() == wanted;
+  }
+};
+
+TEST_F(ADesktopWithKeys, OnTheVirtualArmEscClosesWhatIsOpenAndOnlyThenCutsTheForce) {
+  ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
+  for (const Dialog dialog :
+       {Dialog::help, Dialog::sweep, Dialog::open_session, Dialog::identify}) {
+    desktop->open_dialog(dialog);
+    desktop->escape();
+    EXPECT_EQ(desktop->dialog(), Dialog::none);
+    EXPECT_TRUE(stays(Arming::on)) << name(dialog);
+  }
+  ImGui::GetIO().WantTextInput = true;  // a number is typed over a slider
+  ImGui::GetCurrentContext()->WantTextInputNextFrame = 1;
+  ImGui::GetCurrentContext()->ActiveId = 1;
+  ASSERT_TRUE(desktop->focus().text);
+  desktop->escape();
+  EXPECT_TRUE(stays(Arming::on)) << "ImGui gives the typing up";
+  ImGui::GetIO().WantTextInput = false;
+  ImGui::GetCurrentContext()->WantTextInputNextFrame = -1;
+  ImGui::GetCurrentContext()->ActiveId = 0;
+  desktop->escape();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+}
+
+TEST_F(ADesktopWithKeys, OnARealDeviceEscClosesAndCutsTheForce) {
+  const auto wire = pushed();
+  desktop->open_dialog(Dialog::help);
+  desktop->escape();
+  EXPECT_EQ(desktop->dialog(), Dialog::none);
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  EXPECT_EQ(wire->torque, 0);
+  ASSERT_TRUE(armed());
+  desktop->escape();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+}
+
+TEST_F(ADesktopWithKeys, SpaceCutsTheForceThroughADialogAndLeavesItOpen) {
+  ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
+  desktop->open_dialog(Dialog::help);
+  desktop->cut_force();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  EXPECT_EQ(desktop->dialog(), Dialog::help);
+}
+
+TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
+  ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
+  EXPECT_TRUE(desktop->banners().empty());
+  desktop->cut_force();
+  ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
+  ASSERT_EQ(desktop->banners().size(), 1u);
+  EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. F arms it.");
+  ASSERT_EQ(desktop->banners()[0].buttons.size(), 1u);
+  EXPECT_EQ(desktop->banners()[0].buttons[0].action, Action::toggle_force);
+  record_something();
+  EXPECT_EQ(desktop->banners()[0].text, "Recording without force: not armed. F arms it.");
+  EXPECT_TRUE(desktop->banners()[0].bad);
+  desktop->toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  // The recording says so where it is looked at, whatever the loop does meanwhile.
+  ASSERT_TRUE(armed());
+  EXPECT_TRUE(desktop->banners().empty());
+  desktop->toggle_playing();
+  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  ASSERT_EQ(desktop->banners().size(), 1u);
+  EXPECT_EQ(desktop->banners()[0].text, "In this recording: force off: not armed.");
+  EXPECT_TRUE(desktop->banners()[0].buttons.empty());
+}
+
+// Whatever is done next, the settings are what they were.
+TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
+  Settings& settings = desktop->settings();
+  settings.parameters.hand_stiffness = 222;
+  settings.parameters.eta = 0.8;
+  frames(2);
+  const Parameters before = settings.parameters;
+  const auto broken = [&] {
+    desktop->break_passivity();
+    frames(2);
+    EXPECT_EQ(settings.parameters.hand_stiffness, 3000);
+    EXPECT_EQ(settings.parameters.hand_damping, 0);
+    EXPECT_EQ(desktop->banners().back().buttons.at(0).action, Action::end_passivity_break);
+  };
+  const auto expect_whole = [&](const char* after) {
+    EXPECT_TRUE(settings.parameters == before) << after;
+    EXPECT_TRUE(desktop->banners().empty()) << after;
+  };
+  broken();
+  desktop->end_break();
+  expect_whole("Repair");
+  broken();
+  desktop->toggle_coupling();
+  expect_whole("C");
+  broken();
+  document().undo();
+  expect_whole("Ctrl+Z");
+  frames(2);
+  broken();
+  desktop->use_preset("Light hand");
+  EXPECT_EQ(settings.parameters.hand_stiffness, 222);
+  frames(2);
+  document().undo();
+  expect_whole("a preset, and what was before it");
+  frames(2);
+  broken();
+  settings.parameters.kind = CouplingKind::standard;  // by a click on it
+  frames(2);
+  EXPECT_EQ(settings.parameters.kind, CouplingKind::standard);
+  settings.parameters.kind = before.kind;
+  frames(2);
+  expect_whole("another law");
+  broken();
+  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  expect_whole("another scene");
+  broken();
+  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  frames(1);
+  EXPECT_TRUE(settings.parameters == before) << "a recording";
+  desktop->playback().close();
+  broken();
+  plug_in(3);
+  EXPECT_EQ(settings.parameters.hand_stiffness, 222) << "a device";
+  desktop->close_device();
+  frames(2);
+  broken();
+  EXPECT_EQ(desktop->settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
+  EXPECT_EQ(desktop->settings_to_keep().parameters.eta, 0.8);
+  EXPECT_FALSE(desktop->settings_to_keep().before_break);
+}
+
+TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {
+  frames(2);
+  const Parameters first = desktop->settings().parameters;
+  desktop->edited().eta = 0.77;
+  frames(60);  // a step of its own
+  desktop->break_passivity();
+  frames(5);
+  desktop->edited().eta = 0.2;  // moved meanwhile
+  frames(60);
+  document().undo();
+  EXPECT_EQ(desktop->edited().eta, 0.77);
+  frames(5);
+  document().undo();
+  EXPECT_TRUE(desktop->settings().parameters == first);
+}
+
+TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
+  Settings& settings = desktop->settings();
+  settings.parameters.kind = CouplingKind::proposed;
+  settings.parameters.eta = 0.9;
+  frames(3);
+  record_something();
+  settings.parameters.eta = 0.5;
+  frames(20);
+  settings.parameters.kind = CouplingKind::standard;
+  frames(20);
+  desktop->toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  settings.parameters.eta = 3;
+  settings.parameters.hand_stiffness = 99;
+  desktop->toggle_playing();
+  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  PlayedSession& session = *desktop->playback().shown();
+  Player& player = session.player();
+  player.pause();
+  const auto at = [&](double part) -> const Parameters& {
+    player.seek(part * player.duration());
+    return session.settings();
+  };
+  // Against what the rows themselves say, forwards and backwards.
+  for (const double part : {0.0, 0.3, 0.5, 0.7, 0.99, 0.5, 0.1, 0.8}) {
+    const Parameters& then = at(part);
+    const auto row = player.row();
+    const RowLayout& layout = player.session().layout;
+    EXPECT_EQ(static_cast<double>(then.kind), layout.in(row, Column::kind)[0]) << part;
+    EXPECT_EQ(then.eta, layout.in(row, Column::eta)[0]) << part;
+    EXPECT_EQ(then.hand_stiffness, Parameters{}.hand_stiffness);
+  }
+  EXPECT_EQ(at(0).eta, 0.9);
+  EXPECT_EQ(at(0.99).kind, CouplingKind::standard);
+  EXPECT_EQ(desktop->edited().eta, 3) << "for the re-run";
+}
+
+TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
+  const fs::path folder = dir / "kept";
+  const auto keep = [&](const std::string& ball) {
+    SceneDocument document;
+    document.scene.spheres.push_back(Sphere{.name = ball, .center = {0.1, 0, 0}, .radius = 0.02});
+    keep_unsaved(document, test::omni(), "mine", folder);
+    return take_unsaved(folder);
+  };
+  std::vector<fs::path> files = keep("first");
+  for (const fs::path& file : keep("second")) files.push_back(file);
+  ASSERT_EQ(files.size(), 2u);
+  desktop->offer_kept(files);
+  ASSERT_EQ(desktop->banners().size(), 1u);
+  EXPECT_NE(desktop->banners()[0].text.find(files[1].filename().string()), std::string::npos);
+  desktop->discard_kept();
+  EXPECT_FALSE(fs::exists(files[1]));
+  ASSERT_EQ(desktop->banners().size(), 1u);
+  desktop->open_kept();
+  ASSERT_TRUE(until([&] { return has("first"); }));
+  EXPECT_TRUE(fs::exists(files[0]));
+  EXPECT_TRUE(desktop->banners().empty());
 }
 
 TEST_F(ADesktop, ShowsTheChosenPlotsLiveAndInPlayback) {

@@ -1,0 +1,29 @@
+// What stands over the picture as long as it is so, and cannot be missed.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/desktop/base/action.h"
+#include "app/plot/plot_frame.h"
+
+namespace limpid {
+
+struct Banner {
+  struct Button {
+    const char* label;
+    Action action;
+  };
+  const char* id;  // of its window
+  std::string text;
+  bool bad = false;
+  std::vector<Button> buttons = {};
+};
+
+// One below the other from the top of the view on, clear of what it shows at its `signs`. Returns
+// what they leave free of these: the same, or down to where the last one ends.
+ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
+                        const Act& act);
+
+}  // namespace limpid
