@@ -156,6 +156,9 @@ class Build:
         return subprocess.run(["ninja", "-C", str(self.folder), *words], capture_output=True, text=True)
 
     def make(self, *targets):
+        """What went wrong; empty if nothing did."""
+        if not targets:
+            return ""  # ninja would build all there is
         run = self.ninja(f"-j{self.jobs}", "-k0", *targets)
         return "" if run.returncode == 0 else run.stdout + run.stderr
 
@@ -236,10 +239,14 @@ def names_of_tests(listing):
 
 
 def in_time(command, environment, seconds):
-    """The exit status (None: it took too long) and the output; nothing of it goes on running."""
-    with tempfile.TemporaryFile() as out:
-        child = subprocess.Popen(command, env={**os.environ, **environment}, stdout=out, stderr=subprocess.STDOUT,
-                                 start_new_session=True, cwd=TREE)  # fmt: skip
+    """The exit status (None: it took too long) and the output; nothing of it goes on running.
+
+    It has a home of its own: nobody knows which files a program with an error in it writes or removes.
+    """
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryDirectory(prefix="limpid-home-") as home:
+        own = {name: home for name in ("HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_STATE_HOME")}
+        child = subprocess.Popen(command, env={**os.environ, **own, **environment}, stdout=out,
+                                 stderr=subprocess.STDOUT, start_new_session=True, cwd=TREE)  # fmt: skip
         try:
             status = child.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -291,8 +298,8 @@ def try_out(mutant, tests, budget):
         own = [t for t in run if t.program == program]
         limit = 20 + 5 * sum(t.seconds for t in own)
         names = ":".join(t.name for t in own)
-        status, out = in_time([str(program), f"--gtest_filter={names}", "--gtest_fail_fast"],
-                              {"LIMPID_MUTANT": str(mutant.number)}, limit)  # fmt: skip
+        flags = [f"--gtest_filter={names}", "--gtest_fail_fast"]
+        status, out = in_time([str(program), *flags], {"LIMPID_MUTANT": str(mutant.number)}, limit)
         if status != 0:
             failed = re.search(r"\[  FAILED  \] (\S+?),? ", out)
             why = "the time limit" if status is None else failed[1] if failed else f"status {status}"
