@@ -199,6 +199,8 @@ def compile_all(build, planted, mutants):
     objects = build.objects()
     sources = [m.file for m in mutants if m.file in objects]
     targets = sorted({name for file in sources for name in objects[file]})
+    if log := build.make(*targets):
+        sys.exit("The tree does not build:\n" + log[-4000:])
     while mutants:
         planted.plant(mutants)
         log = build.make(*targets)
@@ -206,7 +208,7 @@ def compile_all(build, planted, mutants):
             return mutants
         blamed = not_compiling(log, mutants)
         if not blamed:
-            sys.exit("The tree does not build:\n" + log[-4000:])
+            sys.exit("Nobody knows why this does not build:\n" + log[-4000:])
         for mutant in blamed:
             mutant.result = "no mutant"
         mutants = [m for m in mutants if not m.result]

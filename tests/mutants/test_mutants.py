@@ -1,5 +1,9 @@
 """What can be planted, where, and that the rest of the file stays as it was."""
 
+import argparse
+import json
+import shutil
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -203,10 +207,98 @@ class Results(unittest.TestCase):
         self.assertEqual((status, out), (3, "7\n"))
 
 
+PROGRAM = """#include "core/sum.h"
+#include <cstdio>
+#include <cstring>
+int main(int count, char** words) {
+  const char* filter = "";
+  for (int i = 1; i < count; ++i) {
+    if (std::strcmp(words[i], "--gtest_list_tests") == 0) return std::puts("Sum.\\n  OfTwo\\n  OfNone\\n  Fails"), 0;
+    if (std::strncmp(words[i], "--gtest_filter=", 15) == 0) filter = words[i] + 15;
+  }
+  bool good = true;
+  if (std::strstr(filter, "OfTwo")) good = good && sum(2) == 3;
+  if (std::strstr(filter, "OfNone")) good = good && sum(0) == 0;
+  if (std::strstr(filter, "Fails")) good = false;
+  if (!good) std::puts("[  FAILED  ] Sum.OfTwo (0 ms)");
+  return good ? 0 : 1;
+}
+"""
+SUM = """int sum(int n) {
+  int all = 0;
+  for (int i = 1; i <= n; ++i) {
+    all += i;
+  }
+  return all;
+}
+int nobody_asks(int n) { return n - 1; }
+const char* word(int n) {
+  return n == 0 ? "no" : "some";
+}
+const char* swapped(const char* a, int n) { return first(a, n); }
+"""
+NINJA = """rule cc
+  command = c++ -std=c++20 -I. -c $in -o $out
+rule link
+  command = c++ $in -o $out
+build core/sum.o: cc TREE/core/sum.cpp | TREE/core/sum.h
+build tests/main.o: cc TREE/tests/main.cpp
+build tests/sum_tests: link core/sum.o tests/main.o
+"""
+
+
+@unittest.skipUnless(shutil.which("ninja") and shutil.which("c++"), "needs ninja and a compiler")
+class AWholeCall(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = Path(folder.name) / "tree"
+        self.build = Path(folder.name) / "build"
+        for path in (self.tree / "core", self.tree / "tests", self.build):
+            path.mkdir(parents=True)
+        header = "int sum(int n);\nconst char* first(const char* a, int n);\n"
+        (self.tree / "core/sum.h").write_text("#pragma once\n" + header)
+        self.file = self.tree / "core/sum.cpp"
+        self.text = '#include "sum.h"\nconst char* first(const char* a, int) { return a; }\n' + SUM
+        self.file.write_text(self.text)
+        (self.tree / "tests/main.cpp").write_text(PROGRAM)
+        (self.build / "build.ninja").write_text(NINJA.replace("TREE", str(self.tree)).replace("-I.", f"-I{self.tree}"))
+        commands = [{"file": str(self.file), "command": "", "output": "core/sum.o"}]
+        (self.build / "compile_commands.json").write_text(json.dumps(commands))
+        before = mutants.TREE, mutants.say
+        mutants.TREE, mutants.say = self.tree, lambda text: None
+        self.addCleanup(lambda: (setattr(mutants, "TREE", before[0]), setattr(mutants, "say", before[1])))
+        self.options = argparse.Namespace(
+            build=self.build, jobs=2, programs="", targets="", also="", budget=10, seed=1, count=0, change=None,
+            paths=["core"], report=None, resume=False,
+        )  # fmt: skip
+
+    def test_says_what_was_noticed_what_was_not_and_what_nobody_reaches(self) -> None:
+        found = mutants.choose(self.options)
+        report = self.build / "mutants.json"
+        mutants.carry_out(self.options, found, report)
+        self.assertEqual(self.file.read_text(), self.text, "the source is put back")
+        result = {(m.line, m.what): m.result for m in found}
+        self.assertEqual(result[4, "0 to 1"], "noticed")  # all = 0
+        self.assertEqual(result[5, "<= to <"], "noticed")
+        self.assertEqual(result[5, "the condition negated"], "noticed")
+        self.assertEqual(result[6, "+= to -="], "noticed")
+        self.assertEqual(result[10, "- to +"], "unreached")
+        self.assertEqual(result[14, "arguments of first() swapped"], "no mutant")
+        self.assertEqual(json.loads(report.read_text())["mutants"][0]["file"], "core/sum.cpp")
+        again = mutants.choose(self.options)
+        mutants.take_results(again, report)
+        self.assertEqual([m.result for m in again], [m.result for m in found])
+
+    def test_is_worth_nothing_where_the_tree_does_not_build(self) -> None:
+        self.file.write_text(self.text + "error;\n")
+        with self.assertRaises(SystemExit):
+            mutants.carry_out(self.options, mutants.choose(self.options), self.build / "mutants.json")
+        self.assertEqual(self.file.read_text(), self.text + "error;\n")
+
+
 class PutBack(unittest.TestCase):
     def test_is_what_was_there_whatever_happens(self) -> None:
-        import tempfile
-
         with tempfile.TemporaryDirectory() as folder:
             tree, mutants.TREE = mutants.TREE, Path(folder)
             self.addCleanup(setattr, mutants, "TREE", tree)
