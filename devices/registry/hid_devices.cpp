@@ -85,8 +85,16 @@ std::string claim_key(const FoundDevice& found) {
 
 std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSettings& settings,
                                         const AskForPriority& ask, DeviceClaim claim) {
+  return open_hid_device_on(found, open_hidraw, settings, ask, std::move(claim));
+}
+
+}  // namespace
+
+std::unique_ptr<Device> open_hid_device_on(const FoundDevice& found, const OpenTransport& open,
+                                           const PidSettings& settings, const AskForPriority& ask,
+                                           DeviceClaim claim) {
   try {
-    auto transport = open_hidraw(found.place.path);
+    auto transport = open(found.place.path);
     const auto descriptor = parse_report_descriptor(transport->report_descriptor());
     const HidProtocolEntry* entry = find_protocol(descriptor, transport->vendor());
     // Another device may have come to this path since the list was made.
@@ -98,8 +106,6 @@ std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSetti
     throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
   }
 }
-
-}  // namespace
 
 std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRoots& roots) {
   std::vector<FoundDevice> found;

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "devices/registry/device_list.h"
@@ -21,5 +24,14 @@ struct HidRoots {
 // left out.
 std::vector<FoundDevice> list_hid_devices(const std::filesystem::path& udev_rule,
                                           const HidRoots& roots = {});
+
+// Throws HidError.
+using OpenTransport = std::function<std::unique_ptr<HidTransport>(const std::string& path)>;
+
+// What was found, through the transport that `open` gives for its path; FoundDevice::open goes
+// through the kernel's. Throws HidError if a device of another kind is there by now.
+std::unique_ptr<Device> open_hid_device_on(const FoundDevice& found, const OpenTransport& open,
+                                           const PidSettings& settings, const AskForPriority& ask,
+                                           DeviceClaim claim);
 
 }  // namespace limpid

@@ -124,5 +124,32 @@ TEST(Camera, HasOrthonormalAxesAndAMatchingViewMatrix) {
               1e-12);
 }
 
+// However often it was turned round, it does not turn back through all of that.
+TEST(Camera, GoesToAViewTheShortWay) {
+  using std::numbers::pi;
+  for (const double begin : {0.7, 2.8, 3.5, 6.0, 15.0, -2.9, -9.0}) {
+    Camera camera;
+    camera.look(Camera::View::front);  // the eye at azimuth 0
+    camera.finish();
+    camera.orbit(-begin / 0.006, 0);  // 6 mrad a pixel
+    const auto azimuth = [&] {
+      const Vec3 back = -camera.forward();
+      return std::atan2(back.y(), back.x());
+    };
+    const double way = std::remainder(begin, 2 * pi);
+    ASSERT_NEAR(azimuth(), way, 1e-9);
+    camera.look(Camera::View::front);
+    double last = azimuth();
+    for (int i = 0; i < 100; ++i) {
+      camera.advance(0.005);
+      const double now = azimuth();
+      EXPECT_LE(std::abs(now), std::abs(last) + 1e-12) << "from " << begin << ", step " << i;
+      EXPECT_GE(now * way, -1e-12) << "never past it";
+      last = now;
+    }
+    EXPECT_NEAR(last, 0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

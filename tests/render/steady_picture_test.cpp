@@ -142,6 +142,28 @@ TEST_F(SteadyPicture, IsTheSameDrawnInPartsOrAtOnce) {
   }
 }
 
+// Lines and marks as wide as on the finest screens: what they leave is wiped off as well.
+TEST_F(SteadyPicture, IsTheSameInPartsHoweverWideItsLines) {
+  view_->set_quality(Quality::level(2));
+  view_->set_pixel_scale(6);
+  state_.show_joints = true;
+  for (int step = 0; step < 8; ++step) {
+    move(step);
+    state_.proxy = pose_of(arm_, -0.6, 0.4);  // rests: the lines alone move
+    state_.contacts.clear();
+    state_.shade.reset();
+    draw();
+    const auto in_parts = pixels();
+    view_->set_quality(Quality::level(2));  // forgets what was there
+    draw();
+    const auto at_once = pixels();
+    int wrong = 0;
+    for (std::size_t i = 0; i < at_once.size(); ++i)
+      wrong += std::abs(int{at_once[i]} - int{in_parts[i]}) > 2;
+    ASSERT_LT(wrong, 12) << "step " << step;
+  }
+}
+
 TEST(FrictionCone, HasTheHalfAngleOfItsCoefficient) {
   ViewState state;
   const Vec3 normal = Vec3(0.3, -0.2, 0.9).normalized();

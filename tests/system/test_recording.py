@@ -127,6 +127,23 @@ class Recording(WithAnArm):
         result = limpid("run", "--eta", "0.05", "--set", "hand.stiffness=3000", "--duration", "2")
         self.assertEqual((result.status, result.err), (0, ""))
 
+    def test_a_change_comes_at_its_time_whatever_the_tick(self) -> None:
+        """Recorded changes are at rows; of another tick other rows have the same time."""
+        first = self.record("--hand", "touch.csv", "--duration", "0.6")
+        with h5py.File(first, "r+") as file:
+            for name, value in (("row", 300), ("setting", b"coupling.eta = 0.7")):
+                events = file[f"/events/{name}"]
+                events.resize((1,))
+                events[0] = value
+        for tick in (0.001, 0.002, 0.0005):
+            with self.subTest(tick):
+                again = self.record("--hand", first, "--set", f"loop.tick={tick}")
+                with h5py.File(again) as file:
+                    time, eta = file["/time"][:], file["/coupling/eta"][:]
+                self.assertAlmostEqual(time[1], tick, delta=1e-12)
+                self.assertAlmostEqual(time[np.flatnonzero(eta == 0.7)[0]], 0.3, delta=1e-9)
+                self.assertAlmostEqual(time[-1] + tick, 0.6, delta=2 * tick)
+
     def test_a_killed_run_loses_at_most_its_last_second(self) -> None:
         out = self.out()
         words = ["run", *self.arm, "--realtime", "--duration", "60", "--record", out]

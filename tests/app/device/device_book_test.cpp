@@ -436,5 +436,21 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
 }
 
+// What is found the second time was found with the first correction in place.
+TEST(DeviceHub, CorrectsATorqueScaleByWhatIsFoundAgain) {
+  const test::TempDir dir;
+  setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);
+  DeviceHub hub(dir / "devices.toml", {});
+  hub.use("a device");
+  const DeviceHub::Nature half{.urdf = "<robot/>", .report = "{}", .delay = 0, .torque_scale = 0.5};
+  EXPECT_EQ(hub.remember(half), "");
+  EXPECT_EQ(hub.notes("a device").torque_scale, 0.5);
+  EXPECT_EQ(hub.remember(half), "");
+  EXPECT_EQ(hub.notes("a device").torque_scale, 0.25);
+  EXPECT_EQ(hub.remember(half), "");
+  EXPECT_NE(hub.remember(half), "") << "0.0625 is not believed";
+  EXPECT_EQ(hub.notes("a device").torque_scale, 0.125) << "and changes nothing";
+}
+
 }  // namespace
 }  // namespace limpid

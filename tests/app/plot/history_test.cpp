@@ -201,5 +201,22 @@ TEST(History, RefusesRowsOfTheWrongWidthAndTimesThatAreNone) {
   EXPECT_THROW(History({.tick = 0}), std::invalid_argument);
 }
 
+// A second run counts its time from zero again; its marks stand in it, not in the first one.
+TEST(History, MarksOfASecondRunStandInThatRun) {
+  History history({.seconds = 8, .tick = kTick});
+  for (int i = 0; i < 1000; ++i) history.append(i * kTick, std::array{1.0});
+  history.mark(0.2, "eta of the first", "eta");
+  for (int i = 0; i < 1000; ++i) history.append(i * kTick, std::array{2.0});
+  ASSERT_GT(history.offset(), 0.9);
+  history.mark(0.2, "eta", "eta");
+  history.mark(0.3, "eta moved on", "eta");
+  ASSERT_EQ(history.marks().size(), 3u);
+  EXPECT_EQ(history.marks()[1].key, kResetMark);
+  EXPECT_EQ(history.marks()[0].label, "eta of the first");
+  EXPECT_NEAR(history.marks()[0].time, 0.2, 1e-12);
+  EXPECT_EQ(history.marks()[2].label, "eta moved on");
+  EXPECT_NEAR(history.marks()[2].time, history.time(1300), 1e-9);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -176,5 +176,51 @@ TEST(PlotSvg, OfAnEmptyHistoryIsStillAPicture) {
   expect_well_formed(plot_svg(spec(), History({.channels = 2}), {0, 10, {}, {{-1, 1}}}));
 }
 
+// Of two runs in one history the times are those of the second, as its axis has them.
+TEST(PlotCsv, HasTheTimesOfTheNewestRun) {
+  History history({.channels = 2, .seconds = 5});
+  for (const double value : {1.0, 2.0}) {
+    for (int i = 0; i < 1000; ++i) history.append(i * 0.001, std::array{value, 0.001 * i});
+  }
+  const double began = history.time(1000);
+  const auto all = lines(csv_text(plot_table(spec(), history, began + 0.5, began + 0.5005)));
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[1], "0.500000,2000,500");
+}
+
+// The band's outline goes there along the highest values and back along the lowest.
+TEST(PlotSvg, DrawsABandFromTheHighestToTheLowestOfEachColumn) {
+  History history({.channels = 1, .seconds = 30});
+  for (int i = 0; i < 20000; ++i) history.append(i * 0.001, std::array{i % 2 == 0 ? 1.0 : -2.0});
+  PlotSpec one;
+  one.curves = {{.channel = 0, .label = "a"}};
+  const PlotPicture picture{2, 18, {}, {{-4, 4}}};
+  const std::string svg = plot_svg(one, history, picture);
+  const std::size_t polygon = svg.find("<polygon"), begin = svg.find("points=\"", polygon) + 8;
+  ASSERT_NE(polygon, std::string::npos);
+  std::istringstream in(svg.substr(begin, svg.find('"', begin) - begin));
+  std::vector<std::array<double, 2>> points;
+  char comma = 0;
+  for (double x = 0, y = 0; in >> x >> comma >> y;) points.push_back({x, y});
+  ASSERT_GT(points.size(), 1000u);
+  ASSERT_EQ(points.size() % 2, 0u);
+  // Between the frame's edges the axis reaches from -4 to 4: 1 is at 3/8 of it, -2 at 3/4.
+  const std::string area = svg.substr(svg.find("<clipPath"));
+  const auto number = [&](const std::string& key) {
+    return std::stod(area.substr(area.find(" " + key + "=\"") + key.size() + 3));
+  };
+  const double top = number("y"), height = number("height");
+  const std::size_t half = points.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    EXPECT_NEAR(points[i][1], top + height * 3 / 8, 0.02) << i;
+    EXPECT_NEAR(points[half + i][1], top + height * 3 / 4, 0.02) << i;
+    EXPECT_EQ(points[i][0], points[points.size() - 1 - i][0]) << i;
+    if (i > 0) {
+      EXPECT_GT(points[i][0], points[i - 1][0]);
+    }
+  }
+  EXPECT_LT(points[half - 1][0] - number("x") - number("width"), 2);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -211,5 +211,32 @@ TEST(Replay, TicksAsTheFileSaysEvenIfItsParametersSayOtherwise) {
   EXPECT_EQ(session_parameters(session, "a.h5").tick, 0.004);
 }
 
+// The virtual arm in a real device's place has the forces that the motors held, each by itself.
+TEST(Replay, GivesTheVirtualArmTheForcesThatTheMotorsHeld) {
+  const test::TempDir dir;
+  for (const auto& [weight, springs] : {std::pair(true, false), {false, true}, {false, false}}) {
+    RunPlan plan = test::plan("free.toml", "touch.csv", 0.2);
+    plan.parameters.holds_weight = weight;
+    plan.parameters.holds_springs = springs;
+    plan.changes = {{50, springs ? "model.springs = false" : "model.springs = true"},
+                    {90, weight ? "model.gravity = false" : "model.gravity = true"}};
+    const Session session = blind(plan, dir / "a.h5");
+    const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
+    EXPECT_EQ(again.parameters.weighs, weight);
+    EXPECT_EQ(again.parameters.springy, springs);
+    Parameters p = again.parameters;
+    for (const SettingChange& change : again.changes) {
+      apply_change(p, change);
+      if (change.row == 50) {
+        EXPECT_EQ(p.weighs, weight);
+      }
+    }
+    EXPECT_EQ(p.springy, !springs);
+    EXPECT_EQ(p.weighs, !weight);
+    EXPECT_EQ(p.holds_springs, p.springy);
+    EXPECT_EQ(p.holds_weight, p.weighs);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

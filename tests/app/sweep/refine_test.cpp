@@ -250,5 +250,34 @@ TEST_F(RefinedWork, ItsTableOpensAsItWasWrittenAndEveryPointIsThatOfTheFullGrid)
   EXPECT_EQ(sweep_figure(plan_, opened->table).panels[0].series[0].cells.size(), 13u * 13);
 }
 
+// Where a run diverges there is no number: the border to those is looked for, between numbers that
+// are all alike as well.
+TEST_F(Refining, FindsTheBorderToWhereThereIsNoNumber) {
+  std::string text = kField;
+  text += "measure = \"energy\"\ntolerance = 0.02\n";
+  const SweepPlan plan = test::sweep_plan(dir_, text);
+  const Field field = [](std::size_t, double x, double y) {
+    return x + y > 1.13 ? std::nan("") : 0.3;
+  };
+  const SweepTable table = refined(plan, field);
+  EXPECT_LT(table.points(), plan.points() / 2);
+  // Beside the border all points of the finest grid are there.
+  std::uint64_t beside = 0;
+  for (std::uint64_t n = 0; n < plan.points(); ++n) {
+    const auto place = point_of(plan, n).place;
+    if (place[1] + 1 > 80 || place[2] + 1 > 80) continue;
+    const auto value = [&](std::size_t dx, std::size_t dy) {
+      return value_of(plan, number_of(plan, {place[0], place[1] + dx, place[2] + dy}, 0, 0), field);
+    };
+    if (std::isnan(value(0, 0)) == std::isnan(value(1, 1))) continue;
+    ++beside;
+    EXPECT_TRUE(table.rows.row_of(n)) << place[1] << ", " << place[2];
+  }
+  EXPECT_GT(beside, 100u);
+  // Far from it, on either side, nothing is asked.
+  EXPECT_FALSE(table.rows.row_of(number_of(plan, {0, 3, 3}, 0, 0)));
+  EXPECT_FALSE(table.rows.row_of(number_of(plan, {0, 77, 77}, 0, 0)));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -47,5 +47,24 @@ TEST(Sampling, IsTheSameForOneSeedAndNotForAnother) {
   }
 }
 
+// Spearman's: of independent orders it has the deviation 1 / sqrt(n - 1).
+TEST(Sampling, OfALatinHypercubePutsEachDimensionInAnOrderOfItsOwn) {
+  constexpr std::size_t count = 101, dimensions = 4;
+  const UnitSamples samples = latin_samples(dimensions, count, 3);
+  const auto rank = [&](std::size_t d, std::size_t i) { return std::floor(samples[d][i] * count); };
+  for (std::size_t a = 0; a < dimensions; ++a) {
+    // The order of the samples themselves is none of the dimensions', either.
+    for (std::size_t b = a + 1; b <= dimensions; ++b) {
+      double off = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double other = b < dimensions ? rank(b, i) : static_cast<double>(i);
+        off += std::pow(rank(a, i) - other, 2);
+      }
+      const double n = count, correlation = 1 - 6 * off / (n * (n * n - 1));
+      EXPECT_LT(std::abs(correlation), 4 / std::sqrt(n - 1)) << a << ", " << b;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -134,5 +134,28 @@ TEST_F(SweepPlans, AreKnownByTheirTextAndTheFilesTheyName) {
   EXPECT_NE(read(text).key, key);
 }
 
+TEST_F(SweepPlans, FollowTheHandAnotherWayInEveryRepeat) {
+  const SweepPlan plan = read(with(R"(repeats = 4
+axis = [ { key = "coupling.eta", values = [0.5, 1] } ])"));
+  for (std::uint64_t a = 0; a < 4; ++a) {
+    for (std::uint64_t b = a + 1; b < 4; ++b) {
+      EXPECT_NE(run_of(plan, a).hand.position, run_of(plan, b).hand.position) << a << ", " << b;
+    }
+    EXPECT_EQ(run_of(plan, a).hand.position, run_of(plan, 4 + a).hand.position)
+        << "the same in every point";
+  }
+}
+
+TEST_F(SweepPlans, HaveNoLogarithmOfZeroOrLess) {
+  const auto axis = [&](const std::string& from, const std::string& more) {
+    return refusal(with("axis = [{ key = \"device.damping\", from = " + from +
+                        ", to = 0.1, scale = \"log\"" + more + " }]"));
+  };
+  for (const char* more : {", count = 3", ", count = 3, sample = \"latin\""}) {
+    EXPECT_THAT(axis("0", more), HasSubstr("above 0 on a log scale")) << more;
+  }
+  EXPECT_EQ(axis("0.001", ", count = 3"), "taken");
+}
+
 }  // namespace
 }  // namespace limpid

@@ -173,5 +173,21 @@ TEST_F(GuardedPipe, KeepsNothingElseOpen) {
   guardian.dismiss();
 }
 
+// Numbers below that of the device are let go as those above it are.
+TEST_F(GuardedPipe, KeepsNothingOpenBelowTheDevice) {
+  int other[2];
+  ASSERT_EQ(pipe(other), 0);
+  const int device = fcntl(ends[1], F_DUPFD, other[1] + 1);
+  ASSERT_GT(device, other[1]);
+  close(ends[1]);
+  Guardian guardian(device, kStop);
+  close(other[1]);
+  pollfd wait{other[0], POLLIN, 0};
+  EXPECT_EQ(poll(&wait, 1, 5000), 1) << "nobody can write any more";
+  EXPECT_NE(wait.revents & POLLHUP, 0);
+  close(other[0]);
+  guardian.dismiss();
+}
+
 }  // namespace
 }  // namespace limpid

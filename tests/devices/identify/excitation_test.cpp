@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <optional>
+
 #include "devices/identify/unlike_device.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
@@ -150,6 +153,79 @@ TEST_F(AnExcitation, NeedsMotorsAndAnArmOfAsManyJoints) {
   EXPECT_THROW(Excitation(test::random_arm(2, 1), traits, plan_), std::invalid_argument);
   traits.pushes = false;
   EXPECT_THROW(Excitation(arm_, traits, plan_), std::invalid_argument);
+}
+
+// A pose at rest need not be in the middle: here there is a stop a tenth of a radian beside it.
+TEST(Excitation, KeepsOffAStopNearItsMiddleOnWhicheverSide) {
+  for (const double side : {-1.0, 1.0}) {
+    const ArmDescription free = test::omni();
+    ArmDescription arm = free;
+    Joint& joint = arm.joints[0];
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    joint.lower = side < 0 ? -0.1 : -kFar;
+    joint.upper = side < 0 ? kFar : 0.1;
+    ASSERT_EQ(rest_pose(arm)[0], 0);
+    UnlikeDevice device(free, {.gravity = Vec3(0, 0, -9.81)});
+    Excitation motion(arm, device.traits(), {});
+    double farthest = 0;
+    while (motion.end() == ExcitationEnd::running) {
+      DeviceReading now;
+      device.read(now);
+      if (motion.stage() != ExcitationStage::approach) {
+        farthest = std::max(farthest, side * now.x[0]);
+      }
+      device.write(motion.step({std::span(now.x).first(3), 0.001, {.guarded = true}}));
+    }
+    EXPECT_EQ(motion.end(), ExcitationEnd::complete);
+    EXPECT_LT(farthest, 0.1);
+    EXPECT_GT(farthest, 0.05) << "it moves all the same";
+  }
+}
+
+// Nothing but where the last joint is: led aside by 0.07 rad, where 0.058 are too far.
+class AJointAside : public testing::Test {
+ protected:
+  AJointAside() {
+    for (Joint& joint : arm_.joints) joint.effort = 10;
+    traits_.effort.assign(3, 10.0);
+    motion_.emplace(arm_, traits_, ExcitationPlan{.amplitude = 0.01});
+    const Eigen::VectorXd rest = rest_pose(arm_);
+    std::copy_n(rest.data(), 3, x_.begin());
+  }
+  static DeviceTraits traits() {
+    const UnlikeDevice device(test::omni(), {});
+    return device.traits();
+  }
+  void step(int ticks, double speed) {
+    for (int i = 0; i < ticks; ++i) {
+      x_[2] += 0.001 * speed;
+      motion_->step({x_, 0.001, {.guarded = true}});
+    }
+  }
+
+  ArmDescription arm_ = test::omni();
+  DeviceTraits traits_ = traits();
+  std::optional<Excitation> motion_;
+  std::array<double, 3> x_{};
+};
+
+TEST_F(AJointAside, IsWaitedForEachTimeAnew) {
+  for (int time = 0; time < 2; ++time) {
+    step(70, 1);
+    step(400, 0);
+    step(70, -1);
+    step(150, 0);
+    ASSERT_EQ(motion_->end(), ExcitationEnd::running) << explain(motion_->end());
+  }
+}
+
+TEST_F(AJointAside, EndsItAfterSixTenthsOfASecond) {
+  step(70, 1);
+  step(500, 0);
+  EXPECT_EQ(motion_->end(), ExcitationEnd::running) << explain(motion_->end());
+  step(150, 0);
+  EXPECT_EQ(motion_->end(), ExcitationEnd::held);
+  EXPECT_EQ(motion_->joint(), 2);
 }
 
 }  // namespace

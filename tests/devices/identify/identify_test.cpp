@@ -1,6 +1,8 @@
 // Devices that are not what their file says are found out by moving them.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "devices/identify/excitation.h"
 #include "devices/identify/fit.h"
 #include "devices/identify/unlike_device.h"
@@ -124,6 +126,51 @@ TEST(Identify, SaysWhichJointMovedTooLittle) {
     EXPECT_THAT(e.what(), testing::HasSubstr(stick.joints[1].name));
     EXPECT_THAT(e.what(), testing::HasSubstr("moved too little"));
   }
+}
+
+// A known motion of one joint with the torques that its equation of motion wants, each as late as
+// the delay, and noise of these.
+MotionRecord swung(const ArmDescription& arm, double delay, double noise, unsigned seed) {
+  using std::numbers::pi;
+  Random random(seed);
+  const Arm<kAnyDof> model(arm);
+  const Eigen::VectorXd links = parameters_of(arm);
+  MotionRecord record;
+  record.x.resize(8000, 1);
+  record.torque.resize(8000, 1);
+  const auto motion = [](double t, int derivative) {
+    double sum = 0;
+    for (const auto& [amplitude, frequency, phase] :
+         {std::array{0.5, 0.7, 0.0}, std::array{0.2, 1.9, 1.0}}) {
+      const double w = 2 * pi * frequency;
+      sum += amplitude * std::pow(w, derivative) * std::sin(w * t + phase + derivative * pi / 2);
+    }
+    return Vec<kAnyDof>(Vec<kAnyDof>::Constant(1, sum));
+  };
+  for (Eigen::Index i = 0; i < record.rows(); ++i) {
+    record.x(i, 0) = motion(record.T * double(i), 0)[0];
+    const double t = record.T * (double(i) + 0.5) + delay;  // the middle of its acting
+    record.torque(i, 0) =
+        (regressor(model, motion(t, 0), motion(t, 1), motion(t, 2), kDown) * links)[0] +
+        random.between(-noise, noise);
+  }
+  return record;
+}
+
+// Misses in standard deviations have a mean square of 1, to within three of its own deviations.
+TEST(Identify, SaysHowFarItsDelayMayBeOff) {
+  const ArmDescription arm = test::random_arm(1, 41);
+  constexpr double kDelay = 3e-3;
+  const double torque = swung(arm, kDelay, 0, 0).torque.norm() / std::sqrt(8000.0);
+  constexpr int kTimes = 60;
+  double square = 0;
+  for (unsigned seed = 0; seed < kTimes; ++seed) {
+    const MotionRecord record = swung(arm, kDelay, 0.2 * torque, 900 + seed);
+    const Found delay = identify(arm, record, {.gravity = kDown}).delay;
+    ASSERT_LT(delay.deviation, 1e-3);
+    square += std::pow((delay.value - kDelay) / delay.deviation, 2) / kTimes;
+  }
+  EXPECT_NEAR(square, 1, 3 * std::sqrt(2.0 / kTimes));
 }
 
 }  // namespace

@@ -54,5 +54,17 @@ TEST(EncoderSteps, AreTheLeastMotionSeen) {
   EXPECT_NEAR(encoder_steps(record)[1], 1e-4, 1e-12);
 }
 
+// What an encoder counts is a multiple of its step, but for the last bits of the multiplication.
+TEST(EncoderSteps, AreNotWhatRoundingLeaves) {
+  MotionRecord record;
+  record.x.resize(1000, 1);
+  for (Eigen::Index i = 0; i < 1000; ++i) {
+    const double x = std::sin(0.01 * double(i));
+    record.x(i, 0) = 2e-3 * std::round(x / 2e-3) + (i % 2 == 0 ? 1e-15 : 0);
+  }
+  record.torque = record.x;
+  EXPECT_NEAR(encoder_steps(record)[0], 2e-3, 1e-12);
+}
+
 }  // namespace
 }  // namespace limpid

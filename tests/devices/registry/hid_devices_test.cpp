@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "devices/hid/hid_error.h"
+#include "tests/support/fake_hid.h"
 #include "tests/support/hid_descriptors.h"
 #include "tests/support/temp_dir.h"
 
@@ -99,6 +100,38 @@ TEST_F(FakeSystem, DoesNotConnectToWhatIsNoHidDevice) {
   } catch (const HidError& error) {
     EXPECT_THAT(error.what(), testing::StartsWith("T2: " + (roots.dev / "hidraw0").string()));
   }
+}
+
+// Another device may have come to the same path since the list was made.
+TEST_F(FakeSystem, OpensNothingButTheKindThatItFound) {
+  plug_in("hidraw0", test::space_navigator(), "HID_NAME=SpaceNavigator\n");
+  plug_in("hidraw1", test::pid_joystick::whole(), "HID_NAME=Stick\n");
+  const auto found = list();
+  ASSERT_EQ(found.size(), 2u);
+  const auto opened = [](const FoundDevice& device, const Bytes& descriptor) {
+    std::string asked;
+    const auto there = std::make_shared<test::FakeHid>();
+    there->descriptor = descriptor;
+    const auto open = [&](const std::string& path) {
+      asked = path;
+      return std::make_unique<test::FakeTransport>(there);
+    };
+    try {
+      open_hid_device_on(device, open, {}, {}, {});
+    } catch (const HidError& error) {
+      EXPECT_EQ(asked, device.place.path);
+      EXPECT_TRUE(there->received().empty()) << "no report to a stranger";
+      EXPECT_TRUE(there->features_set.empty());
+      return std::string(error.what());
+    }
+    return std::string("opened");
+  };
+  EXPECT_EQ(opened(found[0], test::space_navigator()), "opened");
+  EXPECT_EQ(opened(found[0], test::pid_joystick::whole()), "SpaceNavigator: it has been unplugged");
+  EXPECT_EQ(opened(found[1], test::space_navigator()), "Stick: it has been unplugged");
+  const Bytes mouse{0x05, 0x01, 0x09, 0x02, 0xA1, 0x01, 0x09, 0x30, 0x15, 0x81,
+                    0x25, 0x7F, 0x75, 0x08, 0x95, 0x01, 0x81, 0x06, 0xC0};
+  EXPECT_EQ(opened(found[1], mouse), "Stick: it has been unplugged");
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 #include <meshoptimizer.h>
 #include <webp/encode.h>
 
+#include <fstream>
+
 #include "render/model/gltf_model.h"
 #include "render/model/gltf_pack.h"
 #include "tests/render/model/gltf_builder.h"
+#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
@@ -45,6 +48,15 @@ std::vector<std::array<float, 9>> soup() {
   return triangles(model);
 }
 
+// Where a codec put the corner that was at `place`, by triangle.
+const Vertex& corner_of(const Model& model, std::size_t triangle, const Vector3f& place) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vertex& v = model.vertices[model.indices[3 * triangle + k]];
+    if (v.position == place) return v;
+  }
+  throw std::out_of_range("no such corner");
+}
+
 Bytes draco_bytes() {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(2);
@@ -74,6 +86,62 @@ TEST(GltfCompressed, ReadsDraco) {
   const GltfBuilder file = draco_file(draco_bytes());
   EXPECT_EQ(triangles(parse_gltf(file.binary(), "part.glb")), soup());
   EXPECT_TRUE(parse_gltf(file.binary(), "part.glb").parts[0].material.flat);
+}
+
+// Two triangles with an edge in common, over which the picture does not go on: more points than
+// positions, as a point has a position and a place in the picture.
+TEST(GltfCompressed, ReadsDracoWithASeam) {
+  const std::array<Vector3f, 4> places = {Vector3f(0, 0, 0), Vector3f(1, 0, 0), Vector3f(0, 2, 0),
+                                          Vector3f(3, 3, 1)};
+  const std::array<std::array<std::size_t, 3>, 2> faces = {{{0, 1, 2}, {2, 1, 3}}};
+  const auto uv_of = [](std::size_t face, std::size_t place) {
+    return Eigen::Vector2f(0.125f * static_cast<float>(place) + 0.5f * static_cast<float>(face),
+                           0.25f * static_cast<float>(place));
+  };
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(2);
+  const int at = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int uv = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+  for (std::uint32_t f = 0; f < 2; ++f) {
+    const auto& face = faces[f];
+    const std::array<Eigen::Vector2f, 3> uvs = {uv_of(f, face[0]), uv_of(f, face[1]),
+                                                uv_of(f, face[2])};
+    builder.SetAttributeValuesForFace(at, draco::FaceIndex(f), places[face[0]].data(),
+                                      places[face[1]].data(), places[face[2]].data());
+    builder.SetAttributeValuesForFace(uv, draco::FaceIndex(f), uvs[0].data(), uvs[1].data(),
+                                      uvs[2].data());
+  }
+  const auto mesh = builder.Finalize();
+  ASSERT_EQ(mesh->num_points(), 6u);
+  for (const int method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+    draco::Encoder encoder;
+    encoder.SetEncodingMethod(method);
+    draco::EncoderBuffer buffer;
+    ASSERT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+    GltfBuilder file;
+    const int view = file.view(Bytes(buffer.data(), buffer.data() + buffer.size()));
+    file.attribute("POSITION", file.accessor(-1, 5126, "VEC3", 6));
+    file.attribute("TEXCOORD_0", file.accessor(-1, 5126, "VEC2", 6));
+    file.primitive = R"(,"indices":)" + std::to_string(file.accessor(-1, 5125, "SCALAR", 6)) +
+                     R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
+                     std::to_string(view) + R"(,"attributes":{"POSITION":)" + std::to_string(at) +
+                     R"(,"TEXCOORD_0":)" + std::to_string(uv) + "}}}";
+    file.more = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
+    const Model model = parse_gltf(file.binary(), "part.glb");
+    ASSERT_EQ(model.indices.size(), 6u);
+    // Which of the two comes first is the codec's business.
+    const auto far_one = [&](std::size_t t) {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (model.vertices[model.indices[3 * t + k]].position == places[3]) return true;
+      return false;
+    };
+    for (std::size_t t = 0; t < 2; ++t) {
+      const std::size_t face = far_one(t) ? 1 : 0;
+      for (const std::size_t place : faces[face])
+        EXPECT_EQ(corner_of(model, t, places[place]).uv, uv_of(face, place))
+            << "face " << face << ", corner " << place << ", method " << method;
+    }
+  }
 }
 
 TEST(GltfCompressed, RefusesDracoThatIsBroken) {
@@ -122,6 +190,76 @@ TEST(GltfCompressed, ReadsMeshoptWithABufferThatIsNotThere) {
   for (const char* fallback :
        {"", R"(,"extensions":{"EXT_meshopt_compression":{"fallback":true}})"})
     EXPECT_EQ(triangles(parse_gltf(meshopt_file(fallback), "part.glb")), soup());
+}
+
+// Unit vectors folded into a plane, in four bytes or eight.
+TEST(GltfCompressed, ReadsMeshoptNormalsOfEitherWidth) {
+  const std::array<Eigen::Vector4f, 3> normals = {Eigen::Vector4f(0.6f, 0, 0.8f, 0),
+                                                  Eigen::Vector4f(0, -0.8f, -0.6f, 0),
+                                                  Eigen::Vector4f(-0.36f, 0.48f, 0.8f, 0)};
+  for (const std::size_t stride : {4u, 8u}) {
+    Bytes filtered(3 * stride);
+    meshopt_encodeFilterOct(filtered.data(), 3, stride, stride == 4 ? 8 : 12, normals[0].data());
+    Bytes data(meshopt_encodeVertexBufferBound(3, stride));
+    data.resize(meshopt_encodeVertexBuffer(data.data(), data.size(), filtered.data(), 3, stride));
+    GltfBuilder file;
+    file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int view = file.view(
+        data, R"(,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteOffset":36,)"
+              R"("byteLength":)" +
+                  std::to_string(data.size()) + R"(,"byteStride":)" + std::to_string(stride) +
+                  R"(,"count":3,"mode":"ATTRIBUTES","filter":"OCTAHEDRAL"}},"byteStride":)" +
+                  std::to_string(stride));
+    file.attribute("NORMAL", file.accessor(view, stride == 4 ? 5120 : 5122, "VEC3", 3,
+                                           R"(,"normalized":true)"));
+    file.more = R"(,"extensionsRequired":["EXT_meshopt_compression"])";
+    const Model model = parse_gltf(file.binary(), "part.glb");
+    ASSERT_EQ(model.vertices.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3f off = model.vertices[i].normal - normals[i].head<3>();
+      EXPECT_LT(off.norm(), stride == 4 ? 0.02 : 0.002) << i << " of " << stride << " bytes";
+    }
+  }
+}
+
+// The compressed bytes lie in the second of two files beside it, at an odd place, and the third
+// buffer is the one that is not there.
+TEST(GltfCompressed, PacksMeshoptWithFilesBesideIt) {
+  const test::TempDir dir;
+  Bytes data(meshopt_encodeVertexBufferBound(6, sizeof(Vector3f)));
+  data.resize(
+      meshopt_encodeVertexBuffer(data.data(), data.size(), kSoup.data(), 6, sizeof(Vector3f)));
+  Bytes second(3, 0xEE);
+  second.insert(second.end(), data.begin(), data.end());
+  Bytes first(5, 0xDD);
+  append_values<std::uint8_t>(first, {0, 1, 2, 3, 4, 5});
+  const auto write = [&](const char* name, const Bytes& bytes) {
+    std::ofstream(dir / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  };
+  write("first.bin", first);
+  write("second.bin", second);
+  const std::string text =
+      R"({"asset":{"version":"2.0"},"extensionsRequired":["EXT_meshopt_compression"],)"
+      R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":6},)"
+      R"({"bufferView":1,"componentType":5121,"type":"SCALAR","count":6}],"bufferViews":[)"
+      R"({"buffer":2,"byteLength":72,"extensions":{"EXT_meshopt_compression":{"buffer":1,)"
+      R"("byteOffset":3,"byteLength":)" +
+      std::to_string(data.size()) +
+      R"(,"byteStride":12,"count":6,"mode":"ATTRIBUTES"}}},)"
+      R"({"buffer":0,"byteOffset":5,"byteLength":6}],"buffers":[)"
+      R"({"byteLength":11,"uri":"first.bin"},{"byteLength":)" +
+      std::to_string(second.size()) +
+      R"(,"uri":"second.bin"},{"byteLength":72,"extensions":)"
+      R"({"EXT_meshopt_compression":{"fallback":true}}}]})";
+  const Bytes bytes(text.begin(), text.end());
+  ASSERT_EQ(triangles(parse_gltf(bytes, "part.gltf", dir / "")), soup());
+  const Bytes packed = pack_gltf(bytes, "part.gltf", dir / "");
+  ASSERT_FALSE(packed.empty());
+  EXPECT_EQ(triangles(parse_gltf(packed, "part.glb")), soup());
 }
 
 TEST(GltfCompressed, RefusesMeshoptThatIsBroken) {

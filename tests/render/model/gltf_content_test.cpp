@@ -242,5 +242,37 @@ TEST(GltfContent, CanBeDrawnCoarselyWhereItIsLarge) {
   EXPECT_NEAR(area(model) / (2.0f * kSide * kSide), 1, 0.02);
 }
 
+// Each primitive numbers its vertices anew, whatever one before it left.
+TEST(GltfContent, HasPrimitivesThatShareTheirVertices) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 2, 0, 3, 3, 1});
+  const auto primitive = [&](const std::vector<std::uint16_t>& corners) {
+    const int indices = file.accessor(file.view(corners), 5123, "SCALAR", corners.size());
+    return R"({"attributes":{"POSITION":0},"indices":)" + std::to_string(indices) + "}";
+  };
+  file.mesh = primitive({0, 1, 2}) + "," + primitive({2, 1, 3});
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  ASSERT_EQ(model.indices.size(), 6u);
+  const std::vector<Eigen::Vector3f> wanted = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0},
+                                               {0, 2, 0}, {1, 0, 0}, {3, 3, 1}};
+  for (std::size_t i = 0; i < 6; ++i) {
+    ASSERT_LT(model.indices[i], model.vertices.size());
+    EXPECT_EQ(model.vertices[model.indices[i]].position, wanted[i]) << i;
+  }
+}
+
+// A colour of whole numbers is one between 0 and 1, though some files do not say so.
+TEST(GltfContent, TakesColoursOfWholeNumbersForParts) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  file.attribute("COLOR_0",
+                 file.accessor(file.view(Bytes{255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0},
+                                         R"(,"byteStride":4)"),
+                               5121, "VEC3", 3));
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  for (const Vertex& v : model.vertices)
+    EXPECT_TRUE(v.color.isApprox(Eigen::Vector3f(1, 0, 0.2f), 1e-5f)) << v.color.transpose();
+}
+
 }  // namespace
 }  // namespace limpid

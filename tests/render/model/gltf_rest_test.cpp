@@ -88,5 +88,24 @@ TEST(GltfRest, RefusesAJointThatDoesNotExist) {
   EXPECT_THROW(parse_gltf(file.binary(), "part.glb"), std::runtime_error);
 }
 
+// Half to one joint and a quarter to the other are two thirds and one third.
+TEST(GltfRest, BringsWeightsToOne) {
+  GltfBuilder file = corner();
+  file.attribute(
+      "JOINTS_0",
+      file.accessor(file.view(std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}), 5121,
+                    "VEC4", 3));
+  file.attribute("WEIGHTS_0", file.accessor(file.view(std::vector<float>{.5f, .25f, 0, 0, .5f, .25f,
+                                                                         0, 0, .5f, .25f, 0, 0}),
+                                            5126, "VEC4", 3));
+  file.nodes = R"({"mesh":0,"skin":0},{"translation":[0,0,3]},{"translation":[0,0,6]})";
+  file.roots = "0,1,2";
+  file.more = R"(,"skins":[{"joints":[1,2]}])";
+  const auto at = places(file);
+  EXPECT_TRUE(at[0].isApprox(Vector3f(0, 0, 4)));
+  EXPECT_TRUE(at[1].isApprox(Vector3f(1, 0, 4)));
+  EXPECT_TRUE(at[2].isApprox(Vector3f(0, 1, 4)));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -204,5 +204,47 @@ TEST(ModelFile, GivesUpWhenItIsNotWanted) {
   EXPECT_THROW(parse_model(binary_stl(), "a.stl", {}, {.cancel = &cancel}), LoadCancelled);
 }
 
+std::string collada(const std::string& asset) {
+  std::string positions, corners;
+  for (const Vector3f& p : kCorners) positions += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+  for (const auto& face : kFaces)
+    for (const int i : face) corners += fmt::format("{} ", i);
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" )"
+         R"(version="1.4.1"><asset><created>2024-01-01</created><modified>2024-01-01</modified>)" +
+         asset + R"(</asset><library_geometries><geometry id="g"><mesh><source id="p">)" +
+         R"(<float_array id="a" count="12">)" + positions +
+         R"(</float_array><technique_common><accessor source="#a" count="4" stride="3">)"
+         R"(<param name="X" type="float"/><param name="Y" type="float"/>)"
+         R"(<param name="Z" type="float"/></accessor></technique_common></source>)"
+         R"(<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>)"
+         R"(<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>)" +
+         corners +
+         R"(</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>)"
+         R"(<visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene>)"
+         R"(</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+// Which axis is up and what a coordinate of 1 is, of every format that says so.
+TEST(ModelFile, KnowsTheUnitAndTheAxisThatAFileSays) {
+  GltfBuilder gltf;
+  gltf.positions(kSquare);
+  gltf.primitive = R"(,"mode":5)";
+  const Model binary = parse_model(gltf.binary(), "a.glb");
+  EXPECT_EQ(binary.unit, 1);
+  EXPECT_EQ(binary.up, Model::Up::y);
+  const std::string centimetres = R"(<unit name="centimeter" meter="0.01"/>)";
+  const std::map<std::string, Model::Up> axes{{"<up_axis>Z_UP</up_axis>", Model::Up::z},
+                                              {"<up_axis>Y_UP</up_axis>", Model::Up::y},
+                                              {"", Model::Up::y}};
+  for (const auto& [text, up] : axes) {
+    const Model model = parse_model(bytes_of(collada(centimetres + text)), "a.dae");
+    EXPECT_EQ(model.up, up) << text;
+    EXPECT_EQ(model.unit, 1) << "of Collada they are in metres already";
+    EXPECT_NEAR(volume(model), 6e-6, 1e-11) << text;
+    const Vector3f high = model.bounds().max().cast<float>();
+    EXPECT_TRUE(high.isApprox(Vector3f(0.01f, 0.02f, 0.03f), 1e-5f)) << "the file's own axes";
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -746,5 +746,21 @@ TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
   EXPECT_TRUE(desktop->automatic_view());
 }
 
+// What the panel says of energy follows the plots' newest row, whatever was before it.
+TEST_F(ADesktop, AccountsForTheEnergyOfItsLoop) {
+  const int energy = static_cast<int>(Channel::energy_total);
+  const auto stage = [&]() -> const Stage& { return desktop->desk().stage(); };
+  ASSERT_TRUE(until_on([&] { desktop->toggle_force(); }));
+  desktop->settings().parameters.eta = 0.3;  // not passive: there is energy to account for
+  Controls& controls = desktop->desk().controls();
+  controls.goal = Vec3(0.17, 0.04, 0.03);
+  controls.grab = true;
+  EXPECT_TRUE(until([&] { return std::abs(stage().energy.total()) > 1e-4; }));
+  controls.grab = false;
+  frames(5);
+  const History& history = stage().history;
+  EXPECT_NEAR(stage().energy.total(), history.value(energy, history.end() - 1), 1e-6);
+}
+
 }  // namespace
 }  // namespace limpid

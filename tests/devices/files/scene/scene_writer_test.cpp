@@ -1,6 +1,7 @@
 #include "devices/files/scene/scene_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "devices/files/arm/urdf_file.h"
@@ -50,6 +51,8 @@ void expect_same(const SceneDocument& first, const SceneDocument& second) {
     EXPECT_EQ(a.meshes[i].name, b.meshes[i].name);
     expect_same(a.meshes[i].pose, b.meshes[i].pose);
     EXPECT_EQ(a.meshes[i].scale, b.meshes[i].scale);
+    EXPECT_EQ(a.meshes[i].unit, b.meshes[i].unit);
+    EXPECT_EQ(a.meshes[i].y_up, b.meshes[i].y_up);
     EXPECT_EQ(a.meshes[i].material.stiffness, b.meshes[i].material.stiffness);
     EXPECT_EQ(*first.models.at(a.meshes[i].model).bytes,
               *second.models.at(b.meshes[i].model).bytes);
@@ -123,7 +126,12 @@ SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
   for (int i = count(); i > 0; --i) {
     MeshObstacle mesh;
     mesh.name = odd_name(random);
-    mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7.glb";
+    // STL is taken for millimetres unless it says otherwise, all others for metres.
+    mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7" +
+                 (random.between(0, 1) < 0.5 ? ".stl" : ".glb");
+    mesh.unit = std::array{1.0, 0.01, 0.001, 0.0254,
+                           0.3048}[static_cast<std::size_t>(random.between(0, 4.999))];
+    mesh.y_up = random.between(0, 1) < 0.5;
     mesh.pose = random_pose(random);
     mesh.scale = random.between(1e-3, 5);
     mesh.material.stiffness = stiffness();

@@ -392,5 +392,27 @@ TEST(Session, IsAHandToFollowBitForBit) {
   }
 }
 
+// A column that is mostly zeros is left out where it is nothing else. What is no number, and what
+// is zero with a sign, is something else.
+TEST(Session, KeepsABlockWithoutASingleNumber) {
+  const RowLayout layout(2);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  constexpr std::size_t kRows = 5000;
+  for (const double nothing : {std::nan(""), -0.0}) {
+    const test::TempDir dir;
+    std::vector<double> rows = sample_rows(layout, 0, kRows);
+    for (std::size_t k = 0; k < kRows; ++k) {
+      for (const Column c : {Column::contact_force, Column::compensation_torque,
+                             Column::energy_compensation, Column::contact_point}) {
+        std::ranges::fill(layout.in(std::span(rows).subspan(k * stride, stride), c), nothing);
+      }
+    }
+    SessionWriter writer(dir / "a.h5", sample_info(2), false);
+    writer.append(rows);
+    writer.close();
+    EXPECT_TRUE(same_bits(read_session(dir / "a.h5").rows, rows)) << nothing;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

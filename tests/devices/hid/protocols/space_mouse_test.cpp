@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "devices/hid/hid_error.h"
 #include "tests/support/hid_descriptors.h"
 
@@ -67,6 +69,32 @@ TEST(SpaceMouse, MissesAnAxis) {
   EXPECT_FALSE(SpaceMouse::describes(descriptor));
   EXPECT_THROW(SpaceMouse{descriptor}, HidError);
   EXPECT_TRUE(SpaceMouse::describes(parse_report_descriptor(test::space_navigator())));
+}
+
+// From -300 to 350: what is full to the nearer end is full to the other one as well.
+TEST(SpaceMouse, TakesTheNearerEndOfItsRangeForFull) {
+  for (const bool low_is_nearer : {true, false}) {
+    test::Bytes descriptor = test::space_navigator();
+    const auto range = std::ranges::search(descriptor, test::Bytes{0x16, 0xA2, 0xFE, 0x26, 0x5E});
+    ASSERT_FALSE(range.empty());
+    auto at = descriptor.begin() + (range.begin() - descriptor.begin());
+    if (low_is_nearer) {
+      at[1] = 0xD4, at[2] = 0xFE;  // -300
+    } else {
+      at[4] = 0x2C, at[5] = 0x01;  // 300
+    }
+    SpaceMouse mouse = make(descriptor);
+    DeviceReading reading;
+    // 150, -150 and 300 to one side; then -300 and -350.
+    EXPECT_EQ(mouse.decode(Report{1, 0x96, 0x00, 0x6A, 0xFF, 0x2C, 0x01}, reading),
+              Decoded::reading);
+    EXPECT_DOUBLE_EQ(reading.x[0], 0.5);
+    EXPECT_DOUBLE_EQ(reading.x[1], -0.5);
+    EXPECT_DOUBLE_EQ(reading.x[2], 1);
+    EXPECT_EQ(mouse.decode(Report{1, 0xD4, 0xFE, 0xA2, 0xFE, 0, 0}, reading), Decoded::reading);
+    EXPECT_DOUBLE_EQ(reading.x[0], -1);
+    EXPECT_DOUBLE_EQ(reading.x[1], -1);
+  }
 }
 
 }  // namespace

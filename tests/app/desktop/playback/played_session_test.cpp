@@ -1,0 +1,79 @@
+// What a second run of a recording's hand leaves beside it.
+#include "app/desktop/playback/played_session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "app/session/trace_channels.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+class RunAgain : public testing::Test {
+ protected:
+  void SetUp() override {
+    RunPlan plan = test::plan("free.toml", "free.csv", 1);
+    plan.parameters.tick = 0.01;
+    plan.rows = 400;
+    Recorder recorder(file_, session_info(plan), plan.parameters, false);
+    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+      return recorder.push_waiting(row);
+    });
+    recorder.finish();
+    session_ = read_session(file_);
+    chosen_ = session_parameters(session_, "a.h5");
+  }
+  Rerun run() { return run_again(session_, "a.h5", chosen_, progress_); }
+
+  test::TempDir dir_;
+  const std::filesystem::path file_ = dir_ / "a.h5";
+  Session session_;
+  Parameters chosen_;
+  BackgroundProgress progress_;
+};
+
+TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {
+  const Rerun again = run();
+  EXPECT_FALSE(again.end.diverged);
+  EXPECT_EQ(again.rows, session_.rows);
+  EXPECT_EQ(again.history.end(), session_.size());
+  EXPECT_EQ(progress_.part, 1);
+}
+
+// It flies apart long before its end: from then on it stays where it was last.
+TEST_F(RunAgain, ThatDivergesHasItsLastRowToTheEnd) {
+  chosen_.k_vc = 1e4;
+  chosen_.torque_limit = 1e4;
+  const Rerun again = run();
+  ASSERT_TRUE(again.end.diverged);
+  ASSERT_LT(again.end.rows, session_.size());
+  ASSERT_EQ(again.rows.size(), session_.rows.size());
+  const auto stride = static_cast<std::size_t>(session_.layout.stride());
+  const auto row = [&](std::size_t k) { return std::span(again.rows).subspan(k * stride, stride); };
+  const std::size_t last = again.end.rows - 1;
+  EXPECT_EQ(session_.layout.in(row(last), Column::time)[0], 0.01 * static_cast<double>(last));
+  for (std::size_t k = again.end.rows; k < session_.size(); ++k) {
+    for (std::size_t i = 0; i < stride; ++i) {
+      ASSERT_TRUE(row(k)[i] == row(last)[i] || (std::isnan(row(k)[i]) && std::isnan(row(last)[i])));
+    }
+  }
+  // The plots hold both runs to the recording's end.
+  EXPECT_EQ(again.history.end(), session_.size());
+  EXPECT_EQ(again.history.channels(), 2 * TraceChannels(session_.layout).count());
+}
+
+TEST_F(RunAgain, ThatWasCancelledHasNoRows) {
+  progress_.cancel = true;
+  const Rerun again = run();
+  EXPECT_TRUE(again.end.stopped);
+  EXPECT_TRUE(again.rows.empty());
+  EXPECT_EQ(again.history.channels(), TraceChannels(session_.layout).count());
+}
+
+}  // namespace
+}  // namespace limpid

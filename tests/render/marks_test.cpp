@@ -1,0 +1,228 @@
+// The signs of a picture: what is there, where it is and what it points at.
+#include "render/marks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/ghosts.h"
+
+namespace limpid {
+namespace {
+
+using Shape = SolidMark::Shape;
+
+Vec3 vec(const glm::vec4& v) { return {v.x, v.y, v.z}; }
+Vec3 at(const glm::mat4& place) { return vec(place[3]); }
+// The z of a unit shape: how long it is, and where it points.
+Vec3 along(const glm::mat4& place) { return vec(place[2]); }
+double across(const glm::mat4& place) { return vec(place[0]).norm(); }
+
+void expect_near(const Vec3& a, const Vec3& b) {
+  EXPECT_LT((a - b).norm(), 1e-6) << a.transpose() << " and " << b.transpose();
+}
+
+// An arrow is a tube and a cone, one behind the other, from the point on along the force: 2 cm/N.
+void expect_arrow(const SolidMark& tube, const SolidMark& cone, const Vec3& from,
+                  const Vec3& force) {
+  EXPECT_EQ(tube.shape, Shape::tube);
+  EXPECT_EQ(cone.shape, Shape::cone);
+  expect_near(at(tube.place), from);
+  expect_near(at(tube.place) + along(tube.place), at(cone.place));
+  expect_near(at(cone.place) + along(cone.place), from + 0.02 * force);
+  expect_near(along(tube.place).normalized(), force.normalized());
+  EXPECT_GT(across(cone.place), 2 * across(tube.place)) << "a head";
+}
+
+const Vec3 kPoint(0.1, -0.2, 0.3), kForce(1, 2, -2);  // of 3 N
+
+TEST(Marks, AreAnArrowAPatchAndAConeForEachContact) {
+  ViewState state;
+  const Vec3 normal(0.6, 0.8, 0);
+  state.contacts = {{kPoint, kForce, 0.125, normal, 0.5, true}, {2 * kPoint, kForce, 1}};
+  const Marks marks = collect_marks(state, Camera(), 1);
+  ASSERT_EQ(marks.solids.size(), 4u);
+  expect_arrow(marks.solids[0], marks.solids[1], kPoint, kForce);
+  expect_arrow(marks.solids[2], marks.solids[3], 2 * kPoint, kForce);
+  EXPECT_EQ(marks.solids[0].color, palette::kContact);
+  ASSERT_EQ(marks.glass.size(), 1u) << "without friction there is no cone";
+  EXPECT_EQ(marks.glass[0].color, palette::kSlips);
+  // Its tip is at the point: it opens along the normal as far as the force reaches that way.
+  const double reach = 0.02 * kForce.dot(normal);
+  expect_near(at(marks.glass[0].place), kPoint + reach * normal);
+  expect_near(at(marks.glass[0].place) + along(marks.glass[0].place), kPoint);
+  EXPECT_NEAR(across(marks.glass[0].place), 0.5 * reach, 1e-6);
+  ASSERT_EQ(marks.flashes.size(), 2u);
+  expect_near(at(marks.flashes[0].place), kPoint);
+  expect_near(along(marks.flashes[0].place).normalized(), normal);
+  expect_near(along(marks.flashes[1].place).normalized(), kForce.normalized());
+}
+
+// A flash fades within a quarter of a second while its ring grows.
+TEST(Marks, FlashForAQuarterOfASecond) {
+  const auto pulse = [](double age) {
+    ViewState state;
+    state.contacts = {{kPoint, kForce, age}};
+    return collect_marks(state, Camera(), 1).flashes.at(0).pulse;
+  };
+  EXPECT_FLOAT_EQ(pulse(0).x, 1);
+  EXPECT_FLOAT_EQ(pulse(0.125).x, 0.5);
+  EXPECT_FLOAT_EQ(pulse(0.25).x, 0);
+  EXPECT_FLOAT_EQ(pulse(9).x, 0);
+  EXPECT_LT(pulse(0).y, pulse(0.1).y);
+  EXPECT_LT(pulse(0.1).y, pulse(0.25).y);
+  EXPECT_FLOAT_EQ(pulse(9).y, pulse(0.25).y);
+}
+
+TEST(Marks, CoverMoreWhereItIsPressedHarder) {
+  const auto radius = [](double newtons) {
+    ViewState state;
+    state.contacts = {{kPoint, newtons * Vec3::UnitZ(), 1}};
+    return across(collect_marks(state, Camera(), 1).flashes.at(0).place);
+  };
+  EXPECT_LT(radius(0.5), radius(2));
+  EXPECT_LT(radius(2), radius(8));
+  EXPECT_LT(radius(1000), 3 * radius(0.01));
+}
+
+TEST(Marks, OfATwinAreItsOwn) {
+  ViewState state;
+  state.device.tip = Vec3(0.5, 0, 0);
+  state.hand_force = Vec3(0, 3, 0);
+  state.twin = SecondRun{{}, {}, Vec3(0, 0, 2), {{kPoint, kForce, 1}}};
+  state.twin->device.tip = Vec3(-0.5, 0, 0);
+  const Marks marks = collect_marks(state, Camera(), 1);
+  ASSERT_EQ(marks.solids.size(), 6u);
+  expect_arrow(marks.solids[0], marks.solids[1], kPoint, kForce);
+  expect_arrow(marks.solids[2], marks.solids[3], Vec3(-0.5, 0, 0), Vec3(0, 0, 2));
+  expect_arrow(marks.solids[4], marks.solids[5], Vec3(0.5, 0, 0), Vec3(0, 3, 0));
+  EXPECT_EQ(marks.solids[0].color, palette::of_twin(palette::kContact, state.theme));
+  EXPECT_EQ(marks.solids[2].color, palette::of_twin(palette::kHand, state.theme));
+  EXPECT_EQ(marks.solids[4].color, palette::kHand);
+  EXPECT_EQ(marks.flashes.size(), 1u);
+  state.show_forces = false;
+  const Marks without = collect_marks(state, Camera(), 1);
+  EXPECT_TRUE(without.solids.empty());
+  EXPECT_EQ(without.flashes.size(), 1u) << "where it touches is seen all the same";
+}
+
+TEST(Marks, LeaveOutWhatIsNoForceOrNoPlace) {
+  ViewState state;
+  const Vec3 none = Vec3::Constant(std::nan(""));
+  state.contacts = {{none, kForce}, {kPoint, Vec3::Zero()}, {kPoint, none}};
+  state.hand_force = Vec3(0.019, 0, 0);  // from 0.02 N on there is an arrow
+  state.show_hand = true;
+  state.hand_target = none;
+  Marks marks = collect_marks(state, Camera(), 1);
+  EXPECT_TRUE(marks.solids.empty());
+  EXPECT_TRUE(marks.glass.empty());
+  EXPECT_TRUE(marks.flashes.empty());
+  state.hand_force = Vec3(0.021, 0, 0);
+  state.hand_target = kPoint;
+  marks = collect_marks(state, Camera(), 1);
+  ASSERT_EQ(marks.solids.size(), 3u);
+  EXPECT_EQ(marks.solids[0].shape, Shape::ball);
+  expect_near(at(marks.solids[0].place), kPoint);
+}
+
+// Balls, heads and patches are as many pixels large from near and from afar; arrows' lengths are
+// the world's.
+TEST(Marks, StayAsLargeInPixels) {
+  ViewState state;
+  state.show_hand = true;
+  state.contacts = {{kPoint, kForce, 1}};
+  Camera far;
+  far.resize(1000, 800);
+  Camera near = far;
+  near.zoom(7, {500, 400});
+  const double closer = near.meters_per_pixel(near.target()) / far.meters_per_pixel(far.target());
+  ASSERT_LT(closer, 0.6);
+  const Marks a = collect_marks(state, far, 1), b = collect_marks(state, near, 1),
+              fine = collect_marks(state, far, 2);
+  EXPECT_NEAR(across(b.solids[0].place) / across(a.solids[0].place), closer, 1e-5);
+  EXPECT_NEAR(across(fine.solids[0].place) / across(a.solids[0].place), 2, 1e-5);
+  EXPECT_NEAR(across(b.flashes[0].place) / across(a.flashes[0].place), closer, 1e-5);
+  for (const Marks* marks : {&a, &b, &fine}) {
+    expect_arrow(marks->solids[1], marks->solids[2], kPoint, kForce);
+  }
+}
+
+// Fully dark on the surface, nothing from 6 cm above it on.
+TEST(Marks, ShadeASurfaceUnderATipThatIsNear) {
+  ViewState state;
+  const auto shades = [&](double height) {
+    state.shade = ContactShade{kPoint, Vec3::UnitX(), height};
+    return collect_marks(state, Camera(), 1).shades;
+  };
+  ASSERT_EQ(shades(0).size(), 1u);
+  expect_near(at(shades(0)[0]), kPoint);
+  expect_near(along(shades(0)[0]), Vec3::UnitX());
+  expect_near(along(shades(0.03)[0]), 0.5 * Vec3::UnitX());
+  expect_near(along(shades(-0.01)[0]), Vec3::UnitX());
+  EXPECT_NEAR(across(shades(0.03)[0]) / across(shades(0)[0]), 1.3, 1e-5);
+  EXPECT_TRUE(shades(0.06).empty());
+}
+
+ArmPose arm_at(double x) {
+  ArmPose arm;
+  for (int i = 0; i < 2; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation() = Vec3(x, 0, 0.1 * i);
+    arm.links.push_back(pose);
+  }
+  arm.tip = Vec3(x, 0, 0.2);
+  return arm;
+}
+
+// Each arm that is not the proxy, from the one behind to the one in front, in its own colour.
+TEST(Ghosts, AreReRunTwinAndDevice) {
+  ViewState state;
+  state.proxy = arm_at(0);
+  state.device = arm_at(0.1);
+  state.rerun = arm_at(0.2);
+  state.twin = SecondRun{arm_at(0.4), arm_at(0.3), {}, {}};
+  const auto ghosts = ghosts_of(state, 1e-3);
+  ASSERT_EQ(ghosts.size(), 4u);
+  const std::array<double, 4> places{0.2, 0.3, 0.4, 0.1};
+  const std::array<palette::Rgb, 4> colors{
+      palette::kRerun, palette::of_twin(palette::kProxy, state.theme),
+      palette::of_twin(palette::kDevice, state.theme), palette::kDevice};
+  for (std::size_t i = 0; i < 4; ++i) {
+    ASSERT_EQ(ghosts[i].links.size(), 2u);
+    EXPECT_NEAR(ghosts[i].links[0][3][0], places[i], 1e-6);
+    EXPECT_EQ(ghosts[i].color, colors[i]);
+    EXPECT_THAT(ghosts[i].outline, testing::ElementsAre(1, 1));
+  }
+  state.show_ghost = false;
+  EXPECT_EQ(ghosts_of(state, 1e-3).size(), 2u) << "the devices are the ghosts that can be hidden";
+}
+
+// From one pixel off to four the outline comes; the twin's is that to the first run's.
+TEST(Ghosts, HaveAnOutlineWhereTheyAreBesideTheirLikes) {
+  ViewState state;
+  state.proxy = arm_at(0);
+  state.device = arm_at(0.0025);
+  state.twin = SecondRun{arm_at(0.0025), arm_at(0.5), {}, {}};
+  const auto ghosts = ghosts_of(state, 1e-3);
+  ASSERT_EQ(ghosts.size(), 3u);
+  EXPECT_THAT(ghosts[0].outline, testing::ElementsAre(1, 1)) << "twin's proxy";
+  EXPECT_THAT(ghosts[1].outline, testing::ElementsAre(0, 0)) << "twin's device";
+  EXPECT_THAT(ghosts[2].outline, testing::Each(testing::FloatNear(0.5f, 1e-4f)));
+  state.device = state.proxy;
+  state.device.tip += Vec3(0, 0, 0.01);  // the last link alone, at its end
+  EXPECT_THAT(ghosts_of(state, 1e-3)[2].outline, testing::ElementsAre(0, 1));
+}
+
+TEST(Ghosts, OfAPoseThatIsNoNumberAreNotDrawn) {
+  ViewState state;
+  state.proxy = arm_at(0);
+  state.device = arm_at(0.1);
+  state.device.links[1].translation().z() = std::nan("");
+  const auto ghosts = ghosts_of(state, 1e-3);
+  ASSERT_EQ(ghosts.size(), 1u);
+  EXPECT_TRUE(ghosts[0].links.empty());
+}
+
+}  // namespace
+}  // namespace limpid
