@@ -58,6 +58,12 @@ nlohmann::json state_of(const IdentifyDesk& desk, bool plugged) {
           {"plugged", plugged}};
 }
 
+nlohmann::json state_of(const DeviceDesk& desk) {
+  return {{"in_use", desk.hub().in_use()},
+          {"problem", desk.problem()},
+          {"waits_for_choice", desk.waits_for_choice()}};
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -92,7 +98,7 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
-      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}}}\n",
+      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
@@ -108,7 +114,7 @@ void print_state(Desktop& d, const WindowState& window) {
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
       d.pads().size(), window.frames, window.input_waits,
       d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump(),
-      state_of(d.identify(), desk.loop().device_plugged()).dump());
+      state_of(d.identify(), desk.loop().device_plugged()).dump(), state_of(d.devices()).dump());
   std::fflush(stdout);
 }
 
