@@ -92,7 +92,7 @@ class Ticks:
 class Soak(WindowTest):
     def prepare(self) -> None:
         book = self.home / "config/limpid/devices.toml"
-        book.write_text(f'in_use = "socket:{DEVICE}"\n')
+        book.write_text(f'in_use = "socket:{DEVICE}"\n[device."socket:{DEVICE}"]\nchecked = true\n')
         runtime = self.home / "runtime"
         (runtime / "limpid").mkdir(parents=True, mode=0o700)
         self.environment["XDG_RUNTIME_DIR"] = str(runtime)

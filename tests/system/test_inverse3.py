@@ -107,6 +107,8 @@ class InTheWindow(WindowTest):
     def prepare(self) -> None:
         self.service = Service()
         self.addCleanup(self.service.end)
+        book = self.home / "config/limpid/devices.toml"
+        book.write_text(f'[device."inverse3:049D@127.0.0.1:{self.service.port}"]\nchecked = true\n')
         self.words = ["--device", self.service.name,
                       "--scene", str(ASSETS / "scenes" / "table.toml")]
 
@@ -155,6 +157,41 @@ class InTheWindow(WindowTest):
         self.app.terminate()
         self.service.wait(lambda line: line == "force 0 0 0")
         self.service.wait(lambda line: line == "end")
+
+    def another_window(self, *words: str) -> dict:
+        """What a second window says of the device once it knows it; the first one's force goes on."""
+        first, states = self.app, self.states
+        try:
+            self.states = (self.home / "others").open("w")
+            self.addCleanup(self.states.close)
+            self.words = list(words)
+            self.start()
+            self.wait("the second window's device", lambda s: s["device"]["problem"] not in
+                      ("", "not connected"), 60)
+            self.go_on(4)  # it would have tried again by now
+            return self.state()
+        finally:
+            second = self.app
+            self.stop(second)
+            self.app, self.states = first, states
+
+    def test_is_left_alone_by_a_second_window_and_by_one_that_was_started_with_a_file(self) -> None:
+        self.wait_in_the_loop()
+        self.service.tell(ON_TABLE)
+        self.wait("contact", lambda s: s["contact"] > 0)
+        self.arm_until_it_lifts()
+        self.service.wait_for_all_so_far()
+        holder = f"process {self.app.pid} (limpid "
+        for words, why in (((), "Another window has a device already"),
+                           ((str(ASSETS / "scenes" / "table.toml"),), "was started with a file")):
+            with self.subTest(words=words):
+                device = self.another_window(*words)["device"]
+                self.assertIn(why, device["problem"])
+                self.assertIn("in use by " + holder, device["problem"])
+                self.assertTrue(device["waits_for_choice"])
+        lines = list(self.service.lines)
+        self.assertEqual([line for line in lines if line in ("session", "end")], [],
+                         "no second stream of forces")
 
 
 if __name__ == "__main__":

@@ -27,8 +27,11 @@ class Live(unittest.TestCase):
 
     def plug(self) -> subprocess.Popen:
         """Moves as a hand moved one that pressed onto the table."""
+        book = self.folder / "config/limpid/devices.toml"
+        book.parent.mkdir(parents=True, exist_ok=True)
+        book.write_text('[device."socket:replay"]\nchecked = true\n')
         session = self.folder / "pressing.h5"
-        limpid("run", "--hand", ASSETS / "hands/touch.csv", "--record", session)
+        limpid("run", "--hand", ASSETS / "hands/touch.csv", "--record", session, "--force")
         device = subprocess.Popen([sys.executable, DEVICE, "replay", session])
         self.addCleanup(device.wait)
         self.addCleanup(device.kill)
@@ -65,6 +68,66 @@ class Live(unittest.TestCase):
         result = self.on_time(limpid("run", "--live", "--yes", "--duration", "2", "--record", out))
         self.assertEqual(result.status, 0, result.err)
         self.assertIn("device", limpid("info", out).out)
+
+    def refused(self, *words: str | Path) -> str:
+        """What it says; nothing was written."""
+        out = self.folder / "refused"
+        options = {"identify": ["--out", out, "--yes"],
+                   "run": ["--live", "--yes", "--record", out / "live.h5"],
+                   "experiment": ["coordination", "--live", "--yes", "--out", out]}
+        said = ""
+        for command in words or ("identify", "run", "experiment"):
+            result = limpid(str(command), *options[str(command)])
+            self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+            self.assertFalse((out / "live.h5").exists())
+            said = result.err
+        return said
+
+    def test_refuses_a_device_whose_axes_nobody_has_checked(self) -> None:
+        self.plug()
+        (self.folder / "config/limpid/devices.toml").unlink()
+        said = self.refused()
+        self.assertIn("replay: its axes must be checked before it may push", said)
+        self.assertIn("Device panel", said)
+
+    def test_refuses_a_device_whose_limits_cannot_be_understood_and_keeps_the_file(self) -> None:
+        self.plug()
+        book = self.folder / "config/limpid/devices.toml"
+        entry = '[device."socket:replay"]\nchecked = true\n'
+        for text, said in (
+                (entry + 'limits = {tip_force = "1"}\n', 'limits.tip_force: "1" is not allowed'),
+                (entry + "limits = {tip_force = 100}\n", "allowed: a number from 0.1 up to 10"),
+                (entry + "axis = [{inverted = 'yes'}]\n", "allowed: true or false"),
+                (entry + "checked = \n", "not TOML")):
+            with self.subTest(text=text):
+                book.write_text(text)
+                answer = self.refused()
+                self.assertIn(said, answer)
+                self.assertIn(f"{book}:", answer)
+                self.assertEqual(book.read_text(), text)
+                forget = limpid("identify", "socket:replay", "--forget")
+                self.assertEqual(forget.status, 2, forget.err)
+                self.assertEqual(book.read_text(), text)
+
+    def test_leaves_a_device_alone_that_another_program_has(self) -> None:
+        self.plug()
+        first = subprocess.Popen([LIMPID, "run", "--live", "--yes", "--duration", "30"],
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(first.communicate)
+        self.addCleanup(first.kill)
+        who = f"process {first.pid} (limpid run --live --yes"
+        for _ in range(300):
+            if who in limpid("devices").out:
+                break
+            time.sleep(0.1)
+        self.assertIn(f"in use by {who}", limpid("devices").out)
+        second = limpid("run", "--live", "--yes", "--duration", "1")
+        self.assertEqual(second.status, 1, second.err)
+        self.assertIn(f"replay: in use by {who}", second.err)
+        self.assertIsNone(first.poll(), "the first one goes on")
+        first.kill()
+        first.wait()
+        self.assertNotIn("in use by", limpid("devices").out)
 
     def test_coordination_has_a_figure_and_a_verdict(self) -> None:
         self.plug()

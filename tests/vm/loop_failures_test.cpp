@@ -4,6 +4,9 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <tuple>
+
+#include "devices/hid/hid_error.h"
 #include "tests/vm/desk.h"
 #include "tests/vm/driver.h"
 #include "tests/vm/models.h"
@@ -147,6 +150,65 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheProcessIsInterruptedOrDies) {
     wait(50ms);
     this->desk.device->replug();
   }
+}
+
+// Another program pushes with it; this one tries to open it, again and again. Any report of this
+// one's would show: as a zero torque, a feature asked for or set, or, to a raw device, a command
+// out of order.
+TYPED_TEST(FailingLoop, IsLeftAloneByASecondProgramAndFreeOnceTheFirstIsKilled) {
+  constexpr int kAttempts = 20;
+  const pid_t owner = start_driver(this->name());
+  ASSERT_GT(owner, 0);
+  ASSERT_TRUE(wait_until([&] { return this->desk.torque() < -0.1; }));
+  wait(700ms);
+  const auto state = [&] {
+    return this->desk.device->with([&](Time) {
+      const TypeParam& model = *this->desk.model;
+      int refused = 0;
+      if constexpr (!Desk<TypeParam>::kPid) refused = model.rejected() + model.gaps();
+      return std::tuple(model.features_used(), model.violations().size(), refused);
+    });
+  };
+  const auto before = state();
+  const Time begun = steady_now();
+  for (int i = 0; i < kAttempts; ++i) {
+    try {
+      this->desk.connect();
+      ADD_FAILURE() << "two programs have it";
+    } catch (const HidError& error) {
+      EXPECT_NE(std::string(error.what()).find("process " + std::to_string(owner)),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  const Time ended = steady_now();
+  EXPECT_EQ(state(), before);
+  int zeros = 0;
+  const Time silence = this->desk.device->with([&](Time) {
+    for (const ForceSample& sample : this->desk.model->forces().samples()) {
+      const bool meanwhile = sample.time >= begun && sample.time <= ended;
+      const bool told_none = sample.cause == ForceCause::told && sample.torque[0] == 0;
+      zeros += meanwhile && told_none ? 1 : 0;
+    }
+    return this->desk.model->forces().longest_silence(begun, ended);
+  });
+  EXPECT_EQ(zeros, 0) << "its torque was broken off";
+  std::printf("| %-48s | %7d    | %5d    |\n",
+              (this->name() + ": reports of a second program").c_str(), zeros, 0);
+  print_time(this->name() + ": longest pause of the first one's", silence, kTickLife);
+  const Time moment = steady_now();
+  kill(owner, SIGKILL);
+  std::unique_ptr<Device> mine;
+  EXPECT_TRUE(wait_until([&] {
+    try {
+      mine = this->desk.connect();
+    } catch (const HidError&) {
+    }
+    return mine != nullptr;
+  }));
+  print_time(this->name() + ": killed, until it can be had again", steady_now() - moment, 3s);
+  this->expect_zero("killed, and another program waits", this->desk.zero_after(moment), 10ms);
+  waitpid(owner, nullptr, 0);
 }
 
 struct FailingRawLoop : FailingLoop<RawDeviceModel> {};

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
+#include "devices/hid/protocols/raw_protocol.h"
 #include "tests/vm/simulated_desk.h"
 
 namespace limpid::test {
@@ -227,6 +229,38 @@ TEST_F(OneStick, ThatTheHandLetsGoLeavesNothing) {
   };
   run();
   expect(AxisVerdict::given_up, AxisVerdict::unknown);
+}
+
+// How the motors of a home-made device are wired nobody knows but who wired them.
+TEST(CheckedRawDevice, WithAReversedMotorIsFoundWithATenthOfItsForceAndTurnedRound) {
+  Time now = 1h;
+  RawDeviceModel model({.joints = 2, .torque_limit = kEffort});
+  for (int axis = 0; axis < 2; ++axis) model.hand().axis(axis) = stick_axis(axis);
+  model.power(true, now);
+  std::array<AxisAdjustment, 2> axes;
+  for (const bool known : {false, true}) {
+    auto link = std::make_unique<SimulatedLink>(model, std::make_unique<RawProtocol>(), now);
+    SimulatedLink& wire = *link;
+    constexpr std::array<AxisAdjustment, 2> kWired{{{}, {.reversed = true}}};
+    AdjustedDevice device(std::make_unique<AdjustedDevice>(std::move(link), kWired), axes);
+    AxisCheck check(device.traits());
+    const Time start = now;
+    for (; !check.done() && now < start + 60s; now += 1ms) {
+      wire.transport.arrive(model.input(now));
+      wire.exchange.step();
+      DeviceReading reading;
+      const bool here = device.read(reading);
+      if (reading.count == 0) continue;
+      device.write(check.step({std::span(reading.x).first(2), 1e-3, here && reading.age < 0.006}));
+    }
+    EXPECT_TRUE(check.passed()) << explain(check.finding(check.axis()).verdict);
+    EXPECT_EQ(check.finding(0).verdict, AxisVerdict::right);
+    EXPECT_EQ(check.finding(1).verdict, known ? AxisVerdict::right : AxisVerdict::reversed);
+    EXPECT_LE(model.forces().largest(), 0.1 * kEffort + 1e-6);
+    EXPECT_GT(model.forces().largest(), 0);
+    axes[1].reversed = true;  // as it would be remembered
+  }
+  EXPECT_THAT(model.violations(), testing::IsEmpty());
 }
 
 }  // namespace

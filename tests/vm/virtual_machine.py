@@ -47,6 +47,7 @@ mount -t proc proc /proc
 mount -t sysfs sys /sys
 mkdir -p /dev/shm
 mount -t tmpfs tmp /dev/shm
+chmod 1777 /tmp
 exec >/dev/ttyS0 2>&1
 ip link set lo up
 for module in {modules}; do insmod /modules/$module || exit; done

@@ -93,6 +93,12 @@ nlohmann::json recorded(Desktop& d) {
   return {{"kind", name(p.kind)}, {"eta", p.eta}, {"facts", facts}};
 }
 
+nlohmann::json state_of(const DeviceDesk& desk) {
+  return {{"in_use", desk.hub().in_use()},
+          {"problem", desk.problem()},
+          {"waits_for_choice", desk.waits_for_choice()}};
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -127,8 +133,8 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
-      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"banners\": {}, \"closing\": "
-      "{}, "
+      "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
+      "\"closing\": {}, "
       "\"recorded\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
@@ -145,8 +151,8 @@ void print_state(Desktop& d, const WindowState& window) {
       d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
       d.pads().size(), window.frames, window.input_waits,
       d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump(),
-      state_of(d.identify(), desk.loop().device_plugged()).dump(), banners_of(d).dump(),
-      closing().dump(), recorded(d).dump(), p.hand_stiffness, p.hand_damping);
+      state_of(d.identify(), desk.loop().device_plugged()).dump(), state_of(d.devices()).dump(),
+      banners_of(d).dump(), closing().dump(), recorded(d).dump(), p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }
 

@@ -30,12 +30,14 @@ void ReferenceDevice::output(ReportView report, Time now) {
 }
 
 std::optional<Report> ReferenceDevice::feature(std::uint8_t id, Time now) {
+  ++features_used_;
   if (!answers()) return std::nullopt;
   run(forward(now));
   return on_get_feature(id);
 }
 
 bool ReferenceDevice::set_feature(ReportView report, Time now) {
+  ++features_used_;
   if (!answers()) return false;
   now = forward(now);
   run(now);

@@ -64,6 +64,8 @@ class ReferenceDevice {
   bool set_feature(ReportView report, Time now);
   // The host asks for an input report; nothing if there is no such.
   std::optional<Report> ask(std::uint8_t id, Time now);
+  // How often a host has asked for a feature or set one.
+  int features_used() const { return features_used_; }
   // Else the host waits for an answer in vain.
   bool answers() const { return powered_ && fault_ != Fault::silent && fault_ != Fault::frozen; }
 
@@ -93,6 +95,7 @@ class ReferenceDevice {
   ForceLog forces_;
   std::vector<std::string> violations_;
   bool powered_ = false;
+  int features_used_ = 0;
   Fault fault_ = Fault::none;
   std::vector<Report> newest_;
   Time newest_time_ = Time::min();
