@@ -146,16 +146,16 @@ TEST_F(OnTheDesk, CutsTheTorqueByItselfAndSaysSo) {
 
 // With line A, B or both broken, and a hand that does not hold still.
 TEST_F(OnTheDesk, LosesItsTorqueWhereALineOfItsEncoderDoesNotChange) {
-  for (const std::uint8_t lines : {1, 2, 3}) {
+  for (const int lines : {1, 2, 3}) {
     model.power(false, now);
     model.power(true, now);
     begin();
     model.hand().axis(0).path = [](double t) { return 0.1 + 0.02 * std::sin(10 * t); };
     EXPECT_NEAR(push(0.3, 2000), 0.3, 1e-6);
-    model.break_lines(lines);
+    model.break_lines(static_cast<std::uint8_t>(lines));
     EXPECT_NEAR(push(0.3, 250), 0.3, 1e-6);
     EXPECT_GT(push(0.3, 300), 0.01) << "it fades";
-    EXPECT_EQ(push(0.3, 100), 0) << int{lines};
+    EXPECT_EQ(push(0.3, 100), 0) << lines;
     EXPECT_TRUE(reading().fault);
     EXPECT_EQ(push(0.3, 1000), 0);
     model.break_lines(0);
