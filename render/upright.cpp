@@ -133,7 +133,7 @@ struct Folder {
   bool z_up() const {
     const Wrong& wrong = by_collision.tells() ? by_collision : by_frames;
     // Frames are points; they say less than shapes, and so more of it is asked for.
-    const double share = by_collision.tells() ? 1 : 0.5;
+    const double share = by_collision.tells() ? 1 : 0.75;
     return wrong.as_it_is < share * wrong.turned;
   }
 };

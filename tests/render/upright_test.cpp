@@ -91,7 +91,7 @@ void expect_in_place(const ArmDescription& arm) {
 struct Written {
   explicit Written(const std::vector<Up>& ups) : arm(bent_arm(static_cast<int>(ups.size()))) {
     for (int i = 0; i < arm.dof(); ++i) {
-      const auto file = dir / ("link" + std::to_string(i) + ".glb");
+      const auto file = dir / ("link" + std::to_string(i) + ".glb").c_str();
       write_box(file, body(arm, i), ups[static_cast<std::size_t>(i)]);
       arm.visuals.push_back(picture(i, file));
       shapes.push_back(shape(i, body(arm, i)));

@@ -119,7 +119,8 @@ class AnyArm(SystemTest):
                 folder = self.directory / f"folder.{suffix}"
                 folder.mkdir()
                 self.refused(folder)
-                self.refused(self.write(f"empty.{suffix}", ""))
+                if suffix != "toml":  # which would be a scene of nothing
+                    self.refused(self.write(f"empty.{suffix}", ""))
                 self.refused(self.write(f"nonsense.{suffix}", "\x01\x02 nothing"))
         self.refused(self.directory, "needed: an arm")
         self.refused("/dev/null")
@@ -127,7 +128,7 @@ class AnyArm(SystemTest):
         self.refused(session, "limpid info")
         self.refused(self.write("plan.toml", 'title = "a plan"\n[[axis]]\nkey = "coupling.eta"\n'),
                      "axis")
-        self.refused(self.write("scene.toml", '[[mesh]]\nname = "part"\nmodel = "gone.stl"\n'),
+        self.refused(self.write("scene.toml", '[[mesh]]\nname = "part"\nfile = "gone.stl"\nstiffness = 600.0\n'),
                      "gone.stl")
         unreadable = self.write("unreadable.stl", "solid x")
         unreadable.chmod(0)
@@ -141,17 +142,16 @@ class AnyArm(SystemTest):
             + "endloop\nendfacet\n" for facet in corners) + "endsolid part\n")  # fmt: skip
         for more, size in (("", "0.03 x 0.04 x 0.02 m"), ("scale = 2.0\n", "0.06 x 0.08 x 0.04 m"),
                            ('unit = "m"\nscale = 0.01\n', "0.3 x 0.4 x 0.2 m")):
-            scene = self.write("one.toml", '[[mesh]]\nname = "part"\nmodel = "part.stl"\n'
+            scene = self.write("one.toml", '[[mesh]]\nname = "part"\nfile = "part.stl"\n'
                                "stiffness = 600.0\nposition = [0.1, 0.0, 0.0]\n" + more)
             found = limpid("check", scene)
             self.assertEqual(found.status, 0, found.out + found.err)
             self.assertIn(size, found.out)
-        for unit, length in (('"m"', "40 m long, more than 10 m"),):
-            scene = self.write("large.toml", '[[mesh]]\nname = "part"\nmodel = "part.stl"\n'
-                               f"stiffness = 600.0\nunit = {unit}\n")
-            found = limpid("check", scene)
-            self.assertEqual(found.status, 1, found.out + found.err)
-            self.assertIn(f"part: it is {length}", found.out)
+        scene = self.write("large.toml", '[[mesh]]\nname = "part"\nfile = "part.stl"\n'
+                           'stiffness = 600.0\nunit = "m"\n')
+        found = limpid("check", scene)
+        self.assertEqual(found.status, 1, found.out + found.err)
+        self.assertIn("part: it is 40 m long, more than 10 m", found.out)
 
     def test_check_says_how_far_the_tip_gets_and_from_where(self) -> None:
         # Links of 0.3 and 0.25 m in a plane, the tip 0.02 m beside and 0.05 m below, 0.2 m of slide.
