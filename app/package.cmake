@@ -19,7 +19,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
   DESTINATION share/fish/vendor_completions.d)
 install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
-  DESTINATION share/doc/limpid/examples)
+  ${PROJECT_SOURCE_DIR}/assets/python/read_session.py DESTINATION share/doc/limpid/examples)
 install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install.cmake)
 

@@ -9,9 +9,9 @@
 
 #include "app/base/assets.h"
 #include "app/run/recorder.h"
+#include "app/run/replay.h"
 #include "app/run/simulate.h"
 #include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid::bench {
@@ -67,12 +67,7 @@ struct Temporary {
 
 std::vector<Line> recorded_runs(const Line& unit) {
   const RunPlan plan = touching_the_table();
-  SessionInfo info;
-  info.tick = plan.parameters.tick;
-  info.dof = plan.arm.dof();
-  info.config = config_text(plan.parameters);
-  info.device_urdf = plan.arm.urdf;
-  info.scene = plan.document.toml;
+  const SessionInfo info = session_info(plan);
   const Temporary out;
   std::vector<double> rows(kRows * static_cast<std::size_t>(RowLayout(info.dof).stride()));
   const auto line = [&](const char* id, const char* what, auto&& work) {

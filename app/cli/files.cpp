@@ -10,6 +10,7 @@
 #include "app/run/force_tally.h"
 #include "app/run/summary.h"
 #include "app/story/told_steps.h"
+#include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
 
@@ -31,10 +32,13 @@ std::string contacts(const Session& session) {
 int info(const InfoOptions& options) {
   const Session session = read_session(options.session);
   const SessionInfo& i = session.info;
-  Summary summary(session.layout);
+  const auto arm = recorded_arm(i);
+  const std::vector<bool> slides = arm ? slides_of(*arm) : i.slides;
+  Summary summary(session.layout, slides);
   for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
   fmt::print("{}\n", options.session);
   fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
+  if (!i.build.empty()) fmt::print("build                    {}\n", i.build);
   fmt::print("hand                     {}\n", i.source);
   if (!i.safety.empty()) {
     std::string limits = i.safety;
@@ -44,7 +48,7 @@ int info(const InfoOptions& options) {
   fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
   if (session.twin) {
-    Summary twin(session.layout);
+    Summary twin(session.layout, slides);
     for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
     fmt::print("two runs on one hand\n{}", Summary::beside(summary, "first", twin, "twin"));
   } else {

@@ -80,7 +80,7 @@ class Witness {
  public:
   Witness(const RunPlan& plan, Recorder* recorder, bool waits)
       : stride_(static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride())),
-        runs_(plan.twin ? 2 : 1, Summary(RowLayout(plan.arm.dof()))),
+        runs_(plan.twin ? 2 : 1, Summary(RowLayout(plan.arm.dof()), slides_of(plan.arm))),
         recorder_(recorder),
         waits_(waits) {}
 
@@ -155,6 +155,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
 
 // What was guessed about an arm, or fitted to it.
 void say_about(const RunPlan& plan) {
+  if (!plan.note.empty()) fmt::print(stderr, "limpid: note: {}\n", plan.note);
   for (const std::string& warning : plan.arm.warnings) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
   }

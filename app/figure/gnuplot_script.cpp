@@ -233,7 +233,7 @@ std::string x_ticks(const FigurePanel& panel) {
   if (panel.x_ticks.empty()) return "set xtics autofreq\n";
   std::string text;
   for (const auto& [x, name] : panel.x_ticks) {
-    text += fmt::format("{}\"{}\" {:.7g}", text.empty() ? "" : ", ", typeset(name), x);
+    text += fmt::format("{}{} {:.7g}", text.empty() ? "" : ", ", printed(name), x);
   }
   return "set xtics noenhanced (" + text + ")\n";
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/base/assets.h"
+#include "app/base/program_build.h"
 #include "app/base/version.h"
 #include "app/run/scene_meshes.h"
 #include "devices/files/arm/urdf_file.h"
@@ -18,12 +19,14 @@ SessionInfo session_info(const RunPlan& plan) {
   info.tick = plan.parameters.tick;
   info.dof = plan.arm.dof();
   info.app_version = program_version();
+  info.build = program_build();
   info.seed = plan.seed;
   info.source = plan.hand.source;
   info.config = config_text(plan.parameters);
   info.device_urdf = plan.arm.urdf;
   info.scene = plan.document.toml;
   info.models = files_of(plan.document);
+  info.arm = std::make_shared<const ArmDescription>(plan.arm);
   if (plan.twin) info.twin = config_text(plan.twin->parameters);
   return info;
 }
@@ -110,6 +113,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.parameters.tick = session.info.tick;
   plan.start = start_of(session.layout, session.row(0));
   plan.rows = session.size();
+  plan.note = other_build(session.info.build, where);
   plan.seed = session.info.seed;
   // Nobody measured the hand on a real device: what the observer saw of it acts in its place.
   const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);

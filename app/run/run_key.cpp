@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "app/run/replay.h"
+#include "devices/files/config/config_file.h"
 
 namespace limpid {
 namespace {
@@ -21,12 +22,30 @@ void add_hand(Digest& digest, const HandPath& hand) {
   digest.add_all(hand.grip);
 }
 
-void add_start(Digest& digest, const RigStart& start) {
-  for (const auto* v : {&start.x1, &start.v1, &start.x2, &start.v2, &start.f1_hat}) {
+void add_start(Digest& digest, const std::optional<RigStart>& start) {
+  digest.add(std::uint64_t{start.has_value()});
+  if (!start) return;
+  for (const auto* v : {&start->x1, &start->v1, &start->x2, &start->v2, &start->f1_hat}) {
     digest.add_all(*v);
   }
-  for (const double x : start.target) digest.add(x);
-  digest.add(std::uint64_t{start.armed});
+  for (const double x : start->target) digest.add(x);
+  digest.add(std::uint64_t{start->armed});
+}
+
+void add_changes(Digest& digest, const std::vector<SettingChange>& changes) {
+  digest.add(std::uint64_t{changes.size()});
+  for (const SettingChange& change : changes) {
+    digest.add(change.row);
+    digest.add(change.setting);
+  }
+}
+
+void add_twin(Digest& digest, const std::optional<TwinPlan>& twin) {
+  digest.add(std::uint64_t{twin.has_value()});
+  if (!twin) return;
+  digest.add(config_text(twin->parameters));
+  add_changes(digest, twin->changes);
+  add_start(digest, twin->start);
 }
 
 }  // namespace
@@ -78,18 +97,14 @@ std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program) {
     if (bytes) digest.add(bytes->data(), bytes->size());
   }
   add_hand(digest, plan.hand);
-  digest.add(std::uint64_t{plan.changes.size()});
-  for (const SettingChange& change : plan.changes) {
-    digest.add(change.row);
-    digest.add(change.setting);
-  }
+  add_changes(digest, plan.changes);
   digest.add_all(plan.hand_torque);
   digest.add(std::uint64_t{plan.force.size()});
   for (const bool armed : plan.force) digest.add(std::uint64_t{armed});
-  digest.add(std::uint64_t{plan.start.has_value()});
-  if (plan.start) add_start(digest, *plan.start);
+  add_start(digest, plan.start);
   digest.add(plan.rows);
   digest.add(plan.seed);
+  add_twin(digest, plan.twin);
   return digest.value();
 }
 

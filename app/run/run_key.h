@@ -43,7 +43,7 @@ std::optional<std::uint64_t> file_digest(const std::filesystem::path& file);
 std::uint64_t program_digest();
 
 // Stands for a program and all that decides a run: arm, scene and models, hand, parameters and
-// their changes, rows, seed.
+// their changes, rows, seed, and the same of its twin.
 std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program);
 
 }  // namespace limpid

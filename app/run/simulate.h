@@ -38,6 +38,7 @@ struct RunPlan {
   std::uint64_t rows = 0;           // how many ticks
   std::uint64_t seed = 0;           // for whatever is random
   std::optional<TwinPlan> twin;
+  std::string note = {};  // for people: why rows may come out otherwise than recorded; of a re-run
 };
 
 // Called with each row in turn, and with the parameters if they have just changed. False ends the

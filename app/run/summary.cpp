@@ -48,22 +48,23 @@ std::string Summary::text() const {
   }
   return text + fmt::format(
                     "in contact               {:.0f} %\n"
-                    "largest |x_E|            {:.3f} mrad\n"
-                    "largest |f2|             {:.4f} N m\n"
-                    "rms human torque         {:.4f} N m\n"
+                    "largest |x_E|            {:.3f} {}\n"
+                    "largest |f2|             {:.4f} {}\n"
+                    "rms human torque         {:.4f} {}\n"
                     "E_c total                {:.3f} mJ (highest {:.3f} mJ)\n"
                     "E_c commanded            {:.3f} mJ\n",
-                    100 * t.share_in_contact(), 1e3 * t.largest_error, t.largest_contact,
-                    t.human_rms(), 1e3 * t.energy_total, 1e3 * t.highest_total,
-                    1e3 * t.energy_commanded);
+                    100 * t.share_in_contact(), 1e3 * units_.angles * t.largest_error,
+                    units_.milliangle, units_.torques * t.largest_contact, units_.torque,
+                    units_.torques * t.human_rms(), units_.torque, 1e3 * t.energy_total,
+                    1e3 * t.highest_total, 1e3 * t.energy_commanded);
 }
 
 std::vector<Summary::Number> Summary::numbers() const {
   const Totals& t = totals();
   return {{"in contact", "%", 100 * t.share_in_contact()},
-          {"largest |x_E|", "mrad", 1e3 * t.largest_error},
-          {"largest |f2|", "N m", t.largest_contact},
-          {"rms human torque", "N m", t.human_rms()},
+          {"largest |x_E|", units_.milliangle, 1e3 * units_.angles * t.largest_error},
+          {"largest |f2|", units_.torque, units_.torques * t.largest_contact},
+          {"rms human torque", units_.torque, units_.torques * t.human_rms()},
           {"E_c total", "mJ", 1e3 * t.energy_total},
           {"E_c total, highest", "mJ", 1e3 * t.highest_total}};
 }

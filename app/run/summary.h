@@ -8,13 +8,16 @@
 
 #include "app/run/divergence.h"
 #include "core/tick/row.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 
 // Of a loop that became unstable: what it did while it was stable, and since when it was not.
 class Summary {
  public:
-  explicit Summary(const RowLayout& layout) : layout_(layout), watch_(layout) {}
+  // `slides`: which joints do; empty: none.
+  explicit Summary(const RowLayout& layout, const std::vector<bool>& slides = {})
+      : layout_(layout), units_(norm_units(slides)), watch_(layout) {}
 
   // Whether it is the memorable one, for now.
   bool add(std::span<const double> row);
@@ -54,6 +57,7 @@ class Summary {
   std::vector<Number> numbers() const;
 
   RowLayout layout_;
+  NormUnits units_;
   DivergenceWatch watch_;
   double time_ = 0;
   Totals all_;

@@ -20,11 +20,12 @@ constexpr int kJointInks = static_cast<int>(Ink::joint_7) - static_cast<int>(Ink
 using enum Ink;
 
 // Worked out of the row; the joints' are those of x_E.
-std::vector<ChannelInfo> first_channels(int dof) {
+std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
+                                        const std::vector<std::string>& joint_units) {
   std::vector<ChannelInfo> infos{
       {"coupling/kind", "Coupling", "law", "law", "-", "0 standard, 1 proposed, 2 predictive",
        neutral},
-      {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", "rad",
+      {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", units.angle,
        "distance of device and proxy, over all joints", proxy},
       {"energy/controller_total", "Energy", "controller, E_c", "E_c", "J",
        "E_c with the device's own damping", energy},
@@ -33,11 +34,11 @@ std::vector<ChannelInfo> first_channels(int dof) {
       {"energy/compensation", "Energy", "for the device's own forces", "compensation", "J",
        "what of E_c the motors gave for weight, springs and friction of the device", energy, 0.3f,
        true, true},
-      {"hand/torque_norm", "Hand", "torque, |f1|", "|f1|", "N m",
+      {"hand/torque_norm", "Hand", "torque, |f1|", "|f1|", units.torque,
        "what the hand puts on the device; of a real device the observer's estimate", hand},
-      {"hand/torque_estimate_norm", "Hand", "torque as observed, |f1_hat|", "|f1| estimate", "N m",
-       "the observer's estimate of the hand's torque", hand, 0.55f, true, true},
-      {"proxy/contact_torque_norm", "Proxy", "contact torque, |f2|", "|f2|", "N m",
+      {"hand/torque_estimate_norm", "Hand", "torque as observed, |f1_hat|", "|f1| estimate",
+       units.torque, "the observer's estimate of the hand's torque", hand, 0.55f, true, true},
+      {"proxy/contact_torque_norm", "Proxy", "contact torque, |f2|", "|f2|", units.torque,
        "what the scene puts on the proxy", contact},
       {"device/limited", "Device", "a motor at its limit", "at limit", "-",
        "1 while a motor gives all it can", device},
@@ -45,7 +46,9 @@ std::vector<ChannelInfo> first_channels(int dof) {
   for (int j = 0; j < dof; ++j) {
     const std::string joint = std::to_string(j + 1);
     infos.push_back({"coordination/error." + joint, "Coordination error", "joint " + joint,
-                     "x_E " + joint, "rad", "position of the device less that of the proxy",
+                     "x_E " + joint,
+                     joint_units[joint_units.size() == 1 ? 0 : static_cast<std::size_t>(j)],
+                     "position of the device less that of the proxy",
                      static_cast<Ink>(static_cast<int>(joint_1) + j % kJointInks)});
   }
   return infos;
@@ -75,7 +78,7 @@ std::string part_name(ColumnWidth width, int part) {
   return "";
 }
 
-ChannelInfo column_channel(const ColumnInfo& column, int part) {
+ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string& unit) {
   const std::string path = column.path + 1;  // without the slash
   const std::string start = path.substr(0, path.find('/'));
   const auto* group = std::ranges::find(kGroups, start, &Group::path);
@@ -85,7 +88,7 @@ ChannelInfo column_channel(const ColumnInfo& column, int part) {
                    .group = group->name,
                    .name = what,
                    .label = start + " " + what,
-                   .unit = column.unit,
+                   .unit = unit,
                    .help = column.what,
                    .ink = group->ink};
   if (const std::string name = part_name(column.width, part); !name.empty()) {
@@ -111,13 +114,28 @@ std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p)
   return limits;
 }
 
-TraceChannels::TraceChannels(const RowLayout& layout)
-    : layout_(layout), infos_(first_channels(layout.dof())) {
+TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& slides)
+    : layout_(layout),
+      norms_(norm_units(slides)),
+      positions_(static_cast<std::size_t>(layout.dof())) {
+  const SessionUnits units(layout, slides);
+  const ColumnInfo& position = kColumnInfo[static_cast<std::size_t>(Column::device_position)];
+  infos_ = first_channels(layout.dof(), norms_, units.units(position));
+  for (const SessionUnits::Scaled& scaled : units.scaled()) {
+    if (scaled.column != Column::device_position) continue;
+    positions_[static_cast<std::size_t>(scaled.part)] = scaled;
+  }
   for (const ColumnInfo& column : kColumnInfo) {
     if (column.column == Column::time || find(column.path + 1)) continue;
+    const std::vector<std::string> of_parts = units.units(column);
     for (int part = 0; part < layout.width(column.column); ++part) {
-      infos_.push_back(column_channel(column, part));
-      columns_.push_back(static_cast<std::size_t>(layout.offset(column.column) + part));
+      const std::string& unit = of_parts[of_parts.size() == 1 ? 0 : static_cast<std::size_t>(part)];
+      infos_.push_back(column_channel(column, part, unit));
+      Place place{static_cast<std::size_t>(layout.offset(column.column) + part), {}};
+      for (const SessionUnits::Scaled& scaled : units.scaled()) {
+        if (scaled.column == column.column && scaled.part == part) place.scaled = scaled;
+      }
+      columns_.push_back(place);
     }
   }
 }
@@ -144,20 +162,30 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   const auto x1 = at(Column::device_position);
   const auto x2 = at(Column::proxy_position);
   const std::span<double> joints = into.subspan(static_cast<std::size_t>(Channel::joints));
+  const auto shown = [](const std::optional<SessionUnits::Scaled>& scaled, double x) {
+    return scaled ? SessionUnits::filed(*scaled, x).value : x;
+  };
+  const auto torque = [&](std::span<const double> torques) {
+    return norm(torques) * norms_.torques;
+  };
   std::ranges::transform(x1, x2, joints.begin(), std::minus{});
+  const double error = norm(joints.first(x1.size()));
+  for (std::size_t j = 0; j < x1.size(); ++j) joints[j] = shown(positions_[j], joints[j]);
   put(Channel::kind, at(Column::kind)[0]);
-  put(Channel::error, norm(joints.first(x1.size())));
+  put(Channel::error, error * norms_.angles);
   put(Channel::energy_total, at(Column::energy_total)[0]);
   put(Channel::energy_commanded, at(Column::energy_commanded)[0]);
   put(Channel::energy_compensation, at(Column::energy_compensation)[0]);
-  put(Channel::human, norm(layout_.human_torque(row)));
-  put(Channel::human_estimate, norm(at(Column::hand_torque_estimate)));
-  put(Channel::contact, norm(at(Column::contact_torque)));
+  put(Channel::human, torque(layout_.human_torque(row)));
+  put(Channel::human_estimate, torque(at(Column::hand_torque_estimate)));
+  put(Channel::contact, torque(at(Column::contact_torque)));
   bool any_limited = false;
   for (int j = 0; j < layout_.dof(); ++j) any_limited = any_limited || limited(row, j);
   put(Channel::limited, any_limited ? 1 : 0);
   const auto rest = joints.subspan(x1.size());
-  for (std::size_t i = 0; i < columns_.size(); ++i) rest[i] = row[columns_[i]];
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);
+  }
 }
 
 void TraceChannels::append(History& history, std::span<const double> row,

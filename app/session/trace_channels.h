@@ -11,6 +11,7 @@
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 #include "core/tick/row.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 
@@ -18,15 +19,15 @@ namespace limpid {
 // columns of the row.
 enum class Channel : std::uint8_t {
   kind,          // 0 standard, 1 proposed, 2 predictive
-  error,         // |x_E| [rad]
+  error,         // |x_E| [rad]; [m] of an arm that only slides
   energy_total,  // [J]
   energy_commanded,
   energy_compensation,
-  human,           // |f1| [N m]
+  human,           // |f1| [N m]; [N] of an arm that only slides
   human_estimate,  // |f1_hat|
   contact,         // |f2|
   limited,         // 1 while a motor gives all it can, else 0
-  joints,          // x_E of each joint [rad]
+  joints,          // x_E of each joint [rad]; [m] of one that slides
 };
 
 // A channel as people and files know it.
@@ -49,7 +50,8 @@ std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p)
 
 class TraceChannels {
  public:
-  explicit TraceChannels(const RowLayout& layout);
+  // `slides`: which joints do; their channels are in metres and newtons. Empty: none.
+  explicit TraceChannels(const RowLayout& layout, const std::vector<bool>& slides = {});
 
   // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
@@ -69,8 +71,16 @@ class TraceChannels {
 
  private:
   RowLayout layout_;
+  NormUnits norms_;
   std::vector<ChannelInfo> infos_;
-  std::vector<std::size_t> columns_;  // of the row, behind the first channels
+  // A number of the row, behind the first channels.
+  struct Place {
+    std::size_t at;
+    std::optional<SessionUnits::Scaled> scaled;  // if it is shown in another unit
+  };
+
+  std::vector<Place> columns_;
+  std::vector<std::optional<SessionUnits::Scaled>> positions_;  // of each joint
   std::vector<double> limits_;
 };
 

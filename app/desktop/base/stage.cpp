@@ -51,7 +51,7 @@ Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, Hist
       arm_(std::move(arm)),
       document_(std::move(document)),
       rows_(arm_),
-      channels_(RowLayout(arm_.dof())) {
+      channels_(RowLayout(arm_.dof()), slides_of(arm_)) {
   choose_plots(default_plots());
   show_meshes(models, std::nullopt);
 }

@@ -119,6 +119,7 @@ bool Playback::take_results() {
     if (!(*loaded)->said.empty()) notices_.say((*loaded)->said, (*loaded)->bad);
     PlayedSession fresh(std::move(**loaded));
     shown_.emplace(std::move(fresh));
+    told_of_build_ = false;
     last_ = shown_->file();
     if (last_ == std::exchange(left_, {})) shown_->player().seek(left_at_);
     shown_->player().play();
@@ -126,6 +127,7 @@ bool Playback::take_results() {
   }
   if (auto again = rerunning_.take(); again && shown_ && !again->rows.empty()) {
     const RunEnd end = again->end;
+    if (!again->note.empty() && !std::exchange(told_of_build_, true)) notices_.say(again->note);
     shown_->show(std::move(*again));
     if (end.diverged) {
       notices_.say(fmt::format("The re-run is unstable from {:.3f} s on: {}. It is shown up to its "

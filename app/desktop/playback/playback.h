@@ -69,6 +69,7 @@ class Playback {
   std::optional<PlayedSession> shown_;
   std::filesystem::path last_, left_;  // left_: a story, at
   double left_at_ = 0;                 // [s]
+  bool told_of_build_ = false;         // that another build made the session that is shown
   Background<std::optional<LoadedSession>> loading_;
   Background<Rerun> rerunning_;
   Background<std::string> exporting_, filming_;

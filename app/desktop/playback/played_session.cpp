@@ -24,7 +24,7 @@ constexpr double kOfStory = 12;  // that the plots show at once: about a step [s
 // there, else every setting that changes is marked.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
                    std::span<const double> again, const std::vector<StoryStep>& steps) {
-  TraceChannels channels(session.layout);
+  TraceChannels channels(session.layout, slides_of(arm));
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
   const double length = static_cast<double>(session.size()) * session.info.tick;
@@ -115,11 +115,12 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);
                                 return true;
                               });
-  if (end.stopped || rows.empty()) return {{}, end, history_of(session, where, plan.arm, {}, {})};
+  if (end.stopped || rows.empty())
+    return {{}, end, history_of(session, where, plan.arm, {}, {}), {}};
   const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
   while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
   History history = history_of(session, where, plan.arm, rows, {});
-  return {std::move(rows), end, std::move(history)};
+  return {std::move(rows), end, std::move(history), plan.note};
 }
 
 RecordedSettings::RecordedSettings(const Session& session, const std::string& where)

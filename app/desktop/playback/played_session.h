@@ -53,6 +53,7 @@ struct Rerun {
   std::vector<double> rows;  // as many as the session's
   RunEnd end;                // where it diverged the last row stands for those that are missing
   History history;           // of both
+  std::string note;          // why it may come out otherwise than recorded; for people
 };
 
 // Neither is for the window's thread. Errors: FileError and the like.

@@ -5,9 +5,10 @@
 namespace limpid::hdf5 {
 
 Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
-                       hsize_t chunk, bool filled) {
+                       hsize_t chunk, std::optional<double> fill) {
   const Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_fill_time(creation.get(), filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
+  H5Pset_fill_time(creation.get(), fill ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
+  if (fill) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &*fill);
   const std::array<hsize_t, 2> none{0, width};
   const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
   const std::array<hsize_t, 2> chunks{chunk, width};

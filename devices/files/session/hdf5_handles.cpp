@@ -49,6 +49,13 @@ Attribute open_scalar(hid_t object, const char* name, H5T_class_t wanted, const 
   return attribute;
 }
 
+Datatype text_type() {
+  Datatype type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
 }  // namespace
 
 std::string last_error() {
@@ -62,11 +69,22 @@ void check(bool ok, const std::filesystem::path& file, const char* what) {
   if (!ok) throw FileError(fmt::format("{}: {}: {}", file.string(), what, last_error()));
 }
 
+void write_texts(hid_t object, const char* name, const std::vector<std::string>& texts,
+                 const std::filesystem::path& file) {
+  const Datatype type = text_type();
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const hsize_t count = pointers.size();
+  const Dataspace space(H5Screate_simple(1, &count, nullptr));
+  const Attribute attribute(
+      H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  check(attribute && H5Awrite(attribute.get(), type.get(), pointers.data()) >= 0, file,
+        "cannot write");
+}
+
 void write_text(hid_t object, const char* name, const std::string& text,
                 const std::filesystem::path& file) {
-  const Datatype type(H5Tcopy(H5T_C_S1));
-  H5Tset_size(type.get(), H5T_VARIABLE);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  const Datatype type = text_type();
   const char* pointer = text.c_str();
   write_scalar(object, name, type.get(), type.get(), &pointer, file);
 }
@@ -97,6 +115,42 @@ std::string read_text(hid_t object, const char* name, const std::filesystem::pat
   }
   text.resize(std::strlen(text.c_str()));
   return text;
+}
+
+std::vector<std::string> read_texts(hid_t object, const char* name, std::size_t most,
+                                    const std::filesystem::path& file) {
+  constexpr const char* kNeeded = "a list of texts";
+  const Attribute attribute(H5Aopen(object, name, H5P_DEFAULT));
+  const Datatype type(attribute ? H5Aget_type(attribute.get()) : H5I_INVALID_HID);
+  const Dataspace space(attribute ? H5Aget_space(attribute.get()) : H5I_INVALID_HID);
+  if (!type || !space) refuse(file, name, "unreadable", kNeeded);
+  if (H5Tget_class(type.get()) != H5T_STRING) refuse(file, name, "of another type", kNeeded);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count < 0 || static_cast<std::size_t>(count) > most) {
+    refuse(file, name, "too many", kNeeded);
+  }
+  const auto texts = static_cast<std::size_t>(count);
+  std::vector<std::string> all;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    std::vector<char*> pointers(texts, nullptr);
+    if (H5Aread(attribute.get(), type.get(), pointers.data()) < 0) {
+      refuse(file, name, "unreadable", kNeeded);
+    }
+    for (char* text : pointers) {
+      all.emplace_back(text ? text : "");
+      H5free_memory(text);
+    }
+    return all;
+  }
+  const std::size_t length = H5Tget_size(type.get());
+  std::string bytes(texts * length, '\0');
+  if (H5Aread(attribute.get(), type.get(), bytes.data()) < 0) {
+    refuse(file, name, "unreadable", kNeeded);
+  }
+  for (std::size_t at = 0; at < bytes.size(); at += length) {
+    all.emplace_back(bytes.substr(at, length).c_str());
+  }
+  return all;
 }
 
 double read_number(hid_t object, const char* name, const std::filesystem::path& file) {

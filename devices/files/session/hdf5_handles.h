@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace limpid::hdf5 {
 
@@ -68,11 +69,17 @@ void check(bool ok, const std::filesystem::path& file, const char* what);
 // A scalar UTF-8 attribute of any length, which h5py reads as str.
 void write_text(hid_t object, const char* name, const std::string& text,
                 const std::filesystem::path& file);
+// A list of such texts.
+void write_texts(hid_t object, const char* name, const std::vector<std::string>& texts,
+                 const std::filesystem::path& file);
 void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as, const void* value,
                   const std::filesystem::path& file);
 
 // Errors of the readers: FileError if there is no such attribute or it is of another kind.
 std::string read_text(hid_t object, const char* name, const std::filesystem::path& file);
+// At most `most` of them.
+std::vector<std::string> read_texts(hid_t object, const char* name, std::size_t most,
+                                    const std::filesystem::path& file);
 double read_number(hid_t object, const char* name, const std::filesystem::path& file);
 unsigned long long read_count(hid_t object, const char* name, const std::filesystem::path& file);
 

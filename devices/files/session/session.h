@@ -15,11 +15,14 @@
 
 namespace limpid {
 
+struct ArmDescription;
+
 struct SessionInfo {
   double tick = 0.001;  // T [s]
   int dof = 3;
   std::string created;  // ISO 8601; filled in by the writer if empty
   std::string app_version;
+  std::string build;  // what program on what kind of processor made it; empty: it does not say
   std::uint64_t seed = 0;
   std::string source;       // what the hand was
   std::string config;       // all parameters at row 0 (TOML)
@@ -27,6 +30,11 @@ struct SessionInfo {
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
   SceneFiles models;        // that the scene's text names
+  // Whose rows they are. Readers leave it out: device_urdf has it. A file that is written without
+  // it has neither tips nor names of joints.
+  std::shared_ptr<const ArmDescription> arm;
+  std::vector<bool>
+      slides;  // of each joint, as far as the file says; empty: none is known to slide
   // All parameters at row 0 of a second run on the same hand (TOML); none: there is one run.
   std::optional<std::string> twin;
 };

@@ -63,7 +63,9 @@ std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::
 
 std::string check_columns() {
   std::string paths;
-  for (const ColumnInfo& column : kColumnInfo) paths += std::string(column.path) + "\n";
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (summed(column)) paths += std::string(column.path) + "\n";
+  }
   return paths;
 }
 

@@ -2,15 +2,18 @@
 // were damaged since: a sum over each column, for every block of rows that is written at once.
 //
 // /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
-// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each. Sessions
+// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all but
+// those of the timing, in which equal runs differ. The sums are over what the file holds. Sessions
 // of other programs, and of the first edition, have none.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "devices/files/session/hdf5_handles.h"
 #include "devices/files/session/session.h"
@@ -37,10 +40,17 @@ AllColumns columns_of(const RowLayout& layout, std::span<const double> rows);
 std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::uint64_t from,
                                                 std::uint64_t count);
 
-// The columns in the order of their sums.
+// Whether a recording that is written now has sums of it.
+constexpr bool summed(const ColumnInfo& column) {
+  return !std::string_view(column.path).starts_with("/timing/");
+}
+inline constexpr auto kSummedColumns =
+    static_cast<std::size_t>(std::ranges::count_if(kColumnInfo, summed));
+// Their paths in the order of their sums, a line each.
 std::string check_columns();
 
-// How many rows from the first are as they were recorded, and why the next one is not.
+// How many rows from the first are as they were recorded, and why the next one is not. The rows are
+// still in the file's units.
 struct CheckedRows {
   std::size_t rows = 0;
   std::string why;  // empty if all are

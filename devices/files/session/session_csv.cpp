@@ -3,27 +3,96 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 
-#include <iterator>
+#include <algorithm>
+#include <optional>
+#include <string>
 #include <system_error>
+#include <vector>
+
+#include "devices/files/session/derived_columns.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 namespace {
 
+std::string plain(const char* path) {
+  std::string name = path + 1;
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+std::string with_unit(const std::string& name, std::string unit) {
+  if (unit == "-") return name;
+  for (char& c : unit) c = c == ' ' || c == '/' ? '_' : c;
+  return name + "_" + unit;
+}
+
 // "/device/position" of joint 2 in rad becomes "device_position_2_rad".
-std::string column_name(const ColumnInfo& info, int width, int i) {
-  std::string name = info.path + 1;
-  for (char& c : name) c = c == '/' ? '_' : c;
+std::string column_name(const ColumnInfo& info, int width, int i, const std::string& unit) {
+  std::string name = plain(info.path);
   if (info.width == ColumnWidth::contacts) name += fmt::format("_{}", i / 3 + 1);
   if (info.width == ColumnWidth::contacts || info.width == ColumnWidth::three) {
     name += fmt::format("_{:c}", 'x' + i % 3);
   } else if (width > 1) {
     name += fmt::format("_{}", i + 1);
   }
-  std::string unit = info.unit;
-  if (unit == "-") return name;
-  for (char& c : unit) c = c == ' ' || c == '/' ? '_' : c;
-  return name + "_" + unit;
+  return with_unit(name, unit);
 }
+
+// A run's rows as the session's file has them.
+class Table {
+ public:
+  Table(const Session& run, const ArmDescription* arm)
+      : run_(run),
+        units_(run.layout, slides(run, arm)),
+        row_(static_cast<std::size_t>(run.layout.stride())) {
+    if (arm != nullptr) derived_.emplace(*arm);
+  }
+
+  void name(const std::string& before, std::vector<std::string>& names) const {
+    for (const ColumnInfo& info : kColumnInfo) {
+      const int width = run_.layout.width(info.column);
+      const std::vector<std::string> units = units_.units(info);
+      for (int i = 0; i < width; ++i) {
+        const std::string& unit = units[units.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+        names.push_back(before + column_name(info, width, i, unit));
+      }
+    }
+    if (!derived_) return;
+    for (const DerivedInfo& info : kDerivedInfo) {
+      for (const char* axis : {"_x", "_y", "_z"}) {
+        names.push_back(before + with_unit(plain(info.path) + axis, info.unit));
+      }
+    }
+  }
+
+  void add(std::size_t k, std::vector<double>& numbers) {
+    const auto from = run_.row(k);
+    std::ranges::copy(from, row_.begin());
+    for (const SessionUnits::Scaled& scaled : units_.scaled()) {
+      double& x =
+          run_.layout.in(std::span(row_), scaled.column)[static_cast<std::size_t>(scaled.part)];
+      x = SessionUnits::filed(scaled, x).value;
+    }
+    file_points(run_.layout.in(std::span(row_), Column::contact_point),
+                run_.at(k, Column::contact_force));
+    numbers.insert(numbers.end(), row_.begin(), row_.end());
+    if (!derived_) return;
+    for (const Vec3& v : derived_->of(DerivedColumns::from(run_.layout, from))) {
+      numbers.insert(numbers.end(), v.begin(), v.end());
+    }
+  }
+
+ private:
+  static std::vector<bool> slides(const Session& run, const ArmDescription* arm) {
+    return arm != nullptr ? slides_of(*arm) : run.info.slides;
+  }
+
+  const Session& run_;
+  SessionUnits units_;
+  std::optional<DerivedColumns> derived_;
+  std::vector<double> row_;
+};
 
 }  // namespace
 
@@ -32,26 +101,20 @@ void write_csv(const Session& session, const std::filesystem::path& out, bool fo
   if (!force && std::filesystem::exists(out, none)) {
     throw FileError(fmt::format("{}: exists already; --force replaces it", out.string()));
   }
+  const auto arm = recorded_arm(session.info);
+  std::vector<Table> runs;
+  runs.emplace_back(session, arm.get());
+  if (session.twin) runs.emplace_back(*session.twin, arm.get());
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name(i == 0 ? "" : "twin_", names);
   try {
     auto file = fmt::output_file(out.string());
-    std::string line;
-    for (const char* run : {"", "twin_"}) {
-      if (*run != '\0' && !session.twin) continue;
-      for (const ColumnInfo& info : kColumnInfo) {
-        const int width = session.layout.width(info.column);
-        for (int i = 0; i < width; ++i) {
-          line += (line.empty() ? "" : ",") + (run + column_name(info, width, i));
-        }
-      }
-    }
-    file.print("{}\n", line);
+    file.print("{}\n", fmt::join(names, ","));
+    std::vector<double> numbers;
     for (std::size_t k = 0; k < session.size(); ++k) {
-      line.clear();
-      fmt::format_to(std::back_inserter(line), "{}", fmt::join(session.row(k), ","));
-      if (session.twin) {
-        fmt::format_to(std::back_inserter(line), ",{}", fmt::join(session.twin->row(k), ","));
-      }
-      file.print("{}\n", line);
+      numbers.clear();
+      for (Table& run : runs) run.add(k, numbers);
+      file.print("{}\n", fmt::join(numbers, ","));
     }
     file.close();
   } catch (const std::system_error& e) {

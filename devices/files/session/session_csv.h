@@ -7,9 +7,10 @@
 
 namespace limpid {
 
-// One row a tick, one column a number; names as the datasets, joints counted from 1:
-// time_s, device_position_1_rad, ...; of a twin its second run behind, twin_time_s, ... Every value
-// reads back to the same bits. Errors: FileError if OUT exists and not `force`, or cannot be
+// One row a tick, one column a number, as a session file of this version has them: names as the
+// datasets, joints counted from 1, each with its unit: time_s, device_position_1_rad, ...
+// device_tip_x_m, ...; of a twin its second run behind, twin_time_s, ... Every value reads back to
+// the file's bits. Errors: FileError if OUT exists and not `force`, or cannot be
 // written.
 void write_csv(const Session& session, const std::filesystem::path& out, bool force);
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "devices/files/file_size_signal.h"
+#include "devices/files/session/dimension_scales.h"
 #include "devices/files/session/session_attributes.h"
 #include "devices/files/session/session_models.h"
 #include "devices/files/session/session_names.h"
@@ -28,8 +29,10 @@ hdf5::Properties placed_within_pages() {
 
 }  // namespace
 
-SessionFile::SessionFile(std::filesystem::path path, const SessionInfo& info)
-    : path_(std::move(path)), layout_(info.dof) {
+SessionFile::SessionFile(std::filesystem::path path, const SessionInfo& about)
+    : path_(std::move(path)), layout_(about.dof) {
+  SessionInfo info = about;
+  if (info.arm) info.slides = slides_of(*info.arm);
   lanes_.emplace_back(path_, info);
   if (info.twin) lanes_.emplace_back(path_, info);
   guarded([&] { create(info); });
@@ -69,6 +72,9 @@ void SessionFile::create(const SessionInfo& info) {
     hdf5::write_text(twin.get(), "config", *info.twin, path_);
     lanes_[kTwinLane].create(twin.get());
   }
+  hdf5::Scales scales;
+  if (info.arm) scales = hdf5::create_scales(file_.get(), *info.arm, path_);
+  for (const SessionLane& lane : lanes_) lane.attach(scales);
   check(H5Fstart_swmr_write(file_.get()) >= 0, path_, "cannot write");
   check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
 }

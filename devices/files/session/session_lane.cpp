@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "devices/files/session/growing_dataset.h"
 #include "devices/files/session/session_check.h"
@@ -30,11 +32,21 @@ hdf5::Datatype setting_type() {
   return type;
 }
 
-// Whether a column is mostly zeros: blocks of nothing else are not written then, and a chunk of
-// nothing else takes no room in the file. HDF5 reads them as zeros.
-bool sparse(const ColumnInfo& column) {
-  return column.width == ColumnWidth::contacts || column.column == Column::compensation_torque ||
-         column.column == Column::energy_compensation;
+// What a column mostly holds, if it does: blocks of nothing else are not written then, and a chunk
+// of nothing else takes no room in the file. HDF5 reads them as this.
+std::optional<double> mostly(Column column) {
+  switch (column) {
+    case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
+    case Column::contact_force:
+    case Column::compensation_torque:
+    case Column::energy_compensation: return 0.0;
+    default: return std::nullopt;
+  }
+}
+
+bool nothing_but(std::span<const double> numbers, double fill) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return std::ranges::all_of(numbers, [&](double x) { return bits(x) == bits(fill); });
 }
 
 // Of ticks of so long [s].
@@ -51,11 +63,15 @@ SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info)
       block_rows_(rows_of_block(info.tick)),
       most_rows_(std::max(block_rows_, kMostRows)),
       pending_(std::make_unique_for_overwrite<double[]>(
-          most_rows_ * static_cast<std::size_t>(layout_.stride()))) {}
+          most_rows_ * static_cast<std::size_t>(layout_.stride()))),
+      units_(layout_, info.slides),
+      deriver_(info.arm ? std::make_unique<DerivedColumns>(*info.arm) : nullptr) {}
 
 void SessionLane::create(hid_t group) {
   create_device(group);
   for (const ColumnInfo& column : kColumnInfo) create_column(group, column);
+  if (deriver_) create_derived(group);
+  if (!units_.scaled().empty()) create_rounding(group);
   create_events(group);
   create_check(group);
 }
@@ -75,10 +91,59 @@ void SessionLane::create_column(hid_t group, const ColumnInfo& column) {
       create_growing(group, within_group(column.path), column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE,
                      column.width == ColumnWidth::one ? 1 : 2,  // N x 1 for a single joint
                      static_cast<hsize_t>(layout_.width(column.column)),
-                     kBlocksPerChunk * block_rows_, sparse(column));
+                     kBlocksPerChunk * block_rows_, mostly(column.column));
   check(static_cast<bool>(dataset), path_, "cannot write");
-  hdf5::write_text(dataset.get(), "unit", column.unit, path_);
+  const std::vector<std::string> units = units_.units(column);
+  if (units.size() == 1) {
+    hdf5::write_text(dataset.get(), "unit", units.front(), path_);
+  } else {
+    hdf5::write_texts(dataset.get(), "unit", units, path_);
+  }
   hdf5::write_text(dataset.get(), "what", column.what, path_);
+}
+
+void SessionLane::create_derived(hid_t group) {
+  for (std::size_t i = 0; i < kDerived; ++i) {
+    const DerivedInfo& info = kDerivedInfo[i];
+    derived_columns_[i] = create_growing(group, within_group(info.path), H5T_IEEE_F64LE, 2, 3,
+                                         kBlocksPerChunk * block_rows_,
+                                         i == kTotalForce ? std::optional(0.0) : std::nullopt);
+    check(static_cast<bool>(derived_columns_[i]), path_, "cannot write");
+    hdf5::write_text(derived_columns_[i].get(), "unit", info.unit, path_);
+    hdf5::write_text(derived_columns_[i].get(), "what", info.what, path_);
+  }
+}
+
+void SessionLane::create_rounding(hid_t group) {
+  rounding_column_ = create_growing(group, within_group(kRoundingPath), H5T_STD_I8LE, 2,
+                                    units_.scaled().size(), kBlocksPerChunk * block_rows_);
+  check(static_cast<bool>(rounding_column_), path_, "cannot write");
+  hdf5::write_text(rounding_column_.get(), "unit", "-", path_);
+  hdf5::write_text(rounding_column_.get(), "what",
+                   "what the scaling to m and N took of the numbers of joints that slide, in last "
+                   "places; dataset by dataset, joint by joint",
+                   path_);
+}
+
+void SessionLane::attach(const hdf5::Scales& scales) const {
+  const hdf5::Dataset& time = columns_[column_index(Column::time)];
+  hdf5::make_scale(time, "time", path_);
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (column.column == Column::time) continue;
+    const hdf5::Dataset& dataset = columns_[column_index(column.column)];
+    hdf5::attach_scale(dataset, time, 0, path_);
+    if (column.width == ColumnWidth::dof && scales.joint) {
+      hdf5::attach_scale(dataset, scales.joint, 1, path_);
+    }
+    if (column.width == ColumnWidth::three && scales.axis) {
+      hdf5::attach_scale(dataset, scales.axis, 1, path_);
+    }
+  }
+  if (!deriver_) return;
+  for (const hdf5::Dataset& dataset : derived_columns_) {
+    hdf5::attach_scale(dataset, time, 0, path_);
+    hdf5::attach_scale(dataset, scales.axis, 1, path_);
+  }
 }
 
 void SessionLane::create_events(hid_t group) {
@@ -95,7 +160,8 @@ void SessionLane::create_events(hid_t group) {
 
 void SessionLane::create_check(hid_t group) {
   const auto rows = static_cast<std::int64_t>(block_rows_);
-  sums_ = create_growing(group, within_group(kCheckPath), H5T_STD_U64LE, 2, kColumns, kSumChunk);
+  sums_ =
+      create_growing(group, within_group(kCheckPath), H5T_STD_U64LE, 2, kSummedColumns, kSumChunk);
   check(static_cast<bool>(sums_), path_, "cannot write");
   hdf5::write_scalar(sums_.get(), kCheckRows, H5T_STD_I64LE, H5T_NATIVE_INT64, &rows, path_);
   hdf5::write_text(sums_.get(), kCheckColumns, check_columns(), path_);
@@ -147,6 +213,10 @@ void SessionLane::sort_in(std::span<const double> rows) {
 void SessionLane::flush() {
   write_changes();
   if (pending_rows_ == 0) return;
+  derive();
+  convert();
+  write_rounding();
+  write_derived();
   for (auto column = kColumnInfo.rbegin(); column != kColumnInfo.rend(); ++column) {
     write_column(*column);
   }
@@ -164,11 +234,64 @@ void SessionLane::write_check() {
   std::vector<std::uint64_t> sums;
   for (std::uint64_t from = 0; from < pending_rows_; from += block_rows_) {
     const auto of_block = column_sums(columns, from, std::min(block_rows_, pending_rows_ - from));
-    sums.insert(sums.end(), of_block.begin(), of_block.end());
+    for (std::size_t i = 0; i < kColumns; ++i) {
+      if (summed(kColumnInfo[i])) sums.push_back(of_block[i]);
+    }
   }
-  const std::uint64_t blocks = sums.size() / kColumns;
-  append_to(sums_, flushed_sums_, blocks, kColumns, H5T_NATIVE_UINT64, sums.data(), path_);
+  const std::uint64_t blocks = sums.size() / kSummedColumns;
+  append_to(sums_, flushed_sums_, blocks, kSummedColumns, H5T_NATIVE_UINT64, sums.data(), path_);
   flushed_sums_ += blocks;
+}
+
+// Out of what the rows say, before it is in the file's units.
+void SessionLane::derive() {
+  if (!deriver_) return;
+  for (auto& column : derived_) column.clear();
+  for (std::uint64_t k = 0; k < pending_rows_; ++k) {
+    const auto of = [&](Column c) {
+      const auto width = static_cast<std::size_t>(layout_.width(c));
+      return std::span<const double>(pending(c) + k * width, width);
+    };
+    const DerivedColumns::Values values = deriver_->of(
+        {of(Column::device_position), of(Column::device_velocity), of(Column::proxy_position),
+         of(Column::proxy_velocity), of(Column::contact_force)});
+    for (std::size_t i = 0; i < kDerived; ++i) {
+      derived_[i].insert(derived_[i].end(), values[i].begin(), values[i].end());
+    }
+  }
+}
+
+// To what the file has of it.
+void SessionLane::convert() {
+  const auto& scaled = units_.scaled();
+  rounding_.resize(pending_rows_ * scaled.size());
+  for (std::size_t i = 0; i < scaled.size(); ++i) {
+    const int width = layout_.width(scaled[i].column);
+    double* x = pending(scaled[i].column) + scaled[i].part;
+    for (std::uint64_t k = 0; k < pending_rows_; ++k, x += width) {
+      const SessionUnits::Filed filed = SessionUnits::filed(scaled[i], *x);
+      *x = filed.value;
+      rounding_[k * scaled.size() + i] = filed.rounding;
+    }
+  }
+  const std::size_t places =
+      pending_rows_ * static_cast<std::size_t>(layout_.width(Column::contact_point));
+  file_points({pending(Column::contact_point), places}, {pending(Column::contact_force), places});
+}
+
+void SessionLane::write_derived() {
+  if (!deriver_) return;
+  for (std::size_t i = 0; i < kDerived; ++i) {
+    const bool nothing = i == kTotalForce && nothing_but(derived_[i], 0.0);
+    append_to(derived_columns_[i], flushed_rows_, pending_rows_, 3, H5T_NATIVE_DOUBLE,
+              nothing ? nullptr : derived_[i].data(), path_);
+  }
+}
+
+void SessionLane::write_rounding() {
+  if (units_.scaled().empty()) return;
+  append_to(rounding_column_, flushed_rows_, pending_rows_, units_.scaled().size(), H5T_NATIVE_INT8,
+            rounding_.data(), path_);
 }
 
 void SessionLane::write_column(const ColumnInfo& column) {
@@ -180,8 +303,8 @@ void SessionLane::write_column(const ColumnInfo& column) {
                    [](double x) { return static_cast<std::uint8_t>(x); });
   }
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers.data();
-  const auto zero = [](double x) { return std::bit_cast<std::uint64_t>(x) == 0; };
-  if (sparse(column) && std::ranges::all_of(numbers, zero)) data = nullptr;
+  const std::optional<double> fill = mostly(column.column);
+  if (fill && nothing_but(numbers, *fill)) data = nullptr;
   append_to(columns_[column_index(column.column)], flushed_rows_, pending_rows_, width,
             column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);
 }
@@ -204,11 +327,15 @@ void SessionLane::write_changes() {
 
 void SessionLane::close() {
   for (hdf5::Dataset& column : columns_) check(column.close(), path_, "cannot write");
+  for (hdf5::Dataset& column : derived_columns_) check(column.close(), path_, "cannot write");
+  check(rounding_column_.close(), path_, "cannot write");
   check(event_row_.close() && event_setting_.close() && sums_.close(), path_, "cannot write");
 }
 
 void SessionLane::abandon() {
   for (hdf5::Dataset& column : columns_) column.close();
+  for (hdf5::Dataset& column : derived_columns_) column.close();
+  rounding_column_.close();
   event_row_.close();
   event_setting_.close();
   sums_.close();

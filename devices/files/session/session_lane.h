@@ -9,8 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/derived_columns.h"
+#include "devices/files/session/dimension_scales.h"
 #include "devices/files/session/session.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 
@@ -31,6 +33,8 @@ class SessionLane {
   SessionLane(std::filesystem::path path, const SessionInfo& info);
 
   void create(hid_t group);  // of the file: its root, or a group below
+  // Says of each dataset what its rows and columns stand for.
+  void attach(const hdf5::Scales& scales) const;
   // Takes rows in; true once they are whole blocks, which have to be flushed before more come.
   // `rows` is left with those that were not taken.
   bool take(std::span<const double>& rows);
@@ -43,11 +47,17 @@ class SessionLane {
  private:
   void create_device(hid_t group);
   void create_column(hid_t group, const ColumnInfo& column);
+  void create_derived(hid_t group);
+  void create_rounding(hid_t group);
   void create_events(hid_t group);
   void create_check(hid_t group);
   double* pending(Column column) const;
   void sort_in(std::span<const double> rows);
+  void derive();
+  void convert();
   void write_column(const ColumnInfo& column);
+  void write_derived();
+  void write_rounding();
   void write_changes();
   void write_check();
 
@@ -59,10 +69,16 @@ class SessionLane {
   std::uint64_t pending_rows_ = 0;
   std::uint64_t flushed_changes_ = 0;
   std::uint64_t flushed_sums_ = 0;
-  std::unique_ptr<double[]> pending_;   // not written yet: room for most_rows_, column by column
-  std::vector<SettingChange> changes_;  // not written yet
+  std::unique_ptr<double[]> pending_;  // not written yet: room for most_rows_, column by column
+  SessionUnits units_;
+  std::vector<std::int8_t> rounding_;        // of pending rows: of each, all that are scaled
+  std::unique_ptr<DerivedColumns> deriver_;  // null: the arm is not known
+  std::array<std::vector<double>, kDerived> derived_;  // of pending rows
+  std::vector<SettingChange> changes_;                 // not written yet
   std::vector<std::uint8_t> bytes_;
   std::array<hdf5::Dataset, kColumns> columns_;
+  std::array<hdf5::Dataset, kDerived> derived_columns_;
+  hdf5::Dataset rounding_column_;
   hdf5::Dataset event_row_;
   hdf5::Dataset event_setting_;
   hdf5::Dataset sums_;

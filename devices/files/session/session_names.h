@@ -8,10 +8,16 @@
 namespace limpid {
 
 inline constexpr const char* kSessionFormat = "limpid-session";
-inline constexpr int kSessionVersion = 1;
+// In version 1 joints that slide counted in units of 0.1 m, and contacts that were not there were
+// at zero. Both are read.
+inline constexpr int kSessionVersion = 2;
 inline constexpr std::size_t kSettingLength = 120;
 inline constexpr const char* kEventRowPath = "/events/row";
 inline constexpr const char* kTwinGroup = "twin";  // of the second run, if there is one
+inline constexpr const char* kRoundingPath = "/check/rounding";
+inline constexpr const char* kJointTypes = "joint_types";  // attribute of the root
+inline constexpr const char* kSlidingType = "prismatic";   // URDF's words
+inline constexpr const char* kTurningType = "revolute";
 inline constexpr const char* kEventSettingPath = "/events/setting";
 
 // What a row reads as that was announced but never written, in recordings of the first edition: a

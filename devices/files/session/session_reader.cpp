@@ -16,6 +16,7 @@
 #include "devices/files/session/session_names.h"
 #include "devices/files/session/session_place.h"
 #include "devices/files/session/session_source.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 namespace {
@@ -72,14 +73,32 @@ hdf5::File open(const fs::path& file) {
   refuse(file, "cannot open: " + reason);
 }
 
+// Sessions whose arm nobody knows do not say.
+std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
+  if (H5Aexists(root, kJointTypes) <= 0) return {};
+  std::vector<bool> slides;
+  for (const std::string& type : hdf5::read_texts(root, kJointTypes, kMaxDof, file)) {
+    if (type != kSlidingType && type != kTurningType) {
+      refuse(file, fmt::format("attribute {}: \"{:.40}\"; allowed: {} and {}", kJointTypes, type,
+                               kTurningType, kSlidingType));
+    }
+    slides.push_back(type == kSlidingType);
+  }
+  if (slides.size() != static_cast<std::size_t>(dof)) {
+    refuse(file, fmt::format("attribute {}: {} joints; needed: {}, as dof says", kJointTypes,
+                             slides.size(), dof));
+  }
+  return slides;
+}
+
 SessionInfo read_info(hid_t root, const fs::path& file) {
   const std::string format = hdf5::read_text(root, "format", file);
   if (format != kSessionFormat) {
     refuse(file, fmt::format("format \"{:.40}\"; needed: \"{}\"", format, kSessionFormat));
   }
   const auto version = hdf5::read_count(root, "version", file);
-  if (version != kSessionVersion) {
-    refuse(file, fmt::format("version {}; this program reads {}", version, kSessionVersion));
+  if (version < 1 || version > kSessionVersion) {
+    refuse(file, fmt::format("version {}; this program reads 1 to {}", version, kSessionVersion));
   }
   SessionInfo info;
   info.tick = hdf5::read_number(root, "tick", file);
@@ -96,6 +115,8 @@ SessionInfo read_info(hid_t root, const fs::path& file) {
   if (H5Aexists(root, "safety_limits") > 0) {
     info.safety = hdf5::read_text(root, "safety_limits", file);
   }
+  if (H5Aexists(root, "build") > 0) info.build = hdf5::read_text(root, "build", file);
+  if (version > 1) info.slides = read_slides(root, info.dof, file);
   info.models = read_models(root, file);
   return info;
 }
@@ -197,6 +218,70 @@ void check_rows(const Session& session, const fs::path& file) {
   }
 }
 
+Source open_rounding(hid_t group, hsize_t width, const fs::path& file) {
+  Source source = open_source(group, kRoundingPath, width, file);
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 1) {
+    refuse(file, fmt::format("{}: of another type; needed: int8", kRoundingPath));
+  }
+  return source;
+}
+
+// A row's numbers from the file's units to its own. False where these cannot have come from any.
+bool take_units_off(const std::vector<SessionUnits::Scaled>& scaled, const std::int8_t* rounding,
+                    const RowLayout& layout, std::span<double> row) {
+  for (std::size_t i = 0; i < scaled.size(); ++i) {
+    double& x = layout.in(row, scaled[i].column)[static_cast<std::size_t>(scaled[i].part)];
+    if (rounding == nullptr) {
+      x = SessionUnits::unfiled(scaled[i], x);
+      continue;
+    }
+    const auto whole = SessionUnits::unfiled(scaled[i], {x, rounding[i]});
+    if (!whole) return false;
+    x = *whole;
+  }
+  return true;
+}
+
+// The same of all rows. Returns how many from the first are whole; fewer than all only of a
+// leftover.
+std::size_t take_units_off(hid_t group, Session& session, const fs::path& file) {
+  const SessionUnits units(session.layout, session.info.slides);
+  const auto& scaled = units.scaled();
+  std::optional<Source> source;
+  if (!scaled.empty() && exists(group, kRoundingPath)) {
+    source = open_rounding(group, scaled.size(), file);
+  }
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  std::vector<std::int8_t> block(source ? kBlockRows * scaled.size() : 0);
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto row = std::span(session.rows).subspan(k * stride, stride);
+    unfile_points(session.layout.in(row, Column::contact_point),
+                  session.at(k, Column::contact_force));
+    const std::size_t within = k % kBlockRows;
+    const std::size_t count = std::min(kBlockRows, session.size() - k);
+    const char* why = nullptr;
+    if (source && within == 0 &&
+        (source->rows < k + count || !read_block(*source, k, count, block.data()))) {
+      why = "missing, or cannot be read";
+    } else if (!take_units_off(scaled, source ? block.data() + within * scaled.size() : nullptr,
+                               session.layout, row)) {
+      why =
+          "not of these numbers: damaged, or they were changed by another program (which then "
+          "has to delete /check)";
+    }
+    if (why == nullptr) continue;
+    if (is_leftover(file)) return k;
+    refuse(file, fmt::format("{}: row {}: {}", kRoundingPath, k, why));
+  }
+  return session.size();
+}
+
+void shorten(Session& session, std::size_t rows) {
+  session.rows.resize(rows * static_cast<std::size_t>(session.layout.stride()));
+  std::erase_if(session.changes, [rows](const SettingChange& c) { return c.row > rows; });
+}
+
 // One run: at the file's root, or in the twin's group. A leftover's rows that are not whole stay
 // away.
 void read_run(hid_t group, Session& session, const fs::path& file) {
@@ -208,11 +293,7 @@ void read_run(hid_t group, Session& session, const fs::path& file) {
   read_changes(group, session, file);
   check_rows(session, file);
   if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
-}
-
-void shorten(Session& session, std::size_t rows) {
-  session.rows.resize(rows * static_cast<std::size_t>(session.layout.stride()));
-  std::erase_if(session.changes, [rows](const SettingChange& c) { return c.row > rows; });
+  shorten(session, take_units_off(group, session, file));
 }
 
 void read_twin(hid_t group, Session& session, const fs::path& file) {

@@ -41,11 +41,12 @@ Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout
   Source source =
       open_source(root, column.path, static_cast<hsize_t>(layout.width(column.column)), file);
   const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
-  const bool number = H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == 8;
+  const std::size_t size = H5Tget_size(type.get());
+  const bool number = H5Tget_class(type.get()) == H5T_FLOAT && (size == 8 || size == 4);
   const bool byte = H5Tget_class(type.get()) == H5T_INTEGER && H5Tget_size(type.get()) == 1;
   if (column.byte ? !byte : !number) {
     refuse(file, fmt::format("{}: of another type; needed: {}", column.path,
-                             column.byte ? "uint8" : "float64"));
+                             column.byte ? "uint8" : "float64 or float32"));
   }
   return source;
 }
@@ -68,6 +69,10 @@ bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void
 
 bool read_block(const Source& source, hsize_t from, hsize_t count, double* out) {
   return read_as(source, from, count, H5T_NATIVE_DOUBLE, out);
+}
+
+bool read_block(const Source& source, hsize_t from, hsize_t count, std::int8_t* out) {
+  return read_as(source, from, count, H5T_NATIVE_INT8, out);
 }
 
 bool read_row(const Source& source, hsize_t row, std::uint64_t* out) {

@@ -37,6 +37,7 @@ Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout
 
 // `count` rows from row `from` as doubles. False if the file does not give them.
 bool read_block(const Source& source, hsize_t from, hsize_t count, double* out);
+bool read_block(const Source& source, hsize_t from, hsize_t count, std::int8_t* out);
 // One row of whole numbers.
 bool read_row(const Source& source, hsize_t row, std::uint64_t* out);
 

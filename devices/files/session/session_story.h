@@ -7,7 +7,8 @@
 namespace limpid {
 
 // Its text, whatever it holds, as the attribute "story" of the file's root. The session is complete
-// already and has none. Errors: FileError.
+// already and has none; it stays as it is until its copy with the story is on the disk. Errors:
+// FileError, and the session is as before.
 void attach_story(const std::filesystem::path& session, const std::string& story);
 // Of a file that read_session() has read: empty where there is none, and of a recording that still
 // runs. Errors: FileError for a text that cannot be read.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "devices/files/place.h"
+#include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_file.h"
 #include "devices/files/session/session_place.h"
 
@@ -72,7 +73,9 @@ Recovered recover_session(const fs::path& part, bool force) {
   fs::path copy = out;
   copy += ".recovering";
   try {
-    SessionFile file(copy, session.info);
+    SessionInfo info = session.info;
+    info.arm = recorded_arm(info);
+    SessionFile file(copy, info);
     const auto copy_run = [&file](const Session& run, std::size_t lane) {
       for (const SettingChange& change : run.changes) file.append(change, lane);
       file.append(run.rows, lane);

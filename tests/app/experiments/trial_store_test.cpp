@@ -29,6 +29,7 @@ RunPlan rich_plan() {
   plan.hand_torque = {0.1, 0.2, 0.3};
   plan.force = {true, false};
   plan.start = rest_at(plan.arm, plan.hand.position.front());
+  plan.twin = TwinPlan{plan.parameters, {{20, "coupling.eta = 3.0"}}, plan.start};
   return plan;
 }
 
@@ -57,6 +58,11 @@ const std::vector<std::pair<const char*, Change>> kChanges{
     {"where it starts at all", [](RunPlan& p) { p.start.reset(); }},
     {"the rows", [](RunPlan& p) { ++p.rows; }},
     {"the seed", [](RunPlan& p) { ++p.seed; }},
+    {"a parameter of the twin", [](RunPlan& p) { p.twin->parameters.eta = 0.5; }},
+    {"a change of the twin", [](RunPlan& p) { p.twin->changes[0].setting = "coupling.eta = 4"; }},
+    {"where the twin starts", [](RunPlan& p) { p.twin->start->x2[0] += 1e-15; }},
+    {"where the twin starts at all", [](RunPlan& p) { p.twin->start.reset(); }},
+    {"that there is a twin", [](RunPlan& p) { p.twin.reset(); }},
 };
 
 TEST(TrialKey, IsAnotherOneForWhateverIsOtherwise) {

@@ -44,6 +44,37 @@ TEST_P(TraceChannelsOfJoints, AreTheQuantitiesOfTheRow) {
   }
 }
 
+// A unit of a slide's travel is 0.1 m, its torque of 1 N m a force of 10 N.
+TEST(TraceChannels, AreInMetresAndNewtonsOfJointsThatSlide) {
+  const RowLayout layout(2);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const auto set = [&](Column c, double first, double second) {
+    layout.in(std::span(row), c)[0] = first;
+    layout.in(std::span(row), c)[1] = second;
+  };
+  set(Column::device_position, 3, 4);
+  set(Column::contact_torque, 0.5, -0.25);
+  const auto shown = [&](const TraceChannels& channels, const std::string& key) {
+    std::vector<double> values(static_cast<std::size_t>(channels.count()));
+    channels.values(row, values);
+    const auto at = static_cast<std::size_t>(channels.find(key).value());
+    return std::pair(values[at], channels.infos()[at].unit);
+  };
+  using Shown = std::pair<double, std::string>;
+  const TraceChannels mixed(layout, {false, true}), slides(layout, {true, true}), turns(layout);
+  EXPECT_EQ(shown(mixed, "device/position.1"), Shown(3, "rad"));
+  EXPECT_EQ(shown(mixed, "device/position.2"), Shown(0.4, "m"));
+  EXPECT_EQ(shown(mixed, "device/velocity.2"), Shown(0, "m/s"));
+  EXPECT_EQ(shown(mixed, "proxy/contact_torque.2"), Shown(-2.5, "N"));
+  EXPECT_EQ(shown(mixed, "coordination/error.2"), Shown(0.4, "m"));
+  EXPECT_EQ(shown(mixed, "coordination/error"), Shown(5, "rad, dm"));
+  EXPECT_EQ(shown(slides, "coordination/error"), Shown(0.5, "m"));
+  EXPECT_EQ(shown(slides, "proxy/contact_torque_norm").second, "N");
+  EXPECT_DOUBLE_EQ(shown(slides, "proxy/contact_torque_norm").first, 10 * std::hypot(0.5, 0.25));
+  EXPECT_EQ(shown(turns, "device/position.2"), Shown(4, "rad"));
+  EXPECT_EQ(shown(turns, "coordination/error"), Shown(5, "rad"));
+}
+
 // Asked for more than it can give, by the limits of the arm or by the parameters' own.
 TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
   const ArmDescription arm = test::omni();

@@ -1,6 +1,8 @@
 """A session file in memory: the rows, the arm, and the settings in force at each row.
 
-Everything comes from the file alone. SI and radians; N rows, n joints.
+Everything comes from the file alone. SI and radians; N rows, n joints. But for joints that slide: the
+equations of a coupling, whose gains are in N m/rad, take 0.1 m for 1 rad and 10 N for 1 N m. Files of
+version 1 had them so; those of version 2 have m, m/s and N, and say it in each dataset's unit.
 """
 
 from __future__ import annotations
@@ -14,7 +16,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .urdf import Array, Chain, parse_chain
+from .urdf import SLIDE_UNIT, Array, Chain, parse_chain
+
+# From a unit of a slide to that of the equations.
+_OF_SLIDES: Mapping[str, float] = {"m": 1 / SLIDE_UNIT, "m/s": 1 / SLIDE_UNIT, "N": SLIDE_UNIT}
 
 # dataset -> how many columns: 1 for shape N, 3 for N x 3, 0 for N x n
 DATASETS: Mapping[str, int] = {
@@ -175,13 +180,21 @@ def _text(value: Any) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
+def _of_joints(dataset: h5py.Dataset) -> Array:
+    """A dataset with a column for each joint, in the units of the equations."""
+    units = dataset.attrs.get("unit", "")
+    if isinstance(units, (str, bytes)):
+        return dataset[()]
+    return dataset[()] * np.array([_OF_SLIDES.get(_text(unit), 1.0) for unit in units])
+
+
 def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
     data: dict[str, Array] = {}
     rows: int | None = None
     for path, columns in DATASETS.items():
         if path not in file:
             raise SessionError(f"{path} is missing")
-        values = file[path][()]
+        values = file[path][()] if columns else _of_joints(file[path])
         rows = len(values) if rows is None else rows
         expected = (rows,) if columns == 1 else (rows, columns or dof)
         if values.shape != expected:
@@ -192,7 +205,7 @@ def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
         data[path] = values
     for path, columns in _COMPENSATION.items():
         nothing = np.zeros((rows,) if columns == 1 else (rows, dof))
-        data[path] = file[path][()] if path in file else nothing
+        data[path] = _of_joints(file[path]) if path in file else nothing
         if data[path].shape != nothing.shape:
             raise SessionError(f"{path} has shape {data[path].shape}, expected {nothing.shape}")
     predictive = np.any(data["/coupling/kind"] == 2)
@@ -235,8 +248,8 @@ def read_session(path: Path) -> Session:
             if name not in found:
                 raise SessionError(f"attribute {name} is missing")
         attributes = {k: _text(v) if isinstance(v, (bytes, str)) else v for k, v in found.items()}
-        if attributes["format"] != "limpid-session" or int(attributes["version"]) != 1:
-            raise SessionError("not a limpid-session of version 1")
+        if attributes["format"] != "limpid-session" or int(attributes["version"]) not in (1, 2):
+            raise SessionError("not a limpid-session of version 1 or 2")
         chain = parse_chain(attributes["device_urdf"])
         if chain.dof != int(attributes["dof"]):
             raise SessionError(f"dof is {attributes['dof']}, device_urdf has {chain.dof} joints")

@@ -9,6 +9,7 @@
 
 #include "devices/files/hand/hand_file.h"
 #include "devices/files/session/session.h"
+#include "devices/files/session/session_check.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 
@@ -96,6 +97,7 @@ TEST(DamagedSession, DoesNotTakeRowsForRealThatWereNeverWritten) {
 
 TEST(DamagedSession, IsNoticedByASingleNumberThatIsAnother) {
   for (const ColumnInfo& column : kColumnInfo) {
+    if (!summed(column)) continue;  // how long ticks took
     const test::TempDir dir;
     test::write_sample(dir / "a.h5", 1200);
     {
@@ -208,7 +210,7 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
          v.dataset("/hand/target", H5T_IEEE_F64LE, {5, 10, 3});
        },
        {"/hand/target"}},
-      {[](Vandal& v) { v.dataset("/coupling/eta", H5T_IEEE_F32LE, {50}); },
+      {[](Vandal& v) { v.dataset("/coupling/eta", H5T_STD_I32LE, {50}); },
        {"/coupling/eta", "float64"}},
       {[](Vandal& v) { v.dataset("/coupling/eta", H5T_STD_I64LE, {50}); },
        {"/coupling/eta", "float64"}},
@@ -224,7 +226,7 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
       {[](Vandal& v) { v.remove_attribute("scene"); }, {"scene", "missing"}},
       {[](Vandal& v) { v.attribute("format", H5T_NATIVE_DOUBLE, 1.0); }, {"format", "text"}},
       {[](Vandal& v) { v.attribute("format", H5T_C_S1, 'x'); }, {"format", "limpid-session"}},
-      {[](Vandal& v) { v.attribute("version", H5T_NATIVE_INT, 2); }, {"version 2"}},
+      {[](Vandal& v) { v.attribute("version", H5T_NATIVE_INT, 3); }, {"version 3"}},
       {[](Vandal& v) { v.attribute("version", H5T_NATIVE_DOUBLE, 1.0); }, {"version"}},
       {[](Vandal& v) { v.attribute("tick", H5T_NATIVE_DOUBLE, 0.0); }, {"tick 0"}},
       {[](Vandal& v) { v.attribute("tick", H5T_NATIVE_DOUBLE, double(NAN)); }, {"tick nan"}},

@@ -196,7 +196,7 @@ TEST(Session, IsHdf5AsPythonExpectsItAlsoWhileItIsWritten) {
 import sys, h5py
 f = h5py.File(sys.argv[1], "r", **({"swmr": True} if sys.argv[1].endswith(".part") else {}))
 a = f.attrs
-assert a["format"] == "limpid-session" and a["version"] == 1 and a["dof"] == 3
+assert a["format"] == "limpid-session" and a["version"] == 2 and a["dof"] == 3
 assert a["tick"] == 0.001 and int(a["seed"]) == 2**64 - 1
 assert isinstance(a["device_urdf"], str) and len(a["device_urdf"]) == 200003
 assert a["source"] == "a hand, \u03b7" and a["created"].startswith("2024-02-29")

@@ -1,0 +1,55 @@
+// What a session file has beside the columns of the rows, and what is worked out of them: where the
+// tips are and how fast they move, and how hard the proxy is pushed altogether.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "core/dynamics/arm.h"
+#include "core/tick/row.h"
+
+namespace limpid {
+
+struct SessionInfo;
+
+struct DerivedInfo {
+  const char* path;  // dataset in the session file: x, y, z in the frame of the arm's root
+  const char* unit;
+  const char* what;
+};
+
+inline constexpr std::array<DerivedInfo, 5> kDerivedInfo{{
+    {"/device/tip", "m", "where the device's tip is"},
+    {"/device/tip_velocity", "m/s", "how fast the device's tip moves"},
+    {"/proxy/tip", "m", "where the proxy's tip is"},
+    {"/proxy/tip_velocity", "m/s", "how fast the proxy's tip moves"},
+    {"/contact/total_force", "N",
+     "force on the proxy over the tick: the sum of the contacts in /contact/force"},
+}};
+inline constexpr std::size_t kDerived = kDerivedInfo.size();
+inline constexpr std::size_t kTotalForce = 4;
+
+class DerivedColumns {
+ public:
+  explicit DerivedColumns(const ArmDescription& arm) : arm_(arm) {}
+
+  // What of a row they follow from, as it is in memory.
+  struct From {
+    std::span<const double> x1, v1, x2, v2;  // of device and proxy
+    std::span<const double> forces;          // of the contacts
+  };
+  static From from(const RowLayout& layout, std::span<const double> row);
+
+  // In the order of kDerivedInfo.
+  using Values = std::array<Vec3, kDerived>;
+  Values of(const From& from) const;
+
+ private:
+  Arm<kAnyDof> arm_;
+};
+
+// The arm of a recording, read from its text where that is all there is; null where it cannot be.
+std::shared_ptr<const ArmDescription> recorded_arm(const SessionInfo& info);
+
+}  // namespace limpid
