@@ -94,7 +94,7 @@ TEST(Cropped, FillsTheViewWithAnArea) {
   const PixelArea whole(Eigen::Vector2i(0, 0), Eigen::Vector2i(kWidth, kHeight));
   const PixelArea area(Eigen::Vector2i(50, 20), Eigen::Vector2i(150, 45));
   const glm::mat4 to_clip = cropped(glm::mat4(1), area, whole);
-  const auto shown = [&](float x, float y) {  // of a pixel's corner
+  const auto shown = [&](float x, float y) -> Eigen::Vector3f {  // of a pixel's corner
     const glm::vec4 p = to_clip * glm::vec4(2 * x / kWidth - 1, 2 * y / kHeight - 1, 0.25f, 1);
     return Eigen::Vector3f(p.x, p.y, p.z) / p.w;
   };

@@ -181,7 +181,7 @@ TEST(Ghosts, AreReRunTwinAndDevice) {
   state.proxy = arm_at(0);
   state.device = arm_at(0.1);
   state.rerun = arm_at(0.2);
-  state.twin = SecondRun{arm_at(0.4), arm_at(0.3), {}, {}};
+  state.twin = SecondRun{arm_at(0.4), arm_at(0.3), Vec3::Zero(), {}};
   const auto ghosts = ghosts_of(state, 1e-3);
   ASSERT_EQ(ghosts.size(), 4u);
   const std::array<double, 4> places{0.2, 0.3, 0.4, 0.1};
@@ -203,7 +203,7 @@ TEST(Ghosts, HaveAnOutlineWhereTheyAreBesideTheirLikes) {
   ViewState state;
   state.proxy = arm_at(0);
   state.device = arm_at(0.0025);
-  state.twin = SecondRun{arm_at(0.0025), arm_at(0.5), {}, {}};
+  state.twin = SecondRun{arm_at(0.0025), arm_at(0.5), Vec3::Zero(), {}};
   const auto ghosts = ghosts_of(state, 1e-3);
   ASSERT_EQ(ghosts.size(), 3u);
   EXPECT_THAT(ghosts[0].outline, testing::ElementsAre(1, 1)) << "twin's proxy";

@@ -269,6 +269,8 @@ TEST(GltfContent, TakesColoursOfWholeNumbersForParts) {
                  file.accessor(file.view(Bytes{255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0},
                                          R"(,"byteStride":4)"),
                                5121, "VEC3", 3));
+  file.primitive = R"(,"material":0)";
+  file.more = R"(,"materials":[{}])";
   const Model model = parse_gltf(file.binary(), "part.glb");
   for (const Vertex& v : model.vertices)
     EXPECT_TRUE(v.color.isApprox(Eigen::Vector3f(1, 0, 0.2f), 1e-5f)) << v.color.transpose();
