@@ -23,6 +23,7 @@ ROW_MAKERS = (
     "devices", "devices/hands", "devices/rig",
     "devices/files/arm", "devices/files/hand", "devices/files/scene", "app/run", "app/story",
 )  # fmt: skip
+NO_ROW = ("core/dynamics/farthest_tip.cpp",)  # what it finds is told to people only
 
 _FUNCTION_END = re.compile(r"(\)|\}|\bconst|\bnoexcept|\boverride|\bfinal|\bmutable|-> [^()]*)$")
 
@@ -162,6 +163,7 @@ def inexact_functions(root: Path) -> list[str]:
         "core/math/elementary.h has one that does not"
         for path in sources(root)
         if str(path.parent.relative_to(root)) in ROW_MAKERS
+        and str(path.relative_to(root)) not in NO_ROW
         for number, line in enumerate(path.read_text().splitlines(), 1)
         if (found := _INEXACT.search(line.partition("//")[0]))
     ]

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "devices/files/arm/body.h"
+#include "devices/files/rpy.h"
 
 namespace limpid {
 namespace {
@@ -22,7 +23,7 @@ void fix_last(ArmDescription& arm) {
   if (joint.kind == Joint::Kind::prismatic) {
     there.translate(Vec3(kSlideUnit * at * joint.axis));
   } else {
-    there.rotate(Eigen::AngleAxisd(at, joint.axis));
+    there.rotate(turn(at, joint.axis));
   }
   const int last = arm.dof() - 1;
   const auto carry = [&](auto& parts) {
