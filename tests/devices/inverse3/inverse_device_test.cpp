@@ -182,11 +182,8 @@ TEST_F(AnInverseService, IsHadByOneAndHearsNothingOfAnother) {
   push(*device);
   const ServiceAddress other_name{"localhost", service.address().port};
   for (const ServiceAddress& address : {service.address(), other_name}) {
-    const FoundDevice found{{"An Inverse3", InverseName{"049D", address}.text(), ""},
-                            list_inverse_devices({}, service.address()).at(0).kind,
-                            "",
-                            list_inverse_devices({}, service.address()).at(0).open,
-                            list_inverse_devices({}, service.address()).at(0).claim_key};
+    FoundDevice found = list_inverse_devices({}, service.address()).at(0);
+    found.place.id = InverseName{"049D", address}.text();
     try {
       open_device(found);
       FAIL();
