@@ -89,7 +89,7 @@ TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"checked = 1", "checked", "1", "true or false"},
                 {"arm = 7", "arm", "7", "text in quotes"},
                 {"delay = \"2 ms\"", "delay", "\"2 ms\"", "a number"},
-                {"torque_scale = 1e9", "torque_scale", "1e+09", "a number"},
+                {"torque_scale = 1000.5", "torque_scale", "1000.5", "a number"},
                 {"compensation = {friction = 1.5}", "compensation.friction", "1.5", "a number"},
                 {"compensation = {down = 'up'}", "compensation.down", "\"up\"", "file, -z, +z"},
                 {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"}};

@@ -274,11 +274,11 @@ TEST_F(AnInverse3, IsAtFaultWhileAMessageSaysAnotherFrame) {
   };
   for (const json& other : {turned, preset, mount, workspace}) {
     open();
-    EXPECT_EQ(decode(said({})), Decoded::reading);
+    EXPECT_EQ(decode(said(json::object())), Decoded::reading);
     EXPECT_FALSE(reading.fault);
     EXPECT_EQ(decode(said(other)), Decoded::reading);
     EXPECT_TRUE(reading.fault) << other;
-    decode(said({}));
+    decode(said(json::object()));
     EXPECT_TRUE(reading.fault) << "what is not said again has not changed: " << other;
     decode(said(usual));
     EXPECT_FALSE(reading.fault) << other;
