@@ -188,7 +188,7 @@ TEST_F(SimulatedRawLoop, FadesInFromNothingAfterTheDevicesWatchdogHasCut) {
     desk.model->set_fault(Fault::none);
     for (int ms = 1; ms <= 500; ++ms) {
       desk.run(1);
-      ASSERT_LE(std::abs(desk.torque()), 1.3 * full * (ms + 3) / 500 + 1e-3) << deaf << ", " << ms;
+      ASSERT_LE(std::abs(desk.torque()), kEffort * (ms + 3) / 500 + 1e-3) << deaf << ", " << ms;
     }
     desk.run(200);
     EXPECT_NEAR(std::abs(desk.torque()), full, 0.1 * full) << "it is still armed";

@@ -149,6 +149,7 @@ TEST_F(OnTheDesk, LosesItsTorqueWhereALineOfItsEncoderDoesNotChange) {
   for (const int lines : {1, 2, 3}) {
     model.power(false, now);
     model.power(true, now);
+    link = std::make_unique<SimulatedLink>(model, std::make_unique<RawProtocol>(), now);
     begin();
     model.hand().axis(0).path = [](double t) { return 0.1 + 0.02 * std::sin(10 * t); };
     EXPECT_NEAR(push(0.3, 2000), 0.3, 1e-6);
@@ -182,7 +183,8 @@ TEST_F(OnTheDesk, PushesOnWhereAHandHoldsItStill) {
 
 TEST_F(OnTheDesk, MayStandStillForEverWithLittleTorque) {
   begin();
-  EXPECT_NEAR(push(0.035, 5000), 0.035, 1e-6);
+  push(0.035);
+  for (int ms = 0; ms < 5000; ++ms) ASSERT_NEAR(push(0.035, 1), 0.035, 1e-6) << ms;
 }
 
 TEST_F(OnTheDesk, UsesNoCommandThatIsNotRight) {

@@ -410,10 +410,9 @@ TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
     EXPECT_GT(longest, 250) << "it stood still for a while";
     EXPECT_EQ(rig.force().armed(), true);
     EXPECT_GT(least, 0.85 * most) << "dry friction " << dry;
-    std::printf("held still: dips to %.3f of the force, dry friction %.3f N m\n", least / most,
                 dry);
-    armed = false;
-    step(10);
+                armed = false;
+                step(10);
   }
 }
 
