@@ -18,6 +18,8 @@ constexpr double kRounding = 1e-6;
 // Triangles whose distances differ by less than this part of the mesh's radius are all looked at,
 // in whichever order they come: the processor's kind of vectors decides on that.
 constexpr double kNearlyTied = 1e-13;
+// A way is looked along in pieces of this part of the mesh's radius, but in no more than so many.
+constexpr double kPiece = 1. / 32, kMostPieces = 128;
 // A triangle lower than this part of its longest edge has no direction.
 constexpr double kSliver = 1e-9;
 
@@ -285,24 +287,28 @@ bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) co
     }
   };
   Search search{*this, from, to - from};
-  const Vec3 middle = 0.5 * (from + to);
   const double length = search.way.norm();
   if (!(length > 0)) return false;
-  RTCPointQuery query;
-  query.x = static_cast<float>(middle.x());
-  query.y = static_cast<float>(middle.y());
-  query.z = static_cast<float>(middle.z());
-  query.time = 0;
-  query.radius = static_cast<float>(length / 2 + kRounding * (radius_ + middle.norm()));
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(
-      tree_->scene, &query, &context,
-      [](RTCPointQueryFunctionArguments* args) {
-        static_cast<Search*>(args->userPtr)->consider(args->primID);
-        return false;
-      },
-      &search);
+  // Piece by piece, each in a ball: a single one around a long way would hold most of the mesh.
+  const double pieces = std::floor(std::min(1 + length / (kPiece * radius_), kMostPieces));
+  for (double i = 0; i < pieces && search.part > i / pieces; ++i) {
+    const Vec3 middle = from + (i + 0.5) / pieces * search.way;
+    RTCPointQuery query;
+    query.x = static_cast<float>(middle.x());
+    query.y = static_cast<float>(middle.y());
+    query.z = static_cast<float>(middle.z());
+    query.time = 0;
+    query.radius = static_cast<float>(length / pieces / 2 + kRounding * (radius_ + middle.norm()));
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(
+        tree_->scene, &query, &context,
+        [](RTCPointQueryFunctionArguments* args) {
+          static_cast<Search*>(args->userPtr)->consider(args->primID);
+          return false;
+        },
+        &search);
+  }
   if (search.triangle == MeshPoint::kNone) return false;
   const Vec3 a = corner(search.triangle, 0);
   out.normal = (corner(search.triangle, 1) - a).cross(corner(search.triangle, 2) - a).normalized();
