@@ -57,12 +57,7 @@ class Chain {
       here = pass(*on, here, i);
       link = model_.getLink(on->child_link_name);
     }
-    if (arm_.joints.empty()) {
-      places_.refuse(fmt::format(
-          "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with "
-          "limits that leave room (lower below upper)",
-          kMaxDof));
-    }
+    if (arm_.joints.empty()) refuse_still();
     arm_.tip = here;
     arm_.tip_link = way_.back()->child_link_name;
     say_held();
@@ -75,6 +70,22 @@ class Chain {
 
  private:
   int moving() const { return arm_.dof() - 1; }
+
+  // What moves may all be in grippers, which are no tips by themselves.
+  [[noreturn]] void refuse_still() const {
+    for (const auto& [name, joint] : model_.joints_) {
+      if (!moves(*joint)) continue;
+      places_.refuse(fmt::format(
+          "no joint that moves on the way to '{}'; others move: name the link that the hand holds "
+          "with --tip LINK, such as '{}'",
+          way_.empty() ? model_.getRoot()->name : way_.back()->child_link_name,
+          joint->child_link_name));
+    }
+    places_.refuse(fmt::format(
+        "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with limits that "
+        "leave room (lower below upper)",
+        kMaxDof));
+  }
 
   // A link and what it carries besides joint `on`.
   void add_tree(const urdf::Link& link, const Pose& here, const urdf::Joint* on) {

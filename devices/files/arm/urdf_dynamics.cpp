@@ -38,7 +38,13 @@ bool says_nothing(const TiXmlElement& limit) {
   return true;
 }
 
-TiXmlElement joint_of(const TiXmlElement& from, std::vector<std::string>& unlimited) {
+// What had to be guessed, by the names of the joints.
+struct Guessed {
+  std::vector<std::string> unlimited;  // limits of zeros: none
+  std::vector<std::string> fixed;      // slides without limits: held still
+};
+
+TiXmlElement joint_of(const TiXmlElement& from, Guessed& guessed) {
   TiXmlElement joint =
       with_children(from, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
   TiXmlElement* const limit = joint.FirstChildElement("limit");
@@ -47,7 +53,12 @@ TiXmlElement joint_of(const TiXmlElement& from, std::vector<std::string>& unlimi
   const bool turns = type != nullptr && std::string_view(type) == "revolute";
   if (limit != nullptr && turns && name != nullptr && says_nothing(*limit)) {
     joint.SetAttribute("type", "continuous");
-    unlimited.push_back(name);
+    guessed.unlimited.push_back(name);
+  }
+  if (limit == nullptr && name != nullptr && type != nullptr &&
+      std::string_view(type) == "prismatic") {
+    joint.SetAttribute("type", "fixed");
+    guessed.fixed.push_back(name);
   }
   if (limit != nullptr) {
     fill_in(*limit, "effort");
@@ -66,13 +77,18 @@ std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
   TiXmlElement out("robot");
   const char* name = robot.Attribute("name");
   out.SetAttribute("name", name != nullptr ? name : "arm");
-  std::vector<std::string> unlimited;
+  Guessed guessed;
   for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
     if (each->ValueStr() == "link") out.InsertEndChild(with_children(*each, {"inertial"}));
-    if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, unlimited));
+    if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
   }
-  if (!unlimited.empty()) {
-    places.warn(fmt::format("limits of zeros: {}; taken as none", fmt::join(unlimited, ", ")));
+  if (!guessed.unlimited.empty()) {
+    places.warn(
+        fmt::format("limits of zeros: {}; taken as none", fmt::join(guessed.unlimited, ", ")));
+  }
+  if (!guessed.fixed.empty()) {
+    places.warn(fmt::format("slides without a <limit>: {}; held still; a <limit> lets them move",
+                            fmt::join(guessed.fixed, ", ")));
   }
   TiXmlDocument document;
   document.InsertEndChild(out);

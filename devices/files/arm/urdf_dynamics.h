@@ -11,7 +11,7 @@ namespace limpid {
 
 // Links with their inertia and joints, as a URDF of its own: whatever else there is cannot trouble
 // its reader. What the format asks for and real files leave out is filled in: limits of nothing but
-// zeros are none, with a warning.
+// zeros are none, and slides without limits are held still, with a warning.
 std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places);
 
 }  // namespace limpid

@@ -106,12 +106,28 @@ TEST(UrdfMotion, SaysWhichJointsHaveHardlyAnyRoom) {
                                 HasSubstr("<limit>"))));
 }
 
+TEST(UrdfMotion, HoldsSlidesWithoutLimitsStill) {
+  const ArmDescription arm = parse(link("a") + joint("a", "b", "prismatic", at("0 0 2")) +
+                                   link("b") + joint("b", "c") + link("c") + hand("c"));
+  ASSERT_EQ(arm.dof(), 1);
+  EXPECT_EQ(arm.joints[0].name, "b_c");
+  EXPECT_EQ(arm.joints[0].origin.translation(), Vec3(0, 0, 2));
+  EXPECT_THAT(arm.warnings, ElementsAre(AllOf(HasSubstr("a_b"), HasSubstr("<limit>"))));
+}
+
 TEST(UrdfMotion, RefusesArmsWhoseLimitsLeaveNoRoomAtAll) {
   const std::string still =
       link("a") + joint("a", "b", "revolute", limit("lower='1' upper='1'", "2")) + link("b");
   EXPECT_THAT(
       refusal([&] { parse(still); }),
       AllOf(HasSubstr("x.urdf"), HasSubstr("no joint that moves"), HasSubstr("lower below upper")));
+}
+
+TEST(UrdfMotion, AsksForATipWhereOnlyAGripperMoves) {
+  const std::string gripper = link("hand") + joint("hand", "left", "prismatic") + link("left") +
+                              joint("hand", "right", "prismatic") + link("right");
+  EXPECT_THAT(refusal([&] { parse(gripper); }), AllOf(HasSubstr("--tip"), HasSubstr("'left'")));
+  EXPECT_EQ(parse(gripper, "left").dof(), 1);
 }
 
 TEST(UrdfMotion, SaysThatATipOnItsOnlyAxisCannotBeMoved) {

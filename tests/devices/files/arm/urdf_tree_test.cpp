@@ -33,8 +33,8 @@ std::vector<std::string> joints_of(const ArmDescription& arm) {
 
 // Two fingers that slide, each limited to 0.01 m and more, on a hand that turns.
 std::string hand_with_fingers(const std::string& second) {
-  return link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1")) + link("b") +
-         joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
+  return link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1") + "<axis xyz='0 0 1'/>") +
+         link("b") + joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
          joint("hand", "left", "prismatic", "<axis xyz='0 1 0'/>" + limit(0.01, 0.04)) +
          link("left", kBall) + joint("hand", "right", "prismatic", second) + link("right", kBall);
 }

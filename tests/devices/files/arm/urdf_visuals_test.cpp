@@ -17,8 +17,11 @@ using testing::HasSubstr;
 std::string visual(const std::string& geometry, const std::string& more = {}) {
   return "<visual>" + more + "<geometry>" + geometry + "</geometry></visual>";
 }
+// Beside the axis of the joint that moves it.
+const std::string kHand = joint("b", "hand", "fixed", "<origin xyz='0 1 0'/>") + link("hand", "");
+
 ArmDescription showing(const std::string& visuals, const std::string& more = {}) {
-  return parse(link("a") + joint("a", "b") + link("b", kInertial + visuals) + more);
+  return parse(link("a") + joint("a", "b") + link("b", kInertial + visuals) + kHand + more);
 }
 
 TEST(UrdfVisuals, AreShapesAndMeshes) {
@@ -30,7 +33,8 @@ TEST(UrdfVisuals, AreShapesAndMeshes) {
             joint("a", "b") +
             link("b", std::string(kInertial) + visual("<cylinder radius='1' length='2'/>") +
                           visual("<sphere radius='3'/>") +
-                          visual("<mesh filename='m.glb' scale='1 -1 2e0'/>")));
+                          visual("<mesh filename='m.glb' scale='1 -1 2e0'/>")) +
+            kHand);
   test::write_file(dir / "x.urdf", text);
   const ArmDescription arm = read_urdf(dir / "x.urdf");
   ASSERT_EQ(arm.visuals.size(), 4u);
