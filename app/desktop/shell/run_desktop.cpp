@@ -63,6 +63,7 @@ class Application {
 
   void open();
   void run(const std::string& complaint);  // about the settings
+  void note_size();                        // of the window, for the next start
   void keep();                             // what is for the next start
   void leave_without_display();
 
@@ -145,7 +146,8 @@ void Application::keep_scene() {
   keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
 }
 
-// The motors first, then what has to be complete, then what is for the next start.
+// Nothing here may ask the display. The motors first, then what has to be complete, then what is
+// for the next start.
 void Application::leave_without_display() {
   fmt::print(stderr, "limpid: the display is gone\n");
   try {
@@ -204,12 +206,15 @@ void Application::say_what_was_saved() {
   }
 }
 
+void Application::note_size() {
+  Settings& settings = desktop_.settings();
+  if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
+}
+
 void Application::keep() {
   if (const SetAside* waiting = desktop_.document().unsaved_set_aside()) {
     keep_changes(waiting->world->document, waiting->arm, waiting->file);
   }
-  Settings& settings = desktop_.settings();
-  if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
   if (const std::string error = save_settings(desktop_.settings_to_keep(), began_);
       !error.empty()) {
     fmt::print(stderr, "limpid: settings not saved: {}\n", error);
@@ -227,6 +232,8 @@ void run_desktop(const DesktopOptions& options) {
   when_display_is_lost([&application] { application.leave_without_display(); });
   application.open();
   application.run(complaint);
+  when_display_is_lost({});  // what is kept is kept here now
+  application.note_size();
   application.keep();
 }
 
