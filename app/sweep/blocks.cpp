@@ -8,6 +8,7 @@
 #include "app/sweep/sweep_table.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
@@ -38,6 +39,15 @@ void check_same(const Belongs& found, const Belongs& own, const fs::path& file) 
 std::string note_of(const Belongs& own, const fs::path& plan) {
   return fmt::format("plan {}\nbuild {}\nfrom {}\n", hex(own.plan), hex(own.build),
                      fs::weakly_canonical(plan).string());
+}
+
+// A block that was cut off is made again.
+hdf5::File opened_if_whole(const fs::path& path) {
+  try {
+    return hdf5::open_to_read(path);
+  } catch (const FileError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -75,7 +85,7 @@ std::optional<std::vector<double>> SweepFolder::read(const SweepBlock& block) co
   const fs::path path = file(block);
   if (!there(block)) return std::nullopt;
   const hdf5::Quiet quiet;
-  const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  const hdf5::File file = opened_if_whole(path);
   if (!file) return std::nullopt;
   std::vector<double> rows(block.size * columns_);
   try {
@@ -86,8 +96,8 @@ std::optional<std::vector<double>> SweepFolder::read(const SweepBlock& block) co
     if (H5Aexists(file.get(), "plan") > 0 && H5Aexists(file.get(), "build") > 0) throw;
     return std::nullopt;
   }
-  const hdf5::Dataset dataset(H5Dopen2(file.get(), "/values", H5P_DEFAULT));
-  if (!dataset) return std::nullopt;
+  if (!hdf5::has(file.get(), "/values", path)) return std::nullopt;
+  const hdf5::Dataset dataset = hdf5::open_dataset(file.get(), "/values", path);
   const hdf5::Dataspace space(H5Dget_space(dataset.get()));
   if (H5Sget_simple_extent_npoints(space.get()) != std::ssize(rows)) return std::nullopt;
   if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {

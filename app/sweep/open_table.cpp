@@ -6,7 +6,7 @@
 
 #include "app/sweep/blocks.h"
 #include "devices/files/file_error.h"
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
 namespace {
@@ -17,15 +17,19 @@ using hdf5::Quiet;
 bool says_it_is(const fs::path& path) {
   const Quiet quiet;
   const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (!file || H5Aexists(file.get(), "format") <= 0) return false;
-  return hdf5::read_text(file.get(), "format", path) == kSweepFormat;
+  // Recordings may be large, and are told from tables without looking through all of them.
+  if (!file || H5Lexists(file.get(), "measure", H5P_DEFAULT) <= 0) return false;
+  try {
+    hdf5::check_before_opening(path);
+    return hdf5::read_text(file.get(), "format", path) == kSweepFormat;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 class TableFile {
  public:
-  explicit TableFile(const fs::path& path)
-      : path_(path), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {
-    hdf5::check(bool(file_), path_, "damaged, or no table of a sweep");
+  explicit TableFile(const fs::path& path) : path_(path), file_(opened(path)), claims_(path) {
     const std::string format = text("format");
     if (format != kSweepFormat) {
       throw FileError(fmt::format("{}: format \"{:.40}\"; needed: \"{}\"", path_.string(), format,
@@ -45,15 +49,19 @@ class TableFile {
   }
 
   template <class Value>
-  std::vector<Value> column(const std::string& name, hid_t type, std::uint64_t rows) const {
-    const hdf5::Dataset dataset(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT));
-    hdf5::check(bool(dataset), path_, ("damaged: " + name).c_str());
+  std::vector<Value> column(const std::string& name, hid_t type, std::uint64_t rows) {
+    if (!hdf5::has(file_.get(), name, path_)) {
+      throw FileError(fmt::format("{}: damaged: {}: missing", path_.string(), name));
+    }
+    const hdf5::Dataset dataset = hdf5::open_dataset(file_.get(), name, path_);
     const hdf5::Dataspace space(H5Dget_space(dataset.get()));
     const auto found = H5Sget_simple_extent_npoints(space.get());
     if (found != static_cast<hssize_t>(rows)) {
       throw FileError(fmt::format("{}: damaged: {}: {} values; needed: {}, as it says",
                                   path_.string(), name, found, rows));
     }
+    claims_.stored(dataset);
+    claims_.take(rows, sizeof(Value), name);
     std::vector<Value> values(rows);
     const bool read =
         H5Dread(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
@@ -68,8 +76,17 @@ class TableFile {
   }
 
  private:
+  static hdf5::File opened(const fs::path& path) {
+    try {
+      return hdf5::open_to_read(path);
+    } catch (const FileError& error) {
+      throw FileError(fmt::format("{} (damaged, or no table of a sweep)", error.what()));
+    }
+  }
+
   const fs::path& path_;
   hdf5::File file_;
+  hdf5::Claims claims_;
 };
 
 // With what its runs need, or why that cannot be had.
@@ -99,7 +116,7 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
 }
 
 // Round by round, as it came about.
-void fill(const TableFile& file, SweepTable& table) {
+void fill(TableFile& file, SweepTable& table) {
   const std::uint64_t rows = file.count("points");
   const auto done = file.column<std::uint8_t>("/done", H5T_NATIVE_UINT8, rows);
   std::vector<std::vector<double>> columns;
@@ -144,7 +161,7 @@ std::optional<fs::path> sweep_table_at(const fs::path& path) {
 
 std::shared_ptr<const OpenedSweep> open_table(const fs::path& path, const OpenedSweep* before) {
   const Quiet quiet;
-  const TableFile file(path);
+  TableFile file(path);
   std::string why_no_run;
   std::shared_ptr<const SweepPlan> plan;
   if (before != nullptr && before->plan->text == file.text_if_any("plan") &&

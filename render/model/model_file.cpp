@@ -5,6 +5,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "core/text/utf8.h"
 #include "render/model/companions.h"
 #include "render/model/gltf_model.h"
 #include "render/model/gltf_pack.h"
@@ -38,9 +39,9 @@ void take_conventions(std::span<const unsigned char> bytes, const std::string& k
   model.unit = 0;
   model.up = Model::Up::unsaid;
   if (kind != "dae") return;
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string text = utf8_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const auto at = text.find("<up_axis>");
-  const auto axis = at == text.npos ? "" : text.substr(at + 9, 8);
+  const std::string axis = at == text.npos ? "" : text.substr(at + 9, 8);
   model.unit = 1;
   model.up = axis.find('Z') != axis.npos ? Model::Up::z : Model::Up::y;
 }

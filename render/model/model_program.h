@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/model/load_progress.h"
+#include "render/model/reader_limits.h"
 
 namespace limpid {
 
@@ -22,5 +23,8 @@ struct ConvertedModel {
 ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::string& kind,
                              const std::string& name, const std::filesystem::path& folder,
                              const LoadProgress& progress);
+
+// Why the program ended as the status of waitpid() says; empty if all is well.
+std::string why_ended(int status, const ReaderLimits& limits);
 
 }  // namespace limpid

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <ranges>
+
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene/model_units.h"
+#include "devices/files/scene/obj_companions.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/scene/scene_writer.h"
@@ -19,10 +23,26 @@ Bytes read_bytes(const fs::path& file) {
   return {text.begin(), text.end()};
 }
 
-// Kinds of models that consist of several files, as a rule.
-bool has_companions(const fs::path& file) {
+// Kinds of models that consist of several files, as a rule, which are not looked for here.
+bool stays(const fs::path& file) {
   const std::string suffix = small_suffix(file);
-  return suffix == ".gltf" || suffix == ".obj" || suffix == ".dae";
+  return suffix == ".gltf" || suffix == ".dae";
+}
+
+bool holds(const fs::path& file, const Bytes& bytes) {
+  std::error_code none;
+  return fs::is_regular_file(file, none) && fs::file_size(file, none) == bytes.size() &&
+         read_bytes(file) == bytes;
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code none;
+  return fs::exists(fs::symlink_status(file, none));
+}
+
+// The name of the i-th thing of one name.
+std::string numbered(const std::string& name, int i) {
+  return i == 1 ? name : fmt::format("{}-{}", name, i);
 }
 
 // The models of a scene, brought to where its file can name them.
@@ -32,7 +52,7 @@ class Models {
   ~Models() {
     std::error_code none;
     if (!kept_) {
-      for (const fs::path& copy : copies_) fs::remove(copy, none);
+      for (const fs::path& copy : std::views::reverse(copies_)) fs::remove(copy, none);
     }
   }
   Models(const Models&) = delete;
@@ -53,27 +73,54 @@ class Models {
     if (there) {
       const fs::path inside = path.lexically_relative(folder_);
       if (!inside.empty() && *inside.begin() != "..") return inside.string();
-      if (has_companions(path)) return path.string();
+      if (stays(path)) return path.string();
+      if (small_suffix(path) == ".obj") return copy_obj(path);
     }
     return bytes != nullptr ? copy(fs::path(name), *bytes) : copy(fs::path(name), read_bytes(path));
   }
 
   std::string copy(const fs::path& name, const Bytes& bytes) {
     for (int i = 1;; ++i) {
-      const std::string number = i == 1 ? "" : fmt::format("-{}", i);
       const fs::path out =
-          folder_ / fmt::format("{}{}{}", name.stem().string(), number, name.extension().string());
-      std::error_code none;
-      if (!fs::exists(fs::symlink_status(out, none))) {
-        write_atomically(out, bytes);
-        copies_.push_back(out);
-        return out.filename().string();
-      }
-      if (fs::is_regular_file(out, none) && fs::file_size(out, none) == bytes.size() &&
-          read_bytes(out) == bytes) {
-        return out.filename().string();
-      }
+          folder_ / (numbered(name.stem().string(), i) + name.extension().string());
+      if (!is_there(out)) write(out, bytes);
+      if (holds(out, bytes)) return out.filename().string();
     }
+  }
+
+  // It names its companions, which therefore keep their names: in a folder of their own.
+  std::string copy_obj(const fs::path& path) {
+    std::vector<fs::path> files = obj_companions(path);
+    if (files.empty()) return copy(path.filename(), read_bytes(path));
+    files.push_back(path.filename());
+    for (int i = 1;; ++i) {
+      const fs::path name = numbered(path.stem().string(), i);
+      const bool fresh = !is_there(folder_ / name);
+      if (fresh) make_folder(folder_ / name);
+      const bool same = std::ranges::all_of(files, [&](const fs::path& each) {
+        const fs::path out = folder_ / name / each;
+        const Bytes bytes = read_bytes(path.parent_path() / each);
+        if (fresh) make_folder(out.parent_path());
+        if (fresh && !is_there(out)) write(out, bytes);
+        return holds(out, bytes);
+      });
+      if (same) return (name / path.filename()).string();
+    }
+  }
+
+  void write(const fs::path& out, const Bytes& bytes) {
+    write_atomically(out, bytes);
+    copies_.push_back(out);
+  }
+
+  void make_folder(const fs::path& out) {
+    if (is_there(out)) return;
+    make_folder(out.parent_path());
+    std::error_code error;
+    if (!fs::create_directory(out, error)) {
+      throw FileError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
+    }
+    copies_.push_back(out);
   }
 
   fs::path folder_;

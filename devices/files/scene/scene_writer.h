@@ -17,8 +17,9 @@ std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
 
 // Writes the scene to `file` at one stroke, and returns it as that file has it. Models in the
 // file's folder are named relative to it; others are copied beside it, under another name where a
-// different file has theirs, except for .gltf, .obj and .dae: they consist of several and stay
-// where they are. Errors: FileError; `file` is then as it was.
+// different file has theirs: an .obj that has materials or pictures with these, in a folder of
+// their own. Of .gltf and .dae, which may also consist of several files, the scene names where they
+// are. Errors: FileError; `file` is then as it was.
 SceneDocument save_scene(const SceneDocument& document, const ArmDescription& arm,
                          const std::filesystem::path& file);
 

@@ -10,6 +10,8 @@
 namespace limpid::hdf5 {
 namespace {
 
+constexpr std::size_t kLongestText = std::size_t{64} << 20;  // [bytes]
+
 struct Reasons {
   std::string system;
   std::string innermost;
@@ -62,7 +64,7 @@ std::string last_error() {
   Reasons reasons;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, &collect, &reasons);
   if (!reasons.system.empty()) return reasons.system;
-  return reasons.innermost.empty() ? "unknown reason" : reasons.innermost;
+  return reasons.innermost.empty() ? "HDF5 gives no reason" : reasons.innermost;
 }
 
 void check(bool ok, const std::filesystem::path& file, const char* what) {
@@ -109,6 +111,7 @@ std::string read_text(hid_t object, const char* name, const std::filesystem::pat
     H5free_memory(text);
     return copy;
   }
+  if (H5Tget_size(type.get()) > kLongestText) refuse(file, name, "too long", "at most 64 MiB");
   std::string text(H5Tget_size(type.get()), '\0');
   if (H5Aread(attribute.get(), type.get(), text.data()) < 0) {
     refuse(file, name, "unreadable", "text");

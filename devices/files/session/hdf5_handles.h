@@ -47,6 +47,7 @@ class Quiet {
  public:
   Quiet() {
     H5dont_atexit();
+    H5PLset_loading_state(0);  // files can name filters, which are code that HDF5 would look for
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

@@ -6,7 +6,7 @@
 #include <bit>
 #include <optional>
 
-#include "devices/files/session/session_names.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session_source.h"
 
 namespace limpid {
@@ -70,9 +70,8 @@ std::string check_columns() {
 }
 
 CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file) {
-  if (!exists(root, kCheckPath)) return {session.size(), ""};
-  const hdf5::Dataset sums(H5Dopen2(root, within_group(kCheckPath), H5P_DEFAULT));
-  if (!sums) refuse(file, fmt::format("{}: not a dataset that can be read", kCheckPath));
+  if (!hdf5::has(root, kCheckPath, file)) return {session.size(), ""};
+  const hdf5::Dataset sums = hdf5::open_dataset(root, kCheckPath, file);
   const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
   const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));
   if (block < 1 || block > kMostBlockRows || columns.empty() || columns.size() > kMostColumns) {
@@ -99,7 +98,7 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
       const auto column = static_cast<std::size_t>(*columns[i]);
       if (found[column] == wanted[i]) continue;
       const char* path = kColumnInfo[column].path;
-      if (!exists(root, path)) continue;  // a column that somebody left out
+      if (!hdf5::has(root, path, file)) continue;  // a column that somebody left out
       return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
                                 "another program (which then has to delete /check)",
                                 path, rows)};

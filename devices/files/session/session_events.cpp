@@ -45,14 +45,13 @@ std::vector<std::string> read_event_settings(const Source& source, const fs::pat
 
 }  // namespace
 
-void read_changes(hid_t root, Session& session, const fs::path& file) {
-  if (!exists(root, kEventRowPath) || !exists(root, kEventSettingPath)) return;
+void read_changes(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
+  if (!hdf5::has(root, kEventRowPath, file) || !hdf5::has(root, kEventSettingPath, file)) return;
   const Source row_source = open_source(root, kEventRowPath, 1, file);
   const Source setting_source = open_source(root, kEventSettingPath, 1, file);
-  if (static_cast<double>(std::max(row_source.rows, setting_source.rows)) >
-      kMostZerosPerByte * static_cast<double>(fs::file_size(file))) {
-    refuse(file, "/events: more than a file of its size can hold");
-  }
+  for (const Source* source : {&row_source, &setting_source}) claims.stored(source->dataset);
+  claims.take(row_source.rows, sizeof(std::uint64_t), row_source.path);
+  claims.take(setting_source.rows, sizeof(std::string) + 2 * kSettingLength, setting_source.path);
   const auto rows = read_event_rows(row_source, file);
   const auto settings = read_event_settings(setting_source, file);
   if (rows.size() != settings.size() && !is_leftover(file)) {

@@ -9,7 +9,6 @@ namespace {
 
 constexpr const char* kGroup = "/models";
 constexpr std::size_t kMostModels = 64;
-constexpr hsize_t kMostBytesPerByte = 1100;  // of gzip at its best
 
 std::string dataset_path(std::size_t i) { return fmt::format("{}/{}", kGroup, i); }
 
@@ -31,15 +30,17 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
   }
 }
 
-SceneFiles read_models(hid_t root, const std::filesystem::path& file) {
+SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims) {
+  std::vector<Source> sources;
+  for (std::size_t i = 0; i < kMostModels && hdf5::has(root, dataset_path(i), file); ++i) {
+    const Source& source =
+        sources.emplace_back(open_source(root, dataset_path(i).c_str(), 1, file));
+    claims.stored(source.dataset);
+    claims.take(source.rows, 1, source.path);
+  }
   SceneFiles models;
-  if (H5Lexists(root, kGroup, H5P_DEFAULT) <= 0) return models;
-  for (std::size_t i = 0; i < kMostModels && exists(root, dataset_path(i)); ++i) {
-    const std::string path = dataset_path(i);
-    const Source source = open_source(root, path.c_str(), 1, file);
-    if (source.rows > kMostBytesPerByte * std::filesystem::file_size(file)) {
-      refuse(file, path + ": more than a file of its size can hold");
-    }
+  for (const Source& source : sources) {
+    const std::string& path = source.path;
     const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
     std::vector<unsigned char> bytes(source.rows);
     if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 1 ||

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "devices/files/scene_files.h"
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
 
@@ -14,6 +14,6 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
 
 // None in a session that has none. Errors: FileError for what is no such dataset or claims more
 // than a file of this size can hold.
-SceneFiles read_models(hid_t root, const std::filesystem::path& file);
+SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
 
 }  // namespace limpid

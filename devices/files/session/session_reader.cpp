@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/tick/parameters.h"
-#include "devices/files/session/hdf5_heaps.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session_check.h"
 #include "devices/files/session/session_events.h"
 #include "devices/files/session/session_models.h"
@@ -54,11 +54,7 @@ hdf5::File open_as(const fs::path& file, unsigned flags) {
 }
 
 hdf5::File open(const fs::path& file) {
-  std::error_code error;
-  if (const std::string why = why_not_found(file, "no such file"); !why.empty()) refuse(file, why);
-  if (!fs::is_regular_file(file, error)) refuse(file, "not a file that can be read");
-  if (H5Fis_hdf5(file.c_str()) <= 0) refuse(file, "not an HDF5 file, or cut off");
-  hdf5::check_heaps(file);
+  hdf5::check_before_opening(file);
   if (is_leftover(file)) {
     hdf5::File opened = open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ);
     if (!opened) refuse(file, "no row was recorded before it was killed, or the file is damaged");
@@ -91,7 +87,7 @@ std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
   return slides;
 }
 
-SessionInfo read_info(hid_t root, const fs::path& file) {
+SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
   const std::string format = hdf5::read_text(root, "format", file);
   if (format != kSessionFormat) {
     refuse(file, fmt::format("format \"{:.40}\"; needed: \"{}\"", format, kSessionFormat));
@@ -117,15 +113,13 @@ SessionInfo read_info(hid_t root, const fs::path& file) {
   }
   if (H5Aexists(root, "build") > 0) info.build = hdf5::read_text(root, "build", file);
   if (version > 1) info.slides = read_slides(root, info.dof, file);
-  info.models = read_models(root, file);
+  info.models = read_models(root, file, claims);
   return info;
 }
 
 hdf5::Group twin_group(hid_t root, const fs::path& file) {
-  if (!exists(root, std::string("/") + kTwinGroup)) return {};
-  hdf5::Group group(H5Gopen2(root, kTwinGroup, H5P_DEFAULT));
-  if (!group) refuse(file, "/twin: not a group that can be read");
-  return group;
+  if (!hdf5::has(root, kTwinGroup, file)) return {};
+  return hdf5::open_group(root, kTwinGroup, file);
 }
 
 // Copies a column into the rows. Returns how many rows were there and whole; fewer than asked for
@@ -155,27 +149,25 @@ std::size_t read_column(const Source& source, Session& session, Column column,
 }
 
 std::size_t agreed_rows(const std::vector<Source>& sources, const RowLayout& layout,
-                        const fs::path& file) {
+                        const fs::path& file, hdf5::Claims& claims) {
   hsize_t rows = sources.front().rows;
   for (const Source& source : sources) {
+    claims.stored(source.dataset);
     if (source.rows != rows && !is_leftover(file)) {
       refuse(file, fmt::format("{} has {} rows, {} has {}; needed: the same", source.path,
                                source.rows, sources.front().path, sources.front().rows));
     }
     rows = std::min(rows, source.rows);
   }
-  const double claimed = static_cast<double>(rows) * layout.stride() * sizeof(double);
-  if (claimed > kMostZerosPerByte * static_cast<double>(fs::file_size(file))) {
-    refuse(file, fmt::format("claims {} rows, more than a file of its size can hold", rows));
-  }
+  claims.take(rows, static_cast<std::uint64_t>(layout.stride()) * sizeof(double), "rows");
   return static_cast<std::size_t>(rows);
 }
 
-void read_rows(hid_t root, Session& session, const fs::path& file) {
+void read_rows(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
   std::vector<Source> sources;
   std::vector<Column> columns;
   for (const ColumnInfo& column : kColumnInfo) {
-    if (!exists(root, column.path)) {
+    if (!hdf5::has(root, column.path, file)) {
       if (default_of(column.column)) continue;
       refuse(file, fmt::format("{}: missing", column.path));
     }
@@ -183,7 +175,7 @@ void read_rows(hid_t root, Session& session, const fs::path& file) {
     columns.push_back(column.column);
   }
   const auto stride = static_cast<std::size_t>(session.layout.stride());
-  std::size_t whole = agreed_rows(sources, session.layout, file);
+  std::size_t whole = agreed_rows(sources, session.layout, file, claims);
   session.rows.resize(whole * stride);
   for (const ColumnInfo& column : kColumnInfo) {
     const auto value = default_of(column.column);
@@ -284,26 +276,26 @@ void shorten(Session& session, std::size_t rows) {
 
 // One run: at the file's root, or in the twin's group. A leftover's rows that are not whole stay
 // away.
-void read_run(hid_t group, Session& session, const fs::path& file) {
-  read_rows(group, session, file);
+void read_run(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
+  read_rows(group, session, file, claims);
   const CheckedRows checked = checked_rows(group, session, file);
   if (is_leftover(file)) {
     session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
   }
-  read_changes(group, session, file);
+  read_changes(group, session, file, claims);
   check_rows(session, file);
   if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
   shorten(session, take_units_off(group, session, file));
 }
 
-void read_twin(hid_t group, Session& session, const fs::path& file) {
+void read_twin(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
   session.info.twin = hdf5::read_text(group, "config", file);
   Session twin;
   twin.info = session.info;
   twin.info.config = *session.info.twin;
   twin.info.twin.reset();
   twin.layout = session.layout;
-  read_run(group, twin, file);
+  read_run(group, twin, file, claims);
   if (twin.size() != session.size() && !is_leftover(file)) {
     refuse(file, fmt::format("/twin has {} rows, the other run {}; needed: the same", twin.size(),
                              session.size()));
@@ -320,12 +312,13 @@ Session read_session(const fs::path& file) {
   const hdf5::Quiet quiet;
   const hdf5::File opened = open(file);
   Session session;
-  session.info = read_info(opened.get(), file);
+  hdf5::Claims claims(file);
+  session.info = read_info(opened.get(), file, claims);
   session.layout = RowLayout(session.info.dof);
   try {
-    read_run(opened.get(), session, file);
+    read_run(opened.get(), session, file, claims);
     if (const hdf5::Group twin = twin_group(opened.get(), file)) {
-      read_twin(twin.get(), session, file);
+      read_twin(twin.get(), session, file, claims);
     }
   } catch (const std::bad_alloc&) {
     refuse(file, "larger than this computer's memory");

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "devices/files/file_error.h"
-#include "devices/files/session/session_names.h"
+#include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
 
@@ -13,16 +13,8 @@ void refuse(const std::filesystem::path& file, const std::string& why) {
   throw FileError(fmt::format("{}: {}", file.string(), why));
 }
 
-bool exists(hid_t root, const std::string& path) {
-  const std::string inside = within_group(path.c_str());
-  const std::string group = inside.substr(0, inside.find('/'));
-  return H5Lexists(root, group.c_str(), H5P_DEFAULT) > 0 &&
-         (group == inside || H5Lexists(root, inside.c_str(), H5P_DEFAULT) > 0);
-}
-
 Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file) {
-  Source source{hdf5::Dataset(H5Dopen2(root, within_group(path), H5P_DEFAULT)), path, 0, width};
-  if (!source.dataset) refuse(file, fmt::format("{}: not a dataset that can be read", path));
+  Source source{hdf5::open_dataset(root, path, file), path, 0, width};
   const hdf5::Dataspace space(H5Dget_space(source.dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(space.get());
   const bool table = rank == 2;

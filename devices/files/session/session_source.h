@@ -18,9 +18,6 @@ struct Source {
   hsize_t width = 1;
 };
 
-// No compression HDF5 has packs zeros tighter; what claims more rows than this is broken.
-inline constexpr double kMostZerosPerByte = 2000;
-
 // A recording that is running or was killed.
 inline bool is_leftover(const std::filesystem::path& file) { return file.extension() == ".part"; }
 
@@ -28,9 +25,8 @@ inline bool is_leftover(const std::filesystem::path& file) { return file.extensi
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
 
 // `root`: the file's, or a twin's group. Paths begin with "/" either way.
-bool exists(hid_t root, const std::string& path);
-
-// Errors: FileError for what is no dataset or of another shape (or, for a column, type).
+// Errors: FileError for what open_dataset() refuses, or is of another shape (or, for a column,
+// type).
 Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file);
 Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
                    const std::filesystem::path& file);

@@ -4,7 +4,7 @@
 
 #include "devices/files/file_error.h"
 #include "devices/files/place.h"
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
 
@@ -51,6 +51,7 @@ void attach_story(const fs::path& session, const std::string& story) {
 
 std::string attached_story(const std::filesystem::path& session) {
   const hdf5::Quiet quiet;
+  hdf5::check_regular_file(session);
   const hdf5::File file(H5Fopen(session.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file || H5Aexists(file.get(), kStory) <= 0) return {};
   return hdf5::read_text(file.get(), kStory, session);

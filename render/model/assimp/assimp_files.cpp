@@ -1,9 +1,12 @@
 #include "render/model/assimp/assimp_files.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+
+#include "render/model/assimp/readable.h"
 
 namespace limpid {
 namespace {
@@ -40,6 +43,14 @@ class Stream : public Assimp::IOStream {
   std::size_t at_ = 0;
 };
 
+std::string kind_of(const std::string& file) {
+  const std::size_t dot = file.rfind('.');
+  std::string kind = dot == std::string::npos ? "" : file.substr(dot + 1);
+  std::ranges::transform(kind, kind.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return kind;
+}
+
 // Models made elsewhere name files as their own system does.
 std::string portable(std::string file) {
   std::replace(file.begin(), file.end(), '\\', '/');
@@ -56,6 +67,7 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
   if (file == main_) return new Stream(bytes_);
   if (std::string_view(file).starts_with(kStem)) return nullptr;
   auto found = read(file);
+  if (auto better = readable(found, kind_of(file))) found = std::move(*better);
   return found.empty() ? nullptr : new Stream(std::move(found));
 }
 
@@ -64,6 +76,7 @@ std::vector<unsigned char> AssimpFiles::read(const std::string& file) {
   try {
     if (auto found = companions_.none() ? std::nullopt : companions_.read(portable(file))) {
       any_read_ = true;
+      found_(found->size());
       return std::move(*found);
     }
   } catch (const std::runtime_error&) {

@@ -3,6 +3,7 @@
 
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,8 +15,10 @@ namespace limpid {
 class AssimpFiles : public Assimp::IOSystem {
  public:
   // All of these outlive this.
-  AssimpFiles(std::span<const unsigned char> bytes, const std::string& kind, Companions& companions)
-      : bytes_(bytes), main_(kStem + kind), companions_(companions) {}
+  // `found` is told how many bytes each of them has.
+  AssimpFiles(std::span<const unsigned char> bytes, const std::string& kind, Companions& companions,
+              std::function<void(std::size_t)> found)
+      : bytes_(bytes), main_(kStem + kind), companions_(companions), found_(std::move(found)) {}
 
   const std::string& main() const { return main_; }  // the model's name here
 
@@ -37,6 +40,7 @@ class AssimpFiles : public Assimp::IOSystem {
   std::span<const unsigned char> bytes_;
   std::string main_;
   Companions& companions_;
+  std::function<void(std::size_t)> found_;
   std::vector<std::string> warnings_;
   bool any_read_ = false;
 };

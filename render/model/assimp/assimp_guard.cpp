@@ -37,7 +37,11 @@ void guard(std::string_view text, std::string_view word, std::size_t size) {
 
 void guard_counts(std::span<const unsigned char> bytes, const std::string& kind) {
   const std::string_view text = text_of(bytes);
-  if (kind == "ply") guard(text.substr(0, text.find("end_header")), "element ", text.size());
+  if (kind == "ply") {
+    const auto end = text.find("end_header");
+    if (end == text.npos) throw std::runtime_error("is cut off: its header has no end_header");
+    guard(text.substr(0, end), "element ", text.size());
+  }
   if (kind == "dae") {
     for (const std::string_view word : {"count=", "stride=", "offset="})
       guard(text, word, text.size());

@@ -193,7 +193,11 @@ AssimpModel read_with_assimp(AssimpFiles* files, const std::string& kind,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* const scene =
       importer.ReadFile(files->main(), aiProcess_Triangulate | aiProcess_SortByPType);
-  if (scene == nullptr || scene->mRootNode == nullptr) refuse(in_words(importer.GetErrorString()));
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    const std::string why = importer.GetErrorString();
+    if (why.find("bad_alloc") != why.npos) throw std::bad_alloc();
+    refuse(in_words(why));
+  }
   AssimpModel out = Builder(*scene, kind, *files).build();
   out.model.warnings = files->warnings();
   out.outside = files->any_read();

@@ -3,9 +3,11 @@
 //
 //   limpid-model KIND FOLDER NUMBER <model >model.glb
 //
-// KIND is a suffix as "stl"; FOLDER may have files that the model refers to, if it is not empty. To
-// the file of descriptor NUMBER go lines: "part 0.5", "warning ...", "error ..." (and it leaves
-// with 1), "outside" if other files were read.
+// KIND is a suffix as "stl"; FOLDER may have files that the model refers to, if it is not empty;
+// nothing else is within its reach (see sandbox.h). To the file of descriptor NUMBER, which is 3,
+// go lines: "part 0.5", "warning ...", "outside" if other files were read, "bytes 123" of the model
+// and those together; "error ..." or, if there was too little of that, "memory", and it leaves
+// with 1.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -20,20 +22,27 @@
 #include "render/model/assimp/assimp_guard.h"
 #include "render/model/assimp/assimp_model.h"
 #include "render/model/assimp/glb_writer.h"
+#include "render/model/assimp/readable.h"
+#include "render/model/reader_limits.h"
+#include "render/model/sandbox.h"
 
 namespace {
 
-// Much more than a model of so many bytes needs: some broken files are read for ever.
-void limit_self(std::size_t bytes) {
-  const auto set = [](auto what, rlim_t most) {
-    const rlimit limit{most, most};
-    setrlimit(what, &limit);
-  };
-  set(RLIMIT_CORE, 0);
-  set(RLIMIT_CPU, 3 + (bytes >> 20));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  set(RLIMIT_AS, rlim_t{8} << 30);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;  // which takes addresses and system calls of its own
+#else
+constexpr bool kSanitized = false;
 #endif
+
+// More than a model of so many bytes needs: some broken files are read for ever. The limits that
+// can be raised again grow with the files that it turns out to refer to.
+void limit_self(std::size_t bytes) {
+  const limpid::ReaderLimits now = limpid::reader_limits(bytes);
+  const limpid::ReaderLimits most = limpid::reader_limits(limpid::kLargestModelFiles);
+  const rlimit none{0, 0}, seconds{now.seconds, most.seconds}, memory{now.memory, most.memory};
+  setrlimit(RLIMIT_CORE, &none);
+  setrlimit(RLIMIT_CPU, &seconds);
+  if (!kSanitized) setrlimit(RLIMIT_AS, &memory);
 }
 
 std::span<const unsigned char> standard_input() {
@@ -66,11 +75,19 @@ int main(int count, char** words) {
   try {
     const std::string name = "model", kind = words[1];
     const auto bytes = standard_input();
-    limit_self(bytes.size());
-    limpid::guard_counts(bytes, kind);
+    std::size_t size = bytes.size();
+    limit_self(size);
+    if (!kSanitized) limpid::enter_sandbox(words[2]);
     limpid::Companions companions(name, words[2],
                                   std::min(bytes.size(), limpid::kLargestModelFiles));
-    auto* const files = new limpid::AssimpFiles(bytes, kind, companions);
+    const auto better = limpid::readable(bytes, kind);
+    const std::span<const unsigned char> model = better ? *better : bytes;
+    limpid::guard_counts(model, kind);
+    const auto grow = [&](std::size_t more) {
+      limit_self(size += more);
+      std::fprintf(lines, "bytes %zu\n", size);
+    };
+    auto* const files = new limpid::AssimpFiles(model, kind, companions, grow);
     const auto read = limpid::read_with_assimp(
         files, kind, [&](double part) { std::fprintf(lines, "part %.3f\n", part); });
     for (const std::string& warning : read.model.warnings)
@@ -79,7 +96,7 @@ int main(int count, char** words) {
     put(limpid::glb_of(read.model, read.pictures));
     return std::fclose(lines) == 0 ? 0 : 1;
   } catch (const std::bad_alloc&) {
-    std::fputs("error is too large for the memory\n", lines);
+    std::fputs("memory\n", lines);
   } catch (const std::exception& e) {
     std::fprintf(lines, "error %s\n", e.what());
   }

@@ -96,6 +96,30 @@ TEST_F(Tables, SayWhatTheyLack) {
   EXPECT_THAT(refusal(file), HasSubstr("damaged"));
 }
 
+TEST_F(Tables, HaveNothingOfOtherFiles) {
+  const fs::path file = written(test::sweep_plan(dir_, kMaps));
+  const auto put = [&](hid_t creation) {
+    const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(h5, "/measure/stable", H5P_DEFAULT);
+    const hsize_t size = 18;
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    H5Dclose(H5Dcreate2(h5, "/measure/stable", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation,
+                        H5P_DEFAULT));
+    H5Sclose(space);
+    H5Fclose(h5);
+  };
+  const hid_t elsewhere = H5Pcreate(H5P_DATASET_CREATE);
+  ASSERT_GE(H5Pset_external(elsewhere, (dir_ / "plan.toml").c_str(), 0, 18 * 8), 0);
+  put(elsewhere);
+  H5Pclose(elsewhere);
+  EXPECT_THAT(refusal(file), HasSubstr("/measure/stable: is stored in other files"));
+  const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Ldelete(h5, "/measure/stable", H5P_DEFAULT);
+  H5Lcreate_external("other.h5", "/a", h5, "/measure/stable", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(h5);
+  EXPECT_THAT(refusal(file), HasSubstr("/measure/stable: is a link to another file"));
+}
+
 TEST_F(Tables, AreLookedAtWithoutTheFilesOfTheirPlanButNotRun) {
   std::string text = kMaps;
   text.replace(text.find("free.toml"), 9, "mine.toml");

@@ -3,10 +3,17 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <bit>
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
+#include "render/model/model_program.h"
 #include "tests/render/model/gltf_builder.h"
 #include "tests/support/temp_dir.h"
 
@@ -102,6 +109,87 @@ TEST(ModelFile, ReadsTheSameBodyFromEveryKind) {
   }
 }
 
+std::string dae(const std::string& encoding = "utf-8") {
+  std::string points, corners;
+  for (const Vector3f& p : kCorners) points += fmt::format("{} {} {} ", p.x(), p.y(), p.z());
+  for (const auto& face : kFaces) corners += fmt::format("{} {} {} ", face[0], face[1], face[2]);
+  return "<?xml version=\"1.0\" encoding=\"" + encoding +
+         "\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">"
+         "<asset><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id=\"g\"><mesh>"
+         "<source id=\"p\"><float_array id=\"pa\" count=\"12\">" +
+         points +
+         "</float_array><technique_common><accessor source=\"#pa\" count=\"4\" stride=\"3\">"
+         "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
+         "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+         "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>"
+         "<triangles count=\"4\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>" +
+         corners +
+         "</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+         "<visual_scene id=\"s\"><node id=\"n\"><instance_geometry url=\"#g\"/></node>"
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene>"
+         "</COLLADA>";
+}
+
+// With such a first coordinate, and perhaps elements that mean nothing here.
+Bytes binary_ply(float first, const std::string& element = "", const Bytes& its_data = {}) {
+  Bytes out = bytes_of("ply\nformat binary_little_endian 1.0\n" + element +
+                       "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                       "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
+  out.insert(out.end(), its_data.begin(), its_data.end());
+  for (std::size_t i = 0; i < kCorners.size(); ++i) {
+    const Vector3f& p = kCorners[i];
+    append_values<float>(out, {i == 0 ? first : p.x(), p.y(), p.z()});
+  }
+  for (const auto& face : kFaces) {
+    append_values<std::uint8_t>(out, {3});
+    for (const int i : face) append_values<std::int32_t>(out, {i});
+  }
+  return out;
+}
+
+float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
+
+Bytes wide(const std::string& text, bool big) {
+  Bytes out = big ? Bytes{0xFE, 0xFF} : Bytes{0xFF, 0xFE};
+  for (const char c : text) {
+    if (big) out.push_back(0);
+    out.push_back(static_cast<unsigned char>(c));
+    if (!big) out.push_back(0);
+  }
+  return out;
+}
+
+// Each of them is right, and the library refuses it or crashes.
+TEST(ModelFile, ReadsWhatItsLibraryDoesNot) {
+  const std::string empty = "solid two\nendsolid two\n";
+  std::string small = obj();
+  small.replace(small.find("v 0 0 0"), 7, "v .0e-1 -.0\t.0");
+  const std::map<std::string, Bytes> all{
+      {"empty solid behind.stl", bytes_of(text_stl() + empty)},
+      {"empty solid before.stl", bytes_of(empty + text_stl())},
+      {"no zero before the point.obj", bytes_of(small)},
+      {"line end.ply", binary_ply(from_bits(0x3000000a))},
+      {"line ends.ply", binary_ply(from_bits(0x300a0d0a))},
+      {"no line end.ply", binary_ply(0)},
+      {"camera.ply", binary_ply(0, "element camera 2\nproperty uchar a\n", {7, 8})},
+      {"little.dae", wide(dae("utf-16"), false)},
+      {"big.dae", wide(dae("utf-16"), true)},
+      {"blanks.dae", bytes_of(" \r\n\t" + dae())},
+      {"plain.dae", bytes_of(dae())},
+  };
+  for (const auto& [name, bytes] : all) {
+    const Model model = parse_model(bytes, name);
+    EXPECT_EQ(model.indices.size(), 12u) << name;
+    EXPECT_NEAR(volume(model), 6, 1e-5) << name;
+    if (name.ends_with(".dae")) {
+      EXPECT_EQ(model.up, Model::Up::z) << name;
+    }
+  }
+  const Model model = parse_model(binary_ply(from_bits(0x3000000a)), "a.ply");
+  EXPECT_TRUE(std::ranges::any_of(
+      model.vertices, [](const Vertex& v) { return v.position.x() == from_bits(0x3000000a); }));
+}
+
 TEST(ModelFile, KeepsTheColoursOfVertices) {
   for (const Vertex& v : parse_model(bytes_of(ply()), "a.ply").vertices)
     EXPECT_TRUE(v.color.isApprox(Vector3f(1, 0, 0)));
@@ -149,6 +237,13 @@ TEST_F(ModelFolder, CanBeCarriedAway) {
     EXPECT_EQ(there.vertices[i].position, here.vertices[i].position);
 }
 
+// Programs that write physically based materials write how far a highlight is drawn out.
+TEST_F(ModelFolder, MayHaveMaterialsWithAnisotropy) {
+  write("a.mtl",
+        "newmtl red\nKd 1 0 0\naniso 0.5\nanisor .1\nnewmtl seen\nKd 0 0 0\nmap_Kd red.png\n");
+  expect_red_and_picture(load_model_file(folder_ / "a.obj"));
+}
+
 TEST_F(ModelFolder, StaysTouchableWithoutItsFiles) {
   std::filesystem::remove(folder_ / "red.png");
   const Model model = load_model_file(folder_ / "a.obj");
@@ -190,6 +285,54 @@ TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
       }
     }
   }
+}
+
+// Without a look at the header first it took seconds of processor time.
+TEST(ModelFile, SaysThatAPlyIsCutOffInItsHeader) {
+  const std::string text = ply();
+  EXPECT_EQ(refusal(bytes_of(text.substr(0, text.find("end_header"))), "a.ply"),
+            "a.ply: is cut off: its header has no end_header");
+}
+
+// Forty nodes, each of which stands for two of the one before.
+TEST(ModelFile, SaysThatItWouldTakeTooMuch) {
+  std::string nodes = "<library_nodes><node id=\"n0\"><instance_geometry url=\"#g\"/></node>";
+  for (int i = 1; i < 40; ++i) {
+    nodes += fmt::format(
+        "<node id=\"n{0}\"><instance_node url=\"#n{1}\"/><instance_node url=\"#n{1}\"/></node>", i,
+        i - 1);
+  }
+  std::string text = dae();
+  text.insert(text.find("<library_visual_scenes>"), nodes + "</library_nodes>");
+  const std::string one = "<instance_geometry url=\"#g\"/></node></visual_scene>";
+  text.replace(text.find(one), one.size(), "<instance_node url=\"#n39\"/></node></visual_scene>");
+  const std::string why = refusal(bytes_of(text), "a.dae");
+  EXPECT_NE(why.find("which is all that a model of its size gets"), std::string::npos) << why;
+}
+
+int status_of(void (*end)()) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    end();
+    _exit(0);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(ModelFile, SaysHowItsReaderEnded) {
+  const ReaderLimits limits = reader_limits(1000);
+  const auto why = [&](void (*end)()) { return why_ended(status_of(end), limits); };
+  EXPECT_EQ(why([] {}), "");
+  EXPECT_EQ(why([] { _exit(3); }), "cannot be read: the program limpid-model ended with status 3");
+  EXPECT_EQ(why([] { std::abort(); }), "is damaged: the program that reads it crashed (SIGABRT)");
+  EXPECT_EQ(why([] { kill(getpid(), SIGSEGV); }),
+            "is damaged: the program that reads it crashed (SIGSEGV)");
+  EXPECT_EQ(why([] { kill(getpid(), SIGXCPU); }),
+            "takes more than 3 s to be read, which is all that a model of its size gets");
 }
 
 // A count that no file of its size can have: memory for it must not be looked for here.

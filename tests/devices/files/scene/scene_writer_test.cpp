@@ -317,6 +317,48 @@ TEST_F(SavedScene, LeavesModelsOfSeveralFilesWhereTheyAre) {
   EXPECT_FALSE(fs::exists(folder_ / "gear.gltf"));
 }
 
+TEST_F(SavedScene, TakesAnObjAlongWithItsMaterialsAndPictures) {
+  const std::string obj = "mtllib gear.mtl none.mtl\nv 0 0 0\n";
+  fs::create_directory(elsewhere_ / "maps");
+  test::write_file(elsewhere_ / "gear.mtl",
+                   "newmtl a\nmap_Kd -s 1 1 1 maps\\red.png\nbump two words.png\n"
+                   "map_Ks ../key\nmap_Ka linked.png\n");
+  test::write_file(elsewhere_ / "maps/red.png", "red");
+  test::write_file(elsewhere_ / "two words.png", "two");
+  test::write_file(dir_ / "key", "secret");
+  fs::create_symlink(dir_ / "key", elsewhere_ / "linked.png");
+  const SceneDocument scene = with_mesh(elsewhere_ / "gear.obj", obj);
+  const SceneDocument saved = save_scene(scene, arm_, file_);
+  EXPECT_EQ(saved.scene.meshes[0].model, "gear/gear.obj");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear/gear.obj"), obj);
+  EXPECT_EQ(test::file_bytes(folder_ / "gear/gear.mtl"), test::file_bytes(elsewhere_ / "gear.mtl"));
+  EXPECT_EQ(test::file_bytes(folder_ / "gear/maps/red.png"), "red");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear/two words.png"), "two");
+  EXPECT_FALSE(fs::exists(folder_ / "gear/linked.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "key"));
+  // The same again is there already; another one of its name is not.
+  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "gear/gear.obj");
+  test::write_file(folder_ / "gear/gear.mtl", "somebody else's");
+  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "gear-2/gear.obj");
+  fs::remove_all(elsewhere_);
+  EXPECT_EQ(path_read_again(), (folder_ / "gear-2/gear.obj").string());
+}
+
+TEST_F(SavedScene, TakesAnObjAlongThatStandsAlone) {
+  const SceneDocument saved =
+      save_scene(with_mesh(elsewhere_ / "gear.OBJ", "v 0 0 0\n"), arm_, file_);
+  EXPECT_EQ(saved.scene.meshes[0].model, "gear.OBJ");
+  EXPECT_EQ(test::file_bytes(folder_ / "gear.OBJ"), "v 0 0 0\n");
+}
+
+TEST_F(SavedScene, LeavesNoPartOfAnObjBehindWhereItCannotBeWritten) {
+  test::write_file(elsewhere_ / "gear.mtl", "newmtl a\n");
+  SceneDocument scene = with_mesh(elsewhere_ / "gear.obj", "mtllib gear.mtl\n");
+  scene.scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
+  EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
+  EXPECT_FALSE(fs::exists(folder_ / "gear"));
+}
+
 TEST_F(SavedScene, WritesModelsOutOfASessionBesideIt) {
   SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
   scene.scene.meshes[0].model = "parts/wheel.glb";
