@@ -129,7 +129,7 @@ class Recording(WithAnArm):
 
     def test_a_change_comes_at_its_time_whatever_the_tick(self) -> None:
         """Recorded changes are at rows; of another tick other rows have the same time."""
-        first = self.record("--hand", "touch.csv", "--duration", "0.6")
+        first = self.record("--hand", ASSETS / "hands/touch.csv", "--duration", "0.6")
         with h5py.File(first, "r+") as file:
             for name, value in (("row", 300), ("setting", b"coupling.eta = 0.7")):
                 events = file[f"/events/{name}"]

@@ -210,7 +210,8 @@ TEST(History, MarksOfASecondRunStandInThatRun) {
   ASSERT_GT(history.offset(), 0.9);
   history.mark(0.2, "eta", "eta");
   history.mark(0.3, "eta moved on", "eta");
-  ASSERT_EQ(history.marks().size(), 3u);
+  history.mark(0.9, "eta later", "eta");  // another gesture
+  ASSERT_EQ(history.marks().size(), 4u);
   EXPECT_EQ(history.marks()[1].key, kResetMark);
   EXPECT_EQ(history.marks()[0].label, "eta of the first");
   EXPECT_NEAR(history.marks()[0].time, 0.2, 1e-12);

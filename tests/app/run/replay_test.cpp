@@ -213,14 +213,14 @@ TEST(Replay, TicksAsTheFileSaysEvenIfItsParametersSayOtherwise) {
 
 // The virtual arm in a real device's place has the forces that the motors held, each by itself.
 TEST(Replay, GivesTheVirtualArmTheForcesThatTheMotorsHeld) {
-  const test::TempDir dir;
   for (const auto& [weight, springs] : {std::pair(true, false), {false, true}, {false, false}}) {
+    const test::TempDir dir;
     RunPlan plan = test::plan("free.toml", "touch.csv", 0.2);
     plan.parameters.holds_weight = weight;
     plan.parameters.holds_springs = springs;
-    plan.changes = {{50, springs ? "model.springs = false" : "model.springs = true"},
-                    {90, weight ? "model.gravity = false" : "model.gravity = true"}};
-    const Session session = blind(plan, dir / "a.h5");
+    Session session = blind(plan, dir / "a.h5");
+    session.changes = {{50, springs ? "model.springs = false" : "model.springs = true"},
+                       {90, weight ? "model.gravity = false" : "model.gravity = true"}};
     const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
     EXPECT_EQ(again.parameters.weighs, weight);
     EXPECT_EQ(again.parameters.springy, springs);

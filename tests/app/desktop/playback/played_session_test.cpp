@@ -40,7 +40,13 @@ class RunAgain : public testing::Test {
 TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {
   const Rerun again = run();
   EXPECT_FALSE(again.end.diverged);
-  EXPECT_EQ(again.rows, session_.rows);
+  ASSERT_EQ(again.rows.size(), session_.rows.size());
+  const auto stride = static_cast<std::size_t>(session_.layout.stride());
+  test::Rows rows(session_.layout);
+  for (std::size_t k = 0; k < session_.size(); ++k) {
+    rows.add(std::span(again.rows).subspan(k * stride, stride));
+  }
+  EXPECT_EQ(test::first_difference(rows, test::rows_of(session_)), -1);
   EXPECT_EQ(again.history.end(), session_.size());
   EXPECT_EQ(progress_.part, 1);
 }

@@ -750,7 +750,6 @@ TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
 TEST_F(ADesktop, AccountsForTheEnergyOfItsLoop) {
   const int energy = static_cast<int>(Channel::energy_total);
   const auto stage = [&]() -> const Stage& { return desktop->desk().stage(); };
-  ASSERT_TRUE(until_on([&] { desktop->toggle_force(); }));
   desktop->settings().parameters.eta = 0.3;  // not passive: there is energy to account for
   Controls& controls = desktop->desk().controls();
   controls.goal = Vec3(0.17, 0.04, 0.03);

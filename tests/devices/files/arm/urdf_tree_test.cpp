@@ -222,11 +222,12 @@ TEST(UrdfTree, RefusesTreesTooDeepToFollow) {
 TEST(UrdfTree, HoldsASlideStillAlongItsOwnAxis) {
   const ArmDescription arm =
       parse(link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1")) + link("b") +
-            joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
-            joint("hand", "left", "prismatic",
-                  "<origin xyz='0 0.5 0' rpy='0 1.5707963267948966 0'/><axis xyz='1 0 0'/>" +
-                      limit(0.25, 0.5)) +
-            link("left", kBall));
+                joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
+                joint("hand", "left", "prismatic",
+                      "<origin xyz='0 0.5 0' rpy='0 1.5707963267948966 0'/><axis xyz='1 0 0'/>" +
+                          limit(0.25, 0.5)) +
+                link("left", kBall),
+            "hand");
   EXPECT_THAT(joints_of(arm), ElementsAre("a_b"));
   // 1 kg at the joint, 2 kg at (1, 0, 0), 2 kg at (1, 0.5, -0.25).
   EXPECT_NEAR(arm.links[0].mass, 5, 1e-12);
