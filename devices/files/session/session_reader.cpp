@@ -241,7 +241,7 @@ std::size_t take_units_off(hid_t group, Session& session, const fs::path& file) 
   const SessionUnits units(session.layout, session.info.slides);
   const auto& scaled = units.scaled();
   std::optional<Source> source;
-  if (!scaled.empty() && exists(group, kRoundingPath)) {
+  if (!scaled.empty() && hdf5::has(group, kRoundingPath, file)) {
     source = open_rounding(group, scaled.size(), file);
   }
   const auto stride = static_cast<std::size_t>(session.layout.stride());
