@@ -26,7 +26,9 @@ class Limits {
         safety_(arm),
         x_(Vector::Zero(arm.dof())),
         v_(Vector::Zero(arm.dof())),
-        torque_(Vector::Zero(arm.dof())) {
+        torque_(Vector::Zero(arm.dof())),
+        none_(torque_),
+        effort_(of_joints<kAnyDof>(arm, &Joint::effort)) {
     safety_.limit(limits);
   }
 
@@ -42,12 +44,15 @@ class Limits {
     Arm<kAnyDof>::Frames frames;
     arm_.frames(x_, frames);
     arm_.point_jacobian(frames, arm_.dof() - 1, arm_.tip(frames), J_);
-    const Objections against = safety_.judge({.guarded = true}, false, x_, v_, J_, put_out, T);
+    // Whether it moves at all is for the check to say: it hears of no torque here.
+    const Objections against =
+        safety_.judge({.guarded = true}, false, {x_, v_, J_, none_, put_out, T});
     return against.ceiling >= 1 && against.fault == ForceState::on;
   }
 
   std::span<const double> within(std::span<const double> torque) noexcept {
-    torque_ = safety_.within_tip_force(Eigen::Map<const Vector>(torque.data(), torque_.size()), J_);
+    torque_ = TorqueLimits<kAnyDof>(effort_, J_, safety_.tip_force())
+                  .within(Eigen::Map<const Vector>(torque.data(), torque_.size()));
     return {torque_.data(), torque.size()};
   }
 
@@ -56,6 +61,7 @@ class Limits {
   Safety<kAnyDof> safety_;
   Jacobian<kAnyDof> J_;
   Vector x_, v_, torque_;
+  const Vector none_, effort_;  // [N m]
   bool started_ = false;
 };
 
