@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.h"
+#include "app/cli/options.h"
 #include "app/device/device_hub.h"
 
 namespace limpid {
