@@ -420,9 +420,8 @@ TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
     EXPECT_GT(longest, 250) << "it stood still for a while";
     EXPECT_EQ(rig.force().armed(), true);
     EXPECT_GT(least, 0.85 * most) << "dry friction " << dry;
-                dry);
-                armed = false;
-                step(10);
+    armed = false;
+    step(10);
   }
 }
 
