@@ -51,6 +51,29 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsHalfReports) {
   this->expect_end("half reports", Fault::cut_short, ForceState::stale);
 }
 
+// Its encoders' wires are broken: new reports come, and all say the same.
+TYPED_TEST(FailingLoop, EndsForceWhenReadingsStandStillThoughReportsGoOn) {
+  this->desk.open();
+  ASSERT_TRUE(this->desk.push());
+  wait(700ms);
+  const double full = std::abs(this->desk.torque());
+  const Time moment = this->desk.device->with([&](Time now) {
+    this->desk.model->hand().break_encoders(true);
+    return now;
+  });
+  wait(800ms);
+  this->expect_zero("readings stand still", this->desk.zero_after(moment), 620ms);
+  EXPECT_EQ(this->desk.force_state(), ForceState::frozen);
+  EXPECT_GT(full, 0.1);
+  this->desk.device->with([&](Time) { this->desk.model->hand().break_encoders(false); });
+  wait(700ms);
+  EXPECT_EQ(this->desk.torque(), 0) << "it pushes again without having been armed";
+  EXPECT_EQ(this->desk.force_state(), ForceState::frozen);
+  this->desk.arm_force(false);
+  wait(20ms);
+  EXPECT_TRUE(this->desk.push());
+}
+
 TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsGarbage) {
   this->desk.open();
   ASSERT_TRUE(this->desk.push());
@@ -138,6 +161,37 @@ TEST_F(FailingRawLoop, EndsForceWhenTheDeviceReportsAFault) {
   const auto zero = desk.time_to_zero([&](Time) { desk.model->set_unwell(true); });
   expect_zero("fault bit", zero, 3 * kReport);
   EXPECT_EQ(desk.force_state(), ForceState::fault);
+}
+
+// Nothing reaches it for 40 ms, and its watchdog cuts; then everything does again.
+TEST_F(FailingRawLoop, FadesInFromNothingAfterTheDevicesWatchdogHasCut) {
+  desk.open();
+  ASSERT_TRUE(desk.push());
+  wait(700ms);
+  const double full = std::abs(desk.torque());
+  desk.device->with([&](Time) { desk.model->set_fault(Fault::deaf); });
+  wait(40ms);
+  EXPECT_EQ(desk.torque(), 0);
+  const Time heard = desk.device->with([&](Time now) {
+    desk.model->set_fault(Fault::none);
+    return now;
+  });
+  wait(900ms);
+  double first = 0, before = 0;
+  desk.device->with([&](Time) {
+    for (const ForceSample& sample : desk.model->forces().samples()) {
+      const double now = std::abs(sample.torque[0]);
+      if (sample.time >= heard) {
+        const double t = std::chrono::duration<double>(sample.time - heard).count();
+        EXPECT_LE(now, kEffort * (t + 0.003) / 0.5 + 1e-3) << t << " s after";
+        if (first == 0) first = now;
+      }
+      before = now;
+    }
+  });
+  std::printf("| %-48s | %7.3f N m in the first report, of %.3f |\n", "raw: its watchdog has cut",
+              first, full);
+  EXPECT_NEAR(before, full, 0.3 * full) << "it is still armed";
 }
 
 // The dead-man switch: force comes back with the hand, slowly.

@@ -129,5 +129,22 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
   EXPECT_EQ(session.twin->size(), 512u);
 }
 
+TEST(Twin, EndsWhereItsSecondRunBecomesUnstable) {
+  RunPlan plan = test::plan("free.toml", "free.csv", 8);
+  TwinPlan& wild = plan.twin.emplace();
+  wild.parameters = plan.parameters;
+  wild.parameters.kind = CouplingKind::standard;
+  wild.parameters.k_vc = 1e5;
+  wild.parameters.torque_limit = 1e4;
+  RunPlan tame = plan;
+  tame.twin.reset();
+  const auto none = [](std::span<const double>, const auto&) { return true; };
+  EXPECT_FALSE(simulate_twin(tame, {}, none).diverged);
+  const RunEnd end = simulate_twin(plan, {}, none);
+  EXPECT_TRUE(end.diverged);
+  EXPECT_LT(end.rows, plan.rows);
+  EXPECT_FALSE(end.why.empty());
+}
+
 }  // namespace
 }  // namespace limpid

@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "devices/hid/hid_error.h"
 #include "devices/registry/inverse_devices.h"
+#include "devices/rig/rig.h"
 #include "tests/support/inverse_service.h"
+#include "tests/support/random_arm.h"
 
 namespace limpid {
 namespace {
@@ -109,6 +113,51 @@ TEST_F(AnInverseService, ThatTalksNonsenseHasAZeroForce) {
                      [](const DeviceReading& r, bool here) { return here && r.lapses > 0; }));
     service.wait_for("force 0 0 0");
   }
+}
+
+// The loop with its safety, one tick after the other; a stop pushes its first axis back.
+TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
+  service.tell("spring 400");
+  const auto device = open(service.address());
+  ASSERT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
+  ArmDescription arm = test::random_arm(3, 71, test::Slides::all);
+  for (std::size_t i = 0; i < 3; ++i) {
+    arm.joints[i].origin = Pose::Identity();
+    arm.joints[i].axis = Vec3::Unit(static_cast<Eigen::Index>(i));
+    arm.joints[i].lower = -4;
+    arm.joints[i].upper = 4;
+    arm.joints[i].effort = 0.4;
+  }
+  Scene scene;
+  scene.joint_contacts.push_back({"stop", 0, -0.02, 1, 20});
+  Rig rig(arm, scene, device.get());
+  RigStart start;
+  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::Vector3d::Zero();
+  rig.start({}, start);
+  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+  const auto run = [&](ForceWish wish, const std::function<bool()>& until) {
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (!until() && std::chrono::steady_clock::now() < end) {
+      rig.step({}, {.hand = {rig.tip(), 1}, .force = std::exchange(wish, ForceWish::as_it_is)},
+               row);
+      std::this_thread::sleep_for(1ms);
+    }
+    return until();
+  };
+  ASSERT_TRUE(run(ForceWish::arm, [&] { return rig.force().gain() == 1; }));
+  int ticks = 0;
+  EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return ++ticks > 2000; }));
+  EXPECT_GT(rig.force().gain(), 0.5) << "it is held still, but gives way as its force fades";
+  service.wait_for(pushes);
+  service.tell("repeat");
+  EXPECT_TRUE(run(ForceWish::as_it_is, [&] {
+    return rig.force_state() == ForceState::frozen && rig.force().state() == Arming::tripped;
+  }));
+  service.wait_for("force 0 0 0");
+  ticks = 0;
+  run(ForceWish::arm, [&] { return ++ticks > 700; });
+  EXPECT_EQ(rig.force_state(), ForceState::frozen) << "armed again, but not moved";
+  EXPECT_EQ(rig.force().gain(), 0);
 }
 
 // One that answers after 20 ms must not have a queue of forces before it.

@@ -134,6 +134,22 @@ TEST_F(OpenRawProtocol, HearsOfTheHandAndOfFaults) {
   EXPECT_TRUE(reading.fault) << "not calibrated";
 }
 
+// As long as it says so: a command may be lost on the way as well.
+TEST_F(OpenRawProtocol, TakesItForALapseWhenItsWatchdogHasCut) {
+  constexpr std::uint8_t kWell = test::kRawHand | test::kRawCalibrated, kCut = 1 << 4;
+  decode(sealed(raw_reading(1, {0, 0}, kWell)));
+  EXPECT_EQ(reading.lapses, 0u);
+  decode(sealed(raw_reading(2, {0, 0}, kWell | kCut)));
+  EXPECT_EQ(reading.lapses, 1u);
+  decode(sealed(raw_reading(3, {0, 0}, kWell | kCut)));
+  EXPECT_EQ(reading.lapses, 2u);
+  EXPECT_FALSE(reading.fault);
+  decode(sealed(raw_reading(4, {0, 0}, kWell)));
+  EXPECT_EQ(reading.lapses, 2u);
+  EXPECT_EQ(decode(sealed(raw_reading(4, {0, 0}, kWell | kCut))), Decoded::unusable);
+  EXPECT_EQ(reading.lapses, 2u) << "a repetition is no news";
+}
+
 TEST_F(OpenRawProtocol, SendsTorquesWithARisingSequence) {
   const test::RawCommand first = encode({0.25, -0.5}), second = encode({0, 0});
   EXPECT_TRUE(first.right);
