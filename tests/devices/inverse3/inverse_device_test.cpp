@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "devices/hid/hid_error.h"
 #include "devices/registry/inverse_devices.h"
 #include "devices/rig/rig.h"

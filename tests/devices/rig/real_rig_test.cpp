@@ -262,6 +262,7 @@ TEST_F(RealRig, SaysAfterAStallThatItIsAtRest) {
   step();
   const std::size_t last = rows.size() - 1;
   EXPECT_EQ(rows.vec(last, Column::measured_velocity).norm(), 0);
+  EXPECT_EQ(rows.vec(last, Column::device_velocity).norm(), 0);
   EXPECT_EQ(rows.vec(last, Column::hand_torque_estimate).norm(), 0);
   EXPECT_NEAR(rows.at(last, Column::time) - rows.at(last - 1, Column::time), 0.02, 1e-12);
 }
@@ -378,8 +379,17 @@ TEST_F(RealRig, FadesAndStaysOffWhereItsReadingsStandStill) {
   expect_stays_off(ForceState::frozen);
 }
 
+// It is the torque that left that counts, and not what the law asks for.
+TEST_F(RealRig, MayStandStillForEverWithoutForce) {
+  trembles = false;
+  EXPECT_EQ(step(2000), ForceState::off);
+  armed = true;
+  EXPECT_EQ(step(100), ForceState::on);
+  EXPECT_TRUE(pushes());
+}
+
 // A hand that holds still against a wall, and an encoder of so coarse steps that it says the same
-// for seconds: 300 N/m at 0.13 m, a stick of 3e-4 kg m^2 with dry friction.
+// for seconds: 300 N/m at 0.13 m, a stick of 2e-3 kg m^2 without and with dry friction.
 TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
   constexpr double kStep = 5e-4, kInertia = 2e-3, kHand = 5, kHandDamping = 0.1, kDry = 0.004;
   for (const double dry : {0.0, kDry}) {
@@ -410,9 +420,8 @@ TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
     EXPECT_GT(longest, 250) << "it stood still for a while";
     EXPECT_EQ(rig.force().armed(), true);
     EXPECT_GT(least, 0.85 * most) << "dry friction " << dry;
-                dry);
-                armed = false;
-                step(10);
+    armed = false;
+    step(10);
   }
 }
 
