@@ -84,7 +84,7 @@ void list_limits(const Parameters& p, Report& report) {
 }
 
 Report on_arm(const std::string& file, const InputOptions& input) {
-  ArmDescription arm = read_urdf(file, input.tip);
+  ArmDescription arm = read_urdf(file, input.tip, Xacro::expand);
   load_visuals(arm);
   Report report{{}, arm.warnings};
   double mass = 0;
