@@ -104,7 +104,7 @@ void list_reach(const ArmDescription& arm, double mass, Report& report) {
 }
 
 Report on_arm(const std::string& file, const InputOptions& input) {
-  const ArmDescription arm = load_arm(file, input.tip).arm;
+  const ArmDescription arm = load_arm(file, input.tip, Xacro::expand).arm;
   Report report{{}, arm.warnings};
   double mass = 0;
   for (const Link& link : arm.links) mass += link.mass;

@@ -194,7 +194,7 @@ ArmDescription arm_of(const InputOptions& options) {
   std::string file = options.device;
   if (file.empty()) file = default_device().string();
   if (!device_named(file).empty()) file = (data_dir() / "assets/devices/inverse3.urdf").string();
-  return read_urdf(file, options.tip);
+  return read_urdf(file, options.tip, Xacro::expand);
 }
 
 void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document) {

@@ -33,7 +33,7 @@ struct SweepOptions {
   std::string plan, out, shard;
   std::optional<unsigned> threads;
   std::optional<std::uint64_t> open;
-  bool gather = false, mpi = false, slurm = false, csv = false;
+  bool gather = false, mpi = false, slurm = false, csv = false, xacro = false;
   SlurmOptions array;
 };
 
@@ -224,7 +224,8 @@ class Sweeping {
 
 int sweep(const SweepOptions& options) {
   const SweepShare share = share_of(options);
-  const SweepPlan plan = read_sweep_plan(options.plan);
+  const SweepPlan plan =
+      read_sweep_plan(options.plan, options.xacro ? Xacro::expand : Xacro::refuse);
   if (options.open) check_point(plan, *options.open);
   if (!options.gather) prepare_out(options.out);
   catch_interrupts();
@@ -287,6 +288,8 @@ Command declare_sweep(CLI::App& app) {
                    "runs that point again, records it in DIR/points and plays it")
       ->type_name("POINT");
   command->add_flag("--csv", options->csv, "DIR/table.csv, too");
+  command->add_flag("--allow-xacro", options->xacro,
+                    "expand arms in xacro that the plan names: this runs code in them");
   command->footer(
       "How to write a plan: assets/sweeps/README.md. Writes DIR/table.h5, and its parts while it\n"
       "runs. Called again it goes on where it was stopped, or killed.\n\n" +

@@ -183,7 +183,7 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     return name.empty() ? otherwise : beside_or_own(plan.file.parent_path(), kind, name);
   };
   RunPlan run;
-  run.arm = read_urdf(file(world.device, "devices", default_device()));
+  run.arm = read_urdf(file(world.device, "devices", default_device()), {}, plan.xacro);
   run.document = read_scene(file(world.scene, "scenes", default_scene()), run.arm);
   run.models = build_meshes(run.document);
   if (plan.jump) {
@@ -239,8 +239,9 @@ SweepPlan plan_of_text(std::string text, const fs::path& file) {
   return plan;
 }
 
-SweepPlan read_sweep_plan(const fs::path& file) {
+SweepPlan read_sweep_plan(const fs::path& file, Xacro xacro) {
   SweepPlan plan = plan_of_text(read_text(file, kLongestPlan), file);
+  plan.xacro = xacro;
   read_worlds(plan);
   return plan;
 }

@@ -113,8 +113,9 @@ std::string SlurmArray::script() const {
   };
   return fmt::format(
       "#!/bin/sh\nexec {} sweep {} --out {} --shard \"$SLURM_ARRAY_TASK_ID/{}\" "
-      "--threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
-      quoted("/proc/self/exe"), quoted(plan_.file), quoted(folder_.path()), tasks_);
+      "--threads \"${{SLURM_CPUS_PER_TASK:-1}}\"{}\n",
+      quoted("/proc/self/exe"), quoted(plan_.file), quoted(folder_.path()), tasks_,
+      plan_.xacro == Xacro::expand ? " --allow-xacro" : "");
 }
 
 void SlurmArray::submit(const std::set<std::uint64_t>& tasks) const {

@@ -11,6 +11,7 @@
 
 #include "app/run/simulate.h"
 #include "app/sweep/measures.h"
+#include "devices/files/arm/xacro_consent.h"
 
 namespace limpid {
 
@@ -94,8 +95,9 @@ inline constexpr const char* kTheories[] = {"pr", "routh", "routh_compliant"};
 
 struct SweepPlan {
   std::string title;
-  std::string text;            // the plan's own
-  std::filesystem::path file;  // it came from
+  std::string text;             // the plan's own
+  std::filesystem::path file;   // it came from
+  Xacro xacro = Xacro::refuse;  // of arms that it names
   Parameters parameters;
   SweepWorld world;
   std::optional<SweepJump> jump;
@@ -118,7 +120,7 @@ std::uint64_t coarse_points(const SweepPlan& plan);
 
 // Errors: FileError FILE:LINE with key, what was found and what is allowed, also for files that the
 // plan names and for hands out of reach.
-SweepPlan read_sweep_plan(const std::filesystem::path& file);
+SweepPlan read_sweep_plan(const std::filesystem::path& file, Xacro xacro = Xacro::refuse);
 // The same of a plan's text that once stood in `file`. Without its worlds, runs and key: what they
 // need may be gone by now.
 SweepPlan plan_of_text(std::string text, const std::filesystem::path& file);

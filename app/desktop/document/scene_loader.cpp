@@ -55,8 +55,9 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   return {std::move(mesh), std::move(model), models.front(), axes, std::move(warnings)};
 }
 
-LoadedArm load_arm(const fs::path& file, const std::string& tip, const LoadProgress& progress) {
-  LoadedArm loaded{file, tip, read_urdf(file, tip)};
+LoadedArm load_arm(const fs::path& file, const std::string& tip, Xacro xacro,
+                   const LoadProgress& progress) {
+  LoadedArm loaded{file, tip, read_urdf(file, tip, xacro)};
   load_visuals(loaded.arm, read_collisions(loaded.arm, file), progress);
   return loaded;
 }
@@ -81,12 +82,12 @@ void SceneLoader::add_model(fs::path file) {
   start_next();
 }
 
-void SceneLoader::open_arm(fs::path file, const std::string& tip) {
+void SceneLoader::open_arm(fs::path file, const std::string& tip, Xacro xacro) {
   const std::string what = fmt::format("opening {}", file.filename().string());
   waiting_.push_back(
-      {what, true, [file = std::move(file), tip](BackgroundProgress& progress) -> Loaded {
+      {what, true, [file = std::move(file), tip, xacro](BackgroundProgress& progress) -> Loaded {
          step_back();
-         return load_arm(file, tip, progress_of(progress));
+         return load_arm(file, tip, xacro, progress_of(progress));
        }});
   start_next();
 }

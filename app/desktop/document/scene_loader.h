@@ -11,6 +11,7 @@
 #include "app/run/scene_meshes.h"
 #include "app/session/background.h"
 #include "core/dynamics/arm_description.h"
+#include "devices/files/arm/xacro_consent.h"
 
 namespace limpid {
 
@@ -40,14 +41,14 @@ using Loaded = std::variant<LoadedScene, LoadedModel, LoadedArm>;
 LoadedScene load_scene(const std::filesystem::path& file, const ArmDescription& arm,
                        const LoadProgress& progress = {});
 LoadedModel load_model(const std::filesystem::path& file, const LoadProgress& progress = {});
-LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip,
+LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip, Xacro xacro,
                    const LoadProgress& progress = {});
 
 class SceneLoader {
  public:
   void open_scene(std::filesystem::path file, const ArmDescription& arm);
   void add_model(std::filesystem::path file);
-  void open_arm(std::filesystem::path file, const std::string& tip);
+  void open_arm(std::filesystem::path file, const std::string& tip, Xacro xacro);
 
   bool busy() const { return work_.busy() || !waiting_.empty(); }
   bool opening_scene() const;

@@ -46,7 +46,7 @@ void Desktop::open_world(const std::string& device, const std::string& tip,
                          const std::string& scene) {
   device_file_ = device.empty() ? default_device().string() : device;
   device_tip_ = tip;
-  ArmDescription arm = load_arm(device_file_, tip).arm;
+  ArmDescription arm = load_arm(device_file_, tip, consent(device_file_)).arm;
   const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
   SceneDocument whole = read_scene(file, arm);
   if (whole.scene.meshes.empty()) {
@@ -67,8 +67,10 @@ void Desktop::open_world(const std::string& device, const std::string& tip,
 void Desktop::open_last_world(const std::string& device, const std::string& tip,
                               const std::string& scene, bool fixed) {
   std::string arm = device, end = tip, world = scene;
+  expanded_ = device;  // who names a file on the command line means it
   if (device.empty()) std::tie(arm, end) = last_arm();
-  const ArmDescription first = read_urdf(arm.empty() ? default_device().string() : arm, end);
+  const ArmDescription first =
+      read_urdf(arm.empty() ? default_device().string() : arm, end, consent(arm));
   if (fixed) fitted_for_ = first;
   if (scene.empty() && (device.empty() || suits_default_world(first))) world = settings_.scene;
   try {

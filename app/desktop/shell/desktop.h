@@ -16,6 +16,7 @@
 #include "app/desktop/shell/focus.h"
 #include "app/run/analysis.h"
 #include "devices/files/arm/arm_tip.h"
+#include "devices/files/arm/xacro_consent.h"
 #include "render/camera.h"
 #include "render/quality.h"
 
@@ -117,6 +118,9 @@ class Desktop {
   // Another arm in place of the virtual one, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
   void use_built_in_arm();
+  // The arm that Dialog::expand_xacro asks about, and the answer that it may be expanded.
+  const std::optional<XacroToExpand>& xacro() const { return xacro_; }
+  void expand_xacro();
   bool built_in_arm() const;
   // The arm whose tip is to be chosen, with Dialog::arm_tip.
   const std::optional<TipsToChoose>& tips() const { return tips_; }
@@ -145,6 +149,8 @@ class Desktop {
   void take_arm(const LoadedArm& loaded);
   void say_about_arm();
   std::pair<std::string, std::string> last_arm();  // file and tip
+  Xacro consent(const std::filesystem::path& file) const;
+  void ask_about(const XacroToExpand& arm);
   void fit_to(const ArmDescription& arm);
   std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
   // A world, and its loop.
@@ -195,6 +201,8 @@ class Desktop {
   std::string first_scene_;  // the start's, while its models come in
   std::vector<std::filesystem::path> kept_;
   std::optional<TipsToChoose> tips_;
+  std::optional<XacroToExpand> xacro_;
+  std::string expanded_;                      // the xacro file that may be expanded
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   // While a device in the arm's place has its own compensation: its id, and the virtual arm's.
   std::optional<std::pair<std::string, CompensationSettings>> compensated_;

@@ -26,7 +26,22 @@ void Desktop::open_arm(const fs::path& file, const std::string& tip) {
   if (desk_.loop().device_in_place()) {
     return notices_.say("A real device is in the arm's place. Choose the virtual arm first.", true);
   }
-  document_.loader().open_arm(fs::absolute(file).lexically_normal(), tip);
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  document_.loader().open_arm(whole, tip, consent(whole));
+}
+
+Xacro Desktop::consent(const fs::path& file) const {
+  return !expanded_.empty() && file == expanded_ ? Xacro::expand : Xacro::refuse;
+}
+
+void Desktop::ask_about(const XacroToExpand& arm) {
+  xacro_ = arm;
+  open_dialog(Dialog::expand_xacro);
+}
+
+void Desktop::expand_xacro() {
+  expanded_ = xacro_->file.string();
+  open_arm(xacro_->file);
 }
 
 void Desktop::use_built_in_arm() { open_arm(default_device()); }
@@ -38,6 +53,9 @@ std::pair<std::string, std::string> Desktop::last_arm() {
   try {
     if (!settings_.device.empty()) read_urdf(settings_.device, settings_.device_tip);
     return {settings_.device, settings_.device_tip};
+  } catch (const XacroToExpand& arm) {
+    ask_about(arm);
+    return {};
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
     settings_.device.clear();

@@ -75,7 +75,7 @@ void Desktop::note_compensation() {
 void Desktop::close_device() {
   if (!desk_.loop().device_in_place()) return desk_.loop().plug(nullptr);
   try {
-    change_arm(read_urdf(device_file_, device_tip_), nullptr);
+    change_arm(read_urdf(device_file_, device_tip_, consent(device_file_)), nullptr);
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
     change_arm(read_urdf(default_device()), nullptr);

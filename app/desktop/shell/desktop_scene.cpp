@@ -48,6 +48,8 @@ void Desktop::take_loaded() {
     if (auto loaded = document_.loader().take()) {
       std::visit([this](auto& what) { accept(what); }, *loaded);
     }
+  } catch (const XacroToExpand& arm) {
+    ask_about(arm);
   } catch (const TipsToChoose& choice) {
     tips_ = choice;
     open_dialog(Dialog::arm_tip);

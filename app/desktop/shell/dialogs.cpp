@@ -4,6 +4,7 @@
 #include "app/desktop/base/window_layout.h"
 #include "app/desktop/panels/sweep_panel.h"
 #include "app/desktop/panels/unsaved_question.h"
+#include "app/desktop/panels/xacro_question.h"
 #include "app/desktop/shell/reading.h"
 
 namespace limpid {
@@ -78,6 +79,12 @@ void Dialogs::draw_paths() {
     const std::string tip =
         draw(Dialog::arm_tip, [&](bool& open) { return tip_.draw(open, choice); });
     if (!tip.empty()) desktop_.open_arm(choice.file, tip);
+  }
+  if (desktop_.xacro()) {
+    const fs::path file = desktop_.xacro()->file;
+    if (draw(Dialog::expand_xacro, [&](bool& open) { return draw_xacro_question(open, file); })) {
+      desktop_.expand_xacro();
+    }
   }
   Document& document = desktop_.document();
   fs::path first = document.own_file();

@@ -25,6 +25,7 @@ const char* name(Dialog dialog) {
     case Dialog::add_model: return "add model";
     case Dialog::open_arm: return "open arm";
     case Dialog::arm_tip: return "arm tip";
+    case Dialog::expand_xacro: return "expand xacro";
     case Dialog::save_scene: return "save scene";
     case Dialog::video: return "video";
     case Dialog::layouts: return "layouts";

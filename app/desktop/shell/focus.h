@@ -20,6 +20,7 @@ enum class Dialog : std::uint8_t {
   add_model,
   open_arm,
   arm_tip,
+  expand_xacro,
   save_scene,
   video,
   layouts,

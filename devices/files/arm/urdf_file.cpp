@@ -6,7 +6,9 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <mutex>
 
+#include "core/text/utf8.h"
 #include "devices/files/arm/urdf_chain.h"
 #include "devices/files/arm/urdf_dynamics.h"
 #include "devices/files/arm/urdf_own.h"
@@ -14,17 +16,19 @@
 #include "devices/files/arm/urdf_turns.h"
 #include "devices/files/arm/urdf_visuals.h"
 #include "devices/files/arm/xacro.h"
+#include "devices/files/arm/xml_guard.h"
 #include "devices/files/file_error.h"
 
 namespace limpid {
 namespace {
 
-constexpr int kDeepestXml = 100;
+constexpr std::size_t kMostLinks = 5000;  // urdfdom takes a long chain of them apart by recursion
 
-// While it lives, urdfdom's complaints come here and not to the terminal.
+// While it lives, urdfdom's complaints come here and not to the terminal. There is one place for
+// them in the program: whoever reads another arm at the same time waits.
 class Complaints : public console_bridge::OutputHandler {
  public:
-  Complaints() : before_(console_bridge::getOutputHandler()) {
+  Complaints() : only_one_(mutex()), before_(console_bridge::getOutputHandler()) {
     console_bridge::useOutputHandler(this);
   }
   ~Complaints() override { console_bridge::useOutputHandler(before_); }
@@ -46,30 +50,15 @@ class Complaints : public console_bridge::OutputHandler {
   }
 
  private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+
+  std::lock_guard<std::mutex> only_one_;
   console_bridge::OutputHandler* before_;
   std::string all_;
 };
-
-// The XML parser recurses, so a file of nothing but opening tags would overflow the stack.
-void check_depth(const std::string& text, const std::string& where) {
-  int depth = 0;
-  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
-    if (text.compare(at, 4, "<!--") == 0) {
-      at = text.find("-->", at);
-      if (at == std::string::npos) return;
-      continue;
-    }
-    const char next = at + 1 < text.size() ? text[at + 1] : '\0';
-    if (next == '!' || next == '?') continue;
-    const auto end = text.find('>', at);
-    if (next == '/') {
-      --depth;
-    } else if (end != std::string::npos && text[end - 1] != '/') {
-      ++depth;
-    }
-    if (depth > kDeepestXml) throw FileError(fmt::format("{}: XML nested too deep", where));
-  }
-}
 
 // Of the whole document, and what is in it.
 void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& places) {
@@ -87,6 +76,10 @@ void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& pla
     if (name == nullptr) continue;
     if (each->ValueStr() == "joint") places.joint_lines[name] = each->Row();
     if (each->ValueStr() == "link") places.link_lines[name] = each->Row();
+  }
+  if (places.link_lines.size() > kMostLinks) {
+    places.refuse(
+        fmt::format("{} links; at most {} are read", places.link_lines.size(), kMostLinks));
   }
 }
 
@@ -129,14 +122,15 @@ urdf::ModelInterfaceSharedPtr parse_dynamics(const TiXmlElement& robot, UrdfPlac
 
 }  // namespace
 
-ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip) {
-  return parse_urdf(urdf_text(file), file.string(), std::filesystem::absolute(file).parent_path(),
-                    tip);
+ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip, Xacro xacro) {
+  return parse_urdf(urdf_text(file, xacro), file.string(),
+                    std::filesystem::absolute(file).parent_path(), tip);
 }
 
-ArmDescription parse_urdf(const std::string& text, const std::string& where,
+ArmDescription parse_urdf(const std::string& bytes, const std::string& where,
                           const std::filesystem::path& base_dir, const std::string& tip) {
-  check_depth(text, where);
+  const std::string text = utf8_of(bytes);
+  check_xml(text, where);
   UrdfPlaces places{where, {}, {}, {}};
   TiXmlDocument document;
   parse_xml(document, text, places);

@@ -6,6 +6,7 @@
 
 #include "core/dynamics/arm_description.h"
 #include "devices/files/arm/arm_tip.h"
+#include "devices/files/arm/xacro_consent.h"
 
 namespace limpid {
 
@@ -19,11 +20,12 @@ namespace limpid {
 //
 // What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
 // MeshFinder) or read, efforts of 0, links without inertia, joints that cannot move.
-// Errors: TipsToChoose where a name has to say which tip; FileError "FILE:LINE: ..." for what is
-// not URDF or xacro that cannot be expanded, floating and planar joints in the chain, a zero axis,
-// numbers that are not finite, negative damping, friction, effort or mass, crossed limits, and arms
-// without any inertia.
-ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {});
+// Errors: TipsToChoose where a name has to say which tip; XacroToExpand; FileError "FILE:LINE: ..."
+// for what is not URDF or xacro that cannot be expanded, floating and planar joints in the chain, a
+// zero axis, numbers that are not finite, negative damping, friction, effort or mass, crossed
+// limits, and arms without any inertia.
+ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {},
+                         Xacro xacro = Xacro::refuse);
 
 // `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
 // one inside a session) meshes with relative names are not found.

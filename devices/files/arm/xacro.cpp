@@ -11,6 +11,7 @@
 #include <array>
 #include <utility>
 
+#include "core/text/utf8.h"
 #include "devices/files/arm/search_path.h"
 #include "devices/files/file_error.h"
 #include "devices/files/text_file.h"
@@ -113,9 +114,10 @@ std::string expanded(const fs::path& program, const fs::path& file) {
 
 }  // namespace
 
-std::string urdf_text(const fs::path& file) {
-  std::string text = read_text(file, kLongestUrdf);
+std::string urdf_text(const fs::path& file, Xacro xacro) {
+  std::string text = utf8_of(read_text(file, kLongestUrdf));
   if (file.extension() != ".xacro" && !has_macros(text)) return text;
+  if (xacro == Xacro::refuse) throw XacroToExpand(file);
   const fs::path program = find_program("xacro");
   if (!program.empty()) return expanded(program, file);
   throw FileError(fmt::format(

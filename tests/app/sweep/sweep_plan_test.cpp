@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+
 #include "devices/files/file_error.h"
 #include "tests/app/sweep/plans.h"
 
@@ -42,6 +44,23 @@ axis = [ { key = "coupling.eta", values = [0.5, 1] },
   EXPECT_THAT(point_of(plan, 11).values, ElementsAre(1, 300));
   EXPECT_NE(run_of(plan, 1).hand.position, run_of(plan, 0).hand.position);
   EXPECT_EQ(run_of(plan, 1).hand.position, run_of(plan, 3).hand.position);
+}
+
+// A plan of a stranger, or a table that has one in it, must not start a program that runs his code.
+TEST_F(SweepPlans, ExpandNoXacroUnlessTheyMay) {
+  std::ofstream(dir_ / "arm.xacro") << "<robot name='r'><xacro:link name='a'/></robot>";
+  const std::string text =
+      with("device = \"arm.xacro\"\naxis = [{ key = \"coupling.eta\", values = [1] }]");
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr("arm.xacro"), HasSubstr("--allow-xacro")));
+  const std::string path = getenv("PATH");
+  setenv("PATH", "/nowhere", 1);  // allowed, it is looked for
+  try {
+    read_sweep_plan(dir_ / "plan.toml", Xacro::expand);
+    ADD_FAILURE();
+  } catch (const FileError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("there is no program xacro"));
+  }
+  setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(SweepPlans, SpreadValuesOverALogarithm) {

@@ -86,7 +86,7 @@ TEST(LoadArm, KnowsByItsCollisionShapesWhichWayUpItsPicturesAre) {
             text(at) + "'/><geometry><box size='" + text(size) +
             "'/></geometry></collision><collision><geometry><mesh filename='gone.stl'/></geometry>"
             "</collision></link></robot>");
-    return load_arm(dir / "arm.urdf", "").arm;
+    return load_arm(dir / "arm.urdf", "", Xacro::refuse).arm;
   };
   const auto z_up = [](const std::string& warning) {
     return warning.find("z up") != std::string::npos;

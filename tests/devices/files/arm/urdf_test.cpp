@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
+#include <thread>
 
 #include "devices/files/arm/urdf_file.h"
 #include "tests/devices/files/arm/urdf_pieces.h"
@@ -200,6 +202,99 @@ TEST(Urdf, RefusesWhatIsNotXml) {
   for (int i = 0; i < 1000000; ++i) deep += "<a>";
   EXPECT_THAT(said(deep), HasSubstr("nested"));
   EXPECT_THAT(refusal([] { read_urdf("/nowhere.urdf"); }), HasSubstr("/nowhere.urdf"));
+}
+
+std::string often(int times, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+// The parser recurses into each element: whatever makes it open one has to be counted, as it sees
+// it.
+TEST(Urdf, RefusesNestingThatIsHiddenInQuotesCommentsAndOtherEncodings) {
+  const auto said = [](const std::string& text) {
+    return refusal([&] { parse_urdf(text, "x.urdf", ""); });
+  };
+  constexpr int kMany = 60000;
+  EXPECT_THAT(said(often(kMany, "<a b=\"/>\">")), HasSubstr("nested"));
+  EXPECT_THAT(said(often(kMany, "<a b='/>'>")), HasSubstr("nested"));
+  EXPECT_THAT(said(often(kMany, "<a b='\"/>'>")), HasSubstr("nested"));
+  EXPECT_THAT(said("<!--><a>--><!-- -->" + often(kMany, "<a>")), HasSubstr("nested"));
+  EXPECT_THAT(said("<r><![CDATA[<!--]]>" + often(kMany, "<a>")), HasSubstr("nested"));
+  EXPECT_THAT(said(often(kMany, "</a>") + often(kMany, "<a>")), HasSubstr("nested"));
+  EXPECT_THAT(said("<!DOCTYPE a '<!--'>" + often(kMany, "<a>")), HasSubstr("nested"));
+  // '>' in quotes does not end this declaration for the parser: the comment is none.
+  EXPECT_THAT(said("<?xml version='><!--' ?>" + often(kMany, "<a>")), HasSubstr("x.urdf:1"));
+  // As UTF-8 the first byte of the value would take the quote behind it along.
+  EXPECT_THAT(said("<?xml encoding='UTF-8'?><r a='\xF0' b='>" + often(kMany, "<a>") + "'"),
+              HasSubstr("x.urdf"));
+  std::string wide;
+  for (const char c : often(kMany, "<a>")) wide += {c, '\0'};
+  EXPECT_THAT(said("\xFF\xFE" + wide), HasSubstr("nested"));
+}
+
+TEST(Urdf, ReadsElementsSideBySideAndWhatOnlyLooksNested) {
+  const std::string beside = often(3000, "<a b='<c>' d=\"'>\"/><e></e><!-- <f> --><g h='/'></g>");
+  EXPECT_EQ(parse(beside + link("a") + joint("a", "b") + link("b")).dof(), 1);
+}
+
+TEST(Urdf, RefusesTextsThatTakeForEver) {
+  const auto said = [](const std::string& text) {
+    return refusal([&] { parse_urdf(text, "x.urdf", ""); });
+  };
+  std::string attributes = "<robot name='r'";
+  for (int i = 0; i < 2000; ++i) attributes += fmt::format(" a{}=''", i);
+  EXPECT_THAT(said(attributes + "/>"), HasSubstr("attributes"));
+  EXPECT_THAT(said(std::string(17 << 20, ' ')), HasSubstr("at most 16777216"));
+}
+
+// urdfdom lets go of a chain link by link, each within the one before.
+TEST(Urdf, RefusesEndlessChains) {
+  constexpr int kMany = 100000;
+  std::string chain;
+  for (int i = 0; i < kMany; ++i) {
+    const std::string name = fmt::format("l{:06d}", kMany - i);
+    chain += "<link name='" + name + "'/>";
+    if (i > 0) chain += joint(fmt::format("l{:06d}", kMany - i + 1), name, "fixed", "");
+  }
+  EXPECT_THAT(refusal([&] { parse(chain); }), HasSubstr("100000 links"));
+}
+
+TEST(Urdf, IsReadInTheEncodingItHas) {
+  const std::string text = test::robot(link("\xC3\xA9") + joint("\xC3\xA9", "b") + link("b"));
+  const ArmDescription plain = parse_urdf(text, "x.urdf", "");
+  std::string wide = "\xFF\xFE", latin;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i] == '\xC3' ? '\xE9' : text[i];
+    if (text[i] == '\xC3') ++i;
+    wide += {c, '\0'};
+    latin += c;
+  }
+  for (const std::string& other : {wide, latin}) {
+    const ArmDescription arm = parse_urdf(other, "x.urdf", "");
+    EXPECT_EQ(arm.dof(), 1);
+    EXPECT_EQ(arm.tip_link, plain.tip_link);
+    EXPECT_EQ(arm.urdf, text);  // a recording has it as UTF-8
+  }
+}
+
+// What complains is one place of the whole program.
+TEST(Urdf, IsReadByManyAtOnce) {
+  const std::string good = test::robot(link("a") + joint("a", "b") + link("b"));
+  const std::string bad = test::robot(link("a") + joint("a", "nowhere") + link("b"));
+  std::vector<std::thread> readers;
+  std::atomic<int> wrong = 0;
+  for (int i = 0; i < 8; ++i) {
+    readers.emplace_back([&, i] {
+      for (int k = 0; k < 300; ++k) {
+        const std::string said = refusal([&] { parse_urdf(i % 2 ? good : bad, "x.urdf", ""); });
+        wrong += i % 2 ? !said.empty() : said.find("nowhere") == std::string::npos;
+      }
+    });
+  }
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(Urdf, TakesThirtyTwoJoints) {

@@ -15,13 +15,13 @@ using test::refusal;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Xacro : public testing::Test {
+class XacroFile : public testing::Test {
  protected:
-  Xacro() : path_(getenv("PATH")) {
+  XacroFile() : path_(getenv("PATH")) {
     test::write_file(dir_ / "arm.xacro", "<robot name='r'><xacro:link name='a'/></robot>");
     test::write_file(dir_ / "arm.txt", test::robot(link("a") + joint("a", "b") + link("b")));
   }
-  ~Xacro() override { setenv("PATH", path_.c_str(), 1); }
+  ~XacroFile() override { setenv("PATH", path_.c_str(), 1); }
 
   void install(const std::string& script) {
     test::write_file(dir_ / "xacro", "#!/bin/sh\n" + script);
@@ -33,37 +33,47 @@ class Xacro : public testing::Test {
   const std::string path_;
 };
 
-TEST_F(Xacro, IsExpandedByTheProgramOfThatName) {
+TEST_F(XacroFile, IsExpandedByTheProgramOfThatName) {
   install("cat \"$(dirname \"$1\")/arm.txt\"\n");
-  const ArmDescription arm = read_urdf(dir_ / "arm.xacro");
+  const ArmDescription arm = read_urdf(dir_ / "arm.xacro", {}, Xacro::expand);
   EXPECT_EQ(arm.dof(), 1);
   EXPECT_EQ(arm.urdf, test::file_bytes(dir_ / "arm.txt"));
 }
 
-TEST_F(Xacro, IsKnownByItsMacrosToo) {
+TEST_F(XacroFile, IsKnownByItsMacrosToo) {
   install("cat \"$(dirname \"$1\")/arm.txt\"\n");
   std::filesystem::rename(dir_ / "arm.xacro", dir_ / "arm.urdf");
-  EXPECT_EQ(read_urdf(dir_ / "arm.urdf").dof(), 1);
+  EXPECT_EQ(read_urdf(dir_ / "arm.urdf", {}, Xacro::expand).dof(), 1);
 }
 
-TEST_F(Xacro, ThatFailsSaysWhy) {
+// Expanding runs code in the file: the program is not even started.
+TEST_F(XacroFile, IsNotExpandedUnlessSomebodySaysSo) {
+  install("touch \"$(dirname \"$1\")/started\"\ncat \"$(dirname \"$1\")/arm.txt\"\n");
+  EXPECT_THAT(refusal<XacroToExpand>([&] { read_urdf(dir_ / "arm.xacro"); }),
+              AllOf(HasSubstr("arm.xacro"), HasSubstr("run code"), HasSubstr("--allow-xacro")));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "started"));
+  read_urdf(dir_ / "arm.xacro", {}, Xacro::expand);
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "started"));
+}
+
+TEST_F(XacroFile, ThatFailsSaysWhy) {
   install("echo warming up >&2; echo 'undefined property x' >&2; exit 3\n");
-  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro"); }),
+  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro", {}, Xacro::expand); }),
               AllOf(HasSubstr("arm.xacro"), HasSubstr("undefined property x")));
 }
 
-TEST_F(Xacro, ThatPrintsWithoutEndIsStopped) {
+TEST_F(XacroFile, ThatPrintsWithoutEndIsStopped) {
   install("exec yes\n");
-  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro"); }), HasSubstr("end"));
+  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro", {}, Xacro::expand); }), HasSubstr("end"));
 }
 
-TEST_F(Xacro, IsRefusedWithoutTheProgramAndSaysHowToExpandIt) {
+TEST_F(XacroFile, IsRefusedWithoutTheProgramAndSaysHowToExpandIt) {
   setenv("PATH", "/nowhere", 1);
-  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro"); }),
+  EXPECT_THAT(refusal([&] { read_urdf(dir_ / "arm.xacro", {}, Xacro::expand); }),
               AllOf(HasSubstr("arm.xacro"), HasSubstr("xacro arm.xacro > arm.urdf")));
 }
 
-TEST_F(Xacro, IsNotWhatAnExpandedFileSaysOfWhereItCameFrom) {
+TEST_F(XacroFile, IsNotWhatAnExpandedFileSaysOfWhereItCameFrom) {
   setenv("PATH", "/nowhere", 1);
   test::write_file(
       dir_ / "arm.urdf",
