@@ -6,7 +6,7 @@ gives the same rows bit for bit only in the program that made it (tests/system/t
 
     python3 assets/sessions/make_sessions.py [--sessions] [PROGRAM] [SCENE ...]
 
---sessions draws no thumbnails. PROGRAM is build/release/app/limpid if not given. Needs h5repack (Debian: hdf5-tools)."""
+--sessions draws no thumbnails. PROGRAM is build/release/app/limpid if not given. Needs numpy and h5py."""
 
 import os
 import subprocess
@@ -14,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
@@ -48,6 +49,21 @@ def thumbnail(picture, out):
     out.write_bytes(png.encode(np.round(small)))
 
 
+def pack(source, into):
+    """Copies a group and all in it, compressed as far as it goes."""
+    for name in source.attrs:
+        into.attrs.create(name, source.attrs[name], dtype=source.attrs.get_id(name).dtype)
+    for name, item in source.items():
+        if isinstance(item, h5py.Group):
+            pack(item, into.create_group(name))
+            continue
+        how = {"compression": 9, "shuffle": True, "maxshape": item.maxshape} if item.shape else {}
+        copy = into.create_dataset(name, data=item[()], dtype=item.dtype, **how)
+        for attribute in item.attrs:
+            copy.attrs.create(attribute, item.attrs[attribute],
+                              dtype=item.attrs.get_id(attribute).dtype)
+
+
 def make(program, scene, folder, draws):
     hand, seconds = SCENES[scene]
     print(f"-- {scene}", flush=True)
@@ -64,8 +80,8 @@ def make(program, scene, folder, draws):
     recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
     again = ["--hand", f"assets/sessions/{scene}.h5"]
     limpid(program, *([*world, "--duration", seconds] if seconds else again), "--record", recording)
-    subprocess.run(["h5repack", "-S", "FSM_AGGR", "-P", "0", "-f", "SHUF", "-f", "GZIP=9",
-                    recording, session], check=True)
+    with h5py.File(recording) as whole, h5py.File(session, "w", libver=("v108", "v108")) as small:
+        pack(whole, small)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
 
 
