@@ -156,6 +156,9 @@ Claims::Claims(fs::path file, std::uint64_t most)
 
 // Several datasets may claim the same bytes, but all of them together lie in the file.
 void Claims::stored(const Dataset& dataset) {
+  H5G_stat_t object{};
+  if (H5Gget_objinfo(dataset.get(), ".", true, &object) < 0) return;
+  if (!counted_.emplace(object.objno[0], object.objno[1]).second) return;
   const std::uint64_t size = H5Dget_storage_size(dataset.get());
   stored_ = std::min(file_size_, stored_ + std::min(size, file_size_));
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "devices/files/session/hdf5_handles.h"
@@ -38,7 +39,7 @@ class Claims {
  public:
   explicit Claims(std::filesystem::path file, std::uint64_t most = physical_memory());
 
-  void stored(const Dataset& dataset);  // will be read
+  void stored(const Dataset& dataset);  // will be read; counts once, however many links it has
   // Before memory is taken for it. Errors: FileError where all that was asked for is more than the
   // datasets can unpack to, or than `most`.
   void take(std::uint64_t count, std::uint64_t size, const std::string& what);
@@ -47,6 +48,7 @@ class Claims {
   std::filesystem::path file_;
   std::uint64_t file_size_, most_;
   std::uint64_t stored_ = 0, taken_ = 0;  // [bytes]
+  std::set<std::pair<unsigned long, unsigned long>> counted_;
 };
 
 }  // namespace limpid::hdf5
