@@ -64,10 +64,10 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PopStyleColor();  // the theme is told by it
     draw_contents(banner, right - left - 2 * ImGui::GetStyle().WindowPadding.x, act);
     y += ImGui::GetWindowHeight() + 0.5f * pad;
     ImGui::End();
-    ImGui::PopStyleColor();
   }
   return {signs.min, {beside ? signs.max.x : view.max.x, y}};
 }
