@@ -96,8 +96,12 @@ std::optional<std::vector<double>> SweepFolder::read(const SweepBlock& block) co
     if (H5Aexists(file.get(), "plan") > 0 && H5Aexists(file.get(), "build") > 0) throw;
     return std::nullopt;
   }
-  if (!hdf5::has(file.get(), "/values", path)) return std::nullopt;
-  const hdf5::Dataset dataset = hdf5::open_dataset(file.get(), "/values", path);
+  hdf5::Dataset dataset;
+  try {
+    dataset = hdf5::open_dataset(file.get(), "/values", path);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
   const hdf5::Dataspace space(H5Dget_space(dataset.get()));
   if (H5Sget_simple_extent_npoints(space.get()) != std::ssize(rows)) return std::nullopt;
   if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {

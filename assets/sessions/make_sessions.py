@@ -49,8 +49,12 @@ def thumbnail(picture, out):
     out.write_bytes(png.encode(np.round(small)))
 
 
+# Dimension scales refer to places in the file that they stand in.
+SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")
+
+
 def pack(source, into):
-    """Copies a group and all in it, compressed as far as it goes."""
+    """Copies a group and all in it but its scales, compressed as far as it goes."""
     for name in source.attrs:
         into.attrs.create(name, source.attrs[name], dtype=source.attrs.get_id(name).dtype)
     for name, item in source.items():
@@ -59,9 +63,25 @@ def pack(source, into):
             continue
         how = {"compression": 9, "shuffle": True, "maxshape": item.maxshape} if item.shape else {}
         copy = into.create_dataset(name, data=item[()], dtype=item.dtype, **how)
-        for attribute in item.attrs:
+        for attribute in (name for name in item.attrs if name not in SCALES):
             copy.attrs.create(attribute, item.attrs[attribute],
                               dtype=item.attrs.get_id(attribute).dtype)
+
+
+def attach_scales(source, into):
+    """The scales of each dataset of a file, as its copy has them."""
+
+    def attach(name, item):
+        if not isinstance(item, h5py.Dataset) or item.is_scale:
+            return
+        for i, dimension in enumerate(item.dims):
+            for scale in dimension.values():
+                own = into[scale.name]
+                if not own.is_scale:
+                    own.make_scale(scale.attrs["NAME"])
+                into[name].dims[i].attach_scale(own)
+
+    source.visititems(attach)
 
 
 def make(program, scene, folder, draws):
@@ -82,6 +102,7 @@ def make(program, scene, folder, draws):
     limpid(program, *([*world, "--duration", seconds] if seconds else again), "--record", recording)
     with h5py.File(recording) as whole, h5py.File(session, "w", libver=("v108", "v108")) as small:
         pack(whole, small)
+        attach_scales(whole, small)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
 
 

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import unittest
+from pathlib import Path
 
 import test_sweep_window
 from support import ASSETS, LIMPID, ROOT
@@ -31,6 +32,8 @@ class EachDialog(WindowTest):
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.arms = self.home / "arms.urdf"
         self.arms.write_text(two_arms())
+        self.xacro = self.home / "arm.xacro"
+        self.xacro.write_text("<robot name='arm'/>")
         self.words = [str(self.home / "sweep")]
 
     def open_video(self) -> None:
@@ -42,14 +45,15 @@ class EachDialog(WindowTest):
             self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
         self.key("v")
 
-    def open_arm_tip(self) -> None:
-        drop(self.environment["DISPLAY"], int(self.window), [self.arms])
+    def drop(self, file: Path) -> None:
+        drop(self.environment["DISPLAY"], int(self.window), [file])
 
     def open(self, dialog: str) -> None:
         keys = {"help": "F1", "experiments": "F5", "sweep": "F6", "plot": "n", "gallery": "ctrl+g",
                 "open session": "ctrl+o", "add model": "ctrl+m", "save scene": "ctrl+shift+s",
                 "layouts": "ctrl+l", "presets": "ctrl+p", "identify": "F7", "question": "ctrl+q"}
-        ways = {"arm tip": self.open_arm_tip, "video": self.open_video}
+        ways = {"arm tip": lambda: self.drop(self.arms), "video": self.open_video,
+                "expand xacro": lambda: self.drop(self.xacro)}
         ways[dialog]() if dialog in ways else self.key(keys[dialog])
         self.wait(dialog, lambda s: s["dialog"] == dialog and s["closing"])
         self.settled()

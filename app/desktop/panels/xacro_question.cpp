@@ -17,8 +17,9 @@ bool draw_xacro_question(bool& open, const std::filesystem::path& file) {
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
   const bool expand = ImGui::Button("Expand");
+  if (expand) open = false;
   ImGui::SameLine();
-  if (ImGui::Button("Cancel (Esc)") || expand) open = false;
+  close_button("Cancel (Esc)", open);
   ImGui::EndPopup();
   return expand;
 }

@@ -41,7 +41,8 @@ void Desktop::ask_about(const XacroToExpand& arm) {
 
 void Desktop::expand_xacro() {
   expanded_ = xacro_->file.string();
-  open_arm(xacro_->file);
+  const bool known = expanded_ == settings_.device;  // that of the last time, with its tip
+  open_arm(expanded_, known ? settings_.device_tip : std::string());
 }
 
 void Desktop::use_built_in_arm() { open_arm(default_device()); }

@@ -1,5 +1,6 @@
 """Arms that have no chain of joints with masses."""
 
+import re
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -17,12 +18,9 @@ def _urdf_edit(name: str, old: str, new: str, *names: str) -> Case:
     return _urdf(name, edited("urdf", old, new), *names)
 
 
-def _without_last_inertia(good: Good) -> str:
-    """The last moving link left without any mass: the inertia matrix is singular."""
-    whole = good.arm.urdf.read_text()
-    start = whole.index("<inertial>", whole.index('<link name="link3">'))
-    end = whole.index("</inertial>", start) + len("</inertial>")
-    return whole[:start] + whole[end:]
+def _without_inertia(good: Good) -> str:
+    """No link has any mass. (Where only the last ones have none, the chain ends before them.)"""
+    return re.sub(r"<inertial>.*?</inertial>", "", good.arm.urdf.read_text(), flags=re.S)
 
 
 def _joint_text(name: str, parent: str, child: str) -> str:
@@ -56,7 +54,7 @@ URDF: list[Case] = [
     _urdf_edit("no parent", '<parent link="link1"/>', "", "joint2"),
     _urdf_edit("two links of one name", '<link name="link2">', '<link name="link1">', "link1"),
     _urdf_edit("two joints of one name", 'name="joint2"', 'name="joint1"', "joint1"),
-    _urdf("a joint that moves no mass", _without_last_inertia, "link3"),
+    _urdf("joints that move no mass", _without_inertia, "inertia"),
     _urdf_edit("mass negative", '<mass value="0.01"/>', '<mass value="-0.01"/>', "link1"),
     _urdf_edit("mass not a number", '<mass value="0.01"/>', '<mass value="nan"/>', "link1"),
     _urdf_edit("mass infinite", '<mass value="0.01"/>', '<mass value="inf"/>', "link1"),
