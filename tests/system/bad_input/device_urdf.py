@@ -1,8 +1,8 @@
 """Arms that have no chain of joints with masses."""
 
-import re
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import arms
