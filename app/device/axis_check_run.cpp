@@ -25,6 +25,7 @@ class Limits {
   Limits(const ArmDescription& arm, const SafetyLimits& limits)
       : arm_(arm),
         safety_(arm),
+        J_(Jacobian<kAnyDof>::Zero(3, arm.dof())),
         x_(Vector::Zero(arm.dof())),
         v_(Vector::Zero(arm.dof())),
         torque_(Vector::Zero(arm.dof())),

@@ -72,6 +72,16 @@ class Entry {
       if (!use(i, *list->get(i))) reader_.refuse(key, allowed);
     }
   }
+  // A key that nobody knows stays; one that is nearly one of these is a slip of the hand.
+  void no_slips(const std::vector<std::string>& known) const {
+    for (const auto& [key, node] : table_) {
+      const std::string word(key.str());
+      if (std::ranges::find(known, word) != known.end()) continue;
+      if (const auto meant = nearest(word, known)) {
+        reader_.refuse(word.c_str(), fmt::format("the key \"{}\"", *meant));
+      }
+    }
+  }
   Entry element(const char* key, std::size_t i, const toml::table& table) const {
     return {table, file_, fmt::format("{}.{}[{}]", path_, key, i)};
   }
@@ -104,6 +114,7 @@ void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
   entry.each("axis", "a list of tables, one a joint", [&](std::size_t i, const toml::node& node) {
     if (!node.is_table()) return false;
     const Entry each = entry.element("axis", i, *node.as_table());
+    each.no_slips({"zero", "scale", "inverted"});
     AxisAdjustment& axis = axes.emplace_back();
     each.take("zero", -100, 100, axis.zero);
     each.take("scale", 0.1, 10, axis.scale);
@@ -122,9 +133,14 @@ void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
 // Errors: FileError.
 DeviceNotes read_notes(const Entry& entry) {
   DeviceNotes notes;
+  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "arm", "delay", "torque_scale",
+                  "compensation", "axis"});
   entry.take("range", 0.01, 3.2, notes.pid.range);
   entry.take("effort", 0.01, 50, notes.pid.effort);
   if (const std::optional<Entry> limits = entry.below("limits")) {
+    std::vector<std::string> keys;
+    for (const SafetyLimitInfo& info : kSafetyLimitInfo) keys.emplace_back(info.key);
+    limits->no_slips(keys);
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
       double& value = notes.limits.*info.field;
       limits->take(info.key, info.least, value, value);
@@ -305,6 +321,8 @@ std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
           write_notes(known == before.notes.end() ? DeviceNotes{} : known->second);
       const toml::table changed = write_notes(notes);
       if (old == changed) continue;
+      // Nor is anything written that would be refused.
+      read_notes({changed, file.string(), fmt::format("device.\"{}\"", id)});
       if (!devices.contains(id)) {
         devices.insert(id, changed);
         continue;

@@ -62,15 +62,16 @@ template <int N>
 Safety<N>::Safety(const ArmDescription& arm)
     : arm_lower_(of_joints<N>(arm, &Joint::lower)),
       arm_upper_(of_joints<N>(arm, &Joint::upper)),
-      arm_effort_(of_joints<N>(arm, &Joint::effort)) {
+      arm_effort_(of_joints<N>(arm, &Joint::effort)),
+      x_(Vec<N>::Zero(arm.dof())) {
   limit({});
   start();
 }
 
 template <int N>
 void Safety<N>::start() {
-  v_ = x_ = Vec<N>::Zero(lower_.size());
-  energy_ = still_ = 0;
+  v_ = Vec<N>::Zero(lower_.size());
+  energy_ = 0;
 }
 
 // A joint without a stop on one side keeps its range as it is.

@@ -203,7 +203,8 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   // An open switch cuts the device's torque, which looks like a gap as well.
   if (!in.health.hand) finish(ExcitationEnd::let_go);
   if (against.fault != ForceState::on || against.gap) finish(ExcitationEnd::not_well);
-  if (against.ceiling < 1) finish(ExcitationEnd::limit);
+  // Friction may hold a joint where a sweep turns round: less force for a moment, not the end.
+  if (against.ceiling < 1 && against.limited != ForceState::frozen) finish(ExcitationEnd::limit);
   if (!follows(error, torque, in.T)) finish(ExcitationEnd::held);
   time_ += in.T;
   if (left <= 0) finish(ExcitationEnd::complete);

@@ -233,7 +233,7 @@ class WhatGoesWrong(WindowTest):
         self.click(*next(b["buttons"]["Open"] for b in state["banners"] if "Open" in b["buttons"]))
         self.wait("the changed scene", lambda s: s["objects"] == 2 and not s["loading"]
                   and s["scene"].endswith("table-recovered.toml"))
-        self.assertEqual(self.state()["banners"], [])
+        self.wait("no banner", lambda s: s["banners"] == [])
 
     def test_a_display_that_goes_loses_neither_scene_nor_settings_nor_recording(self) -> None:
         import h5py

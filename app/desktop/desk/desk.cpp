@@ -29,11 +29,11 @@ Desk::~Desk() {
   try {
     complete_recording();
   } catch (const std::exception& e) {
-    fmt::print(stderr, "limpid: {}\n", e.what());
+    std::fputs(fmt::format("limpid: {}\n", e.what()).c_str(), stderr);  // the terminal may be gone
   }
   for (std::future<PlotNotice>& saving : saving_) {
     if (const PlotNotice notice = saving.get(); notice.bad) {
-      fmt::print(stderr, "limpid: {}\n", notice.text);
+      std::fputs(fmt::format("limpid: {}\n", notice.text).c_str(), stderr);
     }
   }
 }

@@ -69,7 +69,7 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
     y += ImGui::GetWindowHeight() + 0.5f * pad;
     ImGui::End();
   }
-  return {signs.min, {beside ? signs.max.x : view.max.x, y}};
+  return {signs.min, {view.max.x, std::max(y, signs.max.y)}};
 }
 
 }  // namespace limpid

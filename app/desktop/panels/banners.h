@@ -22,7 +22,7 @@ struct Banner {
 };
 
 // One below the other from the top of the view on, clear of what it shows at its `signs`. Returns
-// what they leave free of these: the same, or down to where the last one ends.
+// the part of the view that they and the signs take.
 ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
                         const Act& act);
 

@@ -200,7 +200,8 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   tooltip("Where it is now becomes zero.");
   auto scale = static_cast<float>(axis.scale);
   ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
-  ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f",
+                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   axis.scale = static_cast<double>(scale);
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip(
@@ -215,13 +216,14 @@ bool joystick_settings(PidSettings& pid) {
   auto effort = static_cast<float>(pid.effort);
   auto range = static_cast<float>(pid.range * kDegrees);
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
+                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip(
       "The joystick's own torque at full force, measured or from its data sheet: USB gives "
       "forces without a unit. Too low a value here makes it push too hard.");
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0");
+  ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0", ImGuiSliderFlags_AlwaysClamp);
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip("How far the stick tilts to each side.");
   pid.effort = static_cast<double>(effort);

@@ -8,7 +8,8 @@ namespace limpid {
 
 void Desktop::escape() {
   const bool closed = close_one();
-  if (!closed || desk_.loop().device_in_place()) cut_force();
+  const bool real = desk_.loop().device_in_place() || devices_.check() != nullptr;
+  if (!closed || real) cut_force();
 }
 
 // A device that moves by itself stops, and its dialog says so. Else a menu, then typing outside of

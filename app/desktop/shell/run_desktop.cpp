@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <cstdio>
 #include <cstdlib>
 
 #include "app/base/interrupt.h"
@@ -21,6 +22,9 @@ namespace {
 
 constexpr double kBetweenStates = 0.09;  // [s]; as often as frames come where they are slower
 
+// Whatever has become of the terminal: fmt would throw.
+void say(const std::string& line) { std::fputs(fmt::format("limpid: {}\n", line).c_str(), stderr); }
+
 // Changes that the user could not be asked about are kept for the next start.
 void keep_changes(const SceneDocument& document, const ArmDescription& arm,
                   const std::string& scene_file) {
@@ -29,10 +33,10 @@ void keep_changes(const SceneDocument& document, const ArmDescription& arm,
        {scenes_dir(), std::filesystem::temp_directory_path() / "limpid"}) {
     try {
       const auto file = keep_unsaved(document, arm, name, folder);
-      fmt::print(stderr, "limpid: unsaved changes are in {}\n", file.string());
+      say("unsaved changes are in " + file.string());
       return;
     } catch (const std::exception& e) {
-      fmt::print(stderr, "limpid: unsaved changes: {}\n", e.what());
+      say(fmt::format("unsaved changes: {}", e.what()));
     }
   }
 }
@@ -65,7 +69,9 @@ class Application {
   void run(const std::string& complaint);  // about the settings
   void note_size();                        // of the window, for the next start
   void keep();                             // what is for the next start
-  void leave_without_display();
+  void finish();                           // motors and recording
+  // with_scene: its changes are still nobody's answer.
+  void leave_without_display(bool with_scene);
 
  private:
   Window::Options prepare_window();
@@ -146,17 +152,21 @@ void Application::keep_scene() {
   keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
 }
 
-// Nothing here may ask the display. The motors first, then what has to be complete, then what is
-// for the next start.
-void Application::leave_without_display() {
-  fmt::print(stderr, "limpid: the display is gone\n");
+// The motors first, then what has to be complete.
+void Application::finish() {
   try {
     desktop_.desk().loop().close();
     desktop_.desk().complete_recording();
   } catch (const std::exception& e) {
-    fmt::print(stderr, "limpid: {}\n", e.what());
+    say(e.what());
   }
-  keep_scene();
+}
+
+// Nothing here may ask the display. What is for the next start comes last.
+void Application::leave_without_display(bool with_scene) {
+  say("the display is gone");
+  finish();
+  if (with_scene) keep_scene();
   keep();
   std::_Exit(1);
 }
@@ -217,7 +227,7 @@ void Application::keep() {
   }
   if (const std::string error = save_settings(desktop_.settings_to_keep(), began_);
       !error.empty()) {
-    fmt::print(stderr, "limpid: settings not saved: {}\n", error);
+    say("settings not saved: " + error);
   }
 }
 
@@ -229,11 +239,13 @@ void run_desktop(const DesktopOptions& options) {
   const Settings settings = load_settings(complaint);
   Application application(options, settings);
   catch_interrupts();
-  when_display_is_lost([&application] { application.leave_without_display(); });
+  when_display_is_lost([&application] { application.leave_without_display(true); });
   application.open();
   application.run(complaint);
+  when_display_is_lost([&application] { application.leave_without_display(false); });
+  application.note_size();   // the last question to the display
   when_display_is_lost({});  // what is kept is kept here now
-  application.note_size();
+  application.finish();
   application.keep();
 }
 

@@ -13,7 +13,7 @@ constexpr const char* kClosing = "the closing button";  // among a dialog's note
 
 // What is noted is in the storage that ImGui keeps for each window.
 ImGuiID key(const char* label, const char* what) {
-  return ImHashStr((std::string(label) + "###noted " + what).c_str());
+  return ImHashStr((std::string("noted ") + what + " of " + label).c_str());
 }
 constexpr const char* kDialog = "is a dialog";
 

@@ -92,7 +92,11 @@ TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"torque_scale = 1000.5", "torque_scale", "1000.5", "a number"},
                 {"compensation = {friction = 1.5}", "compensation.friction", "1.5", "a number"},
                 {"compensation = {down = 'up'}", "compensation.down", "\"up\"", "file, -z, +z"},
-                {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"}};
+                {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"},
+                {"limits = {tip_forse = 1}", "limits.tip_forse", "1", "the key \"tip_force\""},
+                {"limit = {tip_force = 1}", "limit", "tip_force", "the key \"limits\""},
+                {"reversed = [true]", "reversed", "[true]", "the key \"reverse\""},
+                {"axis = [{invertd = true}]", "axis[0].invertd", "true", "the key \"inverted\""}};
   for (const auto& [line, key, found, allowed] : kWrong) {
     std::ofstream(file) << "[device.good]\nchecked = true\n[device.\"1:2\"]\n" << line << "\n";
     const DeviceBook book = load_device_book(file);

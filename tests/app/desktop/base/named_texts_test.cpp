@@ -67,31 +67,6 @@ TEST_F(Named, ThatTheProgramHasByNowStayInTheirFile) {
   EXPECT_THAT(test::file_bytes(dir_ / "own/own.toml"), HasSubstr("a = 5"));
 }
 
-TEST_F(Named, OfTwoWindowsAreAllThere) {
-  NamedTexts first = open(), second = open();
-  EXPECT_EQ(first.keep("of the first", "a = 1"), "");
-  EXPECT_EQ(second.keep("of the second", "a = 2"), "");
-  EXPECT_EQ(first.keep("of the first again", "a = 3"), "");
-  const std::vector<std::string> all{"As it comes", "of the first", "of the first again",
-                                     "of the second"};
-  EXPECT_EQ(names(open()), all);
-  EXPECT_EQ(names(first), all) << "what the other window kept can be used here, too";
-
-  EXPECT_EQ(second.remove("of the first"), "");
-  EXPECT_THAT(first.rename("of the first", "renamed"), HasSubstr("another window"));
-  EXPECT_THAT(first.rename("of the second", "of the first again"), HasSubstr("already"));
-  EXPECT_EQ(names(open()), (std::vector<std::string>{"As it comes", "of the first again",
-                                                     "of the second"}));
-}
-
-TEST_F(Named, ThatTheProgramHasByNowStayInTheirFile) {
-  test::write_file(dir_ / "own/own.toml", "[\"As it comes\"]\na = 5\n");
-  NamedTexts texts = open();
-  EXPECT_THAT(texts.find("As it comes")->text, HasSubstr("1"));
-  EXPECT_EQ(texts.keep("mine", "a = 2"), "");
-  EXPECT_THAT(test::file_bytes(dir_ / "own/own.toml"), HasSubstr("a = 5"));
-}
-
 TEST_F(Named, ThatComeAlongStayAsTheyAre) {
   NamedTexts texts = open();
   EXPECT_FALSE(texts.may_change("As it comes"));
