@@ -56,7 +56,7 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
         "Device panel and press \"Check the axes\"",
         hub.present()->place.name));
   };
-  if (hub.needs_check()) refuse();
+  if (hub.needs_check() && hub.present()->missing.empty()) refuse();
   try {
     return hub.opening()();
   } catch (const UncheckedError&) {

@@ -99,7 +99,7 @@ class WindowTest(unittest.TestCase):
         self.xdotool("mousemove", "--window", self.window, str(int(x)), str(int(y)))
 
     def state(self) -> dict:
-        lines = (self.home / "states").read_text().splitlines()
+        lines = Path(self.states.name).read_text().splitlines()
         for line in reversed(lines):
             try:
                 return json.loads(line)
