@@ -72,12 +72,12 @@ def attach_scales(source, into):
     """The scales of each dataset of a file, as its copy has them."""
 
     def attach(name, item):
-        if not isinstance(item, h5py.Dataset) or item.is_scale:
+        if not isinstance(item, h5py.Dataset) or h5py.h5ds.is_scale(item.id):
             return
         for i, dimension in enumerate(item.dims):
             for scale in dimension.values():
                 own = into[scale.name]
-                if not own.is_scale:
+                if not h5py.h5ds.is_scale(own.id):
                     own.make_scale(scale.attrs["NAME"])
                 into[name].dims[i].attach_scale(own)
 
