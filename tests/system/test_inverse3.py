@@ -107,6 +107,7 @@ class InTheWindow(WindowTest):
     def prepare(self) -> None:
         self.service = Service()
         self.addCleanup(self.service.end)
+        self.service.tell("spring 2000")  # as in a hand; what never moves gets no force
         book = self.home / "config/limpid/devices.toml"
         book.write_text(f'[device."inverse3:049D@127.0.0.1:{self.service.port}"]\nchecked = true\n')
         self.words = ["--device", self.service.name,
