@@ -117,7 +117,9 @@ class SceneWindow(WindowTest):
         self.key("r")
         self.wait("the end of the recording", lambda s: not s["recording"])
         (self.home / "pyramid.glb").unlink()
-        recordings = list((self.home / "data/limpid/sessions").glob("*.h5"))
+        sessions = self.home / "data/limpid/sessions"
+        self.wait_until("the file", lambda: any(sessions.glob("*.h5")))
+        recordings = list(sessions.glob("*.h5"))
         self.assertEqual(len(recordings), 1)
         self.check_rerun_is_the_same(recordings[0])
 
