@@ -194,8 +194,11 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   Jacobian<kAnyDof> J;
   arm_.frames(x, f);
   arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
+  // Friction and a coarse encoder stand still where a sweep turns round: whether readings go along
+  // is judged by how far they are from the path (follows()), and Safety hears of no torque here.
+  const Vector none = Vector::Zero(x.size());
   const Objections against =
-      safety_.judge(in.health, !torque.allFinite(), {x, v_, J, torque_, put_out, in.T});
+      safety_.judge(in.health, !torque.allFinite(), {x, v_, J, none, put_out, in.T});
   gate_.step(first ? ForceWish::arm : ForceWish::as_it_is, against, in.T);
   torque_ = motors_.pass(torque, {limit_, J, safety_.tip_force()}, gate_.gain(), in.T,
                          SafetyLimits::kSlew);
@@ -203,8 +206,7 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   // An open switch cuts the device's torque, which looks like a gap as well.
   if (!in.health.hand) finish(ExcitationEnd::let_go);
   if (against.fault != ForceState::on || against.gap) finish(ExcitationEnd::not_well);
-  // Friction may hold a joint where a sweep turns round: less force for a moment, not the end.
-  if (against.ceiling < 1 && against.limited != ForceState::frozen) finish(ExcitationEnd::limit);
+  if (against.ceiling < 1) finish(ExcitationEnd::limit);
   if (!follows(error, torque, in.T)) finish(ExcitationEnd::held);
   time_ += in.T;
   if (left <= 0) finish(ExcitationEnd::complete);
