@@ -8,8 +8,8 @@ from window import HEIGHT, WIDTH, WindowTest
 FOUR = ["coordination error", "controller energy", "human and contact torque",
         "error against torque"]
 PLOTS = HEIGHT - 130   # a height at which the plots are
-RENAME = (492, 464)    # buttons of the dialog of layouts
-REMOVE = (567, 464)
+RENAME = (492, 449)    # buttons of the dialog of layouts
+REMOVE = (567, 449)
 SAVE_CSV = (1060, 499)  # in the menu of the last plot
 
 

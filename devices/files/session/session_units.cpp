@@ -93,12 +93,16 @@ void each_contact(std::span<double> points, std::span<const double> forces, cons
 }
 
 bool zero(std::span<const double> v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+// A zero with a sign is something that was reckoned.
+bool never_set(std::span<const double> v) {
+  return zero(v) && !std::signbit(v[0]) && !std::signbit(v[1]) && !std::signbit(v[2]);
+}
 
 }  // namespace
 
 void file_points(std::span<double> points, std::span<const double> forces) {
   each_contact(points, forces, [](std::span<double> point, std::span<const double> force) {
-    if (!zero(point) || !zero(force)) return;
+    if (!never_set(point) || !zero(force)) return;
     std::ranges::fill(point, std::numeric_limits<double>::quiet_NaN());
   });
 }

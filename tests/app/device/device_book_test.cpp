@@ -94,7 +94,7 @@ TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"compensation = {down = 'up'}", "compensation.down", "\"up\"", "file, -z, +z"},
                 {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"},
                 {"limits = {tip_forse = 1}", "limits.tip_forse", "1", "the key \"tip_force\""},
-                {"limit = {tip_force = 1}", "limit", "tip_force", "the key \"limits\""},
+                {"limit = {tip_force = 1}", "limit", "a table", "the key \"limits\""},
                 {"reversed = [true]", "reversed", "[true]", "the key \"reverse\""},
                 {"axis = [{invertd = true}]", "axis[0].invertd", "true", "the key \"inverted\""}};
   for (const auto& [line, key, found, allowed] : kWrong) {

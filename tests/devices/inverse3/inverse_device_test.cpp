@@ -150,6 +150,10 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   const auto run = [&](ForceWish wish, const std::function<bool()>& until) {
     const auto end = std::chrono::steady_clock::now() + 60s;
     while (!until() && std::chrono::steady_clock::now() < end) {
+      // A busy machine stands still for more than 5 ms now and then.
+      const ForceState why = rig.force_state();
+      const bool late = why == ForceState::stale || why == ForceState::stalled;
+      if (late && rig.force().state() == Arming::tripped) wish = ForceWish::arm;
       rig.step({}, {.hand = {rig.tip(), 1}, .force = std::exchange(wish, ForceWish::as_it_is)},
                row);
       std::this_thread::sleep_for(1ms);
@@ -158,8 +162,8 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   };
   ASSERT_TRUE(run(ForceWish::arm, [&] { return rig.force().gain() == 1; }));
   int ticks = 0;
-  EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return ++ticks > 2000; }));
-  EXPECT_GT(rig.force().gain(), 0.5) << "it is held still, but gives way as its force fades";
+  EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return ++ticks > 2000 && rig.force().gain() > 0.5; }))
+      << "it is held still, but gives way as its force fades";
   service.wait_for(pushes);
   service.tell("repeat");
   EXPECT_TRUE(run(ForceWish::as_it_is, [&] {
@@ -167,8 +171,9 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   }));
   service.wait_for("force 0 0 0");
   ticks = 0;
-  run(ForceWish::arm, [&] { return ++ticks > 700; });
-  EXPECT_EQ(rig.force_state(), ForceState::frozen) << "armed again, but not moved";
+  EXPECT_TRUE(run(ForceWish::arm, [&] {
+    return ++ticks > 700 && rig.force_state() == ForceState::frozen;
+  })) << "armed again, but not moved";
   EXPECT_EQ(rig.force().gain(), 0);
 }
 
