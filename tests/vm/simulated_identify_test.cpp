@@ -144,7 +144,11 @@ Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
     for (int ms = 1; ms <= 5000; ++ms) {
       desk.run(1);
       const std::size_t k = desk.row.size() - 1;
-      if (ms > 1000) out.force = out.force && desk.rig.force_state() == ForceState::on;
+      // One that leans on the stop stands still under its friction: then nothing shows that its
+      // readings are alive, and its force fades.
+      const ForceState why = desk.rig.force_state();
+      const bool still = pressing && why == ForceState::frozen;
+      if (ms > 1000) out.force = out.force && (why == ForceState::on || still);
       if (!pressing)
         motion.add(stick, desk.model->hand(), hand, 1e-3 * (ms - 1), desk.parameters.b_v);
       out.energy = std::max(out.energy, desk.row.at(k, Column::energy_total) -

@@ -110,7 +110,8 @@ TEST(Twin, StandsBehindTheFirstRunInATable) {
   std::getline(file, row);
   EXPECT_NE(header.find(",twin_time_s,"), std::string::npos);
   EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(row, ','));
-  EXPECT_EQ(std::ranges::count(header, ',') + 1, 2 * session.layout.stride());
+  constexpr int kTips = 5 * 3;  // places and velocities of both, and the total force
+  EXPECT_EQ(std::ranges::count(header, ',') + 1, 2 * (session.layout.stride() + kTips));
 }
 
 TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
