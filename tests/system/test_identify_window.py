@@ -63,7 +63,8 @@ class IdentifyDevice(WindowTest):
         self.addCleanup(device.kill)
         while not (runtime / "limpid/paddle.device").exists():
             time.sleep(0.05)
-        (self.home / "config/limpid/devices.toml").write_text('in_use = "socket:paddle"\n')
+        (self.home / "config/limpid/devices.toml").write_text(
+            'in_use = "socket:paddle"\n[device."socket:paddle"]\nchecked = true\n')
         self.words = ["--device", str(ASSETS / "devices/paddle.urdf")]
         if hasattr(os, "sched_setscheduler") and os.geteuid() == 0:
             os.sched_setscheduler(device.pid, os.SCHED_FIFO, os.sched_param(50))
