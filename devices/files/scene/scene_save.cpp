@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
@@ -52,7 +51,7 @@ class Models {
   ~Models() {
     std::error_code none;
     if (!kept_) {
-      for (const fs::path& copy : std::views::reverse(copies_)) fs::remove(copy, none);
+      for (auto copy = copies_.rbegin(); copy != copies_.rend(); ++copy) fs::remove(*copy, none);
     }
   }
   Models(const Models&) = delete;
