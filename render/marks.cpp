@@ -9,7 +9,6 @@
 namespace limpid {
 namespace {
 
-constexpr double kMetersPerNewton = 0.02;
 constexpr double kLeastForce = 0.02;    // [N], below it there is nothing to point at
 constexpr double kLeastError = 0.0001;  // [m]
 constexpr double kShadeHeight = 0.06;   // above it a tip leaves no shade [m]

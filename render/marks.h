@@ -12,6 +12,8 @@
 
 namespace limpid {
 
+inline constexpr double kMetersPerNewton = 0.02;  // of an arrow
+
 struct SolidMark {
   enum class Shape { tube, cone, ball };
   Shape shape;
@@ -31,7 +33,8 @@ struct Marks {
   std::vector<FlashMark> flashes;
 };
 
-// Sizes are in pixels, so that marks stay readable; the lengths of arrows are not (2 cm/N).
+// Sizes are in pixels, so that marks stay readable; the lengths of arrows are not
+// (kMetersPerNewton).
 Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale);
 
 // Lines that others can hide, and lines on top of everything.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "render/marks.h"
+
 namespace limpid {
 namespace {
 
-constexpr double kSpan = 0.3;              // of a link: how far a turn moves its end [m]
-constexpr double kMetersPerNewton = 0.02;  // of an arrow
-constexpr double kFlash = 0.25;            // a contact's first moment [s]
+constexpr double kSpan = 0.3;    // of a link: how far a turn moves its end [m]
+constexpr double kFlash = 0.25;  // a contact's first moment [s]
 
 // One comparison after the other; a number that is none is never near.
 struct Near {

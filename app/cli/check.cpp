@@ -29,7 +29,7 @@ struct CheckOptions {
 };
 
 // Lines for people.
-struct Report {
+struct CheckReport {
   std::vector<std::string> facts, warnings;
 };
 
@@ -47,7 +47,7 @@ std::string joint_line(const Joint& joint, const Link& link, double inertia) {
                      inertia / (unit * unit), slides ? "kg" : "kg m^2");
 }
 
-void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, Report& report) {
+void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, CheckReport& report) {
   report.facts.push_back(fmt::format("  {:<26} {:>18} {:>12} {:>14} {:>10} {:>15}", "joint",
                                      "range", "effort", "damping", "its link", "moves at rest"));
   for (int i = 0; i < arm.dof(); ++i) {
@@ -57,7 +57,7 @@ void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, Report& re
 }
 
 void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Parameters& p,
-                Report& report) {
+                CheckReport& report) {
   const std::string fit = fit_text(p);
   report.facts.push_back(fit.empty() ? "gains        the paper's suit it"
                                      : "gains        fitted: " + fit);
@@ -76,7 +76,7 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
 }
 
 // What leaves for the motors, however the gains are set.
-void list_limits(const Parameters& p, Report& report) {
+void list_limits(const Parameters& p, CheckReport& report) {
   report.facts.push_back(fmt::format(
       "limits       torque {}, within {:.0f} ms from none; a real device's tip: {:.0f} N",
       std::isfinite(p.torque_limit) ? fmt::format("{:.3g} N m", p.torque_limit)
@@ -87,7 +87,7 @@ void list_limits(const Parameters& p, Report& report) {
 // Beyond this the travel of a slide is meant for "as far as you like" [m].
 constexpr double kFar = 100;
 
-void list_reach(const ArmDescription& arm, double mass, Report& report) {
+void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
   const double most = farthest_tip(arm).distance;
   report.facts.push_back(fmt::format(
       "reach        {:.3g} m from the origin of joint '{}' to '{}', {:.3g} kg in motion", most,
@@ -103,9 +103,9 @@ void list_reach(const ArmDescription& arm, double mass, Report& report) {
   }
 }
 
-Report on_arm(const std::string& file, const InputOptions& input) {
+CheckReport on_arm(const std::string& file, const InputOptions& input) {
   const ArmDescription arm = load_arm(file, input.tip, Xacro::expand).arm;
-  Report report{{}, arm.warnings};
+  CheckReport report{{}, arm.warnings};
   double mass = 0;
   for (const Link& link : arm.links) mass += link.mass;
   const std::size_t pictures = static_cast<std::size_t>(std::ranges::count_if(
@@ -124,17 +124,17 @@ Report on_arm(const std::string& file, const InputOptions& input) {
   return report;
 }
 
-void list_mesh(const MeshObstacle& mesh, const Model& model, Report& report) {
+void list_mesh(const MeshObstacle& mesh, const Model& model, CheckReport& report) {
   const Vec3 size = mesh.size() * model.bounds().sizes();
   report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g} m",
                                      mesh.name, model.indices.size() / 3, size.x(), size.y(),
                                      size.z()));
 }
 
-Report on_scene(const std::string& file, const InputOptions& input) {
+CheckReport on_scene(const std::string& file, const InputOptions& input) {
   const LoadedScene loaded = load_scene(file, arm_of(input));
   const Scene& scene = loaded.document.scene;
-  Report report{{}, loaded.warnings};
+  CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
   report.facts.push_back(
       fmt::format("to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
@@ -146,12 +146,12 @@ Report on_scene(const std::string& file, const InputOptions& input) {
   return report;
 }
 
-Report on_model(const std::string& file) {
+CheckReport on_model(const std::string& file) {
   ModelReport report = report_on_model(file);
   return {std::move(report.facts), std::move(report.warnings)};
 }
 
-Report on(const CheckOptions& options) {
+CheckReport on(const CheckOptions& options) {
   const fs::path file = options.file;
   if (const std::string why = why_not_found(file, "no such file"); !why.empty()) {
     throw FileError(fmt::format("{}: {}", options.file, why));
@@ -171,7 +171,7 @@ Report on(const CheckOptions& options) {
 }
 
 // Whatever cannot be opened is refused, whoever found that out.
-Report opened(const CheckOptions& options) {
+CheckReport opened(const CheckOptions& options) {
   try {
     return on(options);
   } catch (const std::bad_alloc&) {
@@ -182,7 +182,7 @@ Report opened(const CheckOptions& options) {
 }
 
 int check(const CheckOptions& options) {
-  const Report report = opened(options);
+  const CheckReport report = opened(options);
   for (const std::string& fact : report.facts) fmt::print("{}\n", fact);
   for (const std::string& warning : report.warnings) fmt::print("warning      {}\n", warning);
   const std::size_t n = report.warnings.size();

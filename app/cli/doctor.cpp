@@ -22,7 +22,7 @@ const char* word(State state) {
   return "";
 }
 
-void print(const Findings& all) {
+void print(const DoctorFindings& all) {
   std::string area;
   for (const Finding& finding : all) {
     if (finding.area != area) fmt::print("{}{}\n", area.empty() ? "" : "\n", finding.area);
@@ -33,7 +33,7 @@ void print(const Findings& all) {
   }
 }
 
-void print_json(const Findings& all, State worst) {
+void print_json(const DoctorFindings& all, State worst) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Finding& finding : all) {
     list.push_back({{"area", finding.area},
@@ -47,11 +47,12 @@ void print_json(const Findings& all, State worst) {
 }
 
 int doctor(bool json) {
-  Findings all;
+  DoctorFindings all;
   // The picture first: it is looked at in processes of their own, which are made while there is one
   // thread only.
-  const Findings picture = look_at_picture();
-  for (const Findings& some : {look_at_real_time(), look_at_devices(), picture, look_at_files()}) {
+  const DoctorFindings picture = look_at_picture();
+  for (const DoctorFindings& some :
+       {look_at_real_time(), look_at_devices(), picture, look_at_files()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   const State worst = std::ranges::max_element(all, {}, &Finding::state)->state;

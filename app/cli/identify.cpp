@@ -102,8 +102,8 @@ int forget(const IdentifyOptions& options) {
   return 0;
 }
 
-int write(const IdentifyOptions& options, const Identification& done,
-          const std::optional<Findings>& last, const std::string& more) {
+int write_arm(const IdentifyOptions& options, const Identification& done,
+              const std::optional<Findings>& last, const std::string& more) {
   const fs::path out = options.out;
   const std::string wrong = write_identification(done, last, out, more);
   fmt::print("arm: {}\nreport: {}\n", (out / "identified.urdf").string(),
@@ -158,7 +158,7 @@ int identify_simulated(IdentifyOptions& options) {
   bench.unlikeness.torque_scale = 1;  // what is told takes it into account
   const ordered_json rehearsal{{"rehearsal", rehearse_and_print(bench.truth, bench.unlikeness,
                                                                 order.guess, done.found.arm)}};
-  return write(options, done, {}, rehearsal.dump());
+  return write_arm(options, done, {}, rehearsal.dump());
 }
 
 int identify_device(IdentifyOptions options) {
@@ -190,7 +190,7 @@ int identify_device(IdentifyOptions options) {
   print(done);
   const std::optional<Findings> last = read_findings(hub.remembered_report());
   if (last) print_drift(*last, done);
-  const int status = write(options, done, last, {});
+  const int status = write_arm(options, done, last, {});
   if (const std::string wrong = hub.remember(nature_of(done)); !wrong.empty()) {
     throw std::runtime_error(wrong);
   }

@@ -23,7 +23,7 @@ int try_to_write(const fs::path& dir) {
   const std::vector<char> some(1 << 16);
   errno = ENOSPC;  // what a short write means
   const bool written =
-      write(descriptor, some.data(), some.size()) == std::ssize(some) && fsync(descriptor) == 0;
+      ::write(descriptor, some.data(), some.size()) == std::ssize(some) && fsync(descriptor) == 0;
   const int code = written ? 0 : errno;
   close(descriptor);
   unlink(probe.c_str());

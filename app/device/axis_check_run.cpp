@@ -13,7 +13,7 @@ namespace limpid {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr milliseconds kTick{1};
+constexpr milliseconds kCheckTick{1};
 constexpr milliseconds kSilence{400};
 constexpr double kSmooth = 0.004;  // of the velocity that is judged [s]
 
@@ -95,7 +95,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
       talk.stage = check.stage();
       done = check.done();
     };
-    thread.start(kTick, tick, Overdue::given_up);
+    thread.start(kCheckTick, tick, Overdue::given_up);
     while (!done && thread.status().running) {
       std::this_thread::sleep_for(milliseconds(10));
       if (std::chrono::steady_clock::now() - talk.window_seen.load() > kSilence) talk.cancel = true;

@@ -13,7 +13,7 @@ using std::chrono::duration;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kTick{1};
+constexpr milliseconds kIdentifyTick{1};
 constexpr double kT = 1e-3;         // [s]
 constexpr double kLongestWay = 30;  // to the middle, at the start [s]
 
@@ -137,7 +137,7 @@ IdentifyRun run_identification(Device& device, const ArmDescription& arm,
       done = !recording.running();
     };
     talk.see();
-    thread.start(kTick, tick, Overdue::given_up);
+    thread.start(kIdentifyTick, tick, Overdue::given_up);
     while (!done && thread.status().running) std::this_thread::sleep_for(milliseconds(10));
   }
   device.stop();

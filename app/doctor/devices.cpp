@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = Finding::State;
 
-constexpr const char* kArea = "devices";
+constexpr const char* kDevicesArea = "devices";
 constexpr const char* kRule = "70-limpid.rules";
 
 std::string installed_rule() {
@@ -28,13 +28,13 @@ std::string installed_rule() {
 
 Finding rule() {
   const std::string file = installed_rule();
-  if (!file.empty()) return {kArea, "udev rule", State::fine, file, {}, {}};
+  if (!file.empty()) return {kDevicesArea, "udev rule", State::fine, file, {}, {}};
   std::string source = fmt::format("assets/udev/{}", kRule);
   try {
     source = (data_dir() / source).string();
   } catch (const std::exception&) {  // said among the files
   }
-  return {kArea,
+  return {kDevicesArea,
           "udev rule",
           State::better,
           "not installed",
@@ -51,8 +51,9 @@ Finding on_hid() {
        node.increment(none)) {
     ++nodes;
   }
-  if (!none) return {kArea, "HID", State::fine, fmt::format("{} hidraw nodes", nodes), {}, {}};
-  return {kArea,
+  if (!none)
+    return {kDevicesArea, "HID", State::fine, fmt::format("{} hidraw nodes", nodes), {}, {}};
+  return {kDevicesArea,
           "HID",
           State::better,
           "the kernel has no /sys/class/hidraw",
@@ -63,9 +64,9 @@ Finding on_hid() {
 Finding one(const FoundDevice& device) {
   const std::string what = fmt::format("{} ({})", device.place.name, device.place.id);
   const std::string kind = fmt::format("{} at {}", device.kind->name, device.place.path);
-  if (device.missing.empty()) return {kArea, what, State::fine, kind, {}, {}};
+  if (device.missing.empty()) return {kDevicesArea, what, State::fine, kind, {}, {}};
   if (access(device.place.path.c_str(), R_OK | W_OK) == 0) {
-    return {kArea, what, State::better, kind, "it is left out", device.missing};
+    return {kDevicesArea, what, State::better, kind, "it is left out", device.missing};
   }
   const std::string mend =
       installed_rule().empty()
@@ -74,22 +75,19 @@ Finding one(const FoundDevice& device) {
                 "plug it in again, at the computer itself and not over ssh; if its number "
                 "is not in {}, add a line for it",
                 installed_rule());
-  return {kArea,
-          what,
-          State::broken,
-          kind + ": " + device.missing.substr(0, device.missing.find(':')),
-          "it cannot be used",
-          mend};
+  return {kDevicesArea,        what,
+          State::broken,       kind + ": " + device.missing.substr(0, device.missing.find(':')),
+          "it cannot be used", mend};
 }
 
 }  // namespace
 
-Findings look_at_devices() {
-  Findings all{rule(), on_hid()};
+DoctorFindings look_at_devices() {
+  DoctorFindings all{rule(), on_hid()};
   const std::vector<FoundDevice> found = list_devices({.udev_rule = kRule});
   for (const FoundDevice& device : found) all.push_back(one(device));
   if (found.empty()) {
-    all.push_back({kArea,
+    all.push_back({kDevicesArea,
                    "haptic device",
                    State::fine,
                    "none is plugged in; the virtual arm is built in",

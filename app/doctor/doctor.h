@@ -6,12 +6,12 @@
 namespace limpid {
 
 // Whether a thread gets real-time priority and memory that stays, and what else makes ticks late.
-Findings look_at_real_time();
+DoctorFindings look_at_real_time();
 // What is plugged in, and whether this user may talk to it.
-Findings look_at_devices();
+DoctorFindings look_at_devices();
 // Whether pictures can be drawn without a display and in a window, and by what.
-Findings look_at_picture();
+DoctorFindings look_at_picture();
 // What belongs to Limpid, what it starts, and where it writes.
-Findings look_at_files();
+DoctorFindings look_at_files();
 
 }  // namespace limpid

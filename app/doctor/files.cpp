@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = Finding::State;
 
-constexpr const char* kArea = "files";
+constexpr const char* kFilesArea = "files";
 constexpr const char* kAgain = "sudo apt install --reinstall limpid, or `cmake --install` again";
 constexpr std::uintmax_t kMega = 1'000'000;
 constexpr std::uintmax_t kLittle = 1000 * kMega, kTooLittle = 50 * kMega;  // [bytes]
@@ -24,20 +24,22 @@ Finding assets() {
   try {
     const fs::path data = data_dir();
     if (fs::exists(data / "shaders")) {
-      return {kArea, "assets", State::fine, data.string(), {}, {}};
+      return {kFilesArea, "assets", State::fine, data.string(), {}, {}};
     }
-    return {kArea,         "assets", State::broken, (data / "shaders").string() + " is missing",
+    return {kFilesArea,    "assets", State::broken, (data / "shaders").string() + " is missing",
             "no pictures", kAgain};
   } catch (const std::exception& error) {
-    return {kArea, "assets", State::broken, error.what(), "nothing but these lines works", kAgain};
+    return {kFilesArea, "assets", State::broken, error.what(), "nothing but these lines works",
+            kAgain};
   }
 }
 
 Finding program(const char* name, const char* cost) {
   std::error_code none;
   const fs::path file = fs::read_symlink("/proc/self/exe", none).replace_filename(name);
-  if (access(file.c_str(), X_OK) == 0) return {kArea, name, State::fine, file.string(), {}, {}};
-  return {kArea, name, State::broken, file.string() + " is missing", cost, kAgain};
+  if (access(file.c_str(), X_OK) == 0)
+    return {kFilesArea, name, State::fine, file.string(), {}, {}};
+  return {kFilesArea, name, State::broken, file.string() + " is missing", cost, kAgain};
 }
 
 // As the shell looks for it.
@@ -46,9 +48,10 @@ Finding tool(const std::string& name, const char* cost, const std::string& packa
   std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
   for (std::string folder; std::getline(folders, folder, ':');) {
     const fs::path file = fs::path(folder) / name;
-    if (access(file.c_str(), X_OK) == 0) return {kArea, name, State::fine, file.string(), {}, {}};
+    if (access(file.c_str(), X_OK) == 0)
+      return {kFilesArea, name, State::fine, file.string(), {}, {}};
   }
-  return {kArea, name, State::better, "not installed", cost, "sudo apt install " + package};
+  return {kFilesArea, name, State::better, "not installed", cost, "sudo apt install " + package};
 }
 
 // Where it is, or would be made.
@@ -62,9 +65,9 @@ Finding writable(const char* what, const fs::path& folder, const char* cost) {
   const fs::path there = nearest(folder);
   std::error_code none;
   if (fs::is_directory(there, none) && access(there.c_str(), W_OK | X_OK) == 0) {
-    return {kArea, what, State::fine, folder.string(), {}, {}};
+    return {kFilesArea, what, State::fine, folder.string(), {}, {}};
   }
-  return {kArea,
+  return {kFilesArea,
           what,
           State::broken,
           fmt::format("{} cannot be written", folder.string()),
@@ -79,11 +82,11 @@ Finding room() {
   std::error_code failed;
   const std::uintmax_t left = fs::space(there, failed).available;
   if (failed)
-    return {kArea, "disk", State::better, failed.message(), "nobody knows what fits", "df -h"};
+    return {kFilesArea, "disk", State::better, failed.message(), "nobody knows what fits", "df -h"};
   const std::string found =
       fmt::format("{:.1f} GB left at {}", static_cast<double>(left) / 1e9, there.string());
-  if (left >= kLittle) return {kArea, "disk", State::fine, found, {}, {}};
-  return {kArea,
+  if (left >= kLittle) return {kFilesArea, "disk", State::fine, found, {}, {}};
+  return {kFilesArea,
           "disk",
           left < kTooLittle ? State::broken : State::better,
           found,
@@ -93,7 +96,7 @@ Finding room() {
 
 }  // namespace
 
-Findings look_at_files() {
+DoctorFindings look_at_files() {
   return {
       assets(),
       program("limpid-model", "models other than glTF are not read"),

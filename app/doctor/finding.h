@@ -21,6 +21,6 @@ struct Finding {
   std::string cost;  // what is lost by it; empty if all is fine
   std::string mend;  // a command, or what to do; empty if all is fine
 };
-using Findings = std::vector<Finding>;
+using DoctorFindings = std::vector<Finding>;
 
 }  // namespace limpid

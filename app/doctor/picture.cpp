@@ -20,7 +20,7 @@ namespace {
 
 using State = Finding::State;
 
-constexpr const char* kArea = "picture";
+constexpr const char* kPictureArea = "picture";
 constexpr int kPatience = 20'000;  // [ms], for a driver that hangs
 constexpr const char* kDrivers = "sudo apt install libgl1 libegl1 libgl1-mesa-dri";
 
@@ -96,8 +96,8 @@ Answer ask(const std::function<std::string()>& renderer) {
 
 Finding offscreen() {
   const Answer it = ask(offscreen_renderer);
-  if (it.drawn) return {kArea, "without display", State::fine, it.text, {}, {}};
-  return {kArea,
+  if (it.drawn) return {kPictureArea, "without display", State::fine, it.text, {}, {}};
+  return {kPictureArea,
           "without display",
           State::broken,
           it.text,
@@ -113,7 +113,7 @@ bool set(const char* variable) {
 Finding window() {
   if (!set("DISPLAY")) {
     const bool wayland = set("WAYLAND_DISPLAY");
-    return {kArea,
+    return {kPictureArea,
             "window",
             State::better,
             wayland ? "Wayland without Xwayland (DISPLAY is not set)"
@@ -124,11 +124,11 @@ Finding window() {
   }
   const Answer it = ask(window_renderer);
   if (!it.drawn) {
-    return {kArea, "window", State::broken, it.text, "the window does not open", kDrivers};
+    return {kPictureArea, "window", State::broken, it.text, "the window does not open", kDrivers};
   }
   if (Quality::automatic_level(it.text) == 0)
-    return {kArea, "window", State::fine, it.text, {}, {}};
-  return {kArea,
+    return {kPictureArea, "window", State::fine, it.text, {}, {}};
+  return {kPictureArea,
           "window",
           State::better,
           it.text,
@@ -139,6 +139,6 @@ Finding window() {
 
 }  // namespace
 
-Findings look_at_picture() { return {offscreen(), window()}; }
+DoctorFindings look_at_picture() { return {offscreen(), window()}; }
 
 }  // namespace limpid

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = Finding::State;
 
-constexpr const char* kArea = "real time";
+constexpr const char* kRealTimeArea = "real time";
 constexpr const char* kGroup = "realtime";  // of assets/desktop/limits.conf
 
 std::string first_line(const fs::path& file) {
@@ -75,8 +75,8 @@ Finding priority(const RealtimeReport& report) {
   const std::string found = fmt::format("{} (RLIMIT_RTPRIO {})",
                                         report.explanation.substr(0, report.explanation.find(';')),
                                         limit_text(RLIMIT_RTPRIO, "", 1));
-  if (report.realtime()) return {kArea, "priority", State::fine, found, {}, {}};
-  return {kArea,
+  if (report.realtime()) return {kRealTimeArea, "priority", State::fine, found, {}, {}};
+  return {kRealTimeArea,
           "priority",
           State::better,
           found,
@@ -87,9 +87,14 @@ Finding priority(const RealtimeReport& report) {
 Finding memory(const RealtimeReport& report) {
   const std::string limit = limit_text(RLIMIT_MEMLOCK, " KiB", 1024);
   if (report.memory_locked) {
-    return {kArea, "memory", State::fine, fmt::format("stays (RLIMIT_MEMLOCK {})", limit), {}, {}};
+    return {kRealTimeArea,
+            "memory",
+            State::fine,
+            fmt::format("stays (RLIMIT_MEMLOCK {})", limit),
+            {},
+            {}};
   }
-  return {kArea,
+  return {kRealTimeArea,
           "memory",
           State::better,
           fmt::format("may be taken away (RLIMIT_MEMLOCK {})", limit),
@@ -104,8 +109,8 @@ Finding timers(int slack) {
   // Real-time threads have none, whatever was asked for.
   const bool fine =
       resolution.tv_sec == 0 && resolution.tv_nsec < 1'000'000 && (slack == 0 || slack == 1);
-  if (fine) return {kArea, "timers", State::fine, found, {}, {}};
-  return {kArea,
+  if (fine) return {kRealTimeArea, "timers", State::fine, found, {}, {}};
+  return {kRealTimeArea,
           "timers",
           State::broken,
           found,
@@ -122,8 +127,12 @@ Finding governor() {
     if (!name.empty()) ++processors[name];
   }
   if (processors.empty()) {
-    return {kArea, "clock", State::fine, "the processor's clock is not the kernel's to set",
-            {},    {}};
+    return {kRealTimeArea,
+            "clock",
+            State::fine,
+            "the processor's clock is not the kernel's to set",
+            {},
+            {}};
   }
   std::string found;
   for (const auto& [name, count] : processors) {
@@ -131,9 +140,9 @@ Finding governor() {
   }
   found += processors.size() == 1 && processors.begin()->second == 1 ? " processor" : " processors";
   if (!processors.contains("powersave") && !processors.contains("conservative")) {
-    return {kArea, "clock", State::fine, found, {}, {}};
+    return {kRealTimeArea, "clock", State::fine, found, {}, {}};
   }
-  return {kArea,
+  return {kRealTimeArea,
           "clock",
           State::better,
           found,
@@ -154,12 +163,17 @@ Finding kernel() {
   }
   if (kind != "PREEMPT_RT")
     kind += "; linux-image-rt-amd64 has PREEMPT_RT, with the fewest late ticks";
-  return {kArea, "kernel", State::fine, fmt::format("Linux {}, {}", name.release, kind), {}, {}};
+  return {kRealTimeArea,
+          "kernel",
+          State::fine,
+          fmt::format("Linux {}, {}", name.release, kind),
+          {},
+          {}};
 }
 
 }  // namespace
 
-Findings look_at_real_time() {
+DoctorFindings look_at_real_time() {
   const Granted granted = ask_for_all();
   return {priority(granted.report), memory(granted.report), timers(granted.timer_slack), governor(),
           kernel()};

@@ -13,8 +13,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kEtas[] = {0.2, 0.3, 0.5, 1, 2, 5};
-constexpr double kGrip = 300, kGripDamping = 4;            // [N/m], [N s/m]
+constexpr double kLightEtas[] = {0.2, 0.3, 0.5, 1, 2, 5};
+constexpr double kLightGrip = 300, kLightGripDamping = 4;  // [N/m], [N s/m]
 constexpr double kSettle = 2, kPeriod = 2, kTick = 0.001;  // [s]
 constexpr double kAmplitude = 2.5e-4;                      // at 1 Hz [m]
 
@@ -47,7 +47,7 @@ struct Law {
 std::vector<Law> all_laws() {
   std::vector<Law> laws{{CouplingKind::standard, 1}};
   for (const CouplingKind kind : {CouplingKind::proposed, CouplingKind::predictive}) {
-    for (const double eta : kEtas) laws.push_back({kind, eta});
+    for (const double eta : kLightEtas) laws.push_back({kind, eta});
   }
   return laws;
 }
@@ -56,8 +56,8 @@ Trial shaken(const Law& law) {
   Parameters p;
   p.kind = law.kind;
   p.eta = law.eta;
-  p.hand_stiffness = kGrip;
-  p.hand_damping = kGripDamping;
+  p.hand_stiffness = kLightGrip;
+  p.hand_damping = kLightGripDamping;
   const Vec3 along = Vec3(1, 0.8, 0.6).normalized();
   const auto at = [signal = shaking(), along](double t) {
     return Vec3(kHome + minimum_jerk(t / 0.5) * signal.at(t) * along);
@@ -153,7 +153,8 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
                           {{0, least_damping(0, mass)}, {1, 0}}});
   for (const auto& [kind, ink] : {std::pair(CouplingKind::proposed, kProposedInk),
                                   {CouplingKind::predictive, kPredictiveInk}}) {
-    Series line{fmt::format("{}, eta {} to 1", name(kind), kEtas[0]), ink, Series::Style::line, {}};
+    Series line{
+        fmt::format("{}, eta {} to 1", name(kind), kLightEtas[0]), ink, Series::Style::line, {}};
     for (const Law& law : of(laws, kind)) {
       if (law.eta <= 1) line.points.push_back({law.at(2).inertia, law.at(kAt).damping});
     }
@@ -211,7 +212,7 @@ Outcome lightness(Laboratory& lab) {
       "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
       "The proposed coupling's inertia at eta = 5 lies below the frames. Last: the arm roams in an "
       "undamped grip of 3000 N/m.",
-      1e3 * kAmplitude, kGrip, kGripDamping, Parameters{}.band);
+      1e3 * kAmplitude, kLightGrip, kLightGripDamping, Parameters{}.band);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(laws);
   for (const Law& law : of(laws, CouplingKind::predictive)) {

@@ -21,7 +21,7 @@ Outcome live_zwidth(LiveLaboratory& lab);
 
 namespace {
 
-constexpr std::array kExperiments{
+constexpr std::array kLiveExperiments{
     LiveExperiment{"coordination", "device and proxy while you press (Figs. 3 and 4)",
                    live_coordination},
     LiveExperiment{"inertia", "the inertia that you feel at three etas (Fig. 5)", live_inertia},
@@ -50,7 +50,7 @@ std::vector<Eigen::VectorXd> smooth(const std::vector<Eigen::VectorXd>& raw, std
 
 }  // namespace
 
-std::span<const LiveExperiment> live_experiments() { return kExperiments; }
+std::span<const LiveExperiment> live_experiments() { return kLiveExperiments; }
 
 Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
                   const std::filesystem::path& dir) {

@@ -13,7 +13,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kSeconds = 15;
+constexpr double kInertiaSeconds = 15;
 constexpr double kMargin = 1.1;    // of the least eta that is passive
 constexpr double kOff = 0.25;      // of what is promised: hands and arms differ
 constexpr double kLargest = 1.75;  // eta
@@ -26,7 +26,7 @@ double promised_inertia(const Parameters& p, double b) {
 
 LiveTrial swing(const Parameters& p) {
   return {
-      fmt::format("eta-{:.2f}", p.eta), p, kSeconds,
+      fmt::format("eta-{:.2f}", p.eta), p, kInertiaSeconds,
       fmt::format("eta = {:.2f}: swing the tip through free space, about once a second, without "
                   "touching anything, 15 s.",
                   p.eta)};

@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kSeconds = 20;
+constexpr double kPassivitySeconds = 20;
 constexpr double kHighest = 4e-3;  // of encoders' steps and friction that nobody knows [J]
 
 }  // namespace
@@ -31,7 +31,7 @@ Outcome live_passivity(LiveLaboratory& lab) {
     p.kind = law.kind;
     const std::string label = name(law.kind);
     const Session s = lab.run(
-        {label, p, kSeconds,
+        {label, p, kPassivitySeconds,
          "The " + label + " coupling: move freely, tap the surface, draw circles on it, 20 s."});
     double highest = 0;
     for (std::size_t k = 0; k < s.size(); ++k) {

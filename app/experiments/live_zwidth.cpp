@@ -10,9 +10,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kSeconds = 6;
-constexpr double kSoft = 250;           // the first wall [N/m]
-constexpr std::size_t kTouching = 500;  // rows without which nothing is known
+constexpr double kZwidthSeconds = 6;
+constexpr double kSoft = 250;                 // the first wall [N/m]
+constexpr std::size_t kZwidthTouching = 500;  // rows without which nothing is known
 
 struct Wall {
   double stiffness, chatter;
@@ -22,12 +22,13 @@ struct Wall {
 Wall tap(LiveLaboratory& lab, const Parameters& p, double stiffness) {
   lab.stiffen(stiffness);
   const Session s =
-      lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kSeconds,
+      lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kZwidthSeconds,
                fmt::format("A wall of {:.0f} N/m, {} coupling: tap it, press, hold, 6 s.",
                            stiffness, name(p.kind))});
   std::size_t touching = 0;
   for (std::size_t k = 0; k < s.size(); ++k) touching += contact_torque(s, k) > 0;
-  if (touching < kTouching) throw std::runtime_error("the wall was hardly touched; once more");
+  if (touching < kZwidthTouching)
+    throw std::runtime_error("the wall was hardly touched; once more");
   const double chatter = chatter_in_contact(s, lab.arm);
   return {stiffness, chatter, chatter <= WellRendered::kChatter};
 }

@@ -13,9 +13,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kStiffGrip = 3000;              // [N/m]
-constexpr double kTick = 0.001, kRoaming = 2.5;  // [s]
-constexpr double kLowest = 0.1;                  // eta
+constexpr double kRoamingGrip = 3000;                   // [N/m]
+constexpr double kRoamingTick = 0.001, kRoaming = 2.5;  // [s]
+constexpr double kRoamingLowest = 0.1;                  // eta
 
 // eta over time, for an arm that roams in a stiff undamped grip.
 struct Wobble {
@@ -24,8 +24,8 @@ struct Wobble {
   CouplingKind kind = CouplingKind::predictive;
 
   double eta(double t) const {
-    if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kLowest : 1;
-    return kLowest + (1 - kLowest) / 2 * (1 + sine(5 * t));
+    if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kRoamingLowest : 1;
+    return kRoamingLowest + (1 - kRoamingLowest) / 2 * (1 + sine(5 * t));
   }
 };
 
@@ -33,17 +33,17 @@ Trial roaming(const Wobble& wobble) {
   Parameters p;
   p.kind = wobble.kind;
   p.eta = wobble.eta(0);
-  p.hand_stiffness = kStiffGrip;
+  p.hand_stiffness = kRoamingGrip;
   p.hand_damping = 0;
   p.torque_limit = 100;
   const auto at = [](double t) {
     return Vec3(kHome + 0.02 * Vec3(sine(9 * t), sine(7 * t), sine(8 * t)));
   };
-  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kTick, kRoaming, at), p)};
+  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kRoamingTick, kRoaming, at), p)};
   trial.keep = false;
   double before = p.eta;
   for (std::uint64_t k = 1; k < trial.plan.rows; ++k) {
-    const double eta = wobble.eta(static_cast<double>(k) * kTick);
+    const double eta = wobble.eta(static_cast<double>(k) * kRoamingTick);
     if (eta == before) continue;
     trial.plan.changes.push_back({k, fmt::format("coupling.eta = {:.6f}", eta)});
     before = eta;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSegment = 2048;  // samples
 constexpr double kBand = 5;             // [Hz]
-constexpr double kShown = 25;           // [Hz]
+constexpr double kShownBand = 25;       // [Hz]
 
 // Device velocity, joint after joint.
 std::vector<std::vector<double>> velocities(const Session& s) {
@@ -43,7 +43,7 @@ double share(const Spectrum& s, double up_to) { return s.power(up_to) / s.power(
 std::vector<FigurePoint> spread(const std::vector<Spectrum>& trials,
                                 const std::function<double(const Spectrum&, std::size_t)>& value) {
   std::vector<FigurePoint> points;
-  for (std::size_t i = 0; static_cast<double>(i) * trials[0].step <= kShown; ++i) {
+  for (std::size_t i = 0; static_cast<double>(i) * trials[0].step <= kShownBand; ++i) {
     FigurePoint p{static_cast<double>(i) * trials[0].step, 0, value(trials[0], i),
                   value(trials[0], i)};
     for (const Spectrum& trial : trials) {
@@ -58,7 +58,7 @@ std::vector<FigurePoint> spread(const std::vector<Spectrum>& trials,
 
 void add_spread(FigurePanel& panel, const std::vector<FigurePoint>& points, const char* color,
                 double lowest, double highest) {
-  panel.x_range = {{0, kShown}};
+  panel.x_range = {{0, kShownBand}};
   panel.y_range = {{lowest, highest}};
   panel.series.push_back({"lowest to highest trial", color, Series::Style::band, points});
   panel.series.push_back({"mean of all trials", color, Series::Style::line, points});

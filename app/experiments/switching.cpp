@@ -13,16 +13,17 @@
 namespace limpid {
 namespace {
 
-constexpr double kTick = 0.001;
-constexpr double kAhead = 0.19, kSwing = 0.006;  // of the tip, and of the hand sideways [m]
-constexpr double kSwinging = 3.3;                // [Hz]
-constexpr double kLasts = 2.5;                   // [s]
+constexpr double kSwitchingTick = 0.001;
+constexpr double kSwitchingAhead = 0.19,
+                 kSwing = 0.006;   // of the tip, and of the hand sideways [m]
+constexpr double kSwinging = 3.3;  // [Hz]
+constexpr double kLasts = 2.5;     // [s]
 // [N m/rad]: one that both render, and one so stiff that its spring breaks contact, not its damper.
 constexpr double kStop = 20, kStiffStop = 500;
 constexpr int kTurret = 0;
 constexpr double kWallDamping = 0.2;  // the fine preset's, as a part of a joint's inertia a tick
-constexpr double kPress = 1, kSurface = -0.04;  // [N], [m]
-constexpr double kFirst = 0.8, kEvery = 0.3;    // of the switches [s]
+constexpr double kPress = 1, kSwitchingSurface = -0.04;  // [N], [m]
+constexpr double kFirst = 0.8, kEvery = 0.3;             // of the switches [s]
 constexpr std::array kOrder{CouplingKind::standard,   CouplingKind::proposed,
                             CouplingKind::predictive, CouplingKind::proposed,
                             CouplingKind::standard,   CouplingKind::predictive};
@@ -46,11 +47,11 @@ Trial swinging(CouplingKind kind, double stop) {
   Parameters p;
   p.kind = kind;
   const auto at = [](double t) {
-    return Vec3(kAhead, -kSwing * cosine(2 * std::numbers::pi * kSwinging * t), 0);
+    return Vec3(kSwitchingAhead, -kSwing * cosine(2 * std::numbers::pi * kSwinging * t), 0);
   };
   const std::string source = fmt::format("swinging {} m at {} Hz", kSwing, kSwinging);
   return {fmt::format("stop-{}-{}", stop, name(kind)),
-          plan_in(stop_scene(stop), hand_path(source, kTick, kLasts, at), p)};
+          plan_in(stop_scene(stop), hand_path(source, kSwitchingTick, kLasts, at), p)};
 }
 
 // Presses the table, while the couplings take turns: each hands over to each other once.
@@ -59,14 +60,15 @@ Trial pressing() {
   p.kind = CouplingKind::predictive;
   const double deep = kPress / p.hand_stiffness + kPress / 600;
   const auto at = [deep](double t) {
-    return Vec3(0.2, 0, kSurface + 0.01 - (0.01 + deep) * minimum_jerk(t / 0.5));
+    return Vec3(0.2, 0, kSwitchingSurface + 0.01 - (0.01 + deep) * minimum_jerk(t / 0.5));
   };
   const double seconds = kFirst + kEvery * static_cast<double>(kOrder.size());
-  Trial trial{"switching",
-              plan_in(kTableScene, hand_path("pressing the table", kTick, seconds, at), p)};
+  Trial trial{
+      "switching",
+      plan_in(kTableScene, hand_path("pressing the table", kSwitchingTick, seconds, at), p)};
   for (std::size_t i = 0; i < kOrder.size(); ++i) {
     const double t = kFirst + kEvery * static_cast<double>(i);
-    trial.plan.changes.push_back({static_cast<std::uint64_t>(std::llround(t / kTick)),
+    trial.plan.changes.push_back({static_cast<std::uint64_t>(std::llround(t / kSwitchingTick)),
                                   fmt::format("coupling.kind = \"{}\"", name(kOrder[i]))});
   }
   return trial;
@@ -94,12 +96,12 @@ Balance balance_of(const Trial& trial, const Session& s) {
     // It acts for the share of the tick that is spent inside.
     const Eigen::MatrixXd M =
         inertia_at(trial.plan.arm, vector_at(s, k, Column::measured_position));
-    const double B = damper / M.inverse()(kTurret, kTurret) / kTick;
+    const double B = damper / M.inverse()(kTurret, kTurret) / kSwitchingTick;
     const double in = std::max(d, 0.0), in_next = std::max(next, 0.0);
     // A wall does not pull: where its damper would, that has what the spring lets go.
     const bool pushes = s.at(k, Column::contact_torque)[kTurret] != 0;
-    taken +=
-        pushes ? B * (next - d) / kTick * (in_next - in) : K / 2 * (in * in - in_next * in_next);
+    taken += pushes ? B * (next - d) / kSwitchingTick * (in_next - in)
+                    : K / 2 * (in * in - in_next * in_next);
   }
   return balance;
 }
@@ -119,7 +121,8 @@ struct Steps {
 Steps steps_of(const Session& s) {
   Steps steps;
   bool there = true;
-  for (auto k = static_cast<std::size_t>(std::llround(kFirst / kTick)); k < s.size(); ++k) {
+  for (auto k = static_cast<std::size_t>(std::llround(kFirst / kSwitchingTick)); k < s.size();
+       ++k) {
     if (s.at(k, Column::kind)[0] != s.at(k - 1, Column::kind)[0]) there = false;
     const Eigen::VectorXd torque = vector_at(s, k, Column::motor_torque);
     const Eigen::VectorXd change = torque - vector_at(s, k - 1, Column::motor_torque);

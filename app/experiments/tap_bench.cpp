@@ -16,7 +16,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kAhead = 0.2;  // [m]
+constexpr double kTapAhead = 0.2;  // [m]
 
 std::string table(double wall) {
   return fmt::format(R"(title = "Table"
@@ -28,7 +28,7 @@ point = [{}, 0.0, {}]
 normal = [0.0, 0.0, 1.0]
 stiffness = {:.9g}
 )",
-                     kAhead, TapBench::kSurface, wall);
+                     kTapAhead, TapBench::kSurface, wall);
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ Trial TapBench::trial() const {
   p.torque_limit = setting_.torque_limit;
   p.device_delay = static_cast<int>(std::lround(setting_.delay));
   if (setting_.knows_delay) p.delay = p.device_delay;
-  const auto at = [&](double t) { return Vec3(kAhead, 0, kSurface + kAbove - height(t)); };
+  const auto at = [&](double t) { return Vec3(kTapAhead, 0, kSurface + kAbove - height(t)); };
   const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
   Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};
   trial.keep = false;
@@ -102,7 +102,7 @@ Touch TapBench::touch(const TrialResult& result) const {
 
 TipAlong tip_at_table() {
   const ArmDescription arm = read_urdf(default_device());
-  const ArmAt at = arm_at(arm, rest_at(arm, Vec3(kAhead, 0, TapBench::kSurface)).x1);
+  const ArmAt at = arm_at(arm, rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1);
   return tip_along(at.J, at.M, device_damping(arm, {}), Vec3::UnitZ());
 }
 

@@ -15,7 +15,7 @@ constexpr float kLeastHeight = 84;       // of curves and time axis under the le
 constexpr float kMostMargin = 0.3f;      // of the width, for values at the curves' ends
 constexpr int kFramesToCloseMenu = 2;    // so that the menu is not in the picture
 constexpr double kBetweenSpectra = 0.1;  // [s]
-constexpr double kNothing = -9;          // decimal logarithm of amplitudes that are none
+constexpr double kNoValue = -9;          // decimal logarithm of amplitudes that are none
 constexpr double kDecades = 5;           // that a spectrum shows below its peak
 
 }  // namespace
@@ -151,7 +151,7 @@ void Plot::follow_spectra(const History& history, const PlotGroup& group) {
       values.include(static_cast<float>(std::log10(std::max(spectra_[i].amplitude[k], 1e-12))));
     }
   }
-  if (values.empty() || static_cast<double>(values.high) < kNothing) values = {-3, 0};
+  if (values.empty() || static_cast<double>(values.high) < kNoValue) values = {-3, 0};
   values.low = std::max(values.low, values.high - static_cast<float>(kDecades));
   follow_values(y_, spec_.y, values);
   if (x_.follows) x_.limits = {std::log10(lowest), std::log10(0.5 / history.tick())};

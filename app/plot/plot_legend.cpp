@@ -8,7 +8,7 @@ namespace limpid {
 namespace {
 
 constexpr float kSwatch = 14;  // [px] at scale 1
-constexpr float kApart = 12;
+constexpr float kEntriesApart = 12;
 
 void draw_swatch(const PlotFrame& frame, const ScreenRect& entry, const Curve& curve, float alpha) {
   const float s = frame.scale;
@@ -57,7 +57,7 @@ ImVec2 PlotLegend::lay_out(const PlotSpec& spec, float width, float scale) {
     const ScreenRect box{at, {at.x + entry, at.y + height}};
     entries_.push_back({box, static_cast<int>(i), std::move(label)});
     widest = std::max(widest, at.x + entry);
-    at.x += entry + kApart * scale;
+    at.x += entry + kEntriesApart * scale;
   }
   return {widest, at.y + height};
 }

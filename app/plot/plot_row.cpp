@@ -8,7 +8,7 @@ namespace limpid {
 namespace {
 
 // At scale 1 [px].
-constexpr float kLeastWidth = 190, kLeastCross = 160, kLeastHeight = 125;
+constexpr float kLeastWidth = 190, kLeastCross = 160, kLeastRowHeight = 125;
 constexpr float kCrossShape = 1.25f;  // width over height
 
 float least_width(PlotKind kind, float scale) {
@@ -46,7 +46,7 @@ PlotPlaces place_plots(const std::vector<PlotKind>& kinds, ImVec2 room, float ga
   if (kinds.empty()) return all;
   const std::span<const PlotKind> whole(kinds);
   const bool two = needed(whole, gap, scale) > room.x && kinds.size() > 1 &&
-                   room.y >= 2 * kLeastHeight * scale + gap;
+                   room.y >= 2 * kLeastRowHeight * scale + gap;
   const std::size_t first = two ? (kinds.size() + 1) / 2 : kinds.size();
   all.width = std::max(
       {room.x, needed(whole.first(first), gap, scale), needed(whole.subspan(first), gap, scale)});

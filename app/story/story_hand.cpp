@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFastest = 3;  // of a hand; faster it is a slip of the pen [m/s]
 constexpr Range kSeconds{0, 3600};
-constexpr Range kMetres{-10, 10};
+constexpr Range kHandMetres{-10, 10};
 const char* const kAllowed =
     "a file, or points [[seconds after the step's beginning, x, y, z], ...] in metres";
 
@@ -23,11 +23,11 @@ std::array<double, 4> point_in(const TomlTable& step, const toml::node& node) {
   if (list == nullptr || list->size() != 4) step.refuse("hand", kAllowed);
   std::array<double, 4> point{};
   for (std::size_t i = 0; i < point.size(); ++i) {
-    const Range& range = i == 0 ? kSeconds : kMetres;
+    const Range& range = i == 0 ? kSeconds : kHandMetres;
     const auto x = list->get(i)->value<double>();
     if (!list->get(i)->is_number() || !(*x >= range.minimum && *x <= range.maximum)) {
       step.refuse("hand", fmt::format("{}; times from 0 to {} s, points from {} to {} m", kAllowed,
-                                      kSeconds.maximum, kMetres.minimum, kMetres.maximum));
+                                      kSeconds.maximum, kHandMetres.minimum, kHandMetres.maximum));
     }
     point[i] = *x;
   }

@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoMeasure = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFast = 20;  // what chatter is above [Hz]
 
 double yes(bool is) { return is ? 1 : 0; }
@@ -27,7 +27,7 @@ constexpr MeasureInfo kTable[] = {
     {"diverged", "yes/no", "device or proxy did what no arm can do",
      [](const RunMeter& m) { return yes(lost(m)); }},
     {"diverged_at", "s", "since when; not a number if never",
-     [](const RunMeter& m) { return lost(m) ? m.summary().watch().since() : kNone; }},
+     [](const RunMeter& m) { return lost(m) ? m.summary().watch().since() : kNoMeasure; }},
     {"seconds", "s", "how long the run was: less than asked for if it diverged or was stopped",
      [](const RunMeter& m) { return m.seconds(); }},
     {"energy", "J", "E_c at the end", [](const RunMeter& m) { return of(m).energy_total; }},
@@ -143,24 +143,26 @@ void RunMeter::add_free(Felt& f, const Vec<kAnyDof>& v) const {
   f.vf += f.f1.dot(Wv);
 }
 
-double RunMeter::error_slope() const { return contact2_ > 0 ? error_contact_ / contact2_ : kNone; }
+double RunMeter::error_slope() const {
+  return contact2_ > 0 ? error_contact_ / contact2_ : kNoMeasure;
+}
 
 double RunMeter::chatter() const {
-  return felt_ && felt_->settled > 0 ? std::sqrt(felt_->fast2 / felt_->settled) : kNone;
+  return felt_ && felt_->settled > 0 ? std::sqrt(felt_->fast2 / felt_->settled) : kNoMeasure;
 }
 
 double RunMeter::felt_stiffness() const {
-  if (!felt_) return kNone;
+  if (!felt_) return kNoMeasure;
   const Vec3 n = felt_->mean_f.normalized();
   const double xx = n.dot(felt_->xx * n);
-  return xx > 0 ? n.dot(felt_->xf * n) / xx : kNone;
+  return xx > 0 ? n.dot(felt_->xf * n) / xx : kNoMeasure;
 }
 
 std::array<double, 2> RunMeter::felt_inertia_damping() const {
-  if (!felt_) return {kNone, kNone};
+  if (!felt_) return {kNoMeasure, kNoMeasure};
   const Felt& f = *felt_;
   const double determinant = f.aa * f.vv - f.av * f.av;
-  if (!(determinant > 0)) return {kNone, kNone};
+  if (!(determinant > 0)) return {kNoMeasure, kNoMeasure};
   return {(f.af * f.vv - f.vf * f.av) / determinant, (f.vf * f.aa - f.af * f.av) / determinant};
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kDeepest = 10;
 constexpr std::size_t kMostAxes = 4;
 constexpr double kMostNumbers = 9e15;  // that a double tells apart
-constexpr Range kAnything{-1e300, 1e300};
+constexpr Range kAnyBound{-1e300, 1e300};
 
 // Whether there are values between its values.
 bool may_be_finer(const SweepAxis& axis) {
@@ -47,8 +47,8 @@ void read_condition(const TomlTable& table, const SweepPlan& plan, SweepRefine& 
   const auto column = std::ranges::find(columns, name, &SweepColumn::name);
   if (column == columns.end()) table.refuse("measure", "one that is measured");
   refine.column = static_cast<std::size_t>(column - columns.begin());
-  refine.above = table.number("above", kAnything);
-  refine.below = table.number("below", kAnything);
+  refine.above = table.number("above", kAnyBound);
+  refine.below = table.number("below", kAnyBound);
   refine.tolerance = table.number("tolerance", {0, 1e300, true});
   const bool limit = refine.above || refine.below;
   if (limit && refine.tolerance) table.refuse("tolerance", "nothing beside above or below");

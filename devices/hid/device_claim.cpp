@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 // A lock that somebody only looks at is free again within microseconds, and the guardian of a
 // program that was killed takes some milliseconds for its stop.
-constexpr int kTries = 5;
+constexpr int kClaimTries = 5;
 constexpr std::chrono::milliseconds kPause{10};
 constexpr std::size_t kMostText = 100;  // of a command line that is shown
 constexpr std::size_t kMostName = 240;  // of a file's name
@@ -54,7 +54,7 @@ std::string file_name(const std::string& key) {
 int open_file(const fs::path& path) {
   constexpr int kHow = O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
   int file = -1;
-  for (int i = 0; i < kTries && file < 0; ++i) {
+  for (int i = 0; i < kClaimTries && file < 0; ++i) {
     file = open(path.c_str(), O_RDWR | kHow);
     if (file < 0 && errno == EACCES) file = open(path.c_str(), O_RDONLY | kHow);
     if (file >= 0 || errno != ENOENT) break;
@@ -148,7 +148,7 @@ fs::path claim_folder() {
 
 DeviceClaim::DeviceClaim(const std::string& key, const fs::path& folder) {
   const fs::path path = folder / file_name(key);
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kClaimTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kPause);
     const int file = open_file(path);
     if (flock(file, LOCK_EX | LOCK_NB) == 0 && still_there(file, path)) {
@@ -158,7 +158,7 @@ DeviceClaim::DeviceClaim(const std::string& key, const fs::path& folder) {
     }
     const Owner owner = read_owner(file);
     close(file);
-    if (i + 1 == kTries) throw HidError("in use by " + owner.text);
+    if (i + 1 == kClaimTries) throw HidError("in use by " + owner.text);
   }
 }
 

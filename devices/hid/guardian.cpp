@@ -47,7 +47,7 @@ struct Guardian::Watch {
 
 namespace {
 
-constexpr int kTries = 3;  // of each report
+constexpr int kReportTries = 3;  // of each report
 
 int open_node(const std::string& path) {
   const int device = open(path.c_str(), O_RDWR | O_CLOEXEC);
@@ -90,7 +90,7 @@ void close_all_but(int device, int claim) {
 
 void stop_device(int device, const std::vector<Report>& reports) {
   for (const Report& report : reports) {
-    for (int i = 0; i < kTries && write(device, report.data(), report.size()) < 0; ++i) {
+    for (int i = 0; i < kReportTries && write(device, report.data(), report.size()) < 0; ++i) {
       poll(nullptr, 0, 2);
     }
   }

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kLeast = 100;
+constexpr Index kLeastRows = 100;
 constexpr double kHuber = 2;  // deviations from which on a miss counts less
 
 // The least squares of A z = b for many b.
@@ -130,10 +130,10 @@ class Fit {
     count_ = Eigen::VectorX<Index>::Zero(n_);
     for (const Index j : rows_.joint) ++count_[j];
     for (Index j = 0; j < n_; ++j) {
-      if (count_[j] >= kLeast) continue;
+      if (count_[j] >= kLeastRows) continue;
       throw std::invalid_argument(fmt::format(
           "joint '{}' moved too little: {} samples of its motion can be used, needed: {}",
-          guess.joints[static_cast<std::size_t>(j)].name, count_[j], kLeast));
+          guess.joints[static_cast<std::size_t>(j)].name, count_[j], kLeastRows));
     }
   }
 

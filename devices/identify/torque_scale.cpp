@@ -16,8 +16,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeast = 0.1, kMost = 10;  // that is believed
-constexpr double kUnsure = 0.2;             // deviation, of the scale, that is too much
+constexpr double kLeastScale = 0.1, kMostScale = 10;  // that is believed
+constexpr double kUnsure = 0.2;                       // deviation, of the scale, that is too much
 
 // The equations of a motion, each divided by its joint's noise.
 struct Weighed {
@@ -51,11 +51,11 @@ Found scale_in(const MatrixXd& A, const VectorXd& b) {
   const double value = 1 / z[z.size() - 1];
   const double deviation =
       inverse[inverse.size() - 1] * pseudo.row(pseudo.rows() - 1).norm() * value * value;
-  if (!(value > kLeast && value < kMost) || !(deviation < kUnsure * value)) {
+  if (!(value > kLeastScale && value < kMostScale) || !(deviation < kUnsure * value)) {
     throw std::invalid_argument(
         fmt::format("what the motors give of what they are told cannot be found: {:.2g} +- {:.2g}, "
                     "needed: {} to {}, and surer",
-                    value, deviation, kLeast, kMost));
+                    value, deviation, kLeastScale, kMostScale));
   }
   return {value, deviation};
 }

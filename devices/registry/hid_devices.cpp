@@ -75,7 +75,7 @@ std::string what_is_missing(const std::string& path, const fs::path& udev_rule) 
 }
 
 // The node's number is the device's, whatever names lead to it.
-std::string claim_key(const FoundDevice& found) {
+std::string hid_claim_key(const FoundDevice& found) {
   struct stat is {};
   if (stat(found.place.path.c_str(), &is) != 0 || !S_ISCHR(is.st_mode)) {
     return "hidraw:" + found.place.path;
@@ -127,7 +127,7 @@ std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRo
                      &protocol->kind,
                      missing,
                      open_hid_device,
-                     claim_key});
+                     hid_claim_key});
   }
   std::sort(found.begin(), found.end(),
             [](const FoundDevice& a, const FoundDevice& b) { return a.place.path < b.place.path; });

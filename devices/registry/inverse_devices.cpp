@@ -15,12 +15,12 @@ constexpr int kLook = 300;      // longest wait for a service that is looked for
 constexpr int kConnect = 1000;  // for one that is used [ms]
 constexpr std::string_view kKey = "inverse3";
 
-constexpr DeviceKind kKind{.key = "inverse3",
-                           .name = "Haply Inverse3",
-                           .use = "its tip in three directions, pushes",
-                           .pushes = true,
-                           .arm = "inverse3.urdf",
-                           .service = true};
+constexpr DeviceKind kInverseKind{.key = "inverse3",
+                                  .name = "Haply Inverse3",
+                                  .use = "its tip in three directions, pushes",
+                                  .pushes = true,
+                                  .arm = "inverse3.urdf",
+                                  .service = true};
 
 bool is_port(const std::string& text) {
   unsigned port = 0;
@@ -50,7 +50,7 @@ std::vector<std::string> ids_at(const ServiceAddress& address) {
 }
 
 // Whoever names none of a service's devices gets its first, and claims that one.
-std::string claim_key(const FoundDevice& found) {
+std::string inverse_claim_key(const FoundDevice& found) {
   const InverseName name = inverse_name(found.place.id).value();
   std::string id = name.id;
   if (id.empty()) {
@@ -64,10 +64,10 @@ FoundDevice entry(const InverseName& name, bool only, const std::string& missing
   const std::string place = name.address.text();
   const std::string which = only || name.id.empty() ? "" : " " + name.id;
   return {{fmt::format("Haply Inverse3{} ({})", which, place), name.text(), place},
-          &kKind,
+          &kInverseKind,
           missing,
           open_inverse,
-          claim_key};
+          inverse_claim_key};
 }
 
 }  // namespace

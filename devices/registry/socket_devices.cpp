@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr DeviceKind kKind{
+constexpr DeviceKind kSocketKind{
     .key = "socket", .name = "device on a socket", .use = "its own joints, pushes if it says so"};
 
 // A program that has ended leaves its socket behind. The kernel tells by the error when one asks
@@ -37,7 +37,7 @@ bool somebody_listens(const fs::path& path) {
   return !refused;
 }
 
-std::string claim_key(const FoundDevice& found) {
+std::string socket_claim_key(const FoundDevice& found) {
   std::error_code error;
   const fs::path path = fs::canonical(found.place.path, error);
   return "socket:" + (error ? found.place.path : path.string());
@@ -70,8 +70,11 @@ std::vector<FoundDevice> list_socket_devices(const fs::path& folder) {
     const fs::path& path = entry->path();
     if (path.extension() != ".device" || !somebody_listens(path)) continue;
     const std::string name = path.stem().string();
-    found.push_back(
-        {{name, "socket:" + name, path.string()}, &kKind, {}, open_socket_device, claim_key});
+    found.push_back({{name, "socket:" + name, path.string()},
+                     &kSocketKind,
+                     {},
+                     open_socket_device,
+                     socket_claim_key});
   }
   std::ranges::sort(found, {}, [](const FoundDevice& one) { return one.place.path; });
   return found;

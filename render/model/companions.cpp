@@ -5,15 +5,8 @@
 #include <stdexcept>
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
-  throw std::runtime_error(name + ": " + one_line(why));
-}
-
-}  // namespace
 
 std::string one_line(std::string text) {
   constexpr std::size_t kLongest = 300;
@@ -21,6 +14,10 @@ std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
   return text;
+}
+
+void refuse(const std::string& name, const std::string& why) {
+  throw std::runtime_error(name + ": " + one_line(why));
 }
 
 std::vector<unsigned char> read_bytes(const fs::path& path, std::size_t most) {

@@ -16,6 +16,9 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::si
 // Words of a file made fit for a message: no line ends, no control characters, not too long.
 std::string one_line(std::string text);
 
+// Throws std::runtime_error: the name, and why in one line.
+[[noreturn]] void refuse(const std::string& name, const std::string& why);
+
 class Companions {
  public:
   // `name` stands for the model in messages and outlives this; its own `size` counts, too. With an

@@ -9,7 +9,7 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
 
 void put(Bytes& out, std::size_t number) {
   const auto bytes =
@@ -27,7 +27,7 @@ Bytes glb_bytes(const std::string& json, const Bytes& data) {
   const std::size_t text = (json.size() + 3) / 4 * 4, binary = (data.size() + 3) / 4 * 4;
   Bytes out;
   out.reserve(28 + text + binary);
-  put(out, kMagic);
+  put(out, kGlbMagic);
   put(out, 2);
   put(out, 12 + 8 + text + 8 + binary);
   put(out, text);

@@ -17,10 +17,6 @@ using nlohmann::json;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
-  throw std::runtime_error(name + ": " + one_line(why));
-}
-
 std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t at) {
   std::uint32_t word;
   std::memcpy(&word, bytes.data() + at, 4);
@@ -110,19 +106,13 @@ bool contains(std::span<const unsigned char> text, std::string_view word) {
 }
 
 // What is in an array of that name; an empty one where there is none.
-json& list(json& object, const char* key) {
-  json& found = object[key];
-  if (!found.is_array()) found = json::array();
-  return found;
-}
-
 // Whether anything lies in the buffer: views that are compressed name another one for that.
 bool is_used(json& gltf, std::size_t buffer) {
   const auto names = [&](const json& object) {
     const auto found = object.find("buffer");
     return found != object.end() && *found == buffer;
   };
-  for (const json& view : list(gltf, "bufferViews")) {
+  for (const json& view : gltf_list(gltf, "bufferViews")) {
     if (!view.is_object()) continue;
     bool packed = false;
     for (const json& extension : view.value("extensions", json::object())) {
@@ -139,7 +129,7 @@ bool is_used(json& gltf, std::size_t buffer) {
 // chunk. They become a byte. Returns how many others have no uri.
 std::size_t shrink_fallbacks(json& gltf) {
   std::size_t embedded = 0;
-  json& buffers = list(gltf, "buffers");
+  json& buffers = gltf_list(gltf, "buffers");
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     json& buffer = buffers[i];
     if (!buffer.is_object() || buffer.contains("uri")) continue;
@@ -155,10 +145,10 @@ std::size_t shrink_fallbacks(json& gltf) {
 
 // tinygltf wants indices to have a buffer view; those in Draco data have none.
 void give_views(json& gltf) {
-  json& accessors = list(gltf, "accessors");
-  for (json& mesh : list(gltf, "meshes")) {
+  json& accessors = gltf_list(gltf, "accessors");
+  for (json& mesh : gltf_list(gltf, "meshes")) {
     if (!mesh.is_object()) continue;
-    for (json& primitive : list(mesh, "primitives")) {
+    for (json& primitive : gltf_list(mesh, "primitives")) {
       const json packed =
           primitive.value(json::json_pointer("/extensions") / kDracoExtension, json());
       const json indices = primitive.value("indices", json());
@@ -189,6 +179,12 @@ std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
 }
 
 }  // namespace
+
+nlohmann::json& gltf_list(nlohmann::json& object, const char* key) {
+  nlohmann::json& found = object[key];
+  if (!found.is_array()) found = nlohmann::json::array();
+  return found;
+}
 
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
                                          const std::string& name) {

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ namespace limpid {
 // The JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
                                          const std::string& name);
+
+// The list of that name, empty if there was none or something else.
+nlohmann::json& gltf_list(nlohmann::json& object, const char* key);
 
 struct GltfFile {
   tinygltf::Model gltf;

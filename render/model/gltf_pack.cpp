@@ -15,12 +15,6 @@ using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
 // The list of that name; an empty one if there is none.
-json& list(json& gltf, const char* key) {
-  json& found = gltf[key];
-  if (!found.is_array()) found = json::array();
-  return found;
-}
-
 bool lies_outside(const json& object) {
   const auto uri = object.is_object() ? object.find("uri") : object.end();
   return object.is_object() && uri != object.end() && uri->is_string() &&
@@ -53,7 +47,7 @@ Bytes join_buffers(json& gltf, const GltfFile& file) {
     all.insert(all.end(), buffer.data.begin(), buffer.data.end());
     fill_up(all, 0);
   }
-  for (json& view : list(gltf, "bufferViews")) {
+  for (json& view : gltf_list(gltf, "bufferViews")) {
     move_into_first(view, starts);
     if (!view.is_object() || !view.contains("extensions")) continue;
     for (json& extension : view["extensions"]) move_into_first(extension, starts);
@@ -68,8 +62,8 @@ const char* kind_of(const Bytes& picture) {
 }
 
 void bring_in_pictures(json& gltf, const GltfFile& file, Bytes& all) {
-  json& images = list(gltf, "images");
-  json& views = list(gltf, "bufferViews");
+  json& images = gltf_list(gltf, "images");
+  json& views = gltf_list(gltf, "bufferViews");
   std::map<std::string, std::size_t> known;  // views of pictures by where they lie
   for (std::size_t i = 0; i < std::min(images.size(), file.pictures.size()); ++i) {
     const Bytes& picture = file.pictures[i];

@@ -46,10 +46,6 @@ class Descriptor {
   int number_;
 };
 
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
-  throw std::runtime_error(name + ": " + one_line(why));
-}
-
 // Beside this program.
 fs::path program() {
   std::error_code none;

@@ -25,7 +25,7 @@ fs::path made(const fs::path& dir) {
 }
 
 constexpr std::size_t kMostRecent = 8;
-constexpr std::size_t kLongest = 1 << 20;  // of the file [bytes]
+constexpr std::size_t kLongestSettings = 1 << 20;  // of the file [bytes]
 
 fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 
@@ -195,7 +195,7 @@ Settings load_settings(std::string& complaint) {
   std::error_code none;
   if (!fs::exists(file, none)) return {};
   try {
-    return settings_of(read_text(file, kLongest), file, complaint);
+    return settings_of(read_text(file, kLongestSettings), file, complaint);
   } catch (const std::exception& e) {
     complaint = fmt::format("settings not read: {}", e.what());
     return {};

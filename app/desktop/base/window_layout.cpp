@@ -20,7 +20,7 @@ constexpr double kLeastPanel = 100, kMostPanel = 1000;  // [px at scale 1]
 
 // Every setting of a layout but its plots, once, for reading and writing.
 template <class S, class Visit>
-void each(S& s, Visit&& visit) {
+void each_of_layout(S& s, Visit&& visit) {
   visit("show_left", s.show_left);
   visit("show_right", s.show_right);
   visit("show_plots", s.show_plots);
@@ -29,14 +29,14 @@ void each(S& s, Visit&& visit) {
   visit("plots", s.plots);
 }
 
-void read(const TomlTable& table, const char* key, bool& value) {
+void read_layout(const TomlTable& table, const char* key, bool& value) {
   const toml::node* node = table.find(key);
   if (node == nullptr) return;
   if (!node->is_boolean()) table.refuse(key, "true, false");
   value = *node->value<bool>();
 }
 
-void read(const TomlTable& table, const char* key, double& value) {
+void read_layout(const TomlTable& table, const char* key, double& value) {
   value = table.number(key, {kLeastPanel, kMostPanel}).value_or(value);
 }
 
@@ -50,7 +50,7 @@ bool of_preset(const ParameterInfo& info) {
 
 std::string layout_text(const Settings& settings) {
   toml::table table;
-  each(settings, [&](const char* key, const auto& value) { table.insert(key, value); });
+  each_of_layout(settings, [&](const char* key, const auto& value) { table.insert(key, value); });
   table.insert("plot", plots_toml(settings.plot_choices));
   std::ostringstream text;
   text << toml::toml_formatter(table);
@@ -61,7 +61,7 @@ void apply_layout(Settings& settings, const std::string& text, const std::string
   const toml::table table = parse_toml(text, where);
   Settings changed = settings;
   const TomlTable whole(table, where, "");
-  each(changed, [&](const char* key, auto& value) { read(whole, key, value); });
+  each_of_layout(changed, [&](const char* key, auto& value) { read_layout(whole, key, value); });
   changed.plot_choices = plots_of(table, where);
   settings = std::move(changed);
 }

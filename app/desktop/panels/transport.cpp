@@ -35,14 +35,14 @@ bool button(const char* label, const char* help, bool on = false, bool bad = fal
   return pressed;
 }
 
-constexpr float kChoice = 74;    // width of a list at scale 1 [px]
-constexpr float kTimeline = 60;  // the least of it
+constexpr float kTransportChoice = 74;  // width of a list at scale 1 [px]
+constexpr float kTimeline = 60;         // the least of it
 constexpr float kProgress = 110;
 
 // A drop-down list of numbers; returns the one chosen.
 double choose(const char* name, double value, std::initializer_list<double> choices,
               const char* unit) {
-  const float width = kChoice * current_scale();
+  const float width = kTransportChoice * current_scale();
   if (width > ImGui::GetContentRegionAvail().x) return value;
   ImGui::SetNextItemWidth(width);
   const auto text = [&](double x) { return fmt::format("{:g}{}", x, unit); };
@@ -98,7 +98,7 @@ void playback_controls(Playback& playback, const Act& act) {
   const bool with_rerun =
       fits(playback.rerunning() ? kProgress * scale + gap + button_width("Cancel")
                                 : button_width("Re-run"));
-  const bool with_speed = fits(kChoice * scale);
+  const bool with_speed = fits(kTransportChoice * scale);
   const bool with_steps = fits(button_width("|<") + 2 * button_width("<") + 2 * gap);
   const bool with_loop = fits(button_width("Loop"));
 

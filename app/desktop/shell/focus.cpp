@@ -6,11 +6,8 @@
 #include <imgui_internal.h>
 
 namespace limpid {
-namespace {
 
 bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
-
-}  // namespace
 
 const char* name(Dialog dialog) {
   switch (dialog) {

@@ -48,6 +48,9 @@ struct Focus {
 enum class KeyOwner : std::uint8_t { view, playback, dialog, popup, question, text };
 KeyOwner owner_of(const Focus& focus);
 
+// Shift, Control, Alt or Super, by GLFW's number.
+bool is_modifier(int key);
+
 // Keys that are down. One that is held while the focus goes elsewhere is stale until it is let go:
 // neither its repetitions nor its characters reach the new owner. Modifiers never are.
 class HeldKeys {

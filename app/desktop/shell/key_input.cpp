@@ -12,7 +12,6 @@ namespace {
 using Kind = KeyInput::Event::Kind;
 
 bool is_control(int key) { return key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL; }
-bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
 void show(int key, bool down) {
   if (key >= 0 && key <= GLFW_KEY_LAST) ImGui::GetIO().KeysDown[key] = down;

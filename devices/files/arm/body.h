@@ -5,6 +5,8 @@
 
 namespace limpid {
 
+inline bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
+
 // A point mass at r about the origin [kg m^2].
 inline Mat3 point_inertia(double mass, const Vec3& r) {
   return mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/dynamics/arm.h"
+#include "devices/files/arm/body.h"
 
 namespace limpid {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 constexpr double kLeastRange = 1e-3;   // of a joint [rad], of a slide 0.1 mm
 constexpr double kLeastMotion = 1e-6;  // of the tip, for 1 rad of a joint [m]
 constexpr int kPoses = 8;              // in which the tip is looked at
-
-bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
 
 void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
   const double unit = slides(joint) ? kSlideUnit : 1;

@@ -11,7 +11,7 @@ namespace limpid {
 namespace {
 
 bool has_no_inertia(const Joint& joint, const Link& link) {
-  if (joint.kind == Joint::Kind::prismatic) return !(link.mass > 0);
+  if (slides(joint)) return !(link.mass > 0);
   return about_origin(link).isZero(0);
 }
 
@@ -20,7 +20,7 @@ void fix_last(ArmDescription& arm) {
   const Joint& joint = arm.joints.back();
   const double at = std::clamp(0.0, joint.lower, joint.upper);
   Pose there = joint.origin;
-  if (joint.kind == Joint::Kind::prismatic) {
+  if (slides(joint)) {
     there.translate(Vec3(kSlideUnit * at * joint.axis));
   } else {
     there.rotate(turn(at, joint.axis));

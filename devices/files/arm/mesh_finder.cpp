@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostFolders = 4000;                 // that are looked into for one package
-constexpr int kDeepest = 6;                        // below a folder of ROS_PACKAGE_PATH
+constexpr int kDeepestFolder = 6;                  // below a folder of ROS_PACKAGE_PATH
 constexpr std::size_t kLongestManifest = 1 << 20;  // [bytes]
 
 bool is_folder(const fs::path& path) {
@@ -55,7 +55,7 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
 // As ROS crawls: a package has no packages inside.
 void crawl(const fs::path& folder, const std::string& name, int depth, int& left,
            std::vector<fs::path>& found) {
-  if (--left < 0 || depth > kDeepest) return;
+  if (--left < 0 || depth > kDeepestFolder) return;
   if (const std::string own = package_name(folder); !own.empty()) {
     if (own == name) found.push_back(folder);
     return;

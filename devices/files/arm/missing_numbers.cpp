@@ -16,8 +16,6 @@ constexpr double kGuess = 1e-3;        // where it is less
 constexpr double kGravity = 9.81;      // [m/s^2]
 constexpr double kLeastEffort = 0.01;  // [N m]
 
-bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
-
 // What resists a joint: inertia about it, or of a slide mass along it [kg m^2].
 double resistance(const Joint& joint, const Link& link) {
   if (slides(joint)) return link.mass * kSlideUnit * kSlideUnit;

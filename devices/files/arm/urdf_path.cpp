@@ -14,15 +14,15 @@ namespace {
 
 using Way = std::vector<urdf::JointConstSharedPtr>;
 
-constexpr std::size_t kMostLinks = 5000;
-constexpr int kDeepest = 500;
+constexpr std::size_t kMostChainLinks = 5000;
+constexpr int kDeepestChain = 500;
 
 bool is_fixed(const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; }
 
 // Recursion below relies on a tree of limited depth.
 void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
-  if (model.links_.size() > kMostLinks) {
-    places.refuse(fmt::format("{} links; at most {}", model.links_.size(), kMostLinks));
+  if (model.links_.size() > kMostChainLinks) {
+    places.refuse(fmt::format("{} links; at most {}", model.links_.size(), kMostChainLinks));
   }
   std::map<std::string, std::string> carrier;
   for (const auto& [name, joint] : model.joints_) {
@@ -35,7 +35,7 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   for (const auto& [name, link] : model.links_) {
     int depth = 0;
     for (auto at = link; at->getParent() != nullptr; at = at->getParent()) {
-      if (++depth > kDeepest) places.refuse_link(name, "too many links before it");
+      if (++depth > kDeepestChain) places.refuse_link(name, "too many links before it");
     }
   }
 }

@@ -11,7 +11,7 @@
 namespace limpid {
 namespace {
 
-constexpr int kDeepest = 100;
+constexpr int kDeepestXml = 100;
 constexpr int kMostAttributes = 1000;  // of an element
 
 // Reads what TinyXML reads, element by element, and stops where it stops.
@@ -68,7 +68,7 @@ class Guard {
       } else if (c == '=') {
         if (++attributes > kMostAttributes) refuse("too many attributes in an element");
       } else if (c == '>') {
-        if (text_[at_ - 1] != '/' && ++depth_ > kDeepest) refuse("XML nested too deep");
+        if (text_[at_ - 1] != '/' && ++depth_ > kDeepestXml) refuse("XML nested too deep");
         return;
       }
     }

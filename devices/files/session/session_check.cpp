@@ -13,7 +13,7 @@ namespace limpid {
 namespace {
 
 constexpr hsize_t kMostColumns = 256;
-constexpr unsigned long long kMostBlockRows = 1 << 20;
+constexpr unsigned long long kMostBlockRead = 1 << 20;
 
 // Which columns the sums are over; none: one that this program does not know.
 std::vector<std::optional<Column>> columns_in(const std::string& paths) {
@@ -74,7 +74,7 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
   const hdf5::Dataset sums = hdf5::open_dataset(root, kCheckPath, file);
   const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
   const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));
-  if (block < 1 || block > kMostBlockRows || columns.empty() || columns.size() > kMostColumns) {
+  if (block < 1 || block > kMostBlockRead || columns.empty() || columns.size() > kMostColumns) {
     refuse(file,
            fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns.size()));
   }
