@@ -73,6 +73,16 @@ class InertiaNetwork : InertiaShape {
     }
   }
 
+  // What it was thought to give and did not, as a motor was at its limit [J]: that is not stored.
+  void lose(double energy) {
+    const double stored = storage();
+    if (!(energy > 0) || !(stored > 0)) return;
+    const double left = std::sqrt(std::max(0.0, 1 - energy / stored));
+    s_ *= left;
+    v_ *= left;
+    g_ *= left;
+  }
+
   // Its torque on the device over the tick, force() - damping() w [N m, N m s/rad].
   const Vec<N>& force() const { return force_; }
   const Mat<N>& damping() const { return K_; }

@@ -74,6 +74,7 @@ struct LawReport {
   double reserve = 0;           // energy left in its ledger [J]
   double contact_governor = 1;  // share of the contact force that it lets through
   double damping_governor = 1;  // share of the damping that it may cancel
+  int unsettled = 0;            // ticks in which the proxy stood still for want of a solution
 };
 
 // What most laws need not do.

@@ -7,7 +7,9 @@ namespace {
 
 // A wall damps by no more than this part of m_n/T: above it the prediction amplifies.
 constexpr double kMostDamping = 0.34;
-constexpr int kMostPasses = 5;  // over the set of joints whose motor is at its limit
+// A spring that pulls with more than this part of the limit keeps a tick with motors at their
+// limit from being the last.
+constexpr double kStillPulled = 0.02;
 
 template <int N>
 Vec<N> clip(const Vec<N>& x, const Vec<N>& limit) {
@@ -26,13 +28,11 @@ double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
   return V;
 }
 
-// A torque that is linear in the motion: constant + on_w w + on_u u.
+// The same, whatever the motor's limit: what it would store if the limit were all it had.
 template <int N>
-struct Linear {
-  Vec<N> constant;
-  Mat<N> on_w, on_u;
-  Vec<N> at(const Motion<N>& m) const { return constant + on_w * m.w + on_u * m.u; }
-};
+double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
+  return limit.dot(x.cwiseAbs());
+}
 
 }  // namespace
 
@@ -46,11 +46,10 @@ struct Linear {
 // with c = b_vc + k_vc T/2, s0 = k_vc (x1 - x2), v_E = w - u, v_L = w - phi v_E.
 template <int N>
 struct PredictiveLaw::Of<N>::Solve {
-  Linear<N> tE, tL, tau2;
+  LinearTorque<N> tE, tL, tau2;
   Mat<N> D0, impedance, tE_f2, tau2_f2;
-  Vec<N> drive, momentum, limit, tL_last;
-  double authority, b_v;
-  Vec<N> marks;  // -1, 0, 1: the joint's motor is at its limit
+  Vec<N> drive, momentum, limit;
+  double authority;
 
   Solve(const Decomposition<N>& d, const InertiaNetwork<N>& network, const Vec<N>& b_w,
         const Vec<N>& s0, const Vec<N>& f1_hat, double c, double g_f) {
@@ -71,52 +70,43 @@ struct PredictiveLaw::Of<N>::Solve {
     tau2 = {s0 + phi_u + phi_f1, c * I - locked_w + phi_shaped, -c * I - locked_u - phi_C};
     tE_f2 = g_f * I - phi_T;
     tau2_f2 = phi_T + (1 - g_f) * I;
-    marks = tL_last = Vec<N>::Zero(n);
   }
 
-  // A joint at its limit pulls the proxy with that limit, whatever happens; the proxy's damper
-  // holds it.
-  ContactAnswer<N> system(Motion<N>& right) const {
-    Mat<N> ww = D0 - authority * (tE.on_w + tL.on_w);
-    Mat<N> wu = -authority * (tE.on_u + tL.on_u);
-    Mat<N> uw = -tau2.on_w;
-    Mat<N> uu = impedance - tau2.on_u;
+  ContactAnswer<N> system() const {
     ContactAnswer<N> answer;
     answer.on_device = authority * tE_f2;
     answer.on_proxy = tau2_f2;
-    right = {drive + authority * (tE.constant + tL.constant), momentum + tau2.constant};
-    for (Eigen::Index i = 0; i < marks.size(); ++i) {
-      if (marks[i] == 0) continue;
-      const double held = marks[i] * limit[i];
-      ww.row(i) = D0.row(i);
-      wu.row(i).setZero();
-      uw.row(i).setZero();
-      uu.row(i) = impedance.row(i);
-      uu(i, i) += b_v;
-      answer.on_device.row(i).setZero();
-      answer.on_proxy.row(i).setZero();
-      answer.on_proxy(i, i) = 1;
-      right.w[i] = drive[i] + authority * std::clamp(held + tL_last[i], -limit[i], limit[i]);
-      right.u[i] = momentum[i] - held;
-    }
-    answer.system = CoupledSystem<N>(ww, wu, uw, uu);
+    answer.system =
+        CoupledSystem<N>(D0 - authority * (tE.on_w + tL.on_w), -authority * (tE.on_u + tL.on_u),
+                         -tau2.on_w, impedance - tau2.on_u);
     return answer;
   }
 
-  // The motors' torque for this motion; true if the marks are those it asks for.
-  bool torque(const Motion<N>& m, const Vec<N>& f2, Vec<N>& tau1) {
-    const Vec<N> wanted = tE.at(m) + tE_f2 * f2;
-    tL_last = tL.at(m);
-    bool stay = true;
-    Vec<N> given = clip<N>(wanted, limit);
-    for (Eigen::Index i = 0; i < marks.size(); ++i) {
-      const double over = wanted[i] > limit[i] ? 1 : wanted[i] < -limit[i] ? -1 : 0;
-      if (marks[i] != 0) given[i] = marks[i] * limit[i];
-      stay = stay && over == marks[i];
-      marks[i] = over;
-    }
-    tau1 = clip<N>(given + tL_last, limit);
-    return stay;
+  Motion<N> right() const {
+    return {drive + authority * (tE.constant + tL.constant), momentum + tau2.constant};
+  }
+
+  // Between device and proxy, for this motion.
+  Vec<N> wanted(const Motion<N>& m, const Vec<N>& f2) const { return tE.at(m) + tE_f2 * f2; }
+
+  // The same with motors at their limit: the spring is stiff enough in damping for a joint that is
+  // let go to come to rest, c' for c, and the proxy's damper holds what no motor does.
+  LimitedSolve<N> limited(double stiffer, double b_v) const {
+    LimitedSolve<N> s;
+    s.tE = tE;
+    s.tL = tL;
+    s.rest = {tau2.constant + tE.constant, tau2.on_w + tE.on_w, tau2.on_u + tE.on_u};
+    s.on_f2 = tE_f2;
+    s.D0 = D0;
+    s.impedance = impedance;
+    s.drive = drive;
+    s.momentum = momentum;
+    s.limit = limit;
+    s.authority = authority;
+    s.tE.on_w.diagonal().array() -= stiffer;
+    s.tE.on_u.diagonal().array() += stiffer;
+    s.impedance.diagonal().array() += b_v;
+    return s;
   }
 };
 
@@ -126,7 +116,9 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
   y_ = at.x1;
-  acted_ = slip_ = tau1_ = zero;
+  acted_ = slip_ = tau1_ = cut_ = zero;
+  limited_ = goes_on_ = false;
+  unsettled_ = 0;
   elapsed_ = 0;
   b_d_ = zero;
   quick_ = false;
@@ -154,11 +146,22 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   if (elapsed_ > 0) {
     ledger_.add(y_, acted_, in.b_d_sure, in.encoder_step, elapsed_);
     network_.advance(ledger_.dy(), elapsed_);
+    network_.lose(-cut_.dot(ledger_.dy()));
   }
-  const Vec<N> apart = y_ - proxy.x();
-  ledger_.settle(p.energy, spring_energy<N>(c.k_vc, apart, in.limit) + network_.storage() +
+  ledger_.settle(p.energy, held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
                                proxy.kinetic_energy() + proxy.contact_potential());
   ledger_.govern(proxy.f(), slip_, elapsed_ > 0 ? elapsed_ : in.tick);
+}
+
+// What spring and motors hold. While motors are at their limit they give back what a constant
+// torque does, from where they came to it on.
+template <int N>
+double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart, const Vec<N>& limit) {
+  const double spring = spring_energy<N>(k_vc, apart, limit);
+  const double pulled = limit_energy<N>(apart, limit);
+  if (limited_) return std::max(spring, pulled + before_limit_);
+  before_limit_ = spring - pulled;
+  return spring;
 }
 
 template <int N>
@@ -191,29 +194,62 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   solve.momentum = proxy.momentum(T);
   solve.limit = in.limit;
   solve.authority = in.authority;
-  solve.b_v = c.b_v;
 
-  Motion<N> motion;
-  Vec<N> f2;
-  bool collected = false, settled = false;
-  for (int pass = 0; !settled && pass < kMostPasses; ++pass) {
-    Motion<N> right;
-    ContactAnswer<N> answer = solve.system(right);
-    motion = answer.system.solve(right);
-    if (!collected) contacts_.collect(proxy.contacts(), arm, proxy.frames(), motion.u, T);
-    collected = true;
-    if (contacts_.any()) {
-      answer.inertia = Factor<N>(in.device.M);
-      answer.damping = gains.damping;
-      answer.most_damping = kMostDamping;
-      contacts_.solve(answer, T, motion);
-    }
-    f2 = contacts_.f2(in.b_d.size());
-    settled = solve.torque(motion, f2, tau1_);
+  ContactAnswer<N> answer = solve.system();
+  Motion<N> motion = answer.system.solve(solve.right());
+  contacts_.collect(proxy.contacts(), arm, proxy.frames(), motion.u, T);
+  if (contacts_.any()) {
+    answer.inertia = Factor<N>(in.device.M);
+    answer.damping = gains.damping;
+    answer.most_damping = kMostDamping;
   }
+  bool limited = goes_on_;
+  Vec<N> f2;
+  if (!limited) {
+    if (contacts_.any()) contacts_.solve(answer, T, motion);
+    f2 = contacts_.f2(in.b_d.size());
+    const Vec<N> wanted = solve.wanted(motion, f2);
+    limited = (wanted.array().abs() > in.limit.array()).any();
+    const Vec<N> given = clip<N>(wanted, in.limit) + solve.tL.at(motion);
+    tau1_ = clip<N>(given, in.limit);
+    cut_ = given - tau1_;
+  }
+  goes_on_ = false;
+  if (limited) {
+    const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
+    LimitedSolve<N> both = solve.limited(stiffer, c.b_v);
+    solve_limited(both, answer, solve.right(), T, motion);
+    f2 = both.f2;
+    tau1_ = both.tau1;
+    cut_ = both.given - both.tau1;
+    const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);
+    goes_on_ =
+        both.at_limit() || (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any();
+  }
+  limited_ = limited;
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
   return tau1_;
+}
+
+// motion: in, without limits, and if no tick before this one was limited with contacts; out, with
+// them. From the last tick's motion, else from what would be without limits.
+template <int N>
+void PredictiveLaw::Of<N>::solve_limited(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
+                                         const Motion<N>& right, double T, Motion<N>& motion) {
+  contacts_.prepare(answer, T);
+  Motion<N> found = limited_ ? last_ : motion;
+  bool settled = both.solve(contacts_, T, found);
+  if (!settled && limited_) {
+    found = answer.system.solve(right);
+    if (contacts_.any()) contacts_.solve(answer, T, found);
+    settled = both.solve(contacts_, T, found);
+  }
+  if (!settled) {
+    both.stand_still(contacts_, T, found);
+    ++unsettled_;
+  }
+  motion = last_ = found;
 }
 
 template <int N>
@@ -224,7 +260,7 @@ void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
 
 template <int N>
 LawReport PredictiveLaw::Of<N>::report() const {
-  return {ledger_.reserve(), ledger_.contact(), ledger_.damping()};
+  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(), unsettled_};
 }
 
 template class PredictiveLaw::Of<3>;

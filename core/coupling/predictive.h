@@ -7,9 +7,9 @@
 #include "core/coupling/decomposition.h"
 #include "core/coupling/inertia_network.h"
 #include "core/coupling/ledger.h"
+#include "core/coupling/limited_solve.h"
 #include "core/coupling/predictor.h"
 #include "core/coupling/spring_damper.h"
-#include "core/touch/contact_solve.h"
 
 namespace limpid {
 
@@ -78,6 +78,9 @@ struct PredictiveLaw {
     Whereabouts<N> locate(const Settings& p, const LawReading<N>& in);
     Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                 Proxy<N>& proxy);
+    double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
+    void solve_limited(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
+                       const Motion<N>& right, double T, Motion<N>& motion);
     void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                  const Proxy<N>& proxy);
 
@@ -85,14 +88,20 @@ struct PredictiveLaw {
     InertiaNetwork<N> network_;
     Ledger<N> ledger_;
     ContactSolve<N> contacts_;
-    Vec<N> y_;            // the last reading [rad]
-    Vec<N> acted_;        // torque of the tick just ended [N m]
-    Vec<N> slip_;         // how far its prediction was off [rad]
-    Vec<N> tau1_;         // as wanted, this tick [N m]
-    double elapsed_ = 0;  // since the reading before; 0 at the first [s]
-    bool both_ = true;    // predictors
-    Vec<N> b_d_;          // for which quick_ is
-    bool quick_ = false;  // the device, see dies_within_a_tick()
+    Vec<N> y_;                 // the last reading [rad]
+    Vec<N> acted_;             // torque of the tick just ended [N m]
+    Vec<N> slip_;              // how far its prediction was off [rad]
+    Vec<N> tau1_;              // as wanted, this tick [N m]
+    Vec<N> cut_;               // what the motors' limit takes off tE + tL of that tick [N m]
+    double elapsed_ = 0;       // since the reading before; 0 at the first [s]
+    bool both_ = true;         // predictors
+    Vec<N> b_d_;               // for which quick_ is
+    bool quick_ = false;       // the device, see dies_within_a_tick()
+    bool limited_ = false;     // the last tick had motors at their limit,
+    bool goes_on_ = false;     // and so has this one, whatever comes
+    Motion<N> last_;           // of a limited tick
+    double before_limit_ = 0;  // see held() [J]
+    int unsettled_ = 0;        // limited ticks without a solution, see LimitedSolve::stand_still()
   };
 };
 

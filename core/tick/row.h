@@ -36,6 +36,7 @@ enum class Column : std::uint8_t {
   alpha,
   governor,
   damping_governor,
+  unsettled,
   energy_total,
   energy_commanded,
   energy_port,
@@ -104,6 +105,9 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "share of the contact force that the ledger lets through"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
      "share of the damping that the ledger lets the law cancel"},
+    {Column::unsettled, "/coupling/unsettled", ColumnWidth::one, "-",
+     "ticks so far in which motors at their limit and contacts had no common solution; the proxy "
+     "stood still for them"},
     {Column::energy_total, "/energy/controller_total", ColumnWidth::one, "J",
      "E_c with the device's own damping"},
     {Column::energy_commanded, "/energy/controller_commanded", ColumnWidth::one, "J",

@@ -7,6 +7,9 @@ namespace limpid {
 namespace {
 
 constexpr double kNear = 2e-3;     // what is further off and does not come is left out [m]
+// A joint coordinate moves a contact by less than this: no joint can serve it, and its force, which
+// moves nothing, is left out with its friction [m].
+constexpr double kLeastLever = 1e-9;
 constexpr double kSettled = 1e-8;  // largest change of a force, as a part of it or of 1 N
 
 // Two unit vectors across a unit vector.
@@ -44,7 +47,8 @@ void ContactSolve<N>::collect(Contacts<N>& contacts, const Arm<N>& arm,
   for (Contact<N>& c : contacts.list()) {
     const double deeper = T * c.gradient.dot(u);
     const bool near = c.depth > -kNear || c.depth + 2 * deeper > 0;
-    if (near && (count_ < kMost || c.depth > std::ranges::min(depths_))) add(c, contacts, arm, f);
+    const bool served = c.gradient.squaredNorm() > kLeastLever * kLeastLever;
+    if (near && served && (count_ < kMost || c.depth > std::ranges::min(depths_))) add(c, contacts, arm, f);
     c.force = 0;
     c.friction.setZero();
   }
@@ -101,6 +105,12 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
       row.W(static_cast<int>(i), static_cast<int>(j)) = row.g[i].dot(row.Z[j].u);
     }
   }
+  set_damping(row, answer, T);
+  row.known = true;
+}
+
+template <int N>
+void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, double T) {
   Vec<N> direction = row.g[0];
   if (row.mesh != nullptr) {
     const FreeSpace& space = row.mesh->touch.space();
@@ -113,7 +123,6 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
   const double mass = 1 / direction.dot(answer.inertia.solve(direction));
   row.B =
       std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
-  row.known = true;
 }
 
 template <int N>
@@ -152,6 +161,78 @@ double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   const double force = row.push.norm();
   const Vec3 normal = force > 0 ? Vec3(row.push / force) : Vec3::UnitX();
   return change.norm() + rub(row, T, normal, force, motion);
+}
+
+// Of a wall or a room without friction, for a motion v along the row's axes. Returns how the push
+// answers v.
+template <int N>
+Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
+  Mat3 slope = Mat3::Zero();
+  if (row.wall != nullptr) {
+    const WallPush F =
+        wall_push({row.material.stiffness, row.B, T, row.wall->depth, -T * v.x(), 0});
+    row.push = F.force * Vec3::UnitX();
+    slope(0, 0) = -T * F.slope;
+  } else {
+    Mat3 on_D;
+    row.push =
+        room_push(row.mesh->touch,
+                  {row.material.stiffness, row.B, T, row.mesh->center, T * v, Mat3::Zero()}, on_D);
+    slope = T * on_D;
+  }
+  return slope;
+}
+
+// Adds friction across the normal, and to the slope how it answers, while the normal stands.
+template <int N>
+void ContactSolve<N>::rub(Row& row, double T, const Vec3& v, Mat3& slope) {
+  row.friction.setZero();
+  const double force = row.push.norm();
+  if (row.radius == 0 || row.axes < 3 || force == 0) return;
+  const Vec3 normal = row.push / force;
+  const Mat3 frame = row.wall != nullptr ? Mat3::Identity() : frame_of(normal);
+  const auto across = frame.template rightCols<2>();
+  const Vec3 anchor =
+      row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor) : row.before.anchor;
+  const double K_t = friction_stiffness(row.material);
+  const Vec2 wanted = -K_t * (across.transpose() * (anchor + T * v));
+  const double most = row.radius * force, size = wanted.norm();
+  Mat2 on_v = -K_t * T * Mat2::Identity();
+  Vec2 l = wanted;
+  if (size > most) {
+    const Vec2 along = wanted / size;
+    l = most * along;
+    on_v = most / size * (on_v - along * (along.transpose() * on_v));
+    slope += across * (row.radius * along) * (normal.transpose() * slope).eval();
+  }
+  slope += across * on_v * across.transpose();
+  row.friction = across * l;
+}
+
+template <int N>
+void ContactSolve<N>::prepare(const ContactAnswer<N>& answer, double T) {
+  for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    set_damping(row, answer, T);
+  }
+}
+
+template <int N>
+Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
+  if (slope != nullptr) slope->setZero();
+  for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    const Vec3 v = speed(row, u);
+    Mat3 on_v = push(row, T, v);
+    rub(row, T, v, on_v);
+    if (slope == nullptr || on_v.isZero(0)) continue;
+    for (int i = 0; i < row.axes; ++i) {
+      for (int j = 0; j < row.axes; ++j) {
+        if (on_v(i, j) == 0) continue;
+        const Vec<N>& torque = row.g[static_cast<std::size_t>(i)];
+        slope->noalias() += on_v(i, j) * torque * row.g[static_cast<std::size_t>(j)].transpose();
+      }
+    }
+  }
+  return f2(u.size());
 }
 
 // Friction across the normal, in the row's axes.

@@ -37,6 +37,12 @@ class ContactSolve {
                const Vec<N>& u, double T);
   // motion: in, without contacts; out, with them. Starts from the last forces.
   void solve(const ContactAnswer<N>& answer, double T, Motion<N>& motion);
+  // The same as functions of the proxy's motion, for solves of one's own. First, after collect():
+  void prepare(const ContactAnswer<N>& answer, double T);
+  // then the torque [N m] of the forces over a tick in which the proxy moves with the mean velocity
+  // u [rad/s]; f2() and finish() are of the last one. `slope`: how it answers u [N m s/rad], on the
+  // piece of the forces' laws that holds; null: nobody asks.
+  Vec<N> push(const Vec<N>& u, double T, Mat<N>* slope);
   // Their torque [N m].
   Vec<N> f2(Eigen::Index n) const;
   bool any() const { return count_ > 0; }
@@ -81,6 +87,9 @@ class ContactSolve {
            const typename Arm<N>::Frames& f);
   void add(MeshContact<N>& c, Contacts<N>& contacts);
   static void learn(Row& row, const ContactAnswer<N>& answer, double T);
+  static void set_damping(Row& row, const ContactAnswer<N>& answer, double T);
+  static Mat3 push(Row& row, double T, const Vec3& v);
+  static void rub(Row& row, double T, const Vec3& v, Mat3& slope);
   static Vec3 speed(const Row& row, const Vec<N>& u);
   static void apply(const Row& row, const Vec3& change, Motion<N>& motion);
   static double push_wall(Row& row, double T, Motion<N>& motion);

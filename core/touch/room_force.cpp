@@ -121,4 +121,13 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
   if (F.dot(pull) <= 0) F.setZero();  // walls do not stick
 }
 
+Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D) {
+  const double b = tick.B / tick.T;
+  const Mean m = mean_of(touch, tick.center, tick.a);
+  const Vec3 F = tick.K * m.pull - b * (m.damped * tick.a);
+  const bool pushes = F.dot(m.pull) > 0;
+  on_D = pushes ? Mat3(-tick.K * m.later - b * m.damped) : Mat3(Mat3::Zero());
+  return pushes ? F : Vec3(Vec3::Zero());
+}
+
 }  // namespace limpid

@@ -20,4 +20,8 @@ struct RoomTick {
 // the work that the potential loses. `F`: in, a first guess; out, the force.
 void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F);
 
+// The same force where D = a is known, and how it answers D [N/m], while the damper's directions
+// stand.
+Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D);
+
 }  // namespace limpid

@@ -35,4 +35,22 @@ inline double wall_force(const WallTick& w) {
   return 2 * r / (q + std::sqrt(std::max(0.0, q * q - 4 * p * r)));  // it is made
 }
 
+// The same force, and how it answers the change of depth [N/m], where that is known: D = a.
+struct WallPush {
+  double force = 0, slope = 0;
+};
+inline WallPush wall_push(const WallTick& w) {
+  const double K = w.K, d = w.d, D = w.a, b = w.B / w.T, end = d + D;
+  WallPush push;
+  if (d >= 0 && end >= 0) {
+    push = {K * (d + D / 2) + b * D, K / 2 + b};
+  } else if (d >= 0) {
+    push = {-K * d * d / (2 * D) - b * d, K * d * d / (2 * D * D)};
+  } else if (end > 0) {
+    const double inside = end / D;
+    push = {K * end * inside / 2 + b * end, K * inside * (1 - inside / 2) + b};
+  }
+  return push.force > 0 ? push : WallPush{};
+}
+
 }  // namespace limpid

@@ -192,6 +192,13 @@ void draw_ledger(const CouplingReading& now) {
   share("Damping cancelled", now.damping_governor,
         "The reserve runs low: less of the device's damping is cancelled.",
         "Of what the damping slider asks for");
+  if (now.unsettled > 0) {
+    const char* why =
+        "Motors at their limit and contacts had no common solution in these ticks: the proxy stood "
+        "still for each of them. That is passive. Softer walls, fewer of them at a time, less "
+        "friction or stronger motors avoid it.";
+    read_out("Ticks without a solution", fmt::format("{:.0f}", now.unsettled), why, why);
+  }
 }
 
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.

@@ -1,0 +1,91 @@
+#include "core/coupling/limited_solve.h"
+
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+constexpr double kEnough = 1e-9;        // last step, as a part of the motion and of 1 rad/s
+constexpr double kShortest = 1 / 64.0;  // part of a step that is tried last, and then taken
+
+template <int N>
+Vec<N> clip(const Vec<N>& x, const Vec<N>& limit) {
+  return x.cwiseMin(limit).cwiseMax(-limit);
+}
+
+template <int N>
+double size(const Motion<N>& m) {
+  return std::sqrt(m.w.squaredNorm() + m.u.squaredNorm());
+}
+
+// A motor's torque does not answer while it is at its limit.
+template <int N>
+void hold(Mat<N>& slope, const Vec<N>& torque, const Vec<N>& limit) {
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    if (std::abs(torque[i]) > limit[i]) slope.row(i).setZero();
+  }
+}
+
+}  // namespace
+
+template <int N>
+Motion<N> LimitedSolve<N>::residual(ContactSolve<N>& contacts, double T, const Motion<N>& m,
+                                    Mat<N>* slope) {
+  f2 = contacts.push(m.u, T, slope);
+  wanted_ = tE.at(m) + on_f2 * f2;
+  p = clip<N>(wanted_, limit);
+  given = p + tL.at(m);
+  tau1 = clip<N>(given, limit);
+  return {D0 * m.w - drive - authority * tau1, impedance * m.u - momentum + p - rest.at(m) - f2};
+}
+
+// Of the residual at the motion just looked at.
+template <int N>
+CoupledSystem<N> LimitedSolve<N>::slopes(const Mat<N>& f2_on_u) const {
+  Mat<N> p_w = tE.on_w, p_u = tE.on_u + on_f2 * f2_on_u;
+  hold<N>(p_w, wanted_, limit);
+  hold<N>(p_u, wanted_, limit);
+  Mat<N> tau_w = p_w + tL.on_w, tau_u = p_u + tL.on_u;
+  hold<N>(tau_w, given, limit);
+  hold<N>(tau_u, given, limit);
+  return CoupledSystem<N>(D0 - authority * tau_w, -authority * tau_u, p_w - rest.on_w,
+                          impedance + p_u - rest.on_u - f2_on_u);
+}
+
+template <int N>
+bool LimitedSolve<N>::solve(ContactSolve<N>& contacts, double T, Motion<N>& m) {
+  const Eigen::Index n = limit.size();
+  Mat<N> f2_on_u = Mat<N>::Zero(n, n);
+  for (steps = 0; steps < kMostSteps; ++steps) {
+    const Motion<N> off = residual(contacts, T, m, &f2_on_u);
+    const CoupledSystem<N> J = slopes(f2_on_u);
+    const Motion<N> step = J.solve(off);
+    const double far = size(step);
+    if (!std::isfinite(far)) return false;
+    const Motion<N> from = m;
+    if (far <= kEnough * (1 + size(from))) {
+      m = {from.w - step.w, from.u - step.u};
+      residual(contacts, T, m, nullptr);
+      return true;
+    }
+    for (double by = 1; by >= kShortest; by /= 2) {
+      m = {from.w - by * step.w, from.u - by * step.u};
+      if (size(J.solve(residual(contacts, T, m, nullptr))) <= (1 - by / 4) * far) break;
+    }
+  }
+  return false;
+}
+
+template <int N>
+void LimitedSolve<N>::stand_still(ContactSolve<N>& contacts, double T, Motion<N>& m) {
+  m.u.setZero(limit.size());
+  m.w = limpid::solve<N>(D0, drive);
+  residual(contacts, T, m, nullptr);
+  m.w = limpid::solve<N>(D0, Vec<N>(drive + authority * tau1));
+}
+
+template struct LimitedSolve<3>;
+template struct LimitedSolve<7>;
+template struct LimitedSolve<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,58 @@
+// Device, proxy and contacts of a tick in which motors are at their limit, solved together.
+#pragma once
+
+#include "core/touch/contact_solve.h"
+
+namespace limpid {
+
+// A torque that is linear in the motion: constant + on_w w + on_u u [N m].
+template <int N>
+struct LinearTorque {
+  Vec<N> constant;
+  Mat<N> on_w, on_u;
+  Vec<N> at(const Motion<N>& m) const { return constant + on_w * m.w + on_u * m.u; }
+};
+
+// What a motor cannot give does not reach the proxy either: device and proxy exchange a torque p
+// that is bounded by the motors' limit, as a joint with dry friction between them would, and the
+// contacts push on the proxy with the forces f2(u) of their laws:
+//     D0 w           = drive + authority tau1,      p = clip(tE + on_f2 f2),   tau1 = clip(p + tL)
+//     (impedance) u  = momentum - p + rest + f2(u).
+// For a proxy without mass the work of p is what the convex storage sum_i limit_i |x_E,i| loses, in
+// every tick and whatever contacts and hand do.
+template <int N>
+struct LimitedSolve {
+  LinearTorque<N> tE;    // between device and proxy, as wanted
+  LinearTorque<N> tL;    // on the device alone
+  LinearTorque<N> rest;  // on the proxy alone
+  Mat<N> on_f2;          // of f2, what tE has besides
+  Mat<N> D0, impedance;  // the proxy's with its damper b_v [N m s/rad]
+  Vec<N> drive, momentum, limit;
+  double authority = 1;
+
+  // Of the last solve:
+  Vec<N> f2, p, tau1;  // [N m]
+  Vec<N> given;        // p + tL, of which tau1 is what the motors can [N m]
+  int steps = 0;       // of Newton's method
+
+  static constexpr int kMostSteps = 10;
+
+  // Newton's method from m, each step shortened until it leads nearer; where the law has a kink the
+  // piece that holds is taken. True if it ended at a solution, to 1e-9 of the motion. Contacts:
+  // collected and prepared.
+  bool solve(ContactSolve<N>& contacts, double T, Motion<N>& m);
+
+  // What always can be done: the proxy stands still for this tick and takes no energy; the device
+  // gets what it would without looking ahead, within the limits.
+  void stand_still(ContactSolve<N>& contacts, double T, Motion<N>& m);
+
+  bool at_limit() const { return (p.cwiseAbs().array() >= limit.array()).any(); }
+
+ private:
+  Motion<N> residual(ContactSolve<N>& contacts, double T, const Motion<N>& m, Mat<N>* slope);
+  CoupledSystem<N> slopes(const Mat<N>& f2_on_u) const;
+
+  Vec<N> wanted_;  // tE with its part of f2
+};
+
+}  // namespace limpid
