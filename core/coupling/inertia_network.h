@@ -73,12 +73,14 @@ class InertiaNetwork : InertiaShape {
     }
   }
 
-  // What it was thought to give and did not, as a motor was at its limit [J]: that is not stored.
+  // It was meant to take so much more energy [J] than it did, as a motor was at its limit: that is
+  // not stored. The added mass keeps its speed; a change of that would push.
   void lose(double energy) {
-    const double stored = storage();
+    const double stored = side_ > 0 ? 0.5 * s_.squaredNorm() : storage();
     if (!(energy > 0) || !(stored > 0)) return;
     const double left = std::sqrt(std::max(0.0, 1 - energy / stored));
     s_ *= left;
+    if (side_ > 0) return;
     v_ *= left;
     g_ *= left;
   }

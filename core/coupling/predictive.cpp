@@ -203,10 +203,14 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     answer.damping = gains.damping;
     answer.most_damping = kMostDamping;
   }
-  bool limited = goes_on_;
+  const bool resumed = goes_on_;
+  bool limited = resumed, settled = true;
   Vec<N> f2;
-  if (!limited) {
-    if (contacts_.any()) contacts_.solve(answer, T, motion);
+  if (!resumed) {
+    if (contacts_.any()) {
+      contacts_.solve(answer, T, motion);
+      settled = contacts_.settled();
+    }
     f2 = contacts_.f2(in.b_d.size());
     const Vec<N> wanted = solve.wanted(motion, f2);
     limited = (wanted.array().abs() > in.limit.array()).any();
@@ -215,16 +219,16 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     cut_ = given - tau1_;
   }
   goes_on_ = false;
-  if (limited) {
+  if (limited || !settled) {
     const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
-    LimitedSolve<N> both = solve.limited(stiffer, c.b_v);
-    solve_limited(both, answer, solve.right(), T, motion);
+    LimitedSolve<N> both = limited ? solve.limited(stiffer, c.b_v) : solve.limited(0, 0);
+    solve_together(both, answer, solve.right(), T, resumed, motion);
     f2 = both.f2;
     tau1_ = both.tau1;
     cut_ = both.given - both.tau1;
     const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);
-    goes_on_ =
-        both.at_limit() || (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any();
+    goes_on_ = limited && (both.at_limit() ||
+                           (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
   contacts_.finish(proxy.contacts());
@@ -232,15 +236,16 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   return tau1_;
 }
 
-// motion: in, without limits, and if no tick before this one was limited with contacts; out, with
-// them. From the last tick's motion, else from what would be without limits.
+// motion: in, a first guess; out, of contacts and motors together. `resumed`: the last tick's
+// motion is a better one, and the contacts have not been solved yet.
 template <int N>
-void PredictiveLaw::Of<N>::solve_limited(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
-                                         const Motion<N>& right, double T, Motion<N>& motion) {
+void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
+                                          const Motion<N>& right, double T, bool resumed,
+                                          Motion<N>& motion) {
   contacts_.prepare(answer, T);
-  Motion<N> found = limited_ ? last_ : motion;
+  Motion<N> found = resumed ? last_ : motion;
   bool settled = both.solve(contacts_, T, found);
-  if (!settled && limited_) {
+  if (!settled && resumed) {
     found = answer.system.solve(right);
     if (contacts_.any()) contacts_.solve(answer, T, found);
     settled = both.solve(contacts_, T, found);

@@ -79,8 +79,8 @@ struct PredictiveLaw {
     Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                 Proxy<N>& proxy);
     double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
-    void solve_limited(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
-                       const Motion<N>& right, double T, Motion<N>& motion);
+    void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
+                        const Motion<N>& right, double T, bool resumed, Motion<N>& motion);
     void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                  const Proxy<N>& proxy);
 
@@ -99,9 +99,9 @@ struct PredictiveLaw {
     bool quick_ = false;       // the device, see dies_within_a_tick()
     bool limited_ = false;     // the last tick had motors at their limit,
     bool goes_on_ = false;     // and so has this one, whatever comes
-    Motion<N> last_;           // of a limited tick
+    Motion<N> last_;           // of a tick solved together
     double before_limit_ = 0;  // see held() [J]
-    int unsettled_ = 0;        // limited ticks without a solution, see LimitedSolve::stand_still()
+    int unsettled_ = 0;        // ticks without a solution, see LimitedSolve::stand_still()
   };
 };
 

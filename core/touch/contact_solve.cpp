@@ -6,7 +6,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kNear = 2e-3;     // what is further off and does not come is left out [m]
+constexpr double kNear = 2e-3;  // what is further off and does not come is left out [m]
 // A joint coordinate moves a contact by less than this: no joint can serve it, and its force, which
 // moves nothing, is left out with its friction [m].
 constexpr double kLeastLever = 1e-9;
@@ -48,7 +48,8 @@ void ContactSolve<N>::collect(Contacts<N>& contacts, const Arm<N>& arm,
     const double deeper = T * c.gradient.dot(u);
     const bool near = c.depth > -kNear || c.depth + 2 * deeper > 0;
     const bool served = c.gradient.squaredNorm() > kLeastLever * kLeastLever;
-    if (near && served && (count_ < kMost || c.depth > std::ranges::min(depths_))) add(c, contacts, arm, f);
+    if (near && served && (count_ < kMost || c.depth > std::ranges::min(depths_)))
+      add(c, contacts, arm, f);
     c.force = 0;
     c.friction.setZero();
   }
@@ -279,18 +280,19 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
     apply(row, row.push + row.friction, motion);
   }
   double most = 0;
-  bool settled = false;
-  for (sweeps_ = 0; !settled && sweeps_ < kMostSweeps; ++sweeps_) {
-    settled = true;
+  settled_ = false;
+  for (sweeps_ = 0; !settled_ && sweeps_ < kMostSweeps; ++sweeps_) {
+    settled_ = true;
     for (Row& row : rows) {
       if (apart(row, T, motion.u)) continue;
       if (!row.known) learn(row, answer, T);
       const double change =
           row.wall != nullptr ? push_wall(row, T, motion) : push_mesh(row, T, motion);
       most = std::max(most, row.push.norm());
-      settled = settled && change < kSettled * std::max(1.0, most);
+      settled_ = settled_ && change < kSettled * std::max(1.0, most);
     }
     if (count_ == 1 && rows_[0].radius == 0) {
+      settled_ = true;
       ++sweeps_;
       return;
     }

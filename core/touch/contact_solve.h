@@ -46,7 +46,8 @@ class ContactSolve {
   // Their torque [N m].
   Vec<N> f2(Eigen::Index n) const;
   bool any() const { return count_ > 0; }
-  int sweeps() const { return sweeps_; }  // of the last solve
+  int sweeps() const { return sweeps_; }     // of the last solve,
+  bool settled() const { return settled_; }  // which ended before they were all used up
 
   // The tick went like this: contacts and their memories learn of it.
   void finish(Contacts<N>& contacts) const;
@@ -101,6 +102,7 @@ class ContactSolve {
   std::array<double, kMost> depths_{};
   int count_ = 0;
   int sweeps_ = 0;
+  bool settled_ = true;
 };
 
 extern template class ContactSolve<3>;

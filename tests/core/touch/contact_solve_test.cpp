@@ -192,6 +192,44 @@ TEST(ContactSolve, LeavesEachContactWithWhatItsOwnLawAsksOfTheMotion) {
   EXPECT_GT(slipped, 200);
 }
 
+// The same forces as functions of the motion, and how they answer it.
+TEST(ContactSolve, AsAFunctionOfTheMotionIsTheForceThatItSettledOn) {
+  Random random(97);
+  int pushed = 0, smooth = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Scene scene = some_corner(random, 1 + round % 7 % 3, round % 3 != 0);
+    Bench bench(scene, 700 + static_cast<unsigned>(round));
+    for (int k = 0; k < 10; ++k) {
+      bench.tick(press(scene, random));
+      ContactSolve<3> known = bench.solve;
+      const Vec3 u = bench.motion.u;
+      known.prepare(bench.answer.contact, T);
+      Mat3 slope;
+      const Vec3 f2 = known.push(u, T, &slope);
+      const double size = std::max(1e-3, bench.f2.norm());
+      if (bench.solve.sweeps() < ContactSolve<3>::kMostSweeps) {
+        ASSERT_LT((f2 - bench.f2).norm(), 1e-3 * size) << round << ' ' << k;
+      }
+      pushed += !f2.isZero(0);
+      const auto answer = [&](int axis, double h) {
+        const Vec3 step = h * Vec3::Unit(axis);
+        return Vec3((known.push(u + step, T, nullptr) - known.push(u - step, T, nullptr)) /
+                    (2 * h));
+      };
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 fine = answer(axis, 1e-6), coarse = answer(axis, 4e-6);
+        if ((fine - coarse).norm() > 1e-3 * (1e-3 + fine.norm())) continue;  // a corner of the law
+        ++smooth;
+        ASSERT_LT((slope.col(axis) - fine).norm(), 1e-2 * (1e-3 + fine.norm()))
+            << round << ' ' << k << ' ' << axis;
+      }
+      bench.go_on();
+    }
+  }
+  EXPECT_GT(pushed, 1000);
+  EXPECT_GT(smooth, 4000);
+}
+
 TEST(ContactSolve, MovesAllByTheSumOfItsForcesAndOfTheirPowers) {
   Random random(92);
   for (int round = 0; round < 100; ++round) {
@@ -352,6 +390,23 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
 
 // 0.34 of m_n/T is the most that a wall may damp, 0.2 of it what it does by itself; m_n is what the
 // tip weighs along the normal.
+// A wall that faces along an axis about which nothing turns: it can push nothing away, and rubs at
+// nothing.
+TEST(ContactSolve, LeavesOutAWallThatNoJointCanServe) {
+  Random random(98);
+  for (int round = 0; round < 20; ++round) {
+    Bench bench(some_corner(random, 1, true), 800 + static_cast<unsigned>(round));
+    bench.tick(Vec3::Zero());
+    const Vec3 pushed = bench.f2;
+    for (Contact<3>& c : bench.contacts.list()) {
+      c.depth = 1e-3;
+      c.gradient.setZero();
+    }
+    bench.solve.collect(bench.contacts, bench.arm, bench.f, bench.motion.u, T);
+    EXPECT_FALSE(bench.solve.any()) << pushed;
+  }
+}
+
 TEST(ContactSolve, BoundsTheDamperOfAWall) {
   Random random(213);
   for (int i = 0; i < 20; ++i) {

@@ -144,6 +144,47 @@ TEST(WallForce, NeverJumpsAcrossTheBordersOfItsCases) {
   }
 }
 
+// Asked the other way round, with the change of depth that came of the force.
+TEST(WallPush, IsTheSameForceWhereTheChangeOfDepthIsKnown) {
+  Random random(16);
+  std::array<int, kCases> met{};
+  for (int round = 0; round < 100000; ++round) {
+    WallTick w = some_tick(random);
+    w.T = 1e-3;
+    w.B = std::min(w.B, 0.2 * w.T / w.c);  // a damper that pushes back no more than it is met with
+    const double F = wall_force(w), D = w.a - w.c * F;
+    ++met[case_of(w, F)];
+    WallTick known = w;
+    known.a = D;
+    const double size = w.K * (std::abs(w.d) + std::abs(D)) + w.B / w.T * std::abs(D);
+    // D is a difference of what may be much larger.
+    const double lost = 1e-13 * (std::abs(w.a) + w.c * F) * (w.K + w.B / w.T);
+    ASSERT_NEAR(wall_push(known).force, F, 1e-7 * size + lost) << round;
+  }
+  for (const int count : met) EXPECT_GT(count, 1000);
+}
+
+TEST(WallPush, AnswersTheChangeOfDepthAsItsSlopeSays) {
+  Random random(17);
+  int looked_at = 0;
+  for (int round = 0; round < 20000; ++round) {
+    WallTick w = some_tick(random);
+    w.T = 1e-3;
+    const double h = 1e-6 * (std::abs(w.a) + std::abs(w.d)), D = w.a;
+    const auto at = [&](double change) {
+      WallTick there = w;
+      there.a = D + change;
+      return wall_push(there).force;
+    };
+    const double slope = wall_push(w).slope;
+    const double fine = (at(h) - at(-h)) / (2 * h), coarse = (at(2 * h) - at(-2 * h)) / (4 * h);
+    if (std::abs(fine - coarse) > 1e-4 * (1 + std::abs(fine))) continue;  // a corner lies between
+    ++looked_at;
+    ASSERT_NEAR(slope, fine, 2e-3 * (1 + std::abs(fine))) << round;
+  }
+  EXPECT_GT(looked_at, 15000);
+}
+
 TEST(WallForce, OfWhatNoForceMovesIsTheMeanOfSpringAndDamper) {
   Random random(15);
   for (int round = 0; round < 100000; ++round) {

@@ -28,7 +28,6 @@ struct Corner {
   Vec3 out, along;              // of the first plane
   double press, rise, way;      // [N, s, m]
   double limit;                 // of each motor [N m]
-  std::vector<std::string> say;  // what was drawn
 
   Vec3 hand(double t) const {
     const double in = std::clamp((t - 0.02) / rise, 0.0, 1.0);
@@ -192,6 +191,7 @@ TEST(MotorsAtTheirLimit, BetweenWallsGiveNoEnergyAndLetTheProxyNotJump) {
   EXPECT_LE(worst.of.unsettled, 1e-4 * worst.of.limited);
 }
 
+// Other arms, more walls, more friction, other eta.
 TEST(MotorsAtTheirLimit, OfOtherArmsInMoreWallsGiveNoEnergyEither) {
   Worst worst;
   const Width wide{.dofs = {3, 7, 12},
@@ -204,6 +204,8 @@ TEST(MotorsAtTheirLimit, OfOtherArmsInMoreWallsGiveNoEnergyEither) {
   worst.print();
   EXPECT_GT(worst.limited_runs, 50);
   EXPECT_EQ(worst.over_energy, 0);
+  EXPECT_LE(worst.of.torque, 1.6);
+  EXPECT_EQ(worst.over_jump, 0);
   EXPECT_EQ(worst.below, 0);
   EXPECT_LE(worst.of.port, 0.05e-3);
 }
