@@ -169,6 +169,12 @@ def inexact_functions(root: Path) -> list[str]:
     ]
 
 
+def pages(root: Path) -> list[str]:
+    """Texts for people, those of rooms as well."""
+    own = [page for room in ROOMS for page in (root / room).rglob("README.md")]
+    return ["README.md", "CONTRIBUTING.md", *(str(page.relative_to(root)) for page in own)]
+
+
 def named_files_that_are_missing(root: Path, page: str) -> list[str]:
     """Of a page of text: what it quotes as a path of the tree; NAME stands for any name."""
     text = (root / page).read_text()

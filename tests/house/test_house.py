@@ -41,8 +41,11 @@ class TheHouse(unittest.TestCase):
         self.assert_kept(house.inexact_functions(ROOT))
 
     def test_pages_name_files_that_are_there(self) -> None:
-        for page in ("README.md", "CONTRIBUTING.md"):
+        for page in house.pages(ROOT):
             self.assert_kept(house.named_files_that_are_missing(ROOT, page))
+
+    def test_the_first_page_is_short(self) -> None:
+        self.assertLessEqual(len((ROOT / "README.md").read_text().splitlines()), 130)
 
 
 class ARuleIsSeenBroken(unittest.TestCase):
