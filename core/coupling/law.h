@@ -69,12 +69,21 @@ struct LawInput {
   double encoder_step;                    // [rad]
 };
 
+// How a law found the motion of a tick.
+enum class TickSolve : std::uint8_t {
+  usual,
+  limited,     // with the motors' limits, contacts and all in one
+  together,    // contacts in one, as they did not settle one after the other
+  stood_still  // not at all: the proxy stays where it is for the tick, which takes energy only
+};
+
 // What a law tells of itself, a tick.
 struct LawReport {
   double reserve = 0;           // energy left in its ledger [J]
   double contact_governor = 1;  // share of the contact force that it lets through
   double damping_governor = 1;  // share of the damping that it may cancel
-  int unsettled = 0;            // ticks in which the proxy stood still for want of a solution
+  TickSolve solved = TickSolve::usual;
+  int unsettled = 0;  // ticks so far in which the proxy stood still for want of a solution
 };
 
 // What most laws need not do.

@@ -118,6 +118,7 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   y_ = at.x1;
   acted_ = slip_ = tau1_ = cut_ = zero;
   limited_ = goes_on_ = false;
+  solved_ = TickSolve::usual;
   unsettled_ = 0;
   elapsed_ = 0;
   b_d_ = zero;
@@ -219,7 +220,9 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     cut_ = given - tau1_;
   }
   goes_on_ = false;
+  solved_ = TickSolve::usual;
   if (limited || !settled) {
+    solved_ = limited ? TickSolve::limited : TickSolve::together;
     const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
     LimitedSolve<N> both = limited ? solve.limited(stiffer, c.b_v) : solve.limited(0, 0);
     solve_together(both, answer, solve.right(), T, resumed, motion);
@@ -253,6 +256,7 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
   if (!settled) {
     both.stand_still(contacts_, T, found);
     ++unsettled_;
+    solved_ = TickSolve::stood_still;
   }
   motion = last_ = found;
 }
@@ -265,7 +269,7 @@ void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
 
 template <int N>
 LawReport PredictiveLaw::Of<N>::report() const {
-  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(), unsettled_};
+  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(), solved_, unsettled_};
 }
 
 template class PredictiveLaw::Of<3>;

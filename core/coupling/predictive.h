@@ -88,17 +88,18 @@ struct PredictiveLaw {
     InertiaNetwork<N> network_;
     Ledger<N> ledger_;
     ContactSolve<N> contacts_;
-    Vec<N> y_;                 // the last reading [rad]
-    Vec<N> acted_;             // torque of the tick just ended [N m]
-    Vec<N> slip_;              // how far its prediction was off [rad]
-    Vec<N> tau1_;              // as wanted, this tick [N m]
-    Vec<N> cut_;               // what the motors' limit takes off tE + tL of that tick [N m]
-    double elapsed_ = 0;       // since the reading before; 0 at the first [s]
-    bool both_ = true;         // predictors
-    Vec<N> b_d_;               // for which quick_ is
-    bool quick_ = false;       // the device, see dies_within_a_tick()
-    bool limited_ = false;     // the last tick had motors at their limit,
-    bool goes_on_ = false;     // and so has this one, whatever comes
+    Vec<N> y_;              // the last reading [rad]
+    Vec<N> acted_;          // torque of the tick just ended [N m]
+    Vec<N> slip_;           // how far its prediction was off [rad]
+    Vec<N> tau1_;           // as wanted, this tick [N m]
+    Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
+    double elapsed_ = 0;    // since the reading before; 0 at the first [s]
+    bool both_ = true;      // predictors
+    Vec<N> b_d_;            // for which quick_ is
+    bool quick_ = false;    // the device, see dies_within_a_tick()
+    bool limited_ = false;  // the last tick had motors at their limit,
+    bool goes_on_ = false;  // and so has this one, whatever comes
+    TickSolve solved_ = TickSolve::usual;
     Motion<N> last_;           // of a tick solved together
     double before_limit_ = 0;  // see held() [J]
     int unsettled_ = 0;        // ticks without a solution, see LimitedSolve::stand_still()

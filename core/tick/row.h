@@ -36,6 +36,7 @@ enum class Column : std::uint8_t {
   alpha,
   governor,
   damping_governor,
+  solved,
   unsettled,
   energy_total,
   energy_commanded,
@@ -105,6 +106,10 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "share of the contact force that the ledger lets through"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
      "share of the damping that the ledger lets the law cancel"},
+    {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
+     "how the predictive law solved the tick: 0 as usual, 1 with motors at their limit, 2 contacts "
+     "that did not settle one after the other, 3 not at all: the proxy stood still",
+     true},
     {Column::unsettled, "/coupling/unsettled", ColumnWidth::one, "-",
      "ticks so far in which motors at their limit and contacts had no common solution; the proxy "
      "stood still for them"},

@@ -169,7 +169,7 @@ class Predictive(SystemTest):
                                   "0.6", "--set", "hand.stiffness=2000")  # fmt: skip
                 spent = np.any(np.abs(s["/device/motor_torque"]) >= float(limit), axis=1)
                 self.assertGreater(spent.sum(), 100)
-                self.assert_recomputed(s, "wall force", "tau1 with the wall")
+                self.assert_recomputed(s, "wall force at the limit", "tau1 at the limit", "ticks with limits")
 
     def test_governors_that_act_are_recomputed(self) -> None:
         scene = self.out(".toml")

@@ -32,6 +32,7 @@ std::optional<double> default_of(Column column) {
     case Column::force_wanted:
     case Column::governor:
     case Column::damping_governor: return 1.0;
+    case Column::solved:
     case Column::unsettled:
     case Column::force_state:
     case Column::contact_potential:

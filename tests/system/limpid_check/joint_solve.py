@@ -1,5 +1,5 @@
 """Device and proxy of the predictive coupling, solved together for a tick: step (6) of the design
-sheet, with the motors' limits.
+sheet, and where motors are at their limit.
 
 Stacks over rows. The unknown is (w, u), the mean velocities of device and proxy over the tick; all
 of it is linear in them and in the contact torque f2. SI and radians.
@@ -19,7 +19,7 @@ from .reserve import Reserve
 from .session import Session
 from .urdf import Array
 
-_PASSES = 5  # solves, as long as other motors are at their limit than was thought
+STILL_PULLED = 0.02  # of the limit: a spring that pulls more keeps the next tick limited
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,8 @@ class Solved:
     f2: Array
     tau1: Array
     tau2: Array
-    marks: Array  # (N, n): -1, 0, 1, which motors hold at their limit
+    over: Array  # (N,) bool: a motor would have to pass its limit
+    on: Array  # (N,) bool: after this the next tick has limits as well, if this one has
 
 
 # of z0's u (N, n) and Z's u (N, n, n), what a unit of each torque makes of it: f2 (N, n)
@@ -130,36 +131,30 @@ def _system(p: Prediction, proxy: Proxy, the: Law, drive: Array, momentum: Array
 
 
 def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSolve) -> Solved:
-    """(6) to (8): everything a tick does, from what was before it."""
-    n, t, limit = s.dof, s.tick, s.law_limit
-    b_v = s.number("coupling.b_v")
-    drive = p.drive(t)
-    momentum = 2 / t * apply(proxy.m, s["/proxy/velocity"])
-    free = _system(p, proxy, the, drive, momentum, t)
-    d0 = np.concatenate([p.d0, 0 * p.d0], axis=2)
-    alone = np.concatenate([0 * proxy.m, 2 / t * proxy.m + proxy.skew + b_v[:, :, None] * np.eye(n)],
-                           axis=2)  # fmt: skip
-    marks, held = np.zeros((len(s), n)), np.zeros((len(s), n))
-    for round_ in range(_PASSES):
-        at_limit = np.tile(marks != 0, (1, 2))
-        push = np.clip(marks * limit + held, -limit, limit)
-        a = np.where(at_limit[:, :, None], np.concatenate([d0, alone], axis=1), free[0])
-        b = np.where(
-            at_limit, np.concatenate([drive + push, momentum - marks * limit], axis=1), free[1]
-        )
-        unit = np.broadcast_to(np.eye(n), proxy.m.shape)
-        h = np.where(at_limit[:, :, None], np.concatenate([0 * unit, unit], axis=1), free[2])
-        z = np.linalg.solve(a, np.concatenate([b[:, :, None], h], axis=2))
-        f2 = contact(z[:, n:, 0], z[:, n:, 1:])
-        both = z[:, :, 0] + apply(z[:, :, 1:], f2)
-        w, u = both[:, :n], both[:, n:]
-        spring, locked = the.spring.at(w, u, f2), the.locked.at(w, u, f2)
-        wanted = np.where(np.abs(spring) > limit, np.sign(spring), 0)
-        changed = np.any(wanted != marks, axis=1, keepdims=True)
-        if round_ == _PASSES - 1 or not np.any(changed):
-            break
-        marks, held = np.where(changed, wanted, marks), np.where(changed, locked, held)
-    shape = np.where(marks != 0, marks * limit, np.clip(spring, -limit, limit))
-    tau1 = np.clip(shape + locked, -limit, limit)
-    tau2 = np.where(marks != 0, -marks * limit - b_v * u, the.proxy.at(w, u, f2))
-    return Solved(w, u, f2, tau1, tau2, marks)
+    """(6) to (8) as without limits: everything a tick does, from what was before it."""
+    n, limit = s.dof, s.law_limit
+    drive, momentum = p.drive(s.tick), 2 / s.tick * apply(proxy.m, s["/proxy/velocity"])
+    a, b, h = _system(p, proxy, the, drive, momentum, s.tick)
+    z = np.linalg.solve(a, np.concatenate([b[:, :, None], h], axis=2))
+    f2 = contact(z[:, n:, 0], z[:, n:, 1:])
+    both = z[:, :, 0] + apply(z[:, :, 1:], f2)
+    w, u = both[:, :n], both[:, n:]
+    spring, locked = the.spring.at(w, u, f2), the.locked.at(w, u, f2)
+    tau1 = np.clip(np.clip(spring, -limit, limit) + locked, -limit, limit)
+    over = np.any(np.abs(spring) > limit, axis=1)
+    return Solved(w, u, f2, tau1, the.proxy.at(w, u, f2), over, 0 * over)
+
+
+def solve_limited(s: Session, p: Prediction, the: Law, u: Array, f2: Array) -> Solved:
+    """A tick with motors at their limit, law_mend.md 1, from the torque that left and the proxy's motion: the torques
+    have to be those that they started from."""
+    limit, none = s.law_limit, 0 * f2
+    k_vc, b_vc, b_v = (s.number(f"coupling.{name}") for name in ("k_vc", "b_vc", "b_v"))
+    w = np.linalg.solve(p.d0, (p.drive(s.tick) + s["/device/commanded_torque"])[:, :, None])[:, :, 0]
+    stiffer = np.maximum(k_vc * s.tick / 2 - b_vc, 0)
+    pull = np.clip(the.spring.at(w, u, f2) - stiffer * (w - u), -limit, limit)
+    rest = the.proxy.at(w, u, none) + the.spring.at(w, u, none)
+    tau1 = np.clip(pull + the.locked.at(w, u, f2), -limit, limit)
+    apart = k_vc * (p.x - s["/proxy/position"] + s.tick * (w - u))
+    on = np.any((np.abs(pull) >= limit) | (np.abs(apart) > STILL_PULLED * limit), axis=1)
+    return Solved(w, u, f2, tau1, rest - pull - b_v * u, 0 * on, on)

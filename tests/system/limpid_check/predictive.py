@@ -18,14 +18,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from .decomposition import apply
-from .joint_solve import Law, Proxy, Solved, law, proxy_dynamics, solve
+from .joint_solve import Law, Proxy, Solved, law, proxy_dynamics, solve, solve_limited
 from .predictor import Prediction, Seen, predict, predict_seen, unseen
 from .report import Check, not_applicable
-from .reserve import Reserve, balance
+from .reserve import LIMITED, Reserve, balance
 from .session import Session
 from .torques import mean_proxy_velocity
 from .urdf import Array
-from .wall import Wall, contact_solve, only_wall
+from .wall import Wall, contact_solve, known_force, only_wall
 
 KIND = 2
 _TOLERANCE = 1e-9  # of the largest of its kind: round-off, fed on through the recursion
@@ -41,13 +41,19 @@ class Replayed:
     given: Solved  # with the recorded contact torque
     wall: Wall | None
     forces: Solved | None  # with the wall's force as the law has it
+    limited: Solved  # as a tick with motors at their limit
     sure: Array  # bool (N,): rows that a predictor has just taken over are not
+
+
+def _motion(s: Session) -> Array:
+    """The proxy's mean velocity over the tick of every row; nobody knows the last one's."""
+    return np.concatenate([mean_proxy_velocity(s), np.zeros((1, s.dof))])
 
 
 def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen:
     """tau1 + tau2 = -b_w w + C_LE (w - u) + u_N - K_N w tells w, tau2 then x."""
     tau1, tau2 = s["/device/commanded_torque"], s["/proxy/torque"]
-    u = np.concatenate([mean_proxy_velocity(s), np.zeros((1, s.dof))])
+    u = _motion(s)
     c_le = -the.shared.u
     left = r.b_w[:, :, None] * np.eye(s.dof) - the.shared.w
     tells = np.min(np.abs(np.linalg.eigvals(left)), axis=1) > _LEAST_DAMPING
@@ -55,9 +61,7 @@ def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen
     w = np.linalg.solve(left, (r.u_n - apply(c_le, u) - tau1 - tau2)[:, :, None])[:, :, 0]
     off = tau2 - the.proxy.at(w, u, s["/proxy/contact_torque"])
     x = p.x + off / s.number("coupling.k_vc")
-    limit = s.law_limit
-    held = np.abs(np.abs(tau2 + s.number("coupling.b_v") * u) - limit) < 1e-9 * limit
-    known = tells & ~np.any(held | (np.abs(tau1) >= limit), axis=1)
+    known = tells & (s["/coupling/solved"] == 0) & ~np.any(np.abs(tau1) >= s.law_limit, axis=1)
     known[-1] = False
     return Seen(x, w, known)
 
@@ -68,7 +72,7 @@ def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array]:
         return predict(s), np.ones(len(s), dtype=bool)
     p = unseen(s)
     for _ in range(_ROUNDS):
-        r = balance(s, p, p.m1 + proxy.m)
+        r = balance(s, p, proxy.m, proxy.c, _motion(s))
         seen = _seen(s, p, proxy, r, law(s, p, proxy, r))
         p, moved = predict_seen(s, p, seen)
         if moved < 1e-14:
@@ -92,13 +96,14 @@ def _sure(p: Prediction, known: Array) -> Array:
 def replay(s: Session) -> Replayed:
     proxy = proxy_dynamics(s)
     p, sure = _predictions(s, proxy)
-    r = balance(s, p, p.m1 + proxy.m)
+    r = balance(s, p, proxy.m, proxy.c, _motion(s))
     the = law(s, p, proxy, r)
     f2 = s["/proxy/contact_torque"]
     given = solve(s, p, proxy, the, lambda u0, per_torque: f2)
     wall = only_wall(s, p)
     forces = wall and solve(s, p, proxy, the, contact_solve(wall, s.tick))
-    return Replayed(p, r, given, wall, forces, sure)
+    limited = solve_limited(s, p, the, _motion(s), f2)
+    return Replayed(p, r, given, wall, forces, limited, sure)
 
 
 def _largest(*fields: Array) -> float:
@@ -123,14 +128,15 @@ def _reserve_checks(s: Session, r: Reserve, sure: Array) -> list[Check]:
     ]
 
 
-def _torque_checks(s: Session, solved: Solved, sure: Array, name: str) -> list[Check]:
+def _torque_checks(s: Session, solved: Solved, rows: Array, name: str) -> list[Check]:
     tau1, tau2 = s["/device/commanded_torque"], s["/proxy/torque"]
-    u, moves = mean_proxy_velocity(s), sure[:-1]
+    u, moves = mean_proxy_velocity(s), rows[:-1]
+    rows = np.append(moves, False)
     torque = _largest(tau1, tau2, s["/proxy/contact_torque"])
     unit = "largest torque [N m]"
     return [
-        _compare(f"tau1 {name}", solved.tau1[sure], tau1[sure], torque, unit),
-        _compare(f"tau2 {name}", solved.tau2[sure], tau2[sure], torque, unit),
+        _compare(f"tau1 {name}", solved.tau1[rows], tau1[rows], torque, unit),
+        _compare(f"tau2 {name}", solved.tau2[rows], tau2[rows], torque, unit),
         _compare(f"motion {name}", solved.u[:-1][moves], u[moves], _largest(u),
                  "largest speed [rad/s]"),
     ]  # fmt: skip
@@ -139,14 +145,27 @@ def _torque_checks(s: Session, solved: Solved, sure: Array, name: str) -> list[C
 def _wall_checks(s: Session, done: Replayed) -> list[Check]:
     if done.wall is None or done.forces is None:
         return [not_applicable("wall force", "more than one smooth plane may be touched")]
-    f2, stored, sure = s["/proxy/contact_torque"], done.wall.potential(), done.sure
+    f2, stored, how = s["/proxy/contact_torque"], done.wall.potential(), s["/coupling/solved"]
+    usual, limited = done.sure & (how == 0), done.sure & (how == LIMITED)
+    limited[-1] = False
+    known = known_force(done.wall, _motion(s), s.tick)
+    unit = "largest contact torque [N m]"
     return [
         _compare("wall potential", stored, s["/energy/contact_potential"], _largest(stored),
                  "its largest [J]"),
-        _compare("wall force", done.forces.f2[sure], f2[sure], _largest(f2),
-                 "largest contact torque [N m]"),
-        *_torque_checks(s, done.forces, sure, "with the wall"),
+        _compare("wall force", done.forces.f2[usual], f2[usual], _largest(f2), unit),
+        _compare("wall force at the limit", known[limited], f2[limited], _largest(f2), unit),
+        *_torque_checks(s, done.forces, usual, "with the wall"),
+        _which_are_limited(s, done),
     ]  # fmt: skip
+
+
+def _which_are_limited(s: Session, done: Replayed) -> Check:
+    """A tick has limits if a motor would pass its own, or the tick before, which had, goes on."""
+    limited = s["/coupling/solved"] == LIMITED
+    asked = done.forces.over | np.concatenate([[False], (limited & done.limited.on)[:-1]])
+    wrong = np.sum((asked != limited)[done.sure])
+    return Check("ticks with limits", float(wrong), 0.5, "rows that had none, or had them without need")
 
 
 def _port_check(s: Session) -> Check:
@@ -174,10 +193,11 @@ def check_predictive(s: Session) -> list[Check]:
         Check("unchecked rows", unsure, 1, "of all: what the predictor was is not known"),
     ]
     coarse = np.any(s.number("device.encoder_step") > 0)
-    if coarse and np.any(done.given.marks):
+    how = s["/coupling/solved"]
+    if coarse and np.any(how != 0):
         why = "encoder steps and motors at their limit: the predictor is not known"
         return checks + [not_applicable("torques, wall force", why)]
-    # Which motors are at their limit comes of the forces meanwhile, which are not recorded.
-    if not np.any(done.given.marks):
-        checks += _torque_checks(s, done.given, done.sure, "predictive")
+    checks += _torque_checks(s, done.given, done.sure & (how == 0), "predictive")
+    if np.any(how == LIMITED):
+        checks += _torque_checks(s, done.limited, done.sure & (how == LIMITED), "at the limit")
     return checks + _wall_checks(s, done)

@@ -17,6 +17,7 @@ from .urdf import Array
 # the ladder: inertances and resistances that make an inertia up to the band's edge
 _A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
 _GHOST_EDGE, _GHOST_DAMPING = 2 * np.pi * 25, 0.7  # w_g [rad/s], zeta
+LIMITED = 1  # in /coupling/solved: motors at their limit and contacts were solved in one
 _CAP = 0.02  # largest reserve [J]
 _FULL, _EMPTY = 4e-3, 1e-3  # reserve above and below which the damping is whole and gone [J]
 _CONTACT_RECOVERY, _DAMPING_RECOVERY = 0.05, 0.2  # [s]
@@ -57,6 +58,12 @@ class _Network:
             h, (s, g, _) = t * _GHOST_EDGE, self.q
             d = (nu - g - h * s / 2) / (1 + _GHOST_DAMPING * h + h * h / 4)
             self.q = np.stack([s + h * d, 2 * (nu - d) - g, 0 * s])
+
+    def lose(self, energy: float) -> None:
+        """What a motor at its limit did not take: the ladder loses it from all of its states, the added mass from its spring."""
+        own = self.q[0] @ self.q[0] / 2 if self.side > 0 else self.stored
+        if energy > 0 and own > 0:
+            self.q[: 1 if self.side > 0 else 3] *= np.sqrt(max(0.0, 1 - energy / own))
 
     def turn(self, eta: float) -> None:
         """To the side of 1 that eta is on now."""
@@ -128,15 +135,53 @@ def _share_cancelled(s: Session) -> Array:
     return np.where(np.isnan(felt), as_eta, 1 - felt)
 
 
-def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
-    """`locked`: M1 + M2 (N, n, n)."""
+def _springs(s: Session) -> Array:
+    """V of every row (N,) [J]. After a tick with motors at their limit it gives back what a constant torque does, from
+    where they came to it on."""
+    x, limit = s["/device/measured_position"] - s["/proxy/position"], s.law_limit
+    spring, pulled = spring_energy(x, s.number("coupling.k_vc"), limit), np.sum(limit * np.abs(x), axis=1)
+    before, out = 0.0, spring.copy()
+    for k in range(len(s)):
+        if k > 0 and s["/coupling/solved"][k - 1] == LIMITED:
+            out[k] = max(spring[k], pulled[k] + before)
+        else:
+            before = spring[k] - pulled[k]
+    return out
+
+
+class _Cut:
+    """What the motors' limit takes off tE + tL: tau1 + tau2 and the motion tell it."""
+
+    def __init__(self, s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> None:
+        self.s, self.p, self.u = s, p, u
+        phi = np.linalg.solve(p.m1 + m2, m2)
+        self.c_le = np.swapaxes(c2, 1, 2) - np.swapaxes(p.c1 + c2, 1, 2) @ phi
+        self.drive, self.b_v = p.drive(s.tick), s.number("coupling.b_v")
+        self.clipped = np.any(np.abs(s["/device/commanded_torque"]) >= s.law_limit, axis=1)
+
+    def at(self, k: int, b_w: float | Array, u_n: Array, k_n: Array) -> Array:
+        s, u = self.s, self.u[k]
+        tau1, tau2 = s["/device/commanded_torque"][k], s["/proxy/torque"][k]
+        on_w = self.c_le[k] - k_n - np.eye(s.dof) * b_w
+        rest = u_n - self.c_le[k] @ u - tau2
+        if s["/coupling/solved"][k] == LIMITED:
+            w = np.linalg.solve(self.p.d0[k], self.drive[k] + tau1)
+            rest = rest - self.b_v[k] * u
+        else:
+            w = np.linalg.solve(self.p.d0[k] - on_w, self.drive[k] + rest)
+        return on_w @ w + rest - tau1
+
+
+def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserve:
+    """M2 and C2 of the proxy (N, n, n), its mean velocities (N, n)."""
     rows, n, t = len(s), s.dof, s.tick
+    locked = p.m1 + m2
+    cut = _Cut(s, p, m2, c2, u)
     y, eta = s["/device/measured_position"], s["/coupling/eta"]
     moved = np.diff(y, axis=0, prepend=y[:1])
     edge = 2 * np.pi * s.number("coupling.band")[:, 0]
     step = s.number("device.encoder_step")[:, 0]
-    held = spring_energy(y - s["/proxy/position"], s.number("coupling.k_vc"), s.law_limit)
-    held = held + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
+    held = _springs(s) + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
     given = np.sum(s.law_torque[:-1] * moved[1:], axis=1)
     leak, cancelled = _leaks(s, p), _share_cancelled(s)
     pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
@@ -150,6 +195,8 @@ def balance(s: Session, p: Prediction, locked: Array) -> Reserve:
     for k in range(rows):
         if k > 0:
             network.advance(moved[k], edge[k])
+            if cut.clipped[k - 1]:
+                network.lose(-cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1]) @ moved[k])
             ticks = clock.changed(moved[k], step[k])
             account += np.sum(s.damping[k] * moved[k] ** 2 / ticks) / t - given[k - 1]
         network.turn(eta[k])

@@ -57,8 +57,8 @@ _LATER = (
     "/energy/contact_potential",
 )
 
-# Of sessions with compensation; nothing where they lack it.
-_COMPENSATION = {"/device/compensation_torque": 0, "/energy/compensation": 1}
+# Of sessions with compensation, and with ticks solved in another way than the usual; nothing where they lack it.
+_OR_NOTHING = {"/device/compensation_torque": 0, "/energy/compensation": 1, "/coupling/solved": 1}
 
 ATTRIBUTES = (
     "format", "version", "tick", "dof", "created", "app_version",
@@ -203,7 +203,7 @@ def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
         if values.dtype != kind:
             raise SessionError(f"{path} is {values.dtype}, expected {np.dtype(kind)}")
         data[path] = values
-    for path, columns in _COMPENSATION.items():
+    for path, columns in _OR_NOTHING.items():
         nothing = np.zeros((rows,) if columns == 1 else (rows, dof))
         data[path] = _of_joints(file[path]) if path in file else nothing
         if data[path].shape != nothing.shape:

@@ -80,6 +80,20 @@ def wall_force(k: Array, b: Array, d: Array, a: Array, c: Array) -> Array:
     return np.where(d >= 0, inside, _made(k, b, d, a, c))
 
 
+def known_force(wall: Wall, u: Array, tick: float) -> Array:
+    """f2 (N, n) where the proxy's motion is known: the change of depth D is, and F D is what the spring loses and the damper
+    takes while inside."""
+    k, b, d = np.full(len(u), wall.stiffness), wall.damper / tick, wall.depth
+    change = -tick * np.sum(wall.push * u, axis=1)
+    safe = np.where(change == 0, 1, change)
+    end = d + change
+    inside = k * (d + change / 2) + b * change
+    breaks = -k * d * d / (2 * safe) - b * d
+    makes = k * end * end / (2 * safe) + b * end
+    force = np.where(d >= 0, np.where(end >= 0, inside, breaks), np.where(end > 0, makes, 0))
+    return np.maximum(force, 0)[:, None] * wall.push
+
+
 def contact_solve(wall: Wall, tick: float):
     """As a `joint_solve.ContactSolve`."""
 
