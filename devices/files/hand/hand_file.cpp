@@ -20,16 +20,10 @@ constexpr double kFarthest = 10;                           // [m]
 constexpr double kLongestTime = 1e6;                       // [s]
 constexpr std::array<std::string_view, 4> kHeader{"time_s", "x_m", "y_m", "z_m"};
 
-std::string_view trimmed_field(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 // Cuts the first field off `line`.
 std::string_view take_field(std::string_view& line) {
   const auto comma = line.find(',');
-  const auto field = trimmed_field(line.substr(0, comma));
+  const auto field = trimmed(line.substr(0, comma));
   line = comma == std::string_view::npos ? std::string_view{} : line.substr(comma + 1);
   return field;
 }
@@ -54,7 +48,7 @@ struct Csv {
     std::string_view rest = text;
     for (const std::string_view wanted : kHeader) {
       if (take_field(rest) != wanted) {
-        refuse(fmt::format("header \"{:.60}\"; needed: time_s,x_m,y_m,z_m", trimmed_field(text)));
+        refuse(fmt::format("header \"{:.60}\"; needed: time_s,x_m,y_m,z_m", trimmed(text)));
       }
     }
   }
@@ -210,7 +204,7 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
     ++csv.line;
     if (csv.line == 1) {
       csv.check_header(line);
-    } else if (!trimmed_field(line).empty()) {
+    } else if (!trimmed(line).empty()) {
       csv.add_row(line, path);
     }
   }
