@@ -1,23 +1,16 @@
 #include "app/device/device_book.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <sstream>
-#include <thread>
 
 #include "app/base/user_dirs.h"
-#include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
+#include "devices/files/file_update.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -230,32 +223,6 @@ DeviceNotes notes_in(const toml::table& devices, const std::string& id, const fs
   return read_notes({*node.as_table(), file.string(), entry_path(id)});
 }
 
-// Whoever reads, changes and writes the book has it alone meanwhile: a lock on a file beside it,
-// since the book is another file each time it is written. Errors: FileError.
-class BookLock {
- public:
-  explicit BookLock(const fs::path& book) {
-    const std::string path = book.string() + ".lock";
-    file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (file_ < 0) throw FileError(fmt::format("{}: {}", path, std::strerror(errno)));
-    constexpr int kTries = 200;
-    constexpr std::chrono::milliseconds kPause{10};
-    for (int i = 0; flock(file_, LOCK_EX | LOCK_NB) != 0; ++i) {
-      if (i == kTries) {
-        close(file_);
-        throw FileError(book.string() + ": another program has been writing it for 2 s");
-      }
-      std::this_thread::sleep_for(kPause);
-    }
-  }
-  ~BookLock() { close(file_); }
-  BookLock(const BookLock&) = delete;
-  BookLock& operator=(const BookLock&) = delete;
-
- private:
-  int file_ = -1;
-};
-
 }  // namespace
 
 bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
@@ -308,10 +275,8 @@ DeviceBook load_device_book(const fs::path& file) {
 
 std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
                              const fs::path& file) {
-  try {
-    fs::create_directories(file.parent_path());
-    const BookLock alone(file);
-    toml::table table = parse_book(file);
+  const auto changed_book = [&](const std::string& text) {
+    toml::table table = parse_toml(text, file.string());
     if (now.in_use != before.in_use) table.insert_or_assign("in_use", now.in_use);
     devices_in(table, file);
     toml::table& devices = *table.insert("device", toml::table{}).first->second.as_table();
@@ -330,9 +295,13 @@ std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
       notes_in(devices, id, file);  // nothing is written over that cannot be understood
       merge(old, changed, *devices.get_as<toml::table>(id));
     }
-    std::ostringstream text;
-    text << table << '\n';
-    return try_write_atomically(file, text.str());
+    std::ostringstream written;
+    written << table << '\n';
+    return written.str();
+  };
+  try {
+    update_file_under_lock(file, changed_book);
+    return {};
   } catch (const std::exception& error) {
     return fmt::format("not saved: {}", error.what());
   }

@@ -99,6 +99,7 @@ Finding room() {
 DoctorFindings look_at_files() {
   return {
       assets(),
+      program("limpid-session", "recordings and tables of sweeps are not read"),
       program("limpid-model", "models other than glTF are not read"),
       program("limpid-video", "no videos"),
       tool("gnuplot", "experiments and sweeps draw no figures", "gnuplot-nox"),

@@ -6,22 +6,17 @@
 
 #include "app/sweep/blocks.h"
 #include "devices/files/file_error.h"
-#include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session_program.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
-using hdf5::Quiet;
-
 bool says_it_is(const fs::path& path) {
-  const Quiet quiet;
-  const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  // Recordings may be large, and are told from tables without looking through all of them.
-  if (!file || H5Lexists(file.get(), "measure", H5P_DEFAULT) <= 0) return false;
   try {
-    hdf5::check_before_opening(path);
-    return hdf5::read_text(file.get(), "format", path) == kSweepFormat;
+    const wire::Table table = read_table(path);
+    const auto format = table.texts.find("format");
+    return format != table.texts.end() && format->second == kSweepFormat;
   } catch (const FileError&) {
     return false;
   }
@@ -29,8 +24,8 @@ bool says_it_is(const fs::path& path) {
 
 class TableFile {
  public:
-  explicit TableFile(const fs::path& path) : path_(path), file_(opened(path)), claims_(path) {
-    const std::string format = text("format");
+  explicit TableFile(const fs::path& path) : path_(path), table_(read_table(path)) {
+    const std::string format = text_if_any("format");
     if (format != kSweepFormat) {
       throw FileError(fmt::format("{}: format \"{:.40}\"; needed: \"{}\"", path_.string(), format,
                                   kSweepFormat));
@@ -42,51 +37,37 @@ class TableFile {
     }
   }
 
-  std::string text(const char* name) const { return hdf5::read_text(file_.get(), name, path_); }
   // Empty where it says nothing.
-  std::string text_if_any(const char* name) const {
-    return H5Aexists(file_.get(), name) > 0 ? text(name) : "";
+  std::string text_if_any(const std::string& name) const {
+    const auto found = table_.texts.find(name);
+    return found == table_.texts.end() ? "" : found->second;
   }
-
-  template <class Value>
-  std::vector<Value> column(const std::string& name, hid_t type, std::uint64_t rows) {
-    if (!hdf5::has(file_.get(), name, path_)) {
+  std::uint64_t count(const std::string& name) const {
+    const auto found = table_.counts.find(name);
+    if (found != table_.counts.end()) return found->second;
+    throw FileError(
+        fmt::format("{}: attribute {}: missing; needed: a whole number", path_.string(), name));
+  }
+  const std::vector<double>& column(const std::string& name, std::uint64_t rows) const {
+    const auto found = table_.columns.find(name);
+    if (found == table_.columns.end()) {
       throw FileError(fmt::format("{}: damaged: {}: missing", path_.string(), name));
     }
-    const hdf5::Dataset dataset = hdf5::open_dataset(file_.get(), name, path_);
-    const hdf5::Dataspace space(H5Dget_space(dataset.get()));
-    const auto found = H5Sget_simple_extent_npoints(space.get());
-    if (found != static_cast<hssize_t>(rows)) {
+    if (found->second.size() != rows) {
       throw FileError(fmt::format("{}: damaged: {}: {} values; needed: {}, as it says",
-                                  path_.string(), name, found, rows));
+                                  path_.string(), name, found->second.size(), rows));
     }
-    claims_.stored(dataset);
-    claims_.take(rows, sizeof(Value), name);
-    std::vector<Value> values(rows);
-    const bool read =
-        H5Dread(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
-    hdf5::check(read, path_, ("damaged: " + name).c_str());
-    return values;
+    return found->second;
   }
 
-  std::uint64_t count(const char* name) const { return hdf5::read_count(file_.get(), name, path_); }
   [[noreturn]] void refuse_rows(std::uint64_t found, std::uint64_t needed) const {
     throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has",
                                 path_.string(), found, needed));
   }
 
  private:
-  static hdf5::File opened(const fs::path& path) {
-    try {
-      return hdf5::open_to_read(path);
-    } catch (const FileError& error) {
-      throw FileError(fmt::format("{} (damaged, or no table of a sweep)", error.what()));
-    }
-  }
-
   const fs::path& path_;
-  hdf5::File file_;
-  hdf5::Claims claims_;
+  wire::Table table_;
 };
 
 // With what its runs need, or why that cannot be had.
@@ -116,19 +97,19 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
 }
 
 // Round by round, as it came about.
-void fill(TableFile& file, SweepTable& table) {
+void fill(const TableFile& file, SweepTable& table) {
   const std::uint64_t rows = file.count("points");
-  const auto done = file.column<std::uint8_t>("/done", H5T_NATIVE_UINT8, rows);
-  std::vector<std::vector<double>> columns;
+  const std::vector<double>& done = file.column("/done", rows);
+  std::vector<const std::vector<double>*> columns;
   for (const SweepColumn& c : table.columns) {
-    columns.push_back(file.column<double>("/measure/" + c.name, H5T_NATIVE_DOUBLE, rows));
+    columns.push_back(&file.column("/measure/" + c.name, rows));
   }
   std::uint64_t from = 0;
   do {
     for (std::uint64_t i = from; i < std::min(rows, table.points()); ++i) {
-      table.done[i] = done[i];
+      table.done[i] = done[i] != 0;
       for (std::size_t c = 0; c < columns.size(); ++c) {
-        table.values[i * columns.size() + c] = columns[c][i];
+        table.values[i * columns.size() + c] = (*columns[c])[i];
       }
     }
     from = table.points();
@@ -160,8 +141,7 @@ std::optional<fs::path> sweep_table_at(const fs::path& path) {
 }
 
 std::shared_ptr<const OpenedSweep> open_table(const fs::path& path, const OpenedSweep* before) {
-  const Quiet quiet;
-  TableFile file(path);
+  const TableFile file(path);
   std::string why_no_run;
   std::shared_ptr<const SweepPlan> plan;
   if (before != nullptr && before->plan->text == file.text_if_any("plan") &&

@@ -105,7 +105,6 @@ bool contains(std::span<const unsigned char> text, std::string_view word) {
   return std::search(text.begin(), text.end(), word.begin(), word.end()) != text.end();
 }
 
-// What is in an array of that name; an empty one where there is none.
 // Whether anything lies in the buffer: views that are compressed name another one for that.
 bool is_used(json& gltf, std::size_t buffer) {
   const auto names = [&](const json& object) {

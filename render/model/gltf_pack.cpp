@@ -14,7 +14,6 @@ namespace {
 using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
-// The list of that name; an empty one if there is none.
 bool lies_outside(const json& object) {
   const auto uri = object.is_object() ? object.find("uri") : object.end();
   return object.is_object() && uri != object.end() && uri->is_string() &&

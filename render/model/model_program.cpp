@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -16,9 +15,9 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/process/child.h"
+#include "core/process/descriptor.h"
 #include "render/model/companions.h"
-
-extern char** environ;
 
 namespace limpid {
 namespace {
@@ -26,31 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
+constexpr const char* kProgram = "limpid-model";
 constexpr int kLines = 3;  // the descriptor on which the program says how it goes on
 constexpr std::chrono::milliseconds kBetweenLooks{50};
 constexpr unsigned kPatience = 60;  // [s], and what it takes at a twentieth of a processor
-
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int operator*() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-
- private:
-  int number_;
-};
-
-// Beside this program.
-fs::path program() {
-  std::error_code none;
-  return fs::read_symlink("/proc/self/exe", none).replace_filename("limpid-model");
-}
 
 void write_all(int file, std::span<const unsigned char> bytes, const std::string& name) {
   while (!bytes.empty()) {
@@ -74,45 +52,6 @@ Bytes read_all(int file, const std::string& name) {
   }
   return bytes;
 }
-
-// The program at work; it ends at the latest with this.
-class Child {
- public:
-  Child(std::array<const char*, 5> words, int in, int out, int lines) {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    // A copy first: descriptor 3 may be one of the others here.
-    const Descriptor kept(::fcntl(lines, F_DUPFD_CLOEXEC, 10));
-    posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, *kept, kLines);
-    posix_spawn_file_actions_addclosefrom_np(&actions, kLines + 1);
-    if (*kept < 0 || ::posix_spawn(&id_, words[0], &actions, nullptr,
-                                   const_cast<char**>(words.data()), environ) != 0)
-      id_ = -1;
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  ~Child() {
-    if (id_ < 0) return;
-    ::kill(id_, SIGKILL);
-    wait();
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  bool started() const { return id_ > 0; }
-  // 0: all is well.
-  int wait() {
-    int status = 0;
-    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
-    }
-    id_ = -1;
-    return status;
-  }
-
- private:
-  pid_t id_ = -1;
-};
 
 // What becomes of a model.
 struct Following {
@@ -177,8 +116,11 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::st
   Descriptor other_end(ends[1]);
   write_all(*in, bytes, name);
   const bool alone = kind == "stl" || kind == "ply";  // refers to no other file
-  const std::string at = program().string(), place = alone ? "" : folder.string();
-  Child child({at.c_str(), kind.c_str(), place.c_str(), "3", nullptr}, *in, *out, *other_end);
+  const std::string at = beside_this_program(kProgram).string();
+  const std::string place = alone ? "" : folder.string();
+  const std::array given{Given{*in, STDIN_FILENO}, Given{*out, STDOUT_FILENO},
+                         Given{*other_end, kLines}};
+  Child child({at, kind, place, std::to_string(kLines)}, given);
   if (!child.started())
     refuse(name, "cannot be read: the program " + at + ", which reads it, cannot be started");
   other_end.close();
@@ -193,16 +135,8 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::st
 }
 
 std::string why_ended(int status, const ReaderLimits& limits) {
-  if (WIFSIGNALED(status)) {
-    const int signal = WTERMSIG(status);
-    if (signal == SIGXCPU) return too_long(limits);
-    const char* const name = ::sigabbrev_np(signal);
-    return "is damaged: the program that reads it crashed (SIG" +
-           std::string(name != nullptr ? name : std::to_string(signal)) + ")";
-  }
-  if (status == 0) return {};
-  return "cannot be read: the program limpid-model ended with status " +
-         std::to_string(WEXITSTATUS(status));
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return too_long(limits);
+  return why_failed(status, kProgram);
 }
 
 }  // namespace limpid

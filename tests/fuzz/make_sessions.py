@@ -1,12 +1,15 @@
 #!/usr/bin/python3
-"""Makes the sessions that session_fuzz starts from: tests/fuzz/corpus/session.
+"""Makes what session_fuzz starts from, tests/fuzz/corpus/session: limpid-session's answers.
 
-They are as small as they can be. Those of HDF5's first edition have no checksums in their
-bookkeeping, so that a changed byte gets as far as the reader. The first byte of an input is not of
-the file: an odd one makes it the leftover of a recording.
+    tests/fuzz/make_sessions.py PATH_OF_LIMPID_SESSION
+
+They are as small as they can be, and to be made again when a row gets another number. The first
+byte of an input is not of the answer: an odd one asks for a table.
 """
 
 import pathlib
+import subprocess
+import sys
 import tempfile
 
 import h5py
@@ -31,54 +34,62 @@ SINGLE = [
     "coupling/eta", "coupling/alpha", "energy/controller_total", "energy/controller_commanded",
     "energy/port", "energy/proxy_kinetic", "timing/wake_latency", "timing/compute"]
 BYTES = ["device/force_wanted", "device/force_state", "coupling/kind"]
-PACKED = ["time", "hand/target", "coupling/kind"]
 ROWS = 2
 
 
-def run(group, how):
-    def put(path, data):
-        group.create_dataset(path, data=data, **(how if path in PACKED else {}))
-
-    put("time", np.arange(ROWS) * 1e-3)
-    put("hand/target", np.zeros((ROWS, 3)))
+def run(group):
+    group["time"] = np.arange(ROWS) * 1e-3
+    group["hand/target"] = np.zeros((ROWS, 3))
     for path in OF_JOINTS:
-        put(path, np.zeros((ROWS, 1)))
+        group[path] = np.zeros((ROWS, 1))
     for path in SINGLE:
-        put(path, np.zeros(ROWS))
+        group[path] = np.zeros(ROWS)
     for path in BYTES:
-        put(path, np.zeros(ROWS, np.uint8))
-    put("events/row", np.array([1], np.uint64))
-    put("events/setting", np.array([b"coupling.eta = 0.5"], "S120"))
+        group[path] = np.zeros(ROWS, np.uint8)
+    group["events/row"] = np.array([1], np.uint64)
+    group["events/setting"] = np.array([b"coupling.eta = 0.5"], "S120")
 
 
-def session(libver, how, extras):
+def session(file, twin):
+    for name, value in {
+            "format": "limpid-session", "version": np.int64(1), "tick": 1e-3,
+            "dof": np.int64(1), "seed": np.uint64(1), "created": "", "app_version": "",
+            "source": "", "config": "coupling.eta = 0.6\n", "device_urdf": ARM,
+            "scene": SCENE}.items():
+        file.attrs[name] = value
+    run(file)
+    if twin:
+        file.create_dataset("models/0", data=np.frombuffer(b"glTF", np.uint8))
+        file["models/0"].attrs["name"] = "a.glb"
+        group = file.create_group("twin")
+        group.attrs["config"] = "coupling.kind = \"standard\"\n"
+        run(group)
+
+
+def table(file):
+    file.attrs["format"] = "limpid-sweep"
+    file.attrs["points"] = np.uint64(ROWS)
+    file["done"] = np.ones(ROWS, np.uint8)
+    file["measure/energy"] = np.zeros(ROWS)
+
+
+def answer(what, fill):
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "a.h5"
-        with h5py.File(path, "w", libver=libver) as file:
-            for name, value in {
-                    "format": "limpid-session", "version": np.int64(1), "tick": 1e-3,
-                    "dof": np.int64(1), "seed": np.uint64(1), "created": "", "app_version": "",
-                    "source": "", "config": "coupling.eta = 0.6\n", "device_urdf": ARM,
-                    "scene": SCENE}.items():
-                file.attrs[name] = value
-            run(file, how)
-            if extras:
-                file.create_dataset("models/0", data=np.frombuffer(b"glTF", np.uint8))
-                file["models/0"].attrs["name"] = "a.glb"
-                twin = file.create_group("twin")
-                twin.attrs["config"] = "coupling.kind = \"standard\"\n"
-                run(twin, how)
-        return path.read_bytes()
+        with h5py.File(path, "w") as file:
+            fill(file)
+        return subprocess.run([sys.argv[1], what, path], check=True, capture_output=True).stdout
 
 
 def main():
     folder = pathlib.Path(__file__).parent / "corpus/session"
     folder.mkdir(exist_ok=True)
-    packed = {"chunks": True, "compression": "gzip", "shuffle": True, "fletcher32": True}
-    (folder / "plain").write_bytes(b"\0" + session("earliest", {}, False))
-    (folder / "leftover").write_bytes(b"\1" + session("earliest", {}, False))
-    (folder / "packed").write_bytes(b"\0" + session("earliest", packed, False))
-    (folder / "twin").write_bytes(b"\0" + session("latest", {}, True))
+    plain = answer("session", lambda file: session(file, False))
+    (folder / "plain").write_bytes(b"\0" + plain)
+    (folder / "cut").write_bytes(b"\0" + plain[:len(plain) // 2])
+    (folder / "twin").write_bytes(b"\0" + answer("session", lambda file: session(file, True)))
+    (folder / "refused").write_bytes(b"\0" + answer("session", table))
+    (folder / "table").write_bytes(b"\1" + answer("table", table))
 
 
 main()

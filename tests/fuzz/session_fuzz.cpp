@@ -1,22 +1,20 @@
-// Any bytes at all as a session file: rows that hold together and texts that are read as they are
-// in a replay, or one line for people. The first byte says whether it is the leftover of a
-// recording.
+// Any bytes at all as what limpid-session answers, if a file took it over: rows that hold together
+// and texts that are read as they are in a replay, or one line for people. The first byte says
+// whether a session was asked for or a table.
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
 #include "devices/files/file_error.h"
 #include "devices/files/hand/hand_file.h"
 #include "devices/files/scene/scene_file.h"
-#include "devices/files/session/session.h"
-#include "devices/files/session/session_story.h"
+#include "devices/files/session/session_reader.h"
+#include "devices/files/session/session_wire.h"
 
 namespace {
-
-namespace fs = std::filesystem;
 
 void demand(bool holds) {
   if (!holds) std::abort();
@@ -29,6 +27,7 @@ void attempt(Work work) {
     work();
   } catch (const limpid::FileError& error) {
     demand(std::string(error.what()).find('\n') == std::string::npos);
+  } catch (const limpid::wire::Broken&) {
   }
 }
 
@@ -36,6 +35,7 @@ void check(const limpid::Session& session) {
   demand(session.rows.size() == session.size() * static_cast<std::size_t>(session.layout.stride()));
   for (const limpid::SettingChange& change : session.changes) demand(change.row <= session.size());
   if (session.twin) demand(session.twin->size() == session.size());
+  limpid::check_rows(session, "fuzz.h5");
 }
 
 void read_texts(const limpid::Session& session) {
@@ -45,25 +45,29 @@ void read_texts(const limpid::Session& session) {
   limpid::parse_scene(session.info.scene, "fuzz.h5", "", arm, session.info.models);
 }
 
-// In memory, under a name of this process' own.
-fs::path file_of(const char* suffix) {
-  return fs::path("/dev/shm") / ("session_fuzz-" + std::to_string(getpid()) + suffix);
+void take_in(limpid::wire::Reader from) {
+  if (from.number<limpid::wire::Answer>() != limpid::wire::Answer::contents) {
+    throw limpid::FileError(from.text());
+  }
+  const limpid::Session session = limpid::wire::take_session(from);
+  check(session);
+  attempt([&] { limpid::hand_of(session, "fuzz.h5"); });
+  read_texts(session);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-  if (size == 0) return 0;
-  const fs::path file = file_of(data[0] % 2 ? ".h5.part" : ".h5");
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
-  attempt([&] {
-    const limpid::Session session = limpid::read_session(file);
-    check(session);
-    attempt([&] { limpid::attached_story(file); });
-    attempt([&] { limpid::hand_of(session, "fuzz.h5"); });
-    read_texts(session);
-  });
-  fs::remove(file);
+  constexpr std::uint64_t kMost = 1 << 24;
+  static const int file = memfd_create("answer", 0);
+  if (size == 0 || file < 0) return 0;
+  if (ftruncate(file, 0) != 0 || pwrite(file, data + 1, size - 1, 0) < 0) return 0;
+  lseek(file, 0, SEEK_SET);
+  limpid::wire::Reader from(file, kMost);
+  if (data[0] % 2) {
+    attempt([&] { limpid::wire::take_table(from); });
+  } else {
+    attempt([&] { take_in(from); });
+  }
   return 0;
 }

@@ -55,12 +55,6 @@ void apply_table(Parameters& p, const toml::table& table, const std::string& pre
   }
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 // `text` as a TOML value, or itself if it is none.
 ParameterValue parse_value(const std::string& text) {
   try {

@@ -20,12 +20,6 @@ constexpr double kFarthest = 10;                           // [m]
 constexpr double kLongestTime = 1e6;                       // [s]
 constexpr std::array<std::string_view, 4> kHeader{"time_s", "x_m", "y_m", "z_m"};
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 // Cuts the first field off `line`.
 std::string_view take_field(std::string_view& line) {
   const auto comma = line.find(',');

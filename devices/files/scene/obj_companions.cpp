@@ -14,13 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kBlanks = " \t\r";
 constexpr std::size_t kMostCompanions = 1000;
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
 
 // What a line says that begins with one of the words that name files; empty: nothing.
 std::string_view named_in(std::string_view line, bool materials) {

@@ -1,4 +1,6 @@
 // Reads session files, trusting nothing in them.
+#include "devices/files/session/session_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -193,25 +195,6 @@ void read_rows(hid_t root, Session& session, const fs::path& file, hdf5::Claims&
   session.rows.resize(whole * stride);
 }
 
-void check_rows(const Session& session, const fs::path& file) {
-  double before = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const double time = session.at(k, Column::time)[0];
-    const double kind = session.at(k, Column::kind)[0];
-    const double wanted = session.at(k, Column::force_wanted)[0];
-    if (!std::isfinite(time) || time <= before) {
-      refuse(file, fmt::format("/time: row {}: {}; needed: finite and increasing", k, time));
-    }
-    const auto at_most = [&](double value, double most, const char* path) {
-      if (value <= most) return;
-      refuse(file, fmt::format("{}: row {}: {}; allowed: 0 to {}", path, k, value, most));
-    };
-    at_most(kind, kLaws - 1, "/coupling/kind");
-    at_most(wanted, 1, "/device/force_wanted");
-    before = time;
-  }
-}
-
 Source open_rounding(hid_t group, hsize_t width, const fs::path& file) {
   Source source = open_source(group, kRoundingPath, width, file);
   const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
@@ -310,7 +293,26 @@ void read_twin(hid_t group, Session& session, const fs::path& file, hdf5::Claims
 
 }  // namespace
 
-Session read_session(const fs::path& file) {
+void check_rows(const Session& session, const fs::path& file) {
+  double before = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const double time = session.at(k, Column::time)[0];
+    const double kind = session.at(k, Column::kind)[0];
+    const double wanted = session.at(k, Column::force_wanted)[0];
+    if (!std::isfinite(time) || time <= before) {
+      refuse(file, fmt::format("/time: row {}: {}; needed: finite and increasing", k, time));
+    }
+    const auto at_most = [&](double value, double most, const char* path) {
+      if (value >= 0 && value <= most) return;
+      refuse(file, fmt::format("{}: row {}: {}; allowed: 0 to {}", path, k, value, most));
+    };
+    at_most(kind, kLaws - 1, "/coupling/kind");
+    at_most(wanted, 1, "/device/force_wanted");
+    before = time;
+  }
+}
+
+Session read_session_here(const fs::path& file) {
   const hdf5::Quiet quiet;
   const hdf5::File opened = open(file);
   Session session;

@@ -5,6 +5,7 @@
 #include "devices/files/file_error.h"
 #include "devices/files/place.h"
 #include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session_reader.h"
 
 namespace limpid {
 
@@ -49,7 +50,7 @@ void attach_story(const fs::path& session, const std::string& story) {
   }
 }
 
-std::string attached_story(const std::filesystem::path& session) {
+std::string attached_story_here(const fs::path& session) {
   const hdf5::Quiet quiet;
   hdf5::check_regular_file(session);
   const hdf5::File file(H5Fopen(session.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));

@@ -1,5 +1,6 @@
 #include "render/model/assimp/assimp_model.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -34,7 +35,9 @@ class Progress : public Assimp::ProgressHandler {
 void keep_importer(Assimp::Importer& importer, const std::string& kind) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* const each = importer.GetImporter(i);
-    if (importer.GetImporter(("." + kind).c_str()) != each) importer.UnregisterLoader(each);
+    if (importer.GetImporter(("." + kind).c_str()) == each) continue;
+    importer.UnregisterLoader(each);
+    delete each;  // whose it is now
   }
 }
 

@@ -19,12 +19,12 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/process/sandbox.h"
 #include "render/model/assimp/assimp_guard.h"
 #include "render/model/assimp/assimp_model.h"
 #include "render/model/assimp/glb_writer.h"
 #include "render/model/assimp/readable.h"
 #include "render/model/reader_limits.h"
-#include "render/model/sandbox.h"
 
 namespace {
 

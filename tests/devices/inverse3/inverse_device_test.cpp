@@ -173,6 +173,7 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   for (int i = 0; i < 20 && !stopped; ++i) {
     service.tell("answer");
     EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return rig.force().gain() == 1; }));
+    service.wait_for(pushes);
     service.tell("repeat");
     stopped = run(ForceWish::as_it_is, tripped, 3s);
   }

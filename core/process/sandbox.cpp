@@ -1,6 +1,6 @@
 // Landlock: man landlock(7). The filter of system calls: man seccomp(2), bpf's classic
 // instructions.
-#include "render/model/sandbox.h"
+#include "core/process/sandbox.h"
 
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kFirstToClose = 4;  // the model, its glTF, stderr and the lines stay
+constexpr int kFirstToClose = 4;  // what comes in, what goes out, stderr and one more stay
 
 [[noreturn]] void refuse() {
   throw std::runtime_error("cannot be read: the kernel refuses the reader's sandbox");
 }
 
 // Without effect where the kernel has no Landlock: the filter still lets nothing be written.
-void restrict_files(const fs::path& folder) {
+void restrict_files(const fs::path& place) {
   const long version =
       ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return;
@@ -39,13 +39,15 @@ void restrict_files(const fs::path& folder) {
   if (version >= 2) rules.handled_access_fs |= LANDLOCK_ACCESS_FS_REFER;
   const int set = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0));
   if (set < 0) refuse();
-  if (const int place = folder.empty() ? -1 : ::open(folder.c_str(), O_PATH | O_CLOEXEC);
-      place >= 0) {
+  if (const int opened = place.empty() ? -1 : ::open(place.c_str(), O_PATH | O_CLOEXEC);
+      opened >= 0) {
+    std::error_code none;
     landlock_path_beneath_attr rule{};
-    rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
-    rule.parent_fd = place;
+    rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
+    if (fs::is_directory(place, none)) rule.allowed_access |= LANDLOCK_ACCESS_FS_READ_DIR;
+    rule.parent_fd = opened;
     ::syscall(SYS_landlock_add_rule, set, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
-    ::close(place);
+    ::close(opened);
   }
   const bool done = ::syscall(SYS_landlock_restrict_self, set, 0) == 0;
   ::close(set);
@@ -94,6 +96,9 @@ constexpr int kAllowed[] = {
     SYS_gettimeofday,
     SYS_restart_syscall,
     SYS_sched_yield,
+    SYS_clock_nanosleep,
+    SYS_flock,
+    SYS_sysinfo,
 #ifdef __x86_64__
     SYS_stat,
     SYS_lstat,
@@ -175,10 +180,10 @@ void restrict_calls() {}
 
 }  // namespace
 
-void enter_sandbox(const fs::path& folder) {
-  if (::close_range(kFirstToClose, ~0u, 0) != 0) refuse();
+void enter_sandbox(const fs::path& place) {
+  ::closefrom(kFirstToClose);
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) refuse();
-  restrict_files(folder);
+  restrict_files(place);
   restrict_calls();
 }
 

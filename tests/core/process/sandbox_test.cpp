@@ -1,6 +1,6 @@
-// What the program that reads models of strangers can do, once it has shut itself in: each attempt
+// What a program that reads files of strangers can do, once it has shut itself in: each attempt
 // in a process of its own, which leaves with what it was told.
-#include "render/model/sandbox.h"
+#include "core/process/sandbox.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -71,6 +71,16 @@ TEST_F(Sandbox, ReadsWhatLiesInTheFolder) {
               return std::filesystem::canonical(dir_ / "own/../own/a.mtl").empty() ? -1 : 0;
             }),
             kDone);
+}
+
+TEST_F(Sandbox, OfASingleFileReadsThatOneOnly) {
+  const auto own = dir_ / "own/a.mtl", key = dir_ / "key", folder = dir_ / "own";
+  EXPECT_EQ(leaves_with([&] { return open(own.c_str(), O_RDONLY); }, own), kDone);
+  if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 1) {
+    GTEST_SKIP() << "this kernel has no Landlock";
+  }
+  EXPECT_EQ(leaves_with([&] { return open(key.c_str(), O_RDONLY); }, own), EACCES);
+  EXPECT_EQ(leaves_with([&] { return open(folder.c_str(), O_RDONLY | O_DIRECTORY); }, own), EACCES);
 }
 
 TEST_F(Sandbox, ReadsNothingElseWhereTheKernelHasLandlock) {

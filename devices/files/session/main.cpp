@@ -1,0 +1,70 @@
+// limpid-session: reads an HDF5 file of anybody and says what is in it. What a broken or hostile
+// file does to HDF5's library ends this program, not the one at a device.
+//
+//   limpid-session session|story|table FILE >answer
+//
+// FILE is all that is within its reach (see sandbox.h); session_wire.h has the answer.
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <string_view>
+
+#include "core/process/sandbox.h"
+#include "devices/files/session/session_reader.h"
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;  // which takes system calls of its own
+#else
+constexpr bool kSanitized = false;
+#endif
+
+// Some broken files are read for ever. A mebibyte that is packed as well as can be takes 10 s.
+void limit_self(const char* file) {
+  struct stat about {};
+  const rlim_t mebibytes = stat(file, &about) == 0 ? static_cast<rlim_t>(about.st_size >> 20) : 0;
+  const rlimit none{0, 0}, seconds{60 + 10 * mebibytes, 60 + 10 * mebibytes};
+  setrlimit(RLIMIT_CORE, &none);
+  setrlimit(RLIMIT_CPU, &seconds);
+}
+
+void answer(std::string_view what, const char* file, limpid::wire::Writer& to) {
+  using limpid::wire::Answer;
+  if (what == "session") {
+    const limpid::Session session = limpid::read_session_here(file);
+    to.number(Answer::contents);
+    put_session(to, session);
+  } else if (what == "story") {
+    const std::string story = limpid::attached_story_here(file);
+    to.number(Answer::contents);
+    to.text(story);
+  } else {
+    const limpid::wire::Table table = limpid::read_table_here(file);
+    to.number(Answer::contents);
+    put_table(to, table);
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 3) {
+    std::fputs("limpid-session belongs to limpid, which calls it.\n", stderr);
+    return 2;
+  }
+  limpid::wire::Writer to(STDOUT_FILENO);
+  try {
+    limit_self(words[2]);
+    if (!kSanitized) limpid::enter_sandbox(words[2]);
+    answer(words[1], words[2], to);
+    return 0;
+  } catch (const limpid::wire::Broken&) {
+    return 1;
+  } catch (const std::exception& e) {
+    to.number(limpid::wire::Answer::refusal);
+    to.text(e.what());
+    return 0;
+  }
+}

@@ -1,0 +1,20 @@
+// Reads HDF5 files in this process, as only limpid-session does: what a broken or hostile file does
+// to HDF5's library ends that program. The others have read_session(), attached_story() and
+// read_table(), which call it.
+#pragma once
+
+#include "devices/files/session/session.h"
+#include "devices/files/session/session_wire.h"
+
+namespace limpid {
+
+Session read_session_here(const std::filesystem::path& file);
+std::string attached_story_here(const std::filesystem::path& session);
+// All texts and whole numbers at the root, and the columns /done and /measure/... Errors: FileError
+// for files that have none.
+wire::Table read_table_here(const std::filesystem::path& file);
+
+// Times that do not increase, and laws that there are not. Errors: FileError.
+void check_rows(const Session& session, const std::filesystem::path& file);
+
+}  // namespace limpid
