@@ -30,18 +30,23 @@ class Ledger {
   void start(const Vec<N>& y) {
     E_ = H_ = 0;
     fresh_ = true;
-    dy_ = Vec<N>::Zero(y.size());
+    dy_ = dx_ = Vec<N>::Zero(y.size());
     contact_ = damping_ = 1;
     still_.fill(0);
-    y_ = y;
+    y_ = x_ = y;
   }
 
-  // The tick just ended: the reading y after it, the torque tau that acted, a safe lower bound b_lo
-  // of the device's damping. q: the encoders' step; a reading that does not change says nothing.
-  void add(const Vec<N>& y, const Vec<N>& tau, const Vec<N>& b_lo, double q, double T) {
+  // The tick just ended: the reading y after it, where the device is thought to be (x), the torque
+  // tau that acted, a safe lower bound b_lo of the device's damping. q: the encoders' step; a
+  // reading that does not change says nothing.
+  void add(const Vec<N>& y, const Vec<N>& x, const Vec<N>& tau, const Vec<N>& b_lo, double q,
+           double T) {
     dy_ = y - y_;
     y_ = y;
-    E_ -= tau.dot(dy_);
+    const Vec<N> now = y + (x - y).cwiseMin(q / 2).cwiseMax(-q / 2);
+    dx_ = now - x_;
+    x_ = now;
+    E_ -= tau.dot(dx_);
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       int& n = still_[static_cast<std::size_t>(i)];
       ++n;
@@ -74,7 +79,9 @@ class Ledger {
   double reserve() const { return H_; }        // [J]
   double contact() const { return contact_; }  // g_f: share of f2 that reaches the hand, 0 to 1
   double damping() const { return damping_; }  // g_b: share of the damping cancelled, 0 to 1
-  const Vec<N>& dy() const { return dy_; }     // [rad]
+  // How the device moved, along a path within the cells of the readings that does not jump as they
+  // do: a jump would be work that no torque has done [rad].
+  const Vec<N>& dx() const { return dx_; }
 
  private:
   static constexpr double kCap = 0.02;      // [J]
@@ -89,7 +96,7 @@ class Ledger {
   bool fresh_ = true;
   double E_ = 0, H_ = 0, contact_ = 1, damping_ = 1;
   std::array<int, kMaxDof> still_{};
-  Vec<N> y_, dy_;
+  Vec<N> y_, dy_, x_, dx_;
 };
 
 }  // namespace limpid

@@ -145,9 +145,9 @@ template <int N>
 void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                                    const Proxy<N>& proxy) {
   if (elapsed_ > 0) {
-    ledger_.add(y_, acted_, in.b_d_sure, in.encoder_step, elapsed_);
-    network_.advance(ledger_.dy(), elapsed_);
-    network_.lose(-cut_.dot(ledger_.dy()));
+    ledger_.add(y_, predictor_.x_now(), acted_, in.b_d_sure, in.encoder_step, elapsed_);
+    network_.advance(ledger_.dx(), elapsed_);
+    network_.lose(-cut_.dot(ledger_.dx()));
   }
   ledger_.settle(p.energy, held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
                                proxy.kinetic_energy() + proxy.contact_potential());

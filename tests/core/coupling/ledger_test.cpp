@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/random_arm.h"
@@ -36,7 +37,7 @@ TEST_P(LedgerOfJoints, IsWhatCameInAndWasDissipatedLessWhatIsStored) {
   EXPECT_DOUBLE_EQ(ledger_.reserve(), wanted);  // whatever is stored at first is nobody's debt
   for (int k = 0; k < 200; ++k) {
     const Any next = y_ + random_.vector(n(), 1e-3), tau = random_.vector(n(), 0.1);
-    ledger_.add(next, tau, b_lo_, 0, T);
+    ledger_.add(next, y_, tau, b_lo_, 0, T);
     for (int i = 0; i < n(); ++i) {
       const double dy = next[i] - y_[i];
       wanted += -tau[i] * dy + b_lo_[i] * dy * dy / T;
@@ -55,10 +56,10 @@ TEST_P(LedgerOfJoints, KeepsNoMoreThanItsCapAndSpendsFromThere) {
   ledger_.settle(0.005, 0);
   const Any tau = Any::Constant(n(), -1 / static_cast<double>(n()));
   const Any none = Any::Zero(n());
-  ledger_.add(y_ + Any::Constant(n(), 1), tau, none, 0, T);  // 1 J comes in
+  ledger_.add(y_ + Any::Constant(n(), 1), y_, tau, none, 0, T);  // 1 J comes in
   ledger_.settle(0.005, 0);
   EXPECT_NEAR(ledger_.reserve(), kCap, 1e-16);
-  ledger_.add(y_ + Any::Constant(n(), 1 - 0.005), tau, none, 0, T);  // 5 mJ go out
+  ledger_.add(y_ + Any::Constant(n(), 1 - 0.005), y_, tau, none, 0, T);  // 5 mJ go out
   ledger_.settle(0.005, 0);
   EXPECT_NEAR(ledger_.reserve(), kCap - 0.005, 1e-15);
   ledger_.settle(0.005, 0.001);
@@ -85,7 +86,7 @@ TEST_P(LedgerOfJoints, OfAnEncoderCountsAStepOverAllTheTicksThatItTook) {
       wanted += b_lo_[i] * (dy / (ticks * T)) * (dy / (ticks * T)) * (ticks * T);
       ticks = 0;
     }
-    ledger_.add(next, tau, b_lo_, q, T);
+    ledger_.add(next, next, tau, b_lo_, q, T);
     y_ = next;
     ledger_.settle(0, 0);
     ASSERT_NEAR(ledger_.reserve(), wanted, 1e-12 * kCap);
@@ -94,11 +95,33 @@ TEST_P(LedgerOfJoints, OfAnEncoderCountsAStepOverAllTheTicksThatItTook) {
   EXPECT_GT(wanted, 0);
 }
 
+TEST_P(LedgerOfJoints, CountsTheWorkAlongAPathWithinTheCellsOfTheReadings) {
+  constexpr double q = 1e-3;
+  const Any none = Any::Zero(n());
+  ledger_.settle(0, 0);
+  double wanted = 0;
+  Any before = y_;
+  for (int k = 0; k < 300; ++k) {
+    const Any next = y_ + q * random_.vector(n(), 3).array().round().matrix();
+    const Any x = next + random_.vector(n(), 2 * q), tau = random_.vector(n(), 0.1);
+    Any path = x;
+    for (int i = 0; i < n(); ++i) path[i] = std::clamp(x[i], next[i] - q / 2, next[i] + q / 2);
+    ledger_.add(next, x, tau, none, q, T);
+    ASSERT_LE((ledger_.dx() - (path - before)).cwiseAbs().maxCoeff(), 1e-15);
+    wanted -= tau.dot(path - before);
+    ledger_.settle(0, 0);
+    wanted = std::min(wanted, kCap);
+    ASSERT_NEAR(ledger_.reserve(), wanted, 1e-14);
+    y_ = next;
+    before = path;
+  }
+}
+
 TEST_P(LedgerOfJoints, CutsTheContactForceAtOnceAndGivesItBackIn50Milliseconds) {
   ledger_.settle(0.005, 0);
   const Any f2 = random_.vector(n(), 1), slip = random_.vector(n(), 1e-3);
   const Any next = y_ + random_.vector(n(), 1e-3);
-  ledger_.add(next, Any::Zero(n()), Any::Zero(n()), 0, T);
+  ledger_.add(next, y_, Any::Zero(n()), Any::Zero(n()), 0, T);
   const double dy = (next - y_).norm();
   const double leak = f2.norm() * (2 * slip.norm() + T * (0.1 * dy / T + 0.5));
   ledger_.settle(0, 0.005 - 0.3 * leak);
@@ -138,7 +161,7 @@ TEST_P(LedgerOfJoints, CutsTheDampingBelowFourMillijoulesAndGivesItBackIn200) {
 
 TEST_P(LedgerOfJoints, StartsAnew) {
   ledger_.settle(0.005, 0.001);
-  ledger_.add(y_ + Any::Constant(n(), 0.5), Any::Constant(n(), 1), Any::Zero(n()), 1e-3, T);
+  ledger_.add(y_ + Any::Constant(n(), 0.5), y_, Any::Constant(n(), 1), Any::Zero(n()), 1e-3, T);
   ledger_.settle(0.005, 0.3);
   ledger_.govern(Any::Constant(n(), 1), Any::Constant(n(), 1), T);
   EXPECT_LT(ledger_.reserve(), 0);
@@ -148,7 +171,7 @@ TEST_P(LedgerOfJoints, StartsAnew) {
   EXPECT_NEAR(ledger_.reserve(), 0.003, 1e-15);
   EXPECT_EQ(ledger_.contact(), 1);
   EXPECT_EQ(ledger_.damping(), 1);
-  EXPECT_EQ(ledger_.dy(), Any::Zero(n()));
+  EXPECT_EQ(ledger_.dx(), Any::Zero(n()));
 }
 
 }  // namespace

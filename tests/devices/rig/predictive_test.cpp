@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "tests/support/built_in.h"
@@ -262,6 +263,53 @@ TEST(PredictiveInertia, MayChangeAtAnyTimeInFreeMotion) {
     }
     EXPECT_LT(rows.at(rows.size() - 1, Column::energy_total), -1e-3);
     EXPECT_FALSE(rig.diverged());
+  }
+}
+
+// A hand that moves the base joint by a quarter of a millimetre at 3 Hz.
+struct Swung {
+  double inertia = 0;   // felt at that frequency [kg m^2]
+  double reserve = 1;   // least, once it swings evenly [J]
+  double governor = 1;  // least share of damping that may be cancelled [-]
+};
+
+Swung swung(double eta, double encoder_step) {
+  constexpr double kOmega = 2 * std::numbers::pi * 3;
+  constexpr std::size_t kTicks = 2000, kFirst = 2000;  // six periods
+  const ArmDescription arm = test::omni();
+  const auto hand = [](double t) { return Vec3(0.19, 0.25e-3 * std::sin(kOmega * t), 0.02); };
+  Parameters p = predictive(eta);
+  p.hand_stiffness = 1000;
+  p.hand_damping = 2;
+  p.encoder_step = encoder_step;
+  Rig rig(arm, Scene{});
+  rig.start(p, rest_at(arm, hand(0)));
+  Rows rows(rig.layout());
+  for (std::size_t k = 0; k < kFirst + kTicks; ++k) {
+    rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
+  }
+  Swung out;
+  std::complex<double> torque, velocity;
+  for (std::size_t k = kFirst; k < rows.size(); ++k) {
+    const std::complex<double> wave = std::polar(1.0, -kOmega * static_cast<double>(k) * p.tick);
+    torque += rows.vec(k, Column::hand_torque)[0] * wave;
+    velocity += rows.vec(k, Column::device_velocity)[0] * wave;
+    out.reserve = std::min(out.reserve, rows.at(k, Column::energy_ledger));
+    out.governor = std::min(out.governor, rows.at(k, Column::damping_governor));
+  }
+  out.inertia = (torque / velocity).imag() / kOmega;
+  return out;
+}
+
+// A reading's step is no energy: nothing that moved did that work.
+TEST(PredictiveInertia, IsFeltThroughAnEncoderAsWithoutOne) {
+  for (const double eta : {5.0, 3.0, 0.6}) {
+    const Swung exact = swung(eta, 0), read = swung(eta, 1e-4);
+    SCOPED_TRACE(eta);
+    EXPECT_GT(exact.inertia, 0);
+    EXPECT_NEAR(read.inertia / exact.inertia, 1, 0.08);
+    EXPECT_GT(read.reserve, 4.5e-3);
+    EXPECT_GT(read.governor, 0.99);
   }
 }
 

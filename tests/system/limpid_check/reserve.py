@@ -181,8 +181,12 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
     moved = np.diff(y, axis=0, prepend=y[:1])
     edge = 2 * np.pi * s.number("coupling.band")[:, 0]
     step = s.number("device.encoder_step")[:, 0]
+    cell = step[:, None] / 2
+    path = y + np.clip(p.x - y, -cell, cell)  # within the readings' cells, without their jumps
+    path[0] = y[0]
+    along = np.diff(path, axis=0, prepend=path[:1])
     held = _springs(s) + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
-    given = np.sum(s.law_torque[:-1] * moved[1:], axis=1)
+    given = np.sum(s.law_torque[:-1] * along[1:], axis=1)
     leak, cancelled = _leaks(s, p), _share_cancelled(s)
     pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
     touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed])
@@ -194,9 +198,9 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
     gf, gb, account = 1.0, 1.0, 0.0
     for k in range(rows):
         if k > 0:
-            network.advance(moved[k], edge[k])
+            network.advance(along[k], edge[k])
             if cut.clipped[k - 1]:
-                network.lose(-cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1]) @ moved[k])
+                network.lose(-cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1]) @ along[k])
             ticks = clock.changed(moved[k], step[k])
             account += np.sum(s.damping[k] * moved[k] ** 2 / ticks) / t - given[k - 1]
         network.turn(eta[k])
