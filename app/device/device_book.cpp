@@ -191,10 +191,10 @@ void merge(const toml::table& before, const toml::table& now, toml::table& into)
       merge(*old->as_table(), *node.as_table(), *there->as_table());
       continue;
     }
-    node.visit([&](const auto& value) {
+    node.visit([&, name = key.str()](const auto& value) {
       using Value = std::remove_cvref_t<decltype(value)>;
       const auto* same = old != nullptr ? old->as<Value>() : nullptr;
-      if (same == nullptr || !(*same == value)) into.insert_or_assign(key.str(), value);
+      if (same == nullptr || !(*same == value)) into.insert_or_assign(name, value);
     });
   }
 }

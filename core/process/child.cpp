@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,8 +12,6 @@
 #include <deque>
 
 #include "core/process/descriptor.h"
-
-extern char** environ;
 
 namespace limpid {
 
@@ -38,6 +37,7 @@ Child::Child(std::vector<std::string> words, std::span<const Given> given) {
   }
   posix_spawn_file_actions_addclosefrom_np(&actions, last + 1);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   if (!complete ||
