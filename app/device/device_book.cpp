@@ -132,6 +132,7 @@ DeviceNotes read_notes(const Entry& entry) {
   entry.take("effort", 0.01, 50, notes.pid.effort);
   if (const std::optional<Entry> limits = entry.below("limits")) {
     std::vector<std::string> keys;
+    keys.reserve(kSafetyLimitInfo.size());
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) keys.emplace_back(info.key);
     limits->no_slips(keys);
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) {

@@ -12,11 +12,16 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Empty where it says nothing.
+std::string text_in(const wire::Table& table, const std::string& name) {
+  const auto found = table.texts.find(name);
+  return found == table.texts.end() ? "" : found->second;
+}
+
 bool says_it_is(const fs::path& path) {
   try {
-    const wire::Table table = read_table(path);
-    const auto format = table.texts.find("format");
-    return format != table.texts.end() && format->second == kSweepFormat;
+    return text_in(read_table(path), "format") == kSweepFormat;
   } catch (const FileError&) {
     return false;
   }
@@ -37,11 +42,7 @@ class TableFile {
     }
   }
 
-  // Empty where it says nothing.
-  std::string text_if_any(const std::string& name) const {
-    const auto found = table_.texts.find(name);
-    return found == table_.texts.end() ? "" : found->second;
-  }
+  std::string text_if_any(const std::string& name) const { return text_in(table_, name); }
   std::uint64_t count(const std::string& name) const {
     const auto found = table_.counts.find(name);
     if (found != table_.counts.end()) return found->second;

@@ -17,8 +17,8 @@ struct OpenedSweep {
   std::vector<std::pair<double, double>> ranges;
 };
 
-// DIR/table.h5 of a folder that holds one, and a file that says that it is one; else nothing. Reads
-// no more than it must.
+// DIR/table.h5 of a folder that holds one, and a file that says that it is one; else nothing. Of
+// recordings, which may be large, it reads the beginning.
 std::optional<std::filesystem::path> sweep_table_at(const std::filesystem::path& path);
 
 // `before`: the same table as it was earlier, whose plan is then not read again. Errors: FileError

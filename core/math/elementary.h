@@ -1,4 +1,5 @@
-// Sine, cosine, exponential, logarithm and power, the same to the last bit on every x86-64 processor.
+// Sine, cosine, exponential, logarithm and power, the same to the last bit on every x86-64
+// processor.
 //
 // The mathematical library of a system chooses its code by the processor, and the last bit of what
 // it returns with it. A recording is to come again bit for bit on another machine; so whatever

@@ -48,9 +48,12 @@ Child::Child(std::vector<std::string> words, std::span<const Given> given) {
 }
 
 Child::~Child() {
-  if (id_ < 0) return;
+  if (id_ >= 0) end();
+}
+
+int Child::end() {
   ::kill(id_, SIGKILL);
-  wait();
+  return wait();
 }
 
 int Child::wait() {

@@ -31,6 +31,8 @@ class Child {
   bool started() const { return id_ > 0; }
   // Until it has ended: its status, as waitpid() has it; 0 if all was well.
   int wait();
+  // At once. The status of one that was ending by itself is its own.
+  int end();
 
  private:
   pid_t id_ = -1;

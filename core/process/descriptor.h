@@ -1,10 +1,14 @@
-// A file descriptor that is closed with its owner.
+// File descriptors.
 #pragma once
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <span>
+
 namespace limpid {
 
+// Closed with its owner.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -20,5 +24,16 @@ class Descriptor {
  private:
   int number_;
 };
+
+// All of them, in as many writes as it takes; whether that went well.
+inline bool write_all(int file, std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
 
 }  // namespace limpid

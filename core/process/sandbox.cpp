@@ -181,6 +181,7 @@ void restrict_calls() {}
 }  // namespace
 
 void enter_sandbox(const fs::path& place) {
+  if (kSanitized) return;
   ::closefrom(kFirstToClose);
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) refuse();
   restrict_files(place);

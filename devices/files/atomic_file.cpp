@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/process/descriptor.h"
 #include "devices/files/file_error.h"
 #include "devices/files/file_size_signal.h"
 
@@ -25,16 +26,6 @@ std::string this_process() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
   return fmt::format("{}.{}", host.data(), ::getpid());
-}
-
-bool write_all(int descriptor, std::span<const unsigned char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-  }
-  return true;
 }
 
 // A pipe or a device, as /dev/stdout: another file in its place would be the end of it.

@@ -30,15 +30,6 @@ constexpr int kLines = 3;  // the descriptor on which the program says how it go
 constexpr std::chrono::milliseconds kBetweenLooks{50};
 constexpr unsigned kPatience = 60;  // [s], and what it takes at a twentieth of a processor
 
-void write_all(int file, std::span<const unsigned char> bytes, const std::string& name) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) refuse(name, "is too large for the memory");
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
-
 Bytes read_all(int file, const std::string& name) {
   struct stat about {};
   if (::fstat(file, &about) != 0) refuse(name, "cannot be read");
@@ -114,7 +105,7 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::st
     refuse(name, "cannot be read, there are too many open files");
   const Descriptor lines(ends[0]);
   Descriptor other_end(ends[1]);
-  write_all(*in, bytes, name);
+  if (!write_all(*in, bytes)) refuse(name, "is too large for the memory");
   const bool alone = kind == "stl" || kind == "ply";  // refers to no other file
   const std::string at = beside_this_program(kProgram).string();
   const std::string place = alone ? "" : folder.string();

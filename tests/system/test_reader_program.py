@@ -28,7 +28,7 @@ class ReaderProgramTest(SystemTest):
         if script is not None:
             reader.write_text(f"#!/bin/sh\n{script}\n")
             reader.chmod(0o755)
-        done = subprocess.run([self.program, "info", SESSION], capture_output=True, text=True)
+        done = subprocess.run([self.program, "info", SESSION], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn(str(SESSION), done.stderr)
@@ -46,6 +46,9 @@ class ReaderProgramTest(SystemTest):
 
     def test_one_that_says_anything(self) -> None:
         self.assertIn("answers wrongly", self.read_with("cat /proc/self/exe | tail -c +100; exit 0"))
+
+    def test_one_that_never_ends_what_nobody_reads(self) -> None:
+        self.assertIn("answers wrongly", self.read_with(r"printf '\1\0\0\0\0\0\0\0'; exec cat /dev/zero"))
 
     def test_one_that_is_missing(self) -> None:
         self.assertIn("limpid-session, which reads it, cannot be started", self.read_with(None))

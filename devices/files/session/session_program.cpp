@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr int kPipeBytes = 1 << 20;
 
+// Empty for one that was ended because nobody wanted to hear more.
 std::string why_ended(int status) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return {};
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     return "takes far longer to be read than a file of its size needs";
   }
@@ -53,7 +55,7 @@ auto ask(const char* what, const fs::path& file, Take take) {
     if (from.number<wire::Answer>() != wire::Answer::contents) throw FileError(from.text());
     return take(from);
   } catch (const wire::Broken& broken) {
-    const std::string why = why_ended(child.wait());
+    const std::string why = why_ended(child.end());
     refuse(file,
            why.empty() ? fmt::format("what reads it answers wrongly: {}", broken.what()) : why);
   } catch (const std::bad_alloc&) {

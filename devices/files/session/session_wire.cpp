@@ -4,15 +4,12 @@
 
 #include <cerrno>
 
+#include "core/process/descriptor.h"
+
 namespace limpid::wire {
 
 void Writer::bytes(std::span<const unsigned char> all) {
-  while (!all.empty()) {
-    const ssize_t written = ::write(to_, all.data(), all.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw Broken("nobody reads");
-    all = all.subspan(static_cast<std::size_t>(written));
-  }
+  if (!write_all(to_, all)) throw Broken("nobody reads");
 }
 
 void Reader::bytes(std::span<unsigned char> all) {

@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/process/descriptor.h"
 #include "core/process/sandbox.h"
 #include "render/model/assimp/assimp_guard.h"
 #include "render/model/assimp/assimp_model.h"
@@ -28,12 +29,6 @@
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // which takes addresses and system calls of its own
-#else
-constexpr bool kSanitized = false;
-#endif
-
 // More than a model of so many bytes needs: some broken files are read for ever. The limits that
 // can be raised again grow with the files that it turns out to refer to.
 void limit_self(std::size_t bytes) {
@@ -42,7 +37,7 @@ void limit_self(std::size_t bytes) {
   const rlimit none{0, 0}, seconds{now.seconds, most.seconds}, memory{now.memory, most.memory};
   setrlimit(RLIMIT_CORE, &none);
   setrlimit(RLIMIT_CPU, &seconds);
-  if (!kSanitized) setrlimit(RLIMIT_AS, &memory);
+  if (!limpid::kSanitized) setrlimit(RLIMIT_AS, &memory);
 }
 
 std::span<const unsigned char> standard_input() {
@@ -52,14 +47,6 @@ std::span<const unsigned char> standard_input() {
   void* const bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, STDIN_FILENO, 0);
   if (bytes == MAP_FAILED) throw std::runtime_error("cannot be read");
   return {static_cast<const unsigned char*>(bytes), size};
-}
-
-void put(std::span<const unsigned char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written <= 0) throw std::runtime_error("is too large for the memory");
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
 }
 
 }  // namespace
@@ -77,7 +64,7 @@ int main(int count, char** words) {
     const auto bytes = standard_input();
     std::size_t size = bytes.size();
     limit_self(size);
-    if (!kSanitized) limpid::enter_sandbox(words[2]);
+    limpid::enter_sandbox(words[2]);
     limpid::Companions companions(name, words[2],
                                   std::min(bytes.size(), limpid::kLargestModelFiles));
     const auto better = limpid::readable(bytes, kind);
@@ -93,7 +80,9 @@ int main(int count, char** words) {
     for (const std::string& warning : read.model.warnings)
       std::fprintf(lines, "warning %s\n", warning.c_str());
     if (read.outside) std::fputs("outside\n", lines);
-    put(limpid::glb_of(read.model, read.pictures));
+    if (!limpid::write_all(STDOUT_FILENO, limpid::glb_of(read.model, read.pictures))) {
+      throw std::runtime_error("is too large for the memory");
+    }
     return std::fclose(lines) == 0 ? 0 : 1;
   } catch (const std::bad_alloc&) {
     std::fputs("memory\n", lines);

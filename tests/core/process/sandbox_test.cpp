@@ -29,15 +29,12 @@ constexpr int kDone = 42;
 class Sandbox : public testing::Test {
  protected:
   Sandbox() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    skip_ = true;  // which take system calls of their own
-#endif
     mkdir((dir_ / "own").c_str(), 0700);
     std::ofstream(dir_ / "own/a.mtl") << "newmtl a\n";
     std::ofstream(dir_ / "key") << "secret\n";
   }
   void SetUp() override {
-    if (skip_) GTEST_SKIP() << "sanitized";
+    if (kSanitized) GTEST_SKIP() << "sanitized";
   }
 
   // The status that a process leaves with; errno where `attempt` returns a negative number.
@@ -55,7 +52,6 @@ class Sandbox : public testing::Test {
     return leaves_with(attempt, dir_ / "own");
   }
 
-  bool skip_ = false;
   const test::TempDir dir_;
 };
 
