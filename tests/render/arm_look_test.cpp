@@ -55,6 +55,12 @@ TEST(ArmLook, MirrorsWithoutTurningInsideOut) {
   EXPECT_LT((mirrored - out.cwiseProduct(Eigen::Vector3f(2, -1, 2)).normalized()).norm(), 1e-6f);
 }
 
+TEST(ArmLook, MakesSmallWithoutTurningInsideOut) {
+  const Model model = drawn(mesh({0.5, 0.5, 0.5}));
+  EXPECT_EQ(model.bounds().max().y(), 1);
+  EXPECT_LT((facing(model) - facing(triangle())).norm(), 1e-6f);
+}
+
 TEST(ArmLook, PaintsWhatHasNoColourOfItsOwn) {
   Visual visual = mesh(Vec3::Ones());
   visual.color = Eigen::Vector4f(1, 0, 0.5f, 1);

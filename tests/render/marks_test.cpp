@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "render/ghosts.h"
+#include "render/gl/line_batch.h"
+#include "render/gl/offscreen.h"
 
 namespace limpid {
 namespace {
@@ -222,6 +224,30 @@ TEST(Ghosts, OfAPoseThatIsNoNumberAreNotDrawn) {
   const auto ghosts = ghosts_of(state, 1e-3);
   ASSERT_EQ(ghosts.size(), 1u);
   EXPECT_TRUE(ghosts[0].links.empty());
+}
+
+// From nothing at its old end to strong at its new one, without a gap; a place that is not known
+// leaves one.
+TEST(Trails, FadeTowardsWhereTheTipWas) {
+  ViewState state;
+  state.show_ghost = false;
+  const double unknown = std::nan("");
+  state.proxy.trail = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, Vec3::Constant(unknown),
+                       {4, 0, 0}, {5, 0, 0}};
+  const OffscreenContext context(8, 8);  // a batch owns names of OpenGL
+  LineBatch batch;
+  add_trails(state, batch);
+  const auto& lines = batch.lines();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0].to, lines[1].from);
+  EXPECT_EQ(lines[2].to, glm::vec3(5, 0, 0));
+  EXPECT_EQ(lines[0].color_from.a, 0);
+  for (const auto& line : lines) {
+    EXPECT_GT(line.color_to.a, line.color_from.a);
+    EXPECT_EQ(line.width, lines[0].width);
+    EXPECT_GE(line.width, 2) << "two pixels are seen, four hide the tip";
+    EXPECT_LT(line.width, 4);
+  }
 }
 
 }  // namespace

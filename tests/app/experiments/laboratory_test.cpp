@@ -168,6 +168,25 @@ TEST(HandVariation, StartsAndEndsWhereThePathDoesAndStaysNearIt) {
   }
 }
 
+// On a path that is followed at a steady pace the pace is between 0.8 and 1.2 of it, so that half
+// of the way is never farther from half of the time than the hurry's integral, 0.2 / (2 pi).
+TEST(HandVariation, IsOnItsWayWhenThePathIs) {
+  HandPath straight = circle();
+  const Vec3 way(0.1, 0.02, 0);
+  for (std::size_t i = 0; i < straight.time.size(); ++i) {
+    straight.position[i] = straight.time[i] / straight.time.back() * way;
+    straight.velocity[i] = way / straight.time.back();
+  }
+  for (std::uint64_t i = 1; i < 30; ++i) {
+    const HandPath one = varied(straight, 0, i);
+    const double larger = one.position.back().dot(way) / way.squaredNorm();
+    for (std::size_t k = 0; k < one.time.size(); k += 50) {
+      const double gone = one.position[k].dot(way) / way.squaredNorm() / larger;
+      EXPECT_NEAR(gone, one.time[k] / one.time.back(), 0.2 / (2 * M_PI) + 0.01) << i << " " << k;
+    }
+  }
+}
+
 TEST(PassivityTrials, FollowTheSameHandsWithEveryCoupling) {
   const auto some = passivity_trials(passivity_cases()[0], 7);
   const auto others = passivity_trials(passivity_cases()[4], 7);
@@ -175,6 +194,7 @@ TEST(PassivityTrials, FollowTheSameHandsWithEveryCoupling) {
   for (std::size_t i = 0; i < some.size(); ++i) {
     EXPECT_EQ(some[i].plan.hand.position, others[i].plan.hand.position);
     EXPECT_NE(some[i].name, others[i].name);
+    EXPECT_EQ(some[i].plan.seed, 7u) << "and the same noise";
   }
   EXPECT_EQ(some[0].plan.hand.position, circle().position);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -86,6 +87,17 @@ TEST(RowView, ShowsOneForceAtTheTipWhereOnlyTheTorqueWasRecorded) {
     ASSERT_LT((guessed[0].force - known[0].force).norm(), 1e-4 * known[0].force.norm()) << k;
   }
   EXPECT_GT(touched, 100);
+}
+
+TEST(RowView, ShowsWhereTheHandWantsTheTip) {
+  const RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  const RowLayout layout(plan.arm.dof());
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const Vec3 target(0.1, 0.2, 0.3);
+  std::ranges::copy(target, layout.in(std::span(row), Column::hand_target).begin());
+  const ViewState view = RowView(plan.arm).view(layout, row);
+  EXPECT_EQ(view.hand_target, target);
+  EXPECT_FALSE(view.hand_grips);
 }
 
 }  // namespace

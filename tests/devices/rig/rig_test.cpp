@@ -130,6 +130,14 @@ TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
   Rig again(arm_, scene_);
   again.start(Script::parameters(777), start_of(recorded.layout(), recorded.row(0)));
   EXPECT_GT(recorded.vec(0, Column::device_velocity).norm(), 1e-3);  // it was in motion
+  EXPECT_GT(recorded.vec(0, Column::proxy_velocity).norm(), 1e-3);
+
+  Rig undisturbed(arm_, scene_);
+  undisturbed.start(Script::parameters(0), rest_at(arm_, home_));
+  const Rows whole = run(undisturbed, script_, 0, 778);
+  for (const Column c : {Column::device_position, Column::device_velocity, Column::proxy_position,
+                         Column::proxy_velocity})
+    EXPECT_EQ(recorded.vec(0, c), whole.vec(777, c)) << "column " << static_cast<int>(c);
   EXPECT_EQ(first_difference(recorded, run(again, script_, 777, 2000)), -1);
 }
 

@@ -164,9 +164,14 @@ TEST(ModelFile, ReadsWhatItsLibraryDoesNot) {
   const std::string empty = "solid two\nendsolid two\n";
   std::string small = obj();
   small.replace(small.find("v 0 0 0"), 7, "v .0e-1 -.0\t.0");
+  // As some programs write them; its length alone says that it is no text.
+  const std::string_view title = "solid one\nendsolid one\nsolid two\nendsolid two\n";
+  Bytes titled = binary_stl();
+  std::ranges::copy(title, titled.begin());
   const std::map<std::string, Bytes> all{
       {"empty solid behind.stl", bytes_of(text_stl() + empty)},
       {"empty solid before.stl", bytes_of(empty + text_stl())},
+      {"binary behind the word solid.stl", titled},
       {"no zero before the point.obj", bytes_of(small)},
       {"line end.ply", binary_ply(from_bits(0x3000000a))},
       {"line ends.ply", binary_ply(from_bits(0x300a0d0a))},

@@ -113,6 +113,38 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   EXPECT_EQ(again.plot_choices, s.plot_choices);
 }
 
+TEST_F(SettingsFile, GivesEverySwitchBackByItself) {
+  using Switch = bool Settings::*;
+  for (const Switch one :
+       {&Settings::show_left, &Settings::show_right, &Settings::show_plots, &Settings::show_ghost,
+        &Settings::show_trail, &Settings::show_forces, &Settings::show_grid, &Settings::show_lens,
+        &Settings::show_joints, &Settings::twin_overlaid, &Settings::hold_on_release,
+        &Settings::hint_seen}) {
+    Settings s;
+    s.*one = !(s.*one);
+    EXPECT_EQ(save_settings(s, load()), "");
+    EXPECT_EQ(load().*one, s.*one);
+    fs::remove(file());
+  }
+}
+
+TEST_F(SettingsFile, GivesPictureAndGamepadBack) {
+  Settings s;
+  s.picture_quality = "low";
+  s.right = 333;
+  s.band = 7.5;
+  s.device_tip = "tool0";
+  s.gamepad = "03000000de280000ff11000001000000";
+  EXPECT_EQ(save_settings(s, {}), "");
+  const Settings again = load();
+  EXPECT_EQ(complaint_, "");
+  EXPECT_EQ(again.picture_quality, s.picture_quality);
+  EXPECT_EQ(again.right, s.right);
+  EXPECT_EQ(again.band, s.band);
+  EXPECT_EQ(again.device_tip, s.device_tip);
+  EXPECT_EQ(again.gamepad, s.gamepad);
+}
+
 TEST_F(SettingsFile, RemembersThatNoPlotIsLeft) {
   Settings s;
   s.plot_choices.clear();

@@ -45,6 +45,20 @@ TEST(SessionUnits, HaveTenCentimetresForAUnitOfTravelAndTenNewtonsForAUnitOfEffo
   EXPECT_EQ(SessionUnits(RowLayout(2), {}).units(kColumnInfo[1]), Units{"rad"});
 }
 
+// A column of another unit, one number a joint or not, is filed as it is.
+TEST(SessionUnits, ScaleNothingButAnglesAndTorquesOfJoints) {
+  const SessionUnits units(RowLayout(2), {true, false});
+  EXPECT_FALSE(units.scaled().empty());
+  for (const Scaled& scaled : units.scaled()) {
+    const ColumnInfo& column = kColumnInfo[static_cast<std::size_t>(scaled.column)];
+    EXPECT_EQ(column.width, ColumnWidth::dof) << column.path;
+    EXPECT_THAT(column.unit, testing::AnyOf(testing::StrEq("rad"), testing::StrEq("rad/s"),
+                                            testing::StrEq("rad/s^2"), testing::StrEq("N m")))
+        << column.path;
+    EXPECT_EQ(scaled.part, 0) << column.path;
+  }
+}
+
 // Work is what is left alone: a unit of effort over a unit of travel is the joule it was.
 TEST(SessionUnits, KeepTheWorkOfEffortOverTravel) {
   std::mt19937_64 random(1);
