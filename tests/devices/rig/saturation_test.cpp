@@ -25,9 +25,9 @@ struct Corner {
   Scene scene;
   Parameters p;
   RigStart start;
-  Vec3 out, along;              // of the first plane
-  double press, rise, way;      // [N, s, m]
-  double limit;                 // of each motor [N m]
+  Vec3 out, along;          // of the first plane
+  double press, rise, way;  // [N, s, m]
+  double limit;             // of each motor [N m]
 
   Vec3 hand(double t) const {
     const double in = std::clamp((t - 0.02) / rise, 0.0, 1.0);
@@ -135,8 +135,8 @@ Outcome run(const Corner& c) {
       energy -= c.arm.joints[static_cast<std::size_t>(i)].damping * dx1[i] * dx1[i] / c.p.tick;
     }
     outcome.energy = std::max(outcome.energy, energy);
-    outcome.torque = std::max(
-        outcome.torque, rows.vec(k, Column::contact_torque).cwiseAbs().maxCoeff() / c.limit);
+    outcome.torque = std::max(outcome.torque,
+                              rows.vec(k, Column::contact_torque).cwiseAbs().maxCoeff() / c.limit);
     outcome.jump = std::max(outcome.jump, dx2.cwiseAbs().maxCoeff());
     outcome.reserve = std::min(outcome.reserve, rows.at(k, Column::energy_ledger));
     outcome.port = std::max(outcome.port, rows.at(k, Column::energy_port));
