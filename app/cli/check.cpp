@@ -13,7 +13,7 @@
 #include "app/run/model_report.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
-#include "core/tick/safety.h"
+#include "core/tick/safety_limits.h"
 #include "devices/files/file_error.h"
 #include "devices/files/scene/model_units.h"
 #include "render/model/model_file.h"

@@ -7,6 +7,7 @@
 
 #include "core/dynamics/arm.h"
 #include "core/realtime/haptic_thread.h"
+#include "core/tick/safety.h"
 #include "core/tick/torque_limits.h"
 
 namespace limpid {

@@ -7,7 +7,7 @@
 
 #include "core/dynamics/arm_description.h"
 #include "core/realtime/realtime.h"
-#include "core/tick/safety.h"
+#include "core/tick/safety_limits.h"
 #include "devices/hid/axis_check.h"
 
 namespace limpid {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/tick/compensation.h"
-#include "core/tick/safety.h"
+#include "core/tick/safety_limits.h"
 #include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
 #include "devices/hid/protocols/pid_joystick.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/coupling/spring_damper.h"
 #include "core/dynamics/arm_description.h"
 #include "core/passivity/eta_min.h"
 #include "core/tick/parameters.h"

@@ -3,32 +3,10 @@
 
 #include <numbers>
 
-#include "core/coupling/setting.h"
-#include "core/coupling/velocity_estimator.h"
 #include "core/math/sizes.h"
 #include "core/math/solve.h"
 
 namespace limpid {
-
-struct ObserverSettings {
-  double alpha = 0.035;  // [N m s/rad]
-  bool anti_windup = true;
-  VelocitySource velocity = VelocitySource::raw;
-
-  template <class P>
-  static constexpr std::array<Setting<P>, 3> settings() {
-    return {{{"observer.alpha", "\xCE\xB1", &P::alpha, "N m s/rad", 1e-6, 1e3, 1e-3, 1, true, true,
-              "Gain of the human force observer, L = alpha M^-1, (17)-(18). Larger follows the "
-              "hand faster (w_f = alpha / m) and raises eta_min."},
-             {"observer.anti_windup", "anti-windup", &P::anti_windup, "-", 0, 1, 0, 1, false, true,
-              "Feed the observer with the torque the motors really gave (section 3.1). Without "
-              "it a saturated contact winds the estimate up and the proxy lurks."},
-             {"observer.velocity", "velocity", choice<P, &P::velocity>(kVelocitySources), "-", 0, 2,
-              0, 2, false, true,
-              "Velocity estimate: raw difference of positions, low-pass, or adaptive window "
-              "(for coarse encoders)."}}};
-  }
-};
 
 // With f1_hat = z + alpha v, (17) says f1_hat' = L (f1 - f1_hat), L = alpha M^-1: the disturbance
 //     d = M vdot + C v - tau

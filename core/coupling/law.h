@@ -1,8 +1,8 @@
-// What a coupling law is: how it ties device and proxy together for a tick, its settings, and what
-// people are told of it. Each law is one file; laws.h lists them.
+// How a coupling law ties device and proxy together for a tick: what it is given, and what it tells
+// of itself. Each law is one file; laws.h lists them with their settings.
 #pragma once
 
-#include <span>
+#include <cstdint>
 
 #include "core/coupling/decomposition.h"
 #include "core/dynamics/arm.h"
@@ -11,21 +11,6 @@ namespace limpid {
 
 template <int N>
 class Proxy;
-
-// What people read about a law, and what it uses.
-struct LawInfo {
-  const char* key;      // in files and on the command line
-  const char* label;    // on a button
-  const char* meaning;  // in help and tooltips, a sentence after "KEY: "
-  const char* verdict;  // in a few words: how it feels, when it is safe
-  // The inertia felt is scaled by eta, (12).
-  bool scales_inertia;
-  // By feeding the observed human force forward: then the conditions of (25) are its own.
-  bool observes;
-  // It accounts for the energy that the human is given, and bounds it.
-  bool keeps_ledger;
-  std::span<const char* const> sliders;  // keys, in the panel
-};
 
 // Where a law begins: device and proxy as they are.
 template <int N>

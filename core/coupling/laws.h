@@ -1,16 +1,258 @@
-// The coupling laws there are. A new one is a file like proposed.h, and its line here.
+// The coupling laws there are: what people read about each of them, and what can be set of it and
+// of the observer. A new one is its entry here, and a file like proposed.h that says what it does.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <string_view>
 #include <tuple>
 
-#include "core/coupling/predictive.h"
-#include "core/coupling/proposed.h"
-#include "core/coupling/standard.h"
+#include "core/coupling/setting.h"
 
 namespace limpid {
+
+// What people read about a law, and what it uses.
+struct LawInfo {
+  const char* key;      // in files and on the command line
+  const char* label;    // on a button
+  const char* meaning;  // in help and tooltips, a sentence after "KEY: "
+  const char* verdict;  // in a few words: how it feels, when it is safe
+  // The inertia felt is scaled by eta, (12).
+  bool scales_inertia;
+  // By feeding the observed human force forward: then the conditions of (25) are its own.
+  bool observes;
+  // It accounts for the energy that the human is given, and bounds it.
+  bool keeps_ledger;
+  std::span<const char* const> sliders;  // keys, in the panel
+};
+
+struct SpringDamper {
+  double k_vc = 10;     // [N m/rad]
+  double b_vc = 0.001;  // [N m s/rad]
+  double b_v = 0.012;   // [N m s/rad]
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 3> settings() {
+    return {{{"coupling.k_vc", "k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1, 100, true, true,
+              "Spring between device and proxy, (1)-(2). Stiffer keeps them closer, until "
+              "condition (3) breaks: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2."},
+             {"coupling.b_vc", "b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5, 0.1, true, true,
+              "Damper between device and proxy, (1)-(2). It acts on a delayed velocity, so it "
+              "costs device damping twice: condition (3)."},
+             {"coupling.b_v", "b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1, true, true,
+              "Damping of the proxy, (2). Felt through the coupling; condition (3) asks for "
+              "at least k_vc T / 2."}}};
+  }
+};
+
+// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2; and where the
+// torque answers its reading a delay t_d late, b_d >= 2 b_vc + k_vc (T + 3/2 t_d) and
+// b_v >= k_vc (T + t_d) / 2.
+//
+// Of d ticks' delay the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is at
+// most
+//     k_vc sum_j |dx1_k (dx1_k-j - dx2_k-j)| <= k_vc d (3/2 dx1^2 + 1/2 dx2^2),
+// summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is made so
+// too.
+struct Condition3 {
+  double device_margin = 0;  // b_d less what is needed, at the joint with the least [N m s/rad]
+  double proxy_margin = 0;   // b_v less what is needed [N m s/rad]
+  bool holds = false;        // to round-off: the paper's own gains stand on the edge
+};
+// b_d: of every joint [N m s/rad]; T, the delay [s].
+Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
+                      double delay = 0);
+
+// The same for all laws of the paper: what does nothing in one is there for the other.
+inline constexpr std::array kPaperSliders{"coupling.eta", "observer.alpha", "coupling.k_vc",
+                                          "coupling.b_vc", "coupling.b_v"};
+
+struct StandardLaw {
+  static constexpr LawInfo kInfo{
+      .key = "standard",
+      .label = "Standard",
+      .meaning = "spring and damper alone, (1)-(2).",
+      .verdict = "The usual one: hand and world drift apart.",
+      .scales_inertia = false,
+      .observes = false,
+      .keeps_ledger = false,
+      .sliders = kPaperSliders,
+  };
+
+  using Settings = SpringDamper;
+
+  template <int N>
+  struct Of;  // standard.h
+};
+
+struct ProposedLaw {
+  static constexpr LawInfo kInfo{
+      .key = "proposed",
+      .label = "Proposed",
+      .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
+      .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
+      .scales_inertia = true,
+      .observes = true,
+      .keeps_ledger = false,
+      .sliders = kPaperSliders,
+  };
+
+  struct Settings {
+    double eta = 1;  // [-]
+
+    template <class P>
+    static constexpr std::array<Setting<P>, 1> settings() {
+      return {{{"coupling.eta", "\xCE\xB7", &P::eta, "-", 0.01, 100, 0.1, 10, true, true,
+                "Apparent inertia: the hand feels eta times M1 + M2, (12). Below eta_min of "
+                "(25) the coupling is not passive."}}};
+    }
+  };
+
+  template <int N>
+  class Of;  // proposed.h
+};
+
+enum class PredictorPreset : std::uint8_t { by_encoder, fine, coarse };
+inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "coarse"};
+
+// What a preset stands for; see the table of constants.
+struct PredictorGains {
+  double p;        // memory of a fading-memory filter, 0 none [-]
+  double mu;       // factor on the device's inertia in the predictor [-]
+  double damping;  // that walls get, as a part of m_n/T [-]
+};
+
+struct PredictorSettings {
+  PredictorPreset preset = PredictorPreset::by_encoder;
+  double memory = kAsPreset;   // p [-]
+  double inertia = kAsPreset;  // mu [-]
+  double hand_mass = 0.2;      // of the second predictor [kg]
+  int delay = 0;               // between command and motor, as far as it is known [ticks]
+
+  // Not a number stands for "as the preset has it".
+  static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
+  // Encoders coarser than this ask for the coarse preset [rad].
+  static constexpr double kCoarse = 1.5e-4;
+
+  // quick: see dies_within_a_tick().
+  PredictorGains gains(double encoder_step, bool quick) const {
+    const bool free = preset == PredictorPreset::by_encoder;
+    const bool coarse = preset == PredictorPreset::coarse || (free && encoder_step > kCoarse);
+    PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
+    if (free && quick) g.p = 0.45;
+    if (!std::isnan(memory)) g.p = memory;
+    if (!std::isnan(inertia)) g.mu = inertia;
+    return g;
+  }
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 5> settings() {
+    return {
+        {{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2, 0,
+          2, false, true,
+          "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
+          "(walls up to 2000 N/m); auto goes by device.encoder_step, and takes the coarse memory "
+          "where a motion of the device dies out within a tick, as that of light links does."},
+         {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+          "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
+          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
+         {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
+          "Predictive coupling: factor on the device's inertia in the predictor. Default: "
+          "the preset's, 1 or 0.5."},
+         {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
+          "Predictive coupling: mass of hand and handle in the second predictor, which takes "
+          "over when it is the better one. 0 does without."},
+         {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
+          "Predictive coupling: delay between command and motor that it reckons with, in "
+          "ticks."}}};
+  }
+};
+
+struct LedgerSettings {
+  double energy = 0.005;  // E0: the human may be given at most this [J]
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 1> settings() {
+    return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
+              true, true,
+              "Predictive coupling: energy that the human may ever be given beyond what came in. "
+              "When the reserve runs low the contact force and the cancelled damping are cut."}}};
+  }
+};
+
+struct PredictiveLaw {
+  static constexpr std::array kSliders{"coupling.eta",  "coupling.damping", "coupling.band",
+                                       "coupling.k_vc", "coupling.b_vc",    "coupling.b_v",
+                                       "ledger.energy"};
+  static constexpr LawInfo kInfo{
+      .key = "predictive",
+      .label = "Predictive",
+      .meaning =
+          "device and proxy solved together for the coming tick, inertia shaped by passive "
+          "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
+      .verdict = "Recommended: no drift, stiff walls, light, passive.",
+      .scales_inertia = true,
+      .observes = false,
+      .keeps_ledger = true,
+      .sliders = kSliders,
+  };
+
+  // eta is the proposed law's.
+  struct Settings : PredictorSettings, LedgerSettings {
+    double felt_damping = kFollowsEta;  // share of b_d + b_v that is felt [-]
+    double band = 5.3;                  // edge of the band in which eta holds [Hz]
+
+    // Not a number stands for "as eta has it".
+    static constexpr double kFollowsEta = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double kLeastDamping = 1.0 / 3;
+
+    double damping_share(double eta) const {
+      if (!std::isnan(felt_damping)) return felt_damping;
+      return 1 - std::clamp(2 * (1 - eta), 0.0, 1.0) * (1 - kLeastDamping);
+    }
+
+    template <class P>
+    static constexpr auto settings() {
+      constexpr std::array<Setting<P>, 2> own{
+          {{"coupling.damping", "damping", &P::felt_damping, "-", kLeastDamping, 1, kLeastDamping,
+            1, false, true,
+            "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
+            "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
+           {"coupling.band", "band", &P::band, "Hz", 0.5, 20, 1, 10, true, true,
+            "Predictive coupling: up to this frequency the inertia felt is eta times the natural "
+            "one; a wider band costs more damping."}}};
+      return joined<P>(own, PredictorSettings::settings<P>(), LedgerSettings::settings<P>());
+    }
+  };
+
+  template <int N>
+  class Of;  // predictive.h
+};
+
+enum class VelocitySource : std::uint8_t { raw, lowpass, adaptive };
+inline constexpr std::array kVelocitySources{"raw", "lowpass", "adaptive"};
+
+struct ObserverSettings {
+  double alpha = 0.035;  // [N m s/rad]
+  bool anti_windup = true;
+  VelocitySource velocity = VelocitySource::raw;
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 3> settings() {
+    return {{{"observer.alpha", "\xCE\xB1", &P::alpha, "N m s/rad", 1e-6, 1e3, 1e-3, 1, true, true,
+              "Gain of the human force observer, L = alpha M^-1, (17)-(18). Larger follows the "
+              "hand faster (w_f = alpha / m) and raises eta_min."},
+             {"observer.anti_windup", "anti-windup", &P::anti_windup, "-", 0, 1, 0, 1, false, true,
+              "Feed the observer with the torque the motors really gave (section 3.1). Without "
+              "it a saturated contact winds the estimate up and the proxy lurks."},
+             {"observer.velocity", "velocity", choice<P, &P::velocity>(kVelocitySources), "-", 0, 2,
+              0, 2, false, true,
+              "Velocity estimate: raw difference of positions, low-pass, or adaptive window "
+              "(for coarse encoders)."}}};
+  }
+};
 
 // Numbered in the order of Laws: the number is what recordings keep.
 enum class CouplingKind : std::uint8_t { standard, proposed, predictive };
@@ -23,8 +265,6 @@ struct Listed {
   struct Settings : Law::Settings... {};
   static constexpr std::array<const LawInfo*, sizeof...(Law)> kInfos{&Law::kInfo...};
   static constexpr std::array<const char*, sizeof...(Law)> kKeys{Law::kInfo.key...};
-  template <int N>
-  using Instances = std::tuple<typename Law::template Of<N>...>;
 };
 template <class... Law>
 Listed<Law...> listed(std::tuple<Law...>*);
@@ -71,49 +311,5 @@ inline CouplingKind next(CouplingKind kind) {
 inline constexpr auto& kLawKeys = detail::AllLaws::kKeys;
 inline constexpr std::uint8_t kLaws = kLawKeys.size();
 inline constexpr auto kLawMeanings = detail::meanings();
-
-// All laws, of which one at a time ties device and proxy together.
-template <int N>
-class Coupling {
- public:
-  void start(const LawStart<N>& at) {
-    std::apply([&](auto&... law) { (law.start(at), ...); }, laws_);
-  }
-  // First in a tick: where the law takes the device to be.
-  template <class P>
-  Whereabouts<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
-    Whereabouts<N> at;
-    with(laws_, kind, [&](auto& law) { at = law.locate(p, in); });
-    return at;
-  }
-  // Then: steps the proxy over the tick; returns the torque that the motors are asked for [N m].
-  template <class P>
-  Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
-    Vec<N> torque;
-    with(laws_, kind, [&](auto& law) { torque = law.step(p, in, proxy); });
-    return torque;
-  }
-  // Last: what left of it [N m].
-  void applied(CouplingKind kind, const Vec<N>& torque) {
-    with(laws_, kind, [&](auto& law) { law.applied(torque); });
-  }
-  LawReport report(CouplingKind kind) const {
-    LawReport report;
-    with(laws_, kind, [&](const auto& law) { report = law.report(); });
-    return report;
-  }
-
- private:
-  template <class All, class Action>
-  static void with(All& all, CouplingKind kind, const Action& action) {
-    std::uint8_t i = 0;
-    const auto one = [&](auto& law) {
-      if (i++ == static_cast<std::uint8_t>(kind)) action(law);
-    };
-    std::apply([&](auto&... law) { (one(law), ...); }, all);
-  }
-
-  detail::AllLaws::Instances<N> laws_;
-};
 
 }  // namespace limpid

@@ -5,22 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "core/coupling/setting.h"
 #include "core/math/sizes.h"
 
 namespace limpid {
-
-struct LedgerSettings {
-  double energy = 0.005;  // E0: the human may be given at most this [J]
-
-  template <class P>
-  static constexpr std::array<Setting<P>, 1> settings() {
-    return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
-              true, true,
-              "Predictive coupling: energy that the human may ever be given beyond what came in. "
-              "When the reserve runs low the contact force and the cancelled damping are cut."}}};
-  }
-};
 
 // H = E - (what device and proxy have stored): while H >= 0 the energy given at the human's port is
 // at most E0, and what was dissipated since, of which no more than kCap is kept.

@@ -6,6 +6,7 @@
 
 #include "core/coupling/decomposition.h"
 #include "core/coupling/inertia_network.h"
+#include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/limited_solve.h"
 #include "core/coupling/predictor.h"
@@ -13,97 +14,51 @@
 
 namespace limpid {
 
-struct PredictiveLaw {
-  static constexpr std::array kSliders{"coupling.eta",  "coupling.damping", "coupling.band",
-                                       "coupling.k_vc", "coupling.b_vc",    "coupling.b_v",
-                                       "ledger.energy"};
-  static constexpr LawInfo kInfo{
-      .key = "predictive",
-      .label = "Predictive",
-      .meaning =
-          "device and proxy solved together for the coming tick, inertia shaped by passive "
-          "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
-      .verdict = "Recommended: no drift, stiff walls, light, passive.",
-      .scales_inertia = true,
-      .observes = false,
-      .keeps_ledger = true,
-      .sliders = kSliders,
-  };
+template <int N>
+class PredictiveLaw::Of {
+ public:
+  void start(const LawStart<N>& at);
+  template <class P>
+  Whereabouts<N> locate(const P& p, const LawReading<N>& in) {
+    return locate(static_cast<const Settings&>(p), in);
+  }
+  template <class P>
+  Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
+    return step(p.eta, p, p, in, proxy);
+  }
+  void applied(const Vec<N>& tau);
+  LawReport report() const;
 
-  // eta is the proposed law's.
-  struct Settings : PredictorSettings, LedgerSettings {
-    double felt_damping = kFollowsEta;  // share of b_d + b_v that is felt [-]
-    double band = 5.3;                  // edge of the band in which eta holds [Hz]
+ private:
+  struct Solve;
+  Whereabouts<N> locate(const Settings& p, const LawReading<N>& in);
+  Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+              Proxy<N>& proxy);
+  double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
+  void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
+                      double T, bool resumed, Motion<N>& motion);
+  void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+               const Proxy<N>& proxy);
 
-    // Not a number stands for "as eta has it".
-    static constexpr double kFollowsEta = std::numeric_limits<double>::quiet_NaN();
-    static constexpr double kLeastDamping = 1.0 / 3;
-
-    double damping_share(double eta) const {
-      if (!std::isnan(felt_damping)) return felt_damping;
-      return 1 - std::clamp(2 * (1 - eta), 0.0, 1.0) * (1 - kLeastDamping);
-    }
-
-    template <class P>
-    static constexpr auto settings() {
-      constexpr std::array<Setting<P>, 2> own{
-          {{"coupling.damping", "damping", &P::felt_damping, "-", kLeastDamping, 1, kLeastDamping,
-            1, false, true,
-            "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
-            "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
-           {"coupling.band", "band", &P::band, "Hz", 0.5, 20, 1, 10, true, true,
-            "Predictive coupling: up to this frequency the inertia felt is eta times the natural "
-            "one; a wider band costs more damping."}}};
-      return joined<P>(own, PredictorSettings::settings<P>(), LedgerSettings::settings<P>());
-    }
-  };
-
-  template <int N>
-  class Of {
-   public:
-    void start(const LawStart<N>& at);
-    template <class P>
-    Whereabouts<N> locate(const P& p, const LawReading<N>& in) {
-      return locate(static_cast<const Settings&>(p), in);
-    }
-    template <class P>
-    Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
-      return step(p.eta, p, p, in, proxy);
-    }
-    void applied(const Vec<N>& tau);
-    LawReport report() const;
-
-   private:
-    struct Solve;
-    Whereabouts<N> locate(const Settings& p, const LawReading<N>& in);
-    Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                Proxy<N>& proxy);
-    double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
-    void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
-                        const Motion<N>& right, double T, bool resumed, Motion<N>& motion);
-    void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                 const Proxy<N>& proxy);
-
-    Predictor<N> predictor_;
-    InertiaNetwork<N> network_;
-    Ledger<N> ledger_;
-    ContactSolve<N> contacts_;
-    Vec<N> y_;              // the last reading [rad]
-    Vec<N> acted_;          // torque of the tick just ended [N m]
-    Vec<N> slip_;           // how far its prediction was off [rad]
-    Vec<N> tau1_;           // as wanted, this tick [N m]
-    Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
-    double elapsed_ = 0;    // since the reading before; 0 at the first [s]
-    bool both_ = true;      // predictors
-    Vec<N> b_d_;            // for which quick_ is
-    bool quick_ = false;    // the device, see dies_within_a_tick()
-    bool limited_ = false;  // the last tick had motors at their limit,
-    bool goes_on_ = false;  // and so has this one, whatever comes
-    TickSolve solved_ = TickSolve::usual;
-    Motion<N> last_;           // of a tick solved together
-    double before_limit_ = 0;  // see held() [J]
-    int unsettled_ = 0;        // ticks without a solution, see LimitedSolve::stand_still()
-  };
+  Predictor<N> predictor_;
+  InertiaNetwork<N> network_;
+  Ledger<N> ledger_;
+  ContactSolve<N> contacts_;
+  Vec<N> y_;              // the last reading [rad]
+  Vec<N> acted_;          // torque of the tick just ended [N m]
+  Vec<N> slip_;           // how far its prediction was off [rad]
+  Vec<N> tau1_;           // as wanted, this tick [N m]
+  Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
+  double elapsed_ = 0;    // since the reading before; 0 at the first [s]
+  bool both_ = true;      // predictors
+  Vec<N> b_d_;            // for which quick_ is
+  bool quick_ = false;    // the device, see dies_within_a_tick()
+  bool limited_ = false;  // the last tick had motors at their limit,
+  bool goes_on_ = false;  // and so has this one, whatever comes
+  TickSolve solved_ = TickSolve::usual;
+  Motion<N> last_;           // of a tick solved together
+  double before_limit_ = 0;  // see held() [J]
+  int unsettled_ = 0;        // ticks without a solution, see LimitedSolve::stand_still()
 };
 
 extern template class PredictiveLaw::Of<3>;

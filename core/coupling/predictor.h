@@ -5,67 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "core/coupling/setting.h"
+#include "core/coupling/laws.h"
 #include "core/math/elementary.h"
 #include "core/math/solve.h"
 
 namespace limpid {
-
-enum class PredictorPreset : std::uint8_t { by_encoder, fine, coarse };
-inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "coarse"};
-
-// What a preset stands for; see the table of constants.
-struct PredictorGains {
-  double p;        // memory of a fading-memory filter, 0 none [-]
-  double mu;       // factor on the device's inertia in the predictor [-]
-  double damping;  // that walls get, as a part of m_n/T [-]
-};
-
-struct PredictorSettings {
-  PredictorPreset preset = PredictorPreset::by_encoder;
-  double memory = kAsPreset;   // p [-]
-  double inertia = kAsPreset;  // mu [-]
-  double hand_mass = 0.2;      // of the second predictor [kg]
-  int delay = 0;               // between command and motor, as far as it is known [ticks]
-
-  // Not a number stands for "as the preset has it".
-  static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
-  // Encoders coarser than this ask for the coarse preset [rad].
-  static constexpr double kCoarse = 1.5e-4;
-
-  // quick: see dies_within_a_tick().
-  PredictorGains gains(double encoder_step, bool quick) const {
-    const bool free = preset == PredictorPreset::by_encoder;
-    const bool coarse = preset == PredictorPreset::coarse || (free && encoder_step > kCoarse);
-    PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
-    if (free && quick) g.p = 0.45;
-    if (!std::isnan(memory)) g.p = memory;
-    if (!std::isnan(inertia)) g.mu = inertia;
-    return g;
-  }
-
-  template <class P>
-  static constexpr std::array<Setting<P>, 5> settings() {
-    return {
-        {{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2, 0,
-          2, false, true,
-          "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
-          "(walls up to 2000 N/m); auto goes by device.encoder_step, and takes the coarse memory "
-          "where a motion of the device dies out within a tick, as that of light links does."},
-         {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-          "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
-          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
-         {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
-          "Predictive coupling: factor on the device's inertia in the predictor. Default: "
-          "the preset's, 1 or 0.5."},
-         {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
-          "Predictive coupling: mass of hand and handle in the second predictor, which takes "
-          "over when it is the better one. 0 does without."},
-         {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
-          "Predictive coupling: delay between command and motor that it reckons with, in "
-          "ticks."}}};
-  }
-};
 
 // Whether some joint that moves alone, the others free, loses its motion to its damping b_d within
 // a tick: T b_d_j (M^-1)_jj > 1. The midpoint rule foretells there that it goes back and forth;

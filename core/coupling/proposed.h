@@ -19,42 +19,18 @@ Feedforward<N> feedforward(double eta, const Decomposition<N>& d, const Vec<N>& 
   return ff;
 }
 
-struct ProposedLaw {
-  static constexpr LawInfo kInfo{
-      .key = "proposed",
-      .label = "Proposed",
-      .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
-      .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
-      .scales_inertia = true,
-      .observes = true,
-      .keeps_ledger = false,
-      .sliders = kPaperSliders,
-  };
+template <int N>
+class ProposedLaw::Of : public PlainLaw<N> {
+ public:
+  // p: Settings and a SpringDamper.
+  template <class P>
+  Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
+    return with_feedforward(p.eta, p, in, proxy);
+  }
 
-  struct Settings {
-    double eta = 1;  // [-]
-
-    template <class P>
-    static constexpr std::array<Setting<P>, 1> settings() {
-      return {{{"coupling.eta", "\xCE\xB7", &P::eta, "-", 0.01, 100, 0.1, 10, true, true,
-                "Apparent inertia: the hand feels eta times M1 + M2, (12). Below eta_min of "
-                "(25) the coupling is not passive."}}};
-    }
-  };
-
-  template <int N>
-  class Of : public PlainLaw<N> {
-   public:
-    // p: Settings and a SpringDamper.
-    template <class P>
-    Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
-      return with_feedforward(p.eta, p, in, proxy);
-    }
-
-   private:
-    Vec<N> with_feedforward(double eta, const SpringDamper& p, const LawInput<N>& in,
-                            Proxy<N>& proxy);
-  };
+ private:
+  Vec<N> with_feedforward(double eta, const SpringDamper& p, const LawInput<N>& in,
+                          Proxy<N>& proxy);
 };
 
 extern template class ProposedLaw::Of<3>;

@@ -3,14 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 
+#include "core/coupling/laws.h"
 #include "core/math/sizes.h"
 
 namespace limpid {
-
-enum class VelocitySource : std::uint8_t { raw, lowpass, adaptive };
-inline constexpr std::array kVelocitySources{"raw", "lowpass", "adaptive"};
 
 // The adaptive window is the end-fit one of Janabi-Sharifi, Hayward and Chen (2000): the longest
 // window whose chord passes within one encoder step of every sample in it. Without quantisation

@@ -177,8 +177,4 @@ Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
   return values;
 }
 
-// The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
-// tip a direction in which it cannot move, as an arm stretched out has [rad].
-Eigen::VectorXd rest_pose(const ArmDescription& arm);
-
 }  // namespace limpid

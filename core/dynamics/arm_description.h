@@ -82,4 +82,8 @@ struct ArmDescription {
   bool slides(std::size_t joint) const { return joints[joint].kind == Joint::Kind::prismatic; }
 };
 
+// The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
+// tip a direction in which it cannot move, as an arm stretched out has [rad].
+Eigen::VectorXd rest_pose(const ArmDescription& arm);
+
 }  // namespace limpid

@@ -11,9 +11,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/coupling/force_observer.h"
 #include "core/coupling/laws.h"
-#include "core/tick/compensation.h"
 
 namespace limpid {
 
@@ -21,6 +19,37 @@ namespace limpid {
 inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 
 inline constexpr int kMostDelay = 20;  // of a device [ticks]
+
+// Where down is, in the base's frame.
+enum class Down : std::uint8_t { as_file, minus_z, plus_z, minus_x, plus_x, minus_y, plus_y };
+inline constexpr std::array<const char*, 7> kDowns{"file", "-z", "+z", "-x", "+x", "-y", "+y"};
+
+struct CompensationSettings {
+  bool holds_weight = false;
+  Down down = Down::as_file;
+  double friction_share = 0;  // s, of the Coulomb friction [-]
+  bool holds_springs = false;
+
+  static constexpr double kUsualShare = 0.7, kMostShare = 0.95;
+  friend bool operator==(const CompensationSettings&, const CompensationSettings&) = default;
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 4> settings() {
+    return {
+        {{"model.gravity", "hold the weight", &P::holds_weight, "-", 0, 1, 0, 1, false, true,
+          "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
+          "device does it by itself, as by counterweights."},
+         {"device.down", "down", choice<P, &P::down>(kDowns), "-", 0, 6, 0, 6, false, true,
+          "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
+          "side; file: as its file says, else -z."},
+         {"model.friction", "friction taken off", &P::friction_share, "-", 0, kMostShare, 0,
+          kMostShare, false, true,
+          "Share of the Coulomb friction that the motors take off the hand. Passive while that is "
+          "less than the friction that there is: leave what it may be wrong by."},
+         {"model.springs", "hold the springs", &P::holds_springs, "-", 0, 1, 0, 1, false, true,
+          "The motors hold against the device's own springs, as its file has them."}}};
+  }
+};
 
 struct Parameters : LawSettings, ObserverSettings, CompensationSettings {
   CouplingKind kind = CouplingKind::proposed;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "core/coupling/coupling.h"
 #include "core/coupling/force_observer.h"
-#include "core/coupling/laws.h"
 #include "core/coupling/velocity_estimator.h"
 #include "core/tick/compensation.h"
 #include "core/tick/energy_books.h"

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/dynamics/inverse_kinematics.h"
+#include "core/tick/tick.h"
 #include "devices/reading_health.h"
 #include "devices/virtual_arm.h"
 
@@ -26,6 +27,30 @@ class NoDevice final : public Device {
 
 }  // namespace
 
+template <int N>
+struct Rig::Of {
+  Of(const ArmDescription& arm, const Scene& scene, std::unique_ptr<Device> unplugged)
+      : tick(arm, scene),
+        own(std::move(unplugged)),
+        device(own.get()),
+        x_before(Vec<N>::Zero(arm.dof())),
+        v(x_before) {}
+  Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
+  void begin_at(const RigStart& start, const Vec3& target) noexcept;
+  Vec3 tip() const;
+  Vec<N> of_joints(std::span<const double> values) const;
+
+  Tick<N> tick;
+  std::unique_ptr<Device> own;  // in place while nothing is plugged in
+  Device* device;
+  bool here = false;  // it answered
+  DeviceReading reading;
+  Vec<N> x_before, v;  // as measured at the last step [rad, rad/s]
+  // Of the device's, that are known of; one that has just been plugged in may have had any.
+  std::optional<std::uint32_t> lapses = 0;
+  RigInput input;
+};
+
 Rig::Rig(const ArmDescription& arm, const Scene& scene) {
   with_dof(arm.dof(), [&](auto n) {
     of_ = std::make_unique<Of<n>>(arm, scene, std::make_unique<VirtualDevice<n>>(arm));
@@ -38,6 +63,10 @@ Rig::Rig(const ArmDescription& arm, const Scene& scene, Device* device) {
   });
   plug(device);
 }
+
+Rig::~Rig() = default;
+Rig::Rig(Rig&&) noexcept = default;
+Rig& Rig::operator=(Rig&&) noexcept = default;
 
 void Rig::plug(Device* device) noexcept {
   std::visit(
@@ -109,6 +138,10 @@ Vec3 Rig::Of<N>::tip() const {
 TouchWorld::TouchWorld(const ArmDescription& arm, const Scene& scene) {
   with_dof(arm.dof(), [&](auto n) { contacts_ = std::make_unique<Contacts<n>>(arm, scene); });
 }
+
+TouchWorld::~TouchWorld() = default;
+TouchWorld::TouchWorld(TouchWorld&&) noexcept = default;
+TouchWorld& TouchWorld::operator=(TouchWorld&&) noexcept = default;
 
 void Rig::exchange(TouchWorld& world) noexcept {
   std::visit(

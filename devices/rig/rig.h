@@ -7,12 +7,18 @@
 #include <optional>
 #include <span>
 #include <variant>
-#include <vector>
 
-#include "core/tick/tick.h"
+#include "core/dynamics/arm_description.h"
+#include "core/tick/arming.h"
+#include "core/tick/row.h"
+#include "core/tick/safety_limits.h"
+#include "core/touch/scene.h"
 #include "devices/device.h"
 
 namespace limpid {
+
+template <int N>
+class Contacts;
 
 // What reaches the loop from outside in one tick.
 struct RigInput {
@@ -36,6 +42,9 @@ class TouchWorld {
  public:
   // Not for the haptic thread. Every mesh of the scene has its shape.
   TouchWorld(const ArmDescription& arm, const Scene& scene);
+  ~TouchWorld();
+  TouchWorld(TouchWorld&&) noexcept;
+  TouchWorld& operator=(TouchWorld&&) noexcept;
 
  private:
   friend class Rig;
@@ -50,6 +59,9 @@ class Rig {
   Rig(const ArmDescription& arm, const Scene& scene);
   // With this one; without one it counts as lost.
   Rig(const ArmDescription& arm, const Scene& scene, Device* device);
+  ~Rig();
+  Rig(Rig&&) noexcept;
+  Rig& operator=(Rig&&) noexcept;
 
   // From the next step on; null: as if none was ever plugged in. The caller keeps it.
   void plug(Device* device) noexcept;
@@ -83,28 +95,7 @@ class Rig {
 
  private:
   template <int N>
-  struct Of {
-    Of(const ArmDescription& arm, const Scene& scene, std::unique_ptr<Device> unplugged)
-        : tick(arm, scene),
-          own(std::move(unplugged)),
-          device(own.get()),
-          x_before(Vec<N>::Zero(arm.dof())),
-          v(x_before) {}
-    Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
-    void begin_at(const RigStart& start, const Vec3& target) noexcept;
-    Vec3 tip() const;
-    Vec<N> of_joints(std::span<const double> values) const;
-
-    Tick<N> tick;
-    std::unique_ptr<Device> own;  // in place while nothing is plugged in
-    Device* device;
-    bool here = false;  // it answered
-    DeviceReading reading;
-    Vec<N> x_before, v;  // as measured at the last step [rad, rad/s]
-    // Of the device's, that are known of; one that has just been plugged in may have had any.
-    std::optional<std::uint32_t> lapses = 0;
-    RigInput input;
-  };
+  struct Of;
   std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<7>>, std::unique_ptr<Of<kAnyDof>>> of_;
 };
 

@@ -7,7 +7,7 @@
 
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/widgets/widgets.h"
-#include "core/tick/safety.h"
+#include "core/tick/safety_limits.h"
 
 namespace limpid {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/dynamics/arm.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {

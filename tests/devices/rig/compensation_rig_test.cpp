@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/rig/rig.h"
 #include "tests/support/built_in.h"

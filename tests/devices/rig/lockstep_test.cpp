@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
 #include "tests/support/rows.h"
 

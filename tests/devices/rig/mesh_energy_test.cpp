@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "tests/support/mesh_runs.h"
 

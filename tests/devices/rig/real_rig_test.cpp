@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/rig/rig.h"
 #include "tests/support/built_in.h"

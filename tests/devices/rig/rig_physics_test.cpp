@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/arm.h"
 #include "core/passivity/eta_min.h"
 #include "devices/rig/rig.h"
 #include "tests/support/built_in.h"

@@ -1,0 +1,66 @@
+// Device and proxy tied together by one law at a time.
+#pragma once
+
+#include "core/coupling/laws.h"
+#include "core/coupling/predictive.h"
+#include "core/coupling/proposed.h"
+#include "core/coupling/standard.h"
+
+namespace limpid {
+namespace detail {
+
+template <class>
+struct Instances;
+template <class... Law>
+struct Instances<std::tuple<Law...>> {
+  template <int N>
+  using Of = std::tuple<typename Law::template Of<N>...>;
+};
+
+}  // namespace detail
+
+// All laws, of which one at a time ties device and proxy together.
+template <int N>
+class Coupling {
+ public:
+  void start(const LawStart<N>& at) {
+    std::apply([&](auto&... law) { (law.start(at), ...); }, laws_);
+  }
+  // First in a tick: where the law takes the device to be.
+  template <class P>
+  Whereabouts<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
+    Whereabouts<N> at;
+    with(laws_, kind, [&](auto& law) { at = law.locate(p, in); });
+    return at;
+  }
+  // Then: steps the proxy over the tick; returns the torque that the motors are asked for [N m].
+  template <class P>
+  Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
+    Vec<N> torque;
+    with(laws_, kind, [&](auto& law) { torque = law.step(p, in, proxy); });
+    return torque;
+  }
+  // Last: what left of it [N m].
+  void applied(CouplingKind kind, const Vec<N>& torque) {
+    with(laws_, kind, [&](auto& law) { law.applied(torque); });
+  }
+  LawReport report(CouplingKind kind) const {
+    LawReport report;
+    with(laws_, kind, [&](const auto& law) { report = law.report(); });
+    return report;
+  }
+
+ private:
+  template <class All, class Action>
+  static void with(All& all, CouplingKind kind, const Action& action) {
+    std::uint8_t i = 0;
+    const auto one = [&](auto& law) {
+      if (i++ == static_cast<std::uint8_t>(kind)) action(law);
+    };
+    std::apply([&](auto&... law) { (one(law), ...); }, all);
+  }
+
+  detail::Instances<Laws>::Of<N> laws_;
+};
+
+}  // namespace limpid
