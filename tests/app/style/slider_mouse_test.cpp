@@ -23,7 +23,8 @@ class SliderMouse : public ImGuiFrames {
           const ParameterInfo& eta = *find_parameter("coupling.eta");
           const bool changed = of_value ? value_slider(eta, parameters.eta, 1)
                                         : parameter_slider(eta, parameters, 1);
-          if (changed) ++changes;
+          if (changed) given = parameters.eta;
+          changes += changed ? 1 : 0;
           ImGui::End();
           ImGui::PopStyleVar();
         },
@@ -62,6 +63,7 @@ class SliderMouse : public ImGuiFrames {
 
   Parameters parameters;  // eta 1, in the middle of a slider from 0.1 to 10
   int changes = 0;
+  double given = 1;  // by the last change, at once
   bool of_value = false;
 };
 
@@ -84,10 +86,11 @@ TEST_F(SliderMouse, WhatIsTypedBeyondTheLimitsIsTheLimit) {
   for (const bool other : {false, true}) {
     of_value = other;
     type("1e9");
-    EXPECT_EQ(parameters.eta, eta.maximum) << other;
+    EXPECT_EQ(given, eta.maximum) << other;
     type("-3");
-    EXPECT_EQ(parameters.eta, eta.minimum) << other;
+    EXPECT_EQ(given, eta.minimum) << other;
     type("2");
+    EXPECT_EQ(given, 2) << other;
     EXPECT_EQ(parameters.eta, 2) << other;
   }
 }
