@@ -84,6 +84,7 @@ void ViewMemory::clear() {
 
 void ViewMemory::update(ViewState& view, std::span<const ContactForce> contacts, double time) {
   if (!tips_.empty() && (time < tips_.back().time || time > tips_.back().time + 1)) clear();
+  if (!tips_.empty() && tips_.back().time == time) tips_.pop_back();  // it stands still
   tips_.push_back({time, view.device.tip, view.proxy.tip});
   while (tips_.front().time < time - kTrail) tips_.pop_front();
   for (const Tips& tips : tips_) {

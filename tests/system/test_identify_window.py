@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-from support import ASSETS
+from support import ASSETS, limpid
 from window import WindowTest
 
 PADDLE = Path(__file__).with_name("simulated_paddle.py")
+WITH_LOAD, LOAD = "a second time with a load at the tip", "load"
+GO_ON, AGAIN = "Go on (Enter)", "Again"
 
 
 class Identify(WindowTest):
@@ -52,7 +55,80 @@ class Identify(WindowTest):
                 self.wait("the findings again", lambda s: s["dialog"] == "identify")
 
 
-class IdentifyDevice(WindowTest):
+class IdentifyWithLoad(WindowTest):
+    GRAMS = 80  # another load than the one that stands there
+
+    def reports(self) -> list[Path]:
+        return sorted((self.home / "data/limpid/identified").glob("*/identified.json"))
+
+    def place(self, label: str) -> list[float]:
+        """Once the dialog has found its size."""
+        self.wait(label, lambda s: label in s["identify"]["places"])
+        return self.settled()["identify"]["places"][label]
+
+    def wait_for(self, phase: str) -> dict:
+        return self.wait(phase, lambda s: s["identify"]["phase"] == phase, 120)
+
+    def order_a_load(self) -> None:
+        self.key("F7")
+        self.click(*self.place(WITH_LOAD))
+        place = self.place(LOAD)
+        self.move(*place)
+        self.settled()
+        self.xdotool("keydown", "ctrl")
+        self.click(*place)
+        self.xdotool("keyup", "ctrl")
+        self.wait("typing", lambda s: s["typing"])
+        self.type(str(self.GRAMS))
+        self.key("Return")
+        self.wait("a load", lambda s: not s["typing"])
+        self.assertEqual(self.settled()["identify"]["phase"], "asking", "that Enter was the field's")
+
+    def drawn_scale(self) -> float:
+        """What the motors of the simulated device give of what they are told, as the command says."""
+        done = limpid("identify", "simulated", "--load", "0.05", "--out", self.home / "out")
+        return float(re.search(r"([\d.]+) was drawn", done.out)[1])
+
+    def begin(self) -> None:
+        self.key("Return")
+        self.wait_for("load")
+        self.assertEqual(self.settled()["identify"]["phase"], "load", "until it is told")
+
+    def check_found(self, report: Path) -> None:
+        found = json.loads(report.read_text())
+        self.assertAlmostEqual(found["load"], 1e-3 * self.GRAMS)
+        drawn, scale = self.drawn_scale(), found["torque_scale"]
+        self.assertGreater(abs(drawn - 1), 0.05, "or a load tells nothing")
+        self.assertAlmostEqual(scale["value"], drawn, delta=0.02 * drawn)
+        self.assertLess(scale["deviation"], 0.02 * drawn)
+        bare, loaded = (report.with_name(name).read_bytes()
+                        for name in ("motion.csv", "motion-with-load.csv"))
+        self.assertNotEqual(bare, loaded)
+
+    def test_it_waits_for_the_load_and_finds_what_the_motors_give(self) -> None:
+        self.order_a_load()
+        self.begin()
+        self.key("Escape")
+        self.assertEqual(self.wait_for("asking")["identify"]["wrong"], "stopped")
+        self.assertEqual(self.reports(), [])
+
+        self.begin()
+        self.key("Return")
+        self.wait_for("found")
+        first, = self.reports()
+        self.check_found(first)
+
+        self.click(*self.place(AGAIN))
+        self.wait_for("asking")
+        self.begin()
+        self.click(*self.place(GO_ON))
+        self.wait_for("found")
+        self.assertEqual(len(self.reports()), 2)
+
+
+class PaddleWindow(WindowTest):
+    BOOK = ""  # of the device
+
     def prepare(self) -> None:
         runtime = self.home / "runtime"
         (runtime / "limpid").mkdir(mode=0o700, parents=True)
@@ -63,11 +139,42 @@ class IdentifyDevice(WindowTest):
         self.addCleanup(device.kill)
         while not (runtime / "limpid/paddle.device").exists():
             time.sleep(0.05)
-        (self.home / "config/limpid/devices.toml").write_text(
-            'in_use = "socket:paddle"\n[device."socket:paddle"]\nchecked = true\n')
+        self.book = self.home / "config/limpid/devices.toml"
+        self.book.write_text(f'in_use = "socket:paddle"\n[device."socket:paddle"]\n{self.BOOK}')
         self.words = ["--device", str(ASSETS / "devices/paddle.urdf")]
         if hasattr(os, "sched_setscheduler") and os.geteuid() == 0:
             os.sched_setscheduler(device.pid, os.SCHED_FIFO, os.sched_param(50))
+
+
+class AxesOfADevice(PaddleWindow):
+    SIZE = (1600, 880)  # all of the panel
+
+    def begin_check(self) -> None:
+        self.wait("the check's button", lambda s: s["device"]["check"])
+        place = self.settled()["device"]["check"]
+        if place:  # not in the loop by now
+            self.click(*place)
+
+    def test_are_checked_before_it_may_push_and_again_after_a_check_that_was_stopped(self) -> None:
+        self.begin_check()
+        self.wait("the check", lambda s: s["device"]["checking"])
+        self.key("Escape")
+        state = self.wait("its end", lambda s: not s["device"]["checking"])
+        self.assertIn("interrupted", state["device"]["problem"])
+        self.assertFalse(state["identify"]["plugged"])
+        end = time.monotonic() + 60  # a stall of 5 ms ends it
+        while "checked = true" not in self.book.read_text() and time.monotonic() < end:
+            self.begin_check()
+            self.wait("its end", lambda s: not s["device"]["checking"]
+                      and (s["device"]["check"] or s["identify"]["plugged"]))
+        self.wait_for_notice("Its axes move as they are pushed.")
+        self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
+        self.assertFalse(self.state()["force"])
+        self.wait("why it has none", lambda s: s["device"]["explains_force"])
+
+
+class IdentifyDevice(PaddleWindow):
+    BOOK = "checked = true\n"
 
     def test_leaves_the_loop_and_comes_back(self) -> None:
         """To the end a device that is a program seldom comes: a stall of 5 ms ends it."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import resource
 import signal
@@ -16,6 +17,21 @@ from support import ASSETS, LIMPID, Result, Started, SystemTest, limpid
 
 SESSION = ASSETS / "sessions" / "table.h5"  # 8.491 s
 SMALL = ("--size", "320x180", "--no-plots")
+TWO_CAMERAS = """title = "Two cameras"
+scene = "table.toml"
+seconds = 4
+[[step]]
+time = 0
+caption = "From afar."
+beside = false
+camera = "iso"
+hand = [[0, 0.19, 0, 0]]
+[[step]]
+time = 1
+caption = "From near by."
+beside = false
+camera = { view = "side", target = [0.17, 0, -0.02], size = 0.1 }
+"""
 
 
 def boxes(file: Path) -> list[tuple[bytes, bytes]]:
@@ -54,6 +70,20 @@ class Video(SystemTest):
             self.assertEqual(struct.unpack(">8s4x4sII", picture[:24]),
                              (b"\x89PNG\r\n\x1a\n", b"IHDR", 480, 400))  # fmt: skip
         self.assertEqual(len(set(pictures)), 4, "it stands still")
+
+    def test_each_step_of_a_story_has_its_camera_wherever_the_video_begins(self) -> None:
+        script = self.out(".toml")
+        script.write_text(TWO_CAMERAS)
+
+        def pictures(*options: str) -> list[str]:
+            out = self.out("")
+            result = limpid("story", script, "--video", out, *SMALL, "--fps", "5", *options)
+            self.assertEqual((result.status, result.err), (0, ""))
+            return [hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(out.iterdir())]
+
+        whole, end = pictures(), pictures("--from", "3.6")
+        self.assertEqual(whole[-2:], end, "the camera has long been where it goes")
+        self.assertNotIn(end[0], whole[:5])
 
     def test_an_mp4_says_how_long_it_is_before_its_pictures_come(self) -> None:
         out = self.out(".mp4")

@@ -122,7 +122,6 @@ void IdentifyDesk::follow_motion() {
   if (order_.load > 0 && !bare_) {
     bare_ = std::move(run);
     phase_ = Phase::load;
-    if (simulated()) go_on();
     return;
   }
   IdentifyRun with_load;

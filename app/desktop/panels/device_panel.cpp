@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/desktop/panels/parameter_rows.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
 #include "app/style/palette.h"
@@ -76,7 +77,7 @@ bool axis_check(DeviceDesk& devices) {
   }
   if (!devices.awaits_check()) return false;
   ImGui::TextWrapped("%s", devices.problem().c_str());
-  if (ImGui::Button("Check the axes")) devices.start_check();
+  if (noted_button(kCheckAxes)) devices.start_check();
   tooltip(
       "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
       "device stand free, the hands beside it; Esc stops it.");

@@ -15,6 +15,9 @@ struct PadChoice {
 // can.
 Parameters reckoning_with(Parameters p, double delay);
 
+// The button that begins the check of a device's axes.
+inline constexpr const char* kCheckAxes = "Check the axes";
+
 // True once the device is to be identified.
 bool draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
 

@@ -16,6 +16,11 @@ namespace {
 
 using Phase = IdentifyDesk::Phase;
 
+constexpr const char* kTitle = "Identify the device";
+constexpr const char* kWithLoad = "a second time with a load at the tip";
+constexpr const char* kLoad = "load";
+constexpr const char* kGoOn = "Go on (Enter)";
+constexpr const char* kAgain = "Again";
 constexpr float kLabels = 14;  // width of them [text sizes]
 constexpr std::array kDownLabels{"as the arm's file says", "-z", "+z", "-x", "+x", "-y", "+y"};
 
@@ -58,7 +63,8 @@ void draw_motion(IdentifyDesk& desk, const ArmDescription& arm) {
 void draw_load(IdentifyDesk& desk, double load) {
   ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to it, and let go.",
                      1e3 * load);
-  if (ImGui::Button("Go on (Enter)") || accepted()) desk.go_on();
+  if (desk.simulated()) muted("The simulated device has it once you go on.");
+  if (noted_button(kGoOn) || accepted()) desk.go_on();
   ImGui::SameLine();
   if (ImGui::Button("Stop (Esc)")) desk.stop();
 }
@@ -124,11 +130,19 @@ bool draw_found(IdentifyDesk& desk) {
     tooltip("From now on the device is taken for what was found.");
     ImGui::SameLine();
   }
-  if (ImGui::Button(desk.simulated() ? "Again" : "Leave it as it was")) desk.stop();
+  if (noted_button(desk.simulated() ? kAgain : "Leave it as it was")) desk.stop();
   return false;
 }
 
 }  // namespace
+
+std::map<std::string, ImVec2> IdentifyDialog::places() {
+  std::map<std::string, ImVec2> all;
+  for (const char* label : {kWithLoad, kLoad, kGoOn, kAgain}) {
+    if (const auto at = noted_place(kTitle, label)) all[label] = *at;
+  }
+  return all;
+}
 
 void IdentifyDialog::draw_question(IdentifyDesk& desk, const ArmDescription& arm) {
   ImGui::TextWrapped(
@@ -144,12 +158,14 @@ void IdentifyDialog::draw_question(IdentifyDesk& desk, const ArmDescription& arm
   ImGui::Combo("down, seen from the base", &down, kDownLabels.data(),
                static_cast<int>(kDownLabels.size()));
   down_ = static_cast<Down>(down);
-  ImGui::Checkbox("a second time with a load at the tip", &with_load_);
+  ImGui::Checkbox(kWithLoad, &with_load_);
+  note_place(kWithLoad);
   tooltip("A mass that you know tells what the motors really give of what they are told.");
   if (with_load_) {
     ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
-    ImGui::SliderFloat("load", &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",
+    ImGui::SliderFloat(kLoad, &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    note_place(kLoad);
   }
   ImGui::Spacing();
   const std::string why_not = desk.why_not();
@@ -178,7 +194,7 @@ void IdentifyDialog::draw(bool& open, IdentifyDesk& desk, Down down, const ArmDe
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   const float em = ImGui::GetFontSize();
   const float wide = desk.phase() == Phase::found ? 52 * em : 36 * em;
-  if (!begin_modal("Identify the device", open, {std::min(wide, 0.94f * room.x), 0})) {
+  if (!begin_modal(kTitle, open, {std::min(wide, 0.94f * room.x), 0})) {
     if (std::exchange(was_open_, false)) desk.leave();
     return;
   }

@@ -1,6 +1,11 @@
 // Leads through the identification of a device: what is asked before, what goes on, what was found.
 #pragma once
 
+#include <imgui.h>
+
+#include <map>
+#include <string>
+
 #include "app/desktop/desk/identify_desk.h"
 #include "core/tick/compensation.h"
 
@@ -11,6 +16,9 @@ class IdentifyDialog {
   // While `open`; a motion ends when it is closed. `down`: of the settings, the start of the
   // choice.
   void draw(bool& open, IdentifyDesk& desk, Down down, const ArmDescription& arm);
+
+  // What of it can be clicked, by its label, and where it was drawn in the last frame [px].
+  static std::map<std::string, ImVec2> places();
 
  private:
   void draw_question(IdentifyDesk& desk, const ArmDescription& arm);

@@ -196,7 +196,7 @@ void Frame::draw_side(ScreenRect rect) {
   Parameters& parameters = settings.parameters;
   Desk& desk = desktop_.desk();
   const Stage& shown = desktop_.shown();
-  begin_panel("side", rect);
+  begin_panel(kSidePanel, rect);
   if (section("Scene", true)) {
     if (const PlayedSession* session = desktop_.playback().shown()) {
       ScenePanel::draw_recorded(session->document());

@@ -6,6 +6,8 @@
 
 namespace limpid {
 
+inline constexpr const char* kSidePanel = "side";  // the right one, as a window of ImGui
+
 struct WindowSize {
   float width, height;    // [px]
   float scale;            // of text and controls

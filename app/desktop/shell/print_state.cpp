@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/desktop/panels/device_panel.h"
+#include "app/desktop/panels/identify_dialog.h"
+#include "app/desktop/shell/layout.h"
 #include "app/desktop/sweep/sweep_desk.h"
 #include "app/desktop/widgets/modal.h"
 
@@ -51,15 +54,18 @@ nlohmann::json state_of(const SweepDesk& desk) {
   return state;
 }
 
-// `plugged`: the device is in the loop.
+nlohmann::json place(const ImVec2& at) { return {at.x, at.y}; }
+
+// `plugged`: the device is in the loop; `places`: what of the dialog can be clicked [px].
 nlohmann::json state_of(const IdentifyDesk& desk, bool plugged) {
+  nlohmann::json places = nlohmann::json::object();
+  for (const auto& [label, at] : IdentifyDialog::places()) places[label] = place(at);
   constexpr std::array kPhases{"asking", "moving", "load", "working", "found"};
   return {{"phase", kPhases[static_cast<std::size_t>(desk.phase())]},
           {"wrong", desk.wrong()},
-          {"plugged", plugged}};
+          {"plugged", plugged},
+          {"places", places}};
 }
-
-nlohmann::json place(const ImVec2& at) { return {at.x, at.y}; }
 
 // What stands over the picture, and where its buttons are [px].
 nlohmann::json banners_of(const Desktop& d) {
@@ -93,10 +99,15 @@ nlohmann::json recorded(Desktop& d) {
   return {{"kind", name(p.kind)}, {"eta", p.eta}, {"facts", facts}};
 }
 
+// `check`: where the button is that begins the check of its axes; null while it is not there [px].
 nlohmann::json state_of(const DeviceDesk& desk) {
+  const auto check = noted_place(kSidePanel, kCheckAxes);
   return {{"in_use", desk.hub().in_use()},
           {"problem", desk.problem()},
-          {"waits_for_choice", desk.waits_for_choice()}};
+          {"waits_for_choice", desk.waits_for_choice()},
+          {"check", check ? place(*check) : nlohmann::json()},
+          {"checking", desk.check() != nullptr},
+          {"explains_force", noted_place(kSidePanel, "force").has_value()}};
 }
 
 std::string told(Desktop& d) {

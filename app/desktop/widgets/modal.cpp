@@ -22,14 +22,6 @@ void note_dialog() {
   window->StateStorage.SetBool(key(kDialog, ""), true);
 }
 
-void note(const char* label) {
-  ImGuiStorage& notes = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
-  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  notes.SetFloat(key(label, "x"), 0.5f * (from.x + to.x));
-  notes.SetFloat(key(label, "y"), 0.5f * (from.y + to.y));
-  notes.SetInt(key(label, "frame"), ImGui::GetFrameCount());
-}
-
 std::optional<ImVec2> noted_in(const ImGuiWindow& window, const char* label) {
   const ImGuiStorage& notes = window.StateStorage;
   if (notes.GetInt(key(label, "frame"), -1) != ImGui::GetFrameCount()) return std::nullopt;
@@ -68,7 +60,7 @@ bool begin_dialog(const char* title, bool& open, ImGuiWindowFlags flags) {
 
 void close_button(const char* label, bool& open) {
   if (ImGui::Button(label)) open = false;
-  note(kClosing);
+  note_place(kClosing);
 }
 
 bool accepted() {
@@ -79,9 +71,17 @@ bool accepted() {
           ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
 }
 
+void note_place(const char* label) {
+  ImGuiStorage& notes = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  notes.SetFloat(key(label, "x"), 0.5f * (from.x + to.x));
+  notes.SetFloat(key(label, "y"), 0.5f * (from.y + to.y));
+  notes.SetInt(key(label, "frame"), ImGui::GetFrameCount());
+}
+
 bool noted_button(const char* label) {
   const bool pressed = ImGui::Button(label);
-  note(label);
+  note_place(label);
   return pressed;
 }
 

@@ -21,8 +21,9 @@ void close_button(const char* label, bool& open);
 // Enter was pressed in the dialog being drawn, and not in a text field, which takes it itself.
 bool accepted();
 
-// A button that says where it is to who drives the window from outside.
-bool noted_button(const char* label);
+// Says where the item just drawn is to who drives the window from outside.
+void note_place(const char* label);
+bool noted_button(const char* label);  // a button that does so
 // The middle of one that was drawn in the last frame, in a window [px]; nothing: it was not.
 std::optional<ImVec2> noted_place(const char* window, const char* label);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 
@@ -43,6 +44,7 @@ void read_out(const char* label, const std::string& value, const std::string& br
   const Palette& colours = palette(current_theme());
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
   ImGui::TextUnformatted(label);
+  note_place(label);
   ImGui::PopStyleColor();
   const bool on_label = ImGui::IsItemHovered();
   const ImVec2 label_from = ImGui::GetItemRectMin();

@@ -87,6 +87,20 @@ TEST_F(LiveExperiments, CoordinationFailsWhereNothingIsTouched) {
   EXPECT_FALSE(run_the("coordination", bench).passed());
 }
 
+// Both runs under one law: the second slope is no smaller than the first.
+TEST_F(LiveExperiments, CoordinationFailsWhereTheCouplingsAreAlike) {
+  LiveLaboratory bench = lab({pressing});
+  bench.run = [run = bench.run](LiveTrial trial) {
+    trial.parameters.kind = CouplingKind::standard;
+    return run(trial);
+  };
+  const Outcome outcome = run_the("coordination", bench);
+  EXPECT_FALSE(outcome.passed());
+  const Check& last = outcome.checks.back();
+  EXPECT_NEAR(last.value, 1, 1e-9) << last.what;
+  EXPECT_FALSE(last.passed);
+}
+
 TEST_F(LiveExperiments, InertiaFindsEtaWithoutTheHandsTorque) {
   LiveLaboratory bench = lab({swinging, 3000});
   const Outcome outcome = run_the("inertia", bench);

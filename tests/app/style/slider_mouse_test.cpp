@@ -20,7 +20,11 @@ class SliderMouse : public ImGuiFrames {
           ImGui::SetNextWindowPos({kLeft, kTop});
           ImGui::SetNextWindowSize({kWidth, 100});
           ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
-          if (parameter_slider(*find_parameter("coupling.eta"), parameters, 1)) ++changes;
+          const ParameterInfo& eta = *find_parameter("coupling.eta");
+          const bool changed = of_value ? value_slider(eta, parameters.eta, 1)
+                                        : parameter_slider(eta, parameters, 1);
+          if (changed) given = parameters.eta;
+          changes += changed ? 1 : 0;
           ImGui::End();
           ImGui::PopStyleVar();
         },
@@ -42,6 +46,14 @@ class SliderMouse : public ImGuiFrames {
   void wait(double seconds) {
     for (double t = 0; t < seconds; t += 0.05) draw(0.05f);
   }
+  void type(const char* text) {
+    click(kLeft + 0.9f * kWidth);
+    click(kLeft + 0.9f * kWidth);
+    ImGui::GetIO().AddInputCharactersUTF8(text);
+    draw();
+    key(GLFW_KEY_ENTER);
+    wait(1);  // or the next click is a third one
+  }
   void key(int which) {
     for (const bool down : {true, false}) {
       ImGui::GetIO().KeysDown[which] = down;
@@ -51,6 +63,8 @@ class SliderMouse : public ImGuiFrames {
 
   Parameters parameters;  // eta 1, in the middle of a slider from 0.1 to 10
   int changes = 0;
+  double given = 1;  // by the last change, at once
+  bool of_value = false;
 };
 
 TEST_F(SliderMouse, DoubleClickToTypeLeavesTheValueAlone) {
@@ -65,6 +79,20 @@ TEST_F(SliderMouse, DoubleClickToTypeLeavesTheValueAlone) {
   key(GLFW_KEY_ENTER);
   EXPECT_EQ(parameters.eta, 0.25);
   EXPECT_EQ(changes, 1);
+}
+
+TEST_F(SliderMouse, WhatIsTypedBeyondTheLimitsIsTheLimit) {
+  const ParameterInfo& eta = *find_parameter("coupling.eta");
+  for (const bool other : {false, true}) {
+    of_value = other;
+    type("1e9");
+    EXPECT_EQ(given, eta.maximum) << other;
+    type("-3");
+    EXPECT_EQ(given, eta.minimum) << other;
+    type("2");
+    EXPECT_EQ(given, 2) << other;
+    EXPECT_EQ(parameters.eta, 2) << other;
+  }
 }
 
 TEST_F(SliderMouse, EscapeEndsTypingWithTheValueAsItWas) {

@@ -208,6 +208,8 @@ assert f["/coupling/kind"].dtype == "uint8" and f["/device/position"].attrs["uni
 assert f["/time"][7] == 0.007 and list(f["/coupling/kind"][:3]) == [0, 1, 0]
 if len(sys.argv) > 3:
     assert f["/events/row"][0] == 3 and f["/events/setting"][0] == b"coupling.k_vc = 8"
+    # An object's name may have any letter.
+    assert h5py.check_string_dtype(f["/events/setting"].dtype).encoding == "utf-8"
 )");
   const auto python = [&](const fs::path& file, const std::string& rest) {
     return std::system(
