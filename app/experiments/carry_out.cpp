@@ -80,6 +80,12 @@ Outcome carry_out(const Experiment& experiment, const Laboratory::Options& optio
   std::filesystem::create_directories(options.dir);
   Laboratory lab(experiment.name, options);
   Outcome outcome = experiment.run(lab);
+  const std::string conditions = lab.conditions().text();
+  if (!conditions.empty()) {
+    outcome.figure.caption += " " + conditions;
+    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
+                                     static_cast<double>(lab.diverged()), 0));
+  }
   write_outcome(experiment.name, outcome, options.dir);
   return outcome;
 }
