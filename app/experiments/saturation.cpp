@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/experiments/excitation.h"
+#include "app/experiments/limited_corners.h"
 #include "app/experiments/series.h"
 #include "app/experiments/tap_bench.h"
 
@@ -172,7 +173,9 @@ Outcome saturation(Laboratory& lab) {
       "Proposed and predictive coupling at the paper's gains, eta = {}, motors limited to {} N m, "
       "table 600 N/m. "
       "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
-      "them.",
+      "them. Last two panels: the predictive coupling's tip pressed into a corner of one to six "
+      "planes of 100 to 10,000 N/m, rough or smooth, and rubbed along it, with motors of 0.1 to "
+      "0.6 N m; each point is one corner, drawn at random, as are arm, grip and eta.",
       kEta, kLimit);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(with, without, spring, predicted);
@@ -207,6 +210,7 @@ Outcome saturation(Laboratory& lab) {
   outcome.checks.push_back(at_most(where + "largest contact torque over the motors' limit",
                                    push.torque / kPushLimit, 1.3));
   outcome.checks.push_back(at_most(where + "chatter [m/s]", push.chatter, 1e-4));
+  press_into_corners(lab, outcome);
   return outcome;
 }
 
