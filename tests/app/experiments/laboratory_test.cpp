@@ -99,8 +99,7 @@ TEST_F(Laboratories, RememberUnderWhichConditionsTheyRan) {
   Laboratory lab("test", options_);
   EXPECT_EQ(lab.conditions().text(), "");
   lab.run(three());
-  EXPECT_NE(lab.conditions().text().find("limit of every motor: the arm's own"),
-            std::string::npos);
+  EXPECT_NE(lab.conditions().text().find("limit of every motor: the arm's own"), std::string::npos);
 }
 
 TEST_F(Laboratories, RunAgainWhatAnotherPlanLeft) {

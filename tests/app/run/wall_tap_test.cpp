@@ -78,8 +78,8 @@ TEST(WallTap, AsksNoMoreOfTheMotorsThanTheyBearTwice) {
 
 TEST(WallTap, OfAnArmOfOneJointTurnsIt) {
   const ArmDescription arm = test::random_arm(1, 4);
-  const Tapped t = tap(arm, Eigen::VectorXd::Constant(1, 0.2), {.wall = 300, .press = 1},
-                       predictive());
+  const Tapped t =
+      tap(arm, Eigen::VectorXd::Constant(1, 0.2), {.wall = 300, .press = 1}, predictive());
   EXPECT_NEAR(t.felt, 1, 0.05);
 }
 

@@ -89,7 +89,8 @@ axis = [ { key = "coupling.eta", values = [1] } ])"),
               HasSubstr("finds its way"));
   EXPECT_THAT(refusal("scene = \"free.toml\"\n" + kTaps), HasSubstr("its own wall"));
   const auto joints = [](const std::string& count) {
-    return "hand = { tap = 2 }\nmeasure = [\"energy\"]\n[[axis]]\nkey = \"arm.joints\"\nvalues = [" +
+    return "hand = { tap = 2 }\nmeasure = [\"energy\"]\n[[axis]]\nkey = \"arm.joints\"\nvalues = "
+           "[" +
            count + "]\n";
   };
   for (const char* count : {"0", "33", "2.5"}) {
