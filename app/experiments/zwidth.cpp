@@ -286,7 +286,9 @@ Outcome zwidth(Laboratory& lab) {
       "but in the last panel. Well: at most {} mJ given to the human, tip above {} Hz "
       "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
       "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them, one at the "
-      "bottom renders none.",
+      "bottom renders none. Each thing is varied alone, beside the encoder: a delay, another tick "
+      "and a mass at once are not covered, nor are other arms (see walls) and other etas under a "
+      "delay (see delay).",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       TapSetting{}.torque_limit, 1e3 * WellRendered::kPort, TapBench::kFast,
       1e3 * WellRendered::kChatter, 100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy,
