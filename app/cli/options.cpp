@@ -119,7 +119,7 @@ void InputOptions::add_parameters(CLI::App& command) {
       .add_option("--coupling", coupling,
                   fmt::format("{} (coupling.kind)", fmt::join(kLawKeys, " or ")))
       ->type_name("KIND");
-  command.add_option("--eta", eta, "apparent inertia (coupling.eta)")->type_name("RATIO");
+  command.add_option("--eta", eta, "impedance scaling (coupling.eta)")->type_name("RATIO");
   command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");
 }
 

@@ -22,6 +22,8 @@ Outcome lightness(Laboratory& lab);
 Outcome zwidth(Laboratory& lab);
 Outcome switching(Laboratory& lab);
 Outcome friction(Laboratory& lab);
+Outcome delay(Laboratory& lab);
+Outcome walls(Laboratory& lab);
 
 namespace {
 
@@ -33,7 +35,7 @@ constexpr std::array kExperiments{
     Experiment{"spectrum", "frequency content of the hand's motion (Fig. 7)", spectrum},
     Experiment{"saturation",
                "contact beyond the torque limit, with and without anti-windup "
-               "(section 3.1)",
+               "(section 3.1), and between walls",
                saturation},
     Experiment{"observer", "bandwidth of the human force estimate (section 3.1)", observer},
     Experiment{"transparency", "impedance felt at the handle", transparency},
@@ -44,6 +46,8 @@ constexpr std::array kExperiments{
     Experiment{"switching", "contacts made and broken, couplings switched while pressing",
                switching},
     Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},
+    Experiment{"delay", "what is given and felt where the device's torque comes late", delay},
+    Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,
@@ -80,6 +84,12 @@ Outcome carry_out(const Experiment& experiment, const Laboratory::Options& optio
   std::filesystem::create_directories(options.dir);
   Laboratory lab(experiment.name, options);
   Outcome outcome = experiment.run(lab);
+  const std::string conditions = lab.conditions().text();
+  if (!conditions.empty()) {
+    outcome.figure.caption += " " + conditions;
+    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
+                                     static_cast<double>(lab.diverged()), 0));
+  }
   write_outcome(experiment.name, outcome, options.dir);
   return outcome;
 }

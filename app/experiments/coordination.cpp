@@ -16,7 +16,7 @@ constexpr double kInertiaErrors[] = {0.5, 2};
 double largest_error(const Session& s) {
   double largest = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
-    largest = std::max(largest, coordination_error(s, k).norm());
+    largest = worse(largest, coordination_error(s, k).norm());
   }
   return largest;
 }

@@ -17,17 +17,20 @@ constexpr double kEtaStep = 0.05;    // of the plan's axis
 enum Axis : std::size_t { kTicks, kGrip, kEta };
 enum Ticks : std::size_t { kFine, kPaper };
 
-// How far the furthest point of a map lies on the wrong side of a line of theory, in eta.
+// How far the furthest point of a map lies on the wrong side of a line of theory, in eta; infinite
+// where none was compared.
 double misplaced(const SweepPlan& plan, const SweepTable& table, Ticks ticks, double stiffest,
                  const std::string& line) {
   double worst = 0;
+  int compared = 0;
   for (std::uint64_t i = 0; i < table.points(); ++i) {
     const SweepPoint point = point_of(plan, i);
     if (point.place[kTicks] != ticks || point.values[kGrip] > stiffest) continue;
     const double beyond = point.values[kEta] - eta_limit(line, run_of(plan, i));
-    worst = std::max(worst, table.at(i, 0) == 1 ? -beyond : beyond);
+    worst = worse(worst, table.at(i, 0) == 1 ? -beyond : beyond);
+    ++compared;
   }
-  return worst;
+  return compared > 0 ? worst : HUGE_VAL;
 }
 
 std::string caption(const SweepPlan& plan) {

@@ -1,7 +1,9 @@
 // The experiments: what each needs, finds and promises.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "app/experiments/conditions.h"
 #include "app/figure/figure.h"
 #include "app/run/simulate.h"
 
@@ -32,6 +35,15 @@ inline Check at_least(std::string what, double value, double bound) {
   return {std::move(what), value, bound, value >= bound};
 }
 
+// The larger of two, for the worst of many; not a number if one of them is none: what could not be
+// measured fails its check, where std::max would leave it out.
+inline double worse(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::nan("") : std::max(a, b);
+}
+
+// The same of what should be large.
+inline double worse_low(double a, double b) { return -worse(-a, -b); }
+
 struct Outcome {
   Figure figure;
   std::vector<Check> checks;
@@ -47,8 +59,9 @@ struct Outcome {
 struct Trial {
   std::string name;  // of its session file: DIR/NAME/name.h5
   RunPlan plan;
-  bool keep = true;         // record it; maps of hundreds of short runs need not
-  std::string folder = {};  // in place of NAME, for trials that experiments share
+  bool keep = true;          // record it; maps of hundreds of short runs need not
+  std::string folder = {};   // in place of NAME, for trials that experiments share
+  bool may_diverge = false;  // whether it does is what is asked; any other that does is a failure
 };
 
 struct TrialResult {
@@ -84,6 +97,10 @@ class Laboratory {
   // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
   void run(const std::vector<Trial>& trials,
            const std::function<void(std::size_t, const TrialResult&)>& take);
+  // How many diverged of those that may not.
+  std::size_t diverged() const { return diverged_; }
+  const Conditions& conditions() const { return conditions_; }  // of all that was run
+
   // All points of a plan. Throws Cancelled; std::runtime_error.
   SweepTable sweep(const SweepPlan& plan);
 
@@ -95,6 +112,8 @@ class Laboratory {
 
   std::string experiment_;
   Options options_;
+  Conditions conditions_;
+  std::atomic<std::size_t> diverged_{0};
 };
 
 struct Experiment {
@@ -110,8 +129,9 @@ std::span<const Experiment> experiments();
 void write_outcome(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& dir);
 
-// Runs one and writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError, Cancelled,
-// std::runtime_error.
+// Runs one and writes DIR/NAME.csv, .png, .svg and .json; its caption says under which conditions
+// it was run, and a check of its own that no trial diverged that may not. Errors: FileError,
+// Cancelled, std::runtime_error.
 Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options);
 
 // Writes DIR/report.html over every verdict found in DIR.

@@ -18,6 +18,7 @@ constexpr double kDrag = 0.03;              // there and back [m]
 constexpr double kDown = 0.5, kEnd = 3.5;   // [s]
 constexpr double kSlipping = 5e-3;          // of the tip, surely [m/s]
 constexpr double kEdgeWall = 3000, kEdgePress = 5, kEdgeEnd = 1.6;
+constexpr double kStrong = 100;  // motors that never meet their limit [N m]
 
 struct Case {
   std::string label;
@@ -53,13 +54,13 @@ Trial drag(const RoughWalls& walls) {
                  hand_path(source, p.tick, kEnd, at), p);
 }
 
-// Pressed into an edge or a corner, wandering about in it.
-Trial wander(const RoughWalls& walls, double eta, double grip) {
+// Pressed into an edge or a corner, wandering about in it. `motors`: their limit [N m].
+Trial wander(const RoughWalls& walls, double eta, double grip, double motors) {
   Parameters p;
   p.kind = CouplingKind::predictive;
   p.eta = eta;
   p.hand_stiffness = grip;
-  p.torque_limit = 100;
+  p.torque_limit = motors;
   const double press = kEdgePress / grip + kEdgePress / walls.stiffness;
   Vec3 in = Vec3::Zero();
   for (int i = 0; i < walls.walls; ++i) in -= kOutward[i];
@@ -72,7 +73,8 @@ Trial wander(const RoughWalls& walls, double eta, double grip) {
   };
   const std::string source = fmt::format("wandering in {} walls, {:.6g} m", walls.walls, press);
   const std::string name =
-      fmt::format("{}-{}-eta-{}", walls.walls == 2 ? "edge" : "corner", walls.friction_static, eta);
+      fmt::format("{}-{}-eta-{}-{}", walls.walls == 2 ? "edge" : "corner", walls.friction_static,
+                  eta, std::isnan(motors) ? "own-motors" : "strong-motors");
   return rubbing(name, walls, hand_path(source, p.tick, kEdgeEnd, at), p);
 }
 
@@ -85,6 +87,8 @@ struct Verdict {
   double off_kinetic = 0;   // furthest off the kinetic force while the tip slips, of it [-]
   double crept = 0;         // most that the tip moved besides the spring while it stuck [m]
   double broke_away = 0;    // highest tangential over normal force [-]
+  int stuck = 0, slid = 0;  // ticks of which the two before were asked
+  int touched = 0;          // ticks that all walls did
   std::vector<double> sum;  // given up to each tick [J]
 };
 
@@ -94,22 +98,24 @@ Verdict judge(const RoughWalls& walls, const std::vector<std::vector<Rub>>& rubs
   std::vector<Rub> before(static_cast<std::size_t>(walls.walls));
   std::vector<double> last(before.size());
   for (const auto& now : rubs) {
+    v.touched += std::ranges::all_of(now, [](const Rub& rub) { return rub.normal > 0; });
     for (std::size_t i = 0; i < now.size(); ++i) {
       const double given = given_by_friction(walls, before[i], now[i]);
-      v.given = std::max(v.given, given);
+      v.given = worse(v.given, given);
       sum += given;
       if (now[i].normal == 0) continue;
-      v.broke_away = std::max(v.broke_away, ratio(now[i]));
-      v.beyond = std::max(v.beyond, ratio(now[i]) - walls.friction_static);
+      v.broke_away = worse(v.broke_away, ratio(now[i]));
+      v.beyond = worse(v.beyond, ratio(now[i]) - walls.friction_static);
       const double slip = slipped(walls, before[i], now[i]);
       if (slip > kSlipping * tick && last[i] > kSlipping * tick && walls.friction_kinetic > 0) {
-        v.off_kinetic =
-            std::max(v.off_kinetic, std::abs(ratio(now[i]) / walls.friction_kinetic - 1));
+        ++v.slid;
+        v.off_kinetic = worse(v.off_kinetic, std::abs(ratio(now[i]) / walls.friction_kinetic - 1));
       }
       last[i] = slip;
       // Strictly inside both cones nothing can slip.
       if (ratio(now[i]) < 0.99 * walls.friction_kinetic && before[i].normal > 0) {
-        v.crept = std::max(v.crept, slip);
+        ++v.stuck;
+        v.crept = worse(v.crept, slip);
       }
     }
     before = now;
@@ -196,9 +202,10 @@ FigurePanel taken_panel(const std::vector<Dragged>& all) {
   return panel;
 }
 
-// Edge and corner: the panel of E_c, and what is promised of them.
-FigurePanel between_walls(Laboratory& lab, std::vector<Check>& checks) {
-  FigurePanel panel{.title = fmt::format("Wandering in an edge and a corner of {} N/m", kEdgeWall),
+// Edge and corner, with motors of one kind: a panel of E_c, and what is promised of them.
+FigurePanel between_walls(Laboratory& lab, double motors, const std::string& which,
+                          std::vector<Check>& checks) {
+  FigurePanel panel{.title = fmt::format("Wandering in walls of {} N/m, {}", kEdgeWall, which),
                     .x_label = "time [s]",
                     .y_label = "E_c [mJ]"};
   std::vector<RoughWalls> walls;
@@ -207,19 +214,20 @@ FigurePanel between_walls(Laboratory& lab, std::vector<Check>& checks) {
     for (const double mu : {0.0, 0.5, 1.0}) {
       for (const auto& [eta, grip] : {std::pair(0.3, 300.0), {1.0, 3000.0}}) {
         walls.push_back({count, kEdgeWall, mu, mu});
-        trials.push_back(wander(walls.back(), eta, grip));
+        trials.push_back(wander(walls.back(), eta, grip, motors));
       }
     }
   }
-  double energy = 0, given = 0, beyond = 0;
+  double energy = 0, given = 0, beyond = 0, touched = kEdgeEnd;
   const std::vector<TrialResult> results = lab.run(trials);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const Session& s = results[i].session;
     const Verdict v = judge(walls[i], rubs_of(trials[i], walls[i], s), s.info.tick);
-    given = std::max(given, v.given);
-    beyond = std::max(beyond, v.beyond);
+    given = worse(given, v.given);
+    beyond = worse(beyond, v.beyond);
+    touched = worse_low(touched, v.touched * s.info.tick);
     for (std::size_t k = 0; k < s.size(); ++k) {
-      energy = std::max(energy, s.at(k, Column::energy_total)[0]);
+      energy = worse(energy, s.at(k, Column::energy_total)[0]);
     }
     if (trials[i].plan.parameters.hand_stiffness != 300) continue;
     const char* inks[] = {kProxyInk, kDeviceInk, kHandInk, kContactInk, kEnergyInk, kFamilyInk[5]};
@@ -231,10 +239,12 @@ FigurePanel between_walls(Laboratory& lab, std::vector<Check>& checks) {
                   [&](auto k) { return 1e3 * s.at(k, Column::energy_total)[0]; }));
   }
   panel.x_range = {0, kEdgeEnd};
-  checks.push_back(at_most("edge and corner: highest E_c [J]", energy, 5e-5));
-  checks.push_back(at_most("edge and corner: most that friction gave in a tick [J]", given, 1e-7));
+  const std::string where = "edge and corner, " + which + ": ";
   checks.push_back(
-      at_most("edge and corner: friction beyond its cone, of the normal force", beyond, 1e-6));
+      at_least(where + "shortest time in which all walls were touched [s]", touched, 0.1));
+  checks.push_back(at_most(where + "highest E_c [J]", energy, 5e-5));
+  checks.push_back(at_most(where + "most that friction gave in a tick [J]", given, 1e-7));
+  checks.push_back(at_most(where + "friction beyond its cone, of the normal force", beyond, 1e-6));
   return panel;
 }
 
@@ -248,12 +258,17 @@ Outcome friction(Laboratory& lab) {
   outcome.figure.caption = fmt::format(
       "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N and "
       "drags {} mm aside and back. Edge and corner: pressed in with {} N, "
-      "wandering, in a grip of 300 N/m; eta = 0.3.",
-      kWall, kPress, 1e3 * kDrag, kEdgePress);
+      "wandering, in a grip of 300 N/m with eta = 0.3 (drawn) and in one of 3000 N/m with eta = 1; "
+      "once with motors of {} N m, which never meet their limit, and once with the arm's own, "
+      "which "
+      "do.",
+      kWall, kPress, 1e3 * kDrag, kEdgePress, kStrong);
   outcome.figure.columns = 2;
   double given = 0;
-  for (const Dragged& d : all) given = std::max(given, d.verdict.given);
+  for (const Dragged& d : all) given = worse(given, d.verdict.given);
   outcome.checks = {
+      at_least("plane: ticks in which it surely stuck", rough.stuck, 100),
+      at_least("plane: ticks in which it surely slipped", rough.slid, 100),
       at_most("plane: tip moved in a tick, besides the spring of friction, while it stuck [m]",
               rough.crept, 1e-9),
       at_least("plane: highest tangential over normal force, of the static coefficient",
@@ -263,7 +278,11 @@ Outcome friction(Laboratory& lab) {
               rough.off_kinetic, 0.01),
       at_most("plane: most that friction gave in a tick [J]", given, 1e-7)};
   outcome.figure.panels = {ratio_panel(all), stick_panel(drag(all[0].what.walls), all[0]),
-                           taken_panel(all), between_walls(lab, outcome.checks)};
+                           taken_panel(all)};
+  outcome.figure.panels.push_back(
+      between_walls(lab, kStrong, fmt::format("motors of {} N m", kStrong), outcome.checks));
+  outcome.figure.panels.push_back(
+      between_walls(lab, kFromArm, "the arm's own motors", outcome.checks));
   return outcome;
 }
 

@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kEtas[] = {0.6, 1, 5};
+constexpr double kInertiaEtas[] = {0.6, 1, 5};
 // Stiff enough that the three motions are the same.
 constexpr double kGripStiffness = 6000;  // [N/m]
 constexpr double kGripDamping = 20;      // [N s/m]
@@ -18,8 +18,8 @@ double largest_difference(const Session& a, const Session& b) {
   const Eigen::VectorXd start = vector_at(a, 0, Column::device_position);
   for (std::size_t k = 0; k < a.size(); ++k) {
     const Eigen::VectorXd x = vector_at(a, k, Column::device_position);
-    difference = std::max(difference, (x - vector_at(b, k, Column::device_position)).norm());
-    range = std::max(range, (x - start).norm());
+    difference = worse(difference, (x - vector_at(b, k, Column::device_position)).norm());
+    range = worse(range, (x - start).norm());
   }
   return difference / range;
 }
@@ -28,7 +28,7 @@ double largest_difference(const Session& a, const Session& b) {
 
 Outcome inertia(Laboratory& lab) {
   std::vector<Trial> trials;
-  for (const double eta : kEtas) {
+  for (const double eta : kInertiaEtas) {
     Parameters p;
     p.eta = eta;
     p.hand_stiffness = kGripStiffness;
@@ -40,10 +40,12 @@ Outcome inertia(Laboratory& lab) {
   const double rms_at_one = rms_norm(reference, Column::hand_torque, 0, reference.size());
 
   Outcome outcome;
-  outcome.figure.title = "The same free motion at three apparent inertias";
-  outcome.figure.caption =
-      fmt::format("Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact.",
-                  kGripStiffness, kGripDamping);
+  outcome.figure.title = "The same free motion at three etas";
+  outcome.figure.caption = fmt::format(
+      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact. So slow a "
+      "motion takes mostly damping, which eta scales; what inertia is felt of faster ones is "
+      "measured by the experiment lightness.",
+      kGripStiffness, kGripDamping);
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Human torque |f1| and its estimate",
                      .x_label = "time [s]",
@@ -54,7 +56,7 @@ Outcome inertia(Laboratory& lab) {
   std::vector<Series> estimates;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Session& s = results[i].session;
-    const double eta = kEtas[i];
+    const double eta = kInertiaEtas[i];
     const std::string label = fmt::format("eta = {}", eta);
     torque.series.push_back(over_time(s, label, kFamilyInk[i], Series::Style::line, [&](auto k) {
       return vector_at(s, k, Column::hand_torque).norm();

@@ -88,11 +88,20 @@ void Laboratory::each(std::size_t count, const std::function<void(std::size_t)>&
 
 void Laboratory::run(const std::vector<Trial>& trials,
                      const std::function<void(std::size_t, const TrialResult&)>& take) {
-  each(trials.size(), [&](std::size_t i) { take(i, run_one(trials[i])); });
+  for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
+  each(trials.size(), [&](std::size_t i) {
+    const TrialResult result = run_one(trials[i]);
+    if (result.end.diverged && !trials[i].may_diverge) ++diverged_;
+    take(i, result);
+  });
 }
 
 SweepTable Laboratory::sweep(const SweepPlan& plan) {
   SweepTable table(plan);
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    const RunPlan run = run_of(plan, table.rows.point(i));
+    conditions_.add(run.arm, run.parameters);
+  }
   static const std::atomic<bool> kNever{false};
   const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
   each(table.points(), [&](std::size_t i) {

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array kLiveExperiments{
     LiveExperiment{"coordination", "device and proxy while you press (Figs. 3 and 4)",
                    live_coordination},
-    LiveExperiment{"inertia", "the inertia that you feel at three etas (Fig. 5)", live_inertia},
+    LiveExperiment{"inertia", "what you feel at three etas (Fig. 5)", live_inertia},
     LiveExperiment{"passivity", "controller energy while you touch and circle (Fig. 6)",
                    live_passivity},
     LiveExperiment{"zwidth", "the stiffest wall that does not buzz in your hand", live_zwidth},
@@ -55,6 +55,9 @@ std::span<const LiveExperiment> live_experiments() { return kLiveExperiments; }
 Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
                   const std::filesystem::path& dir) {
   Outcome outcome = experiment.run(lab);
+  Conditions conditions;
+  conditions.add(lab.arm, lab.parameters);
+  outcome.figure.caption += " " + conditions.of_the_device();
   write_outcome(live_name(experiment), outcome, dir);
   return outcome;
 }

@@ -106,11 +106,13 @@ void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
     const Response sampled = sampled_response(f, w_f, kTick);
     const double w_gain = gain_bandwidth(seen[i]), w_phase = phase_bandwidth(seen[i]);
     by_phase.points.push_back({w_f, w_phase});
-    off_sampled = std::max(off_sampled, off(w_phase, phase_bandwidth(sampled)));
-    if (w_gain > 0) {
-      by_gain.points.push_back({w_f, w_gain});
-      off_sampled = std::max(off_sampled, off(w_gain, gain_bandwidth(sampled)));
-      if (w_f * kTick <= kFast) off_fast = std::max(off_fast, off(w_gain, w_f));
+    off_sampled = worse(off_sampled, off(w_phase, phase_bandwidth(sampled)));
+    // In the band of the shaking some gains never fall so far; those that do are to be seen.
+    const bool falls = gain_bandwidth(sampled_response(seen[i].f, w_f, kTick)) > 0;
+    if (w_gain > 0) by_gain.points.push_back({w_f, w_gain});
+    if (w_gain > 0 || falls) {
+      off_sampled = worse(off_sampled, off(w_gain, gain_bandwidth(sampled)));
+      if (w_f * kTick <= kFast) off_fast = worse(off_fast, off(w_gain, w_f));
     }
   }
 
@@ -200,12 +202,13 @@ void error_decay(Laboratory& lab, Outcome& outcome) {
         const double t = static_cast<double>(k) * kTick;
         const double error = std::abs(modes.u.col(mode).dot(
             vector_at(s, k, Column::hand_torque_estimate) - vector_at(s, k, Column::hand_torque)));
-        if (error < 1e-2 * kWrong) break;
+        // What is gone within a tick or two is still seen to go.
+        if (error < 1e-2 * kWrong && errors.size() >= 3) break;
         errors.push_back(error);
         seen.points.push_back({t, error / kWrong});
         ideal.points.push_back({t, std::exp(-w_f * t)});
       }
-      worst = std::max(worst, off(-growth_rate(errors, kTick), sampled_decay(w_f, kTick)));
+      worst = worse(worst, off(-growth_rate(errors, kTick), sampled_decay(w_f, kTick)));
       if (mode == 2) panel.series.insert(panel.series.end(), {seen, ideal});
     }
   }
@@ -224,9 +227,8 @@ void every_gain(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   lab.run(trials, [&](std::size_t i, const TrialResult& result) {
     double estimate = 0, human = 0;
     for (std::size_t k = 0; k < result.session.size(); ++k) {
-      human = std::max(human, vector_at(result.session, k, Column::hand_torque).norm());
-      estimate =
-          std::max(estimate, vector_at(result.session, k, Column::hand_torque_estimate).norm());
+      human = worse(human, vector_at(result.session, k, Column::hand_torque).norm());
+      estimate = worse(estimate, vector_at(result.session, k, Column::hand_torque_estimate).norm());
     }
     ratio[i] = result.end.diverged ? HUGE_VAL : estimate / human;
   });
@@ -239,8 +241,10 @@ void every_gain(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
   for (std::size_t i = 0; i < gains.size(); ++i) points.points.push_back({gains[i], ratio[i]});
   panel.series = {points};
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(at_most("largest estimate over largest torque, alpha 1e-5 to 1e3",
-                                   *std::ranges::max_element(ratio), 1.1));
+  double largest = 0;
+  for (const double one : ratio) largest = worse(largest, one);
+  outcome.checks.push_back(
+      at_most("largest estimate over largest torque, alpha 1e-5 to 1e3", largest, 1.1));
 }
 
 }  // namespace

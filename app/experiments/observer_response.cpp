@@ -71,6 +71,7 @@ Response sampled_response(const std::vector<double>& f, double w_f, double T) {
   return response;
 }
 
-double sampled_decay(double w_f, double T) { return -std::log(lag(w_f, T)) / T; }
+// Of fast modes the error changes its sign from tick to tick.
+double sampled_decay(double w_f, double T) { return -std::log(std::abs(lag(w_f, T))) / T; }
 
 }  // namespace limpid

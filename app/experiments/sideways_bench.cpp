@@ -7,8 +7,6 @@
 namespace limpid {
 namespace {
 
-using Bench = SidewaysBench;
-
 std::string world(double wall) {
   if (wall == 0) return "title = \"Free space\"\nabout = \"Nothing to touch.\"\n";
   return fmt::format(R"(title = "Wall"
@@ -24,18 +22,20 @@ stiffness = {:.1f}
 }
 
 // How far beyond the wall the hand aims [m].
-double aim(double wall) { return wall > 0 ? Bench::kPress * (1 / Bench::kGrip + 1 / wall) : 0; }
+double aim(double wall) {
+  return wall > 0 ? SidewaysBench::kPress * (1 / SidewaysBench::kGrip + 1 / wall) : 0;
+}
 
 Trial trial(const FeltSetting& setting, const std::string& source, double seconds,
             const std::function<Vec3(double)>& at) {
   Parameters p;
   p.kind = setting.kind;
   p.eta = setting.eta;
-  p.tick = Bench::kTick;
-  p.hand_stiffness = Bench::kGrip;
-  p.hand_damping = setting.wall > 0 ? Bench::kGripDamping : 0;
+  p.tick = SidewaysBench::kTick;
+  p.hand_stiffness = SidewaysBench::kGrip;
+  p.hand_damping = setting.wall > 0 ? SidewaysBench::kGripDamping : 0;
   return {fmt::format("{}-eta-{}-wall-{}", name(p.kind), p.eta, setting.wall),
-          plan_in(world(setting.wall), hand_path(source, Bench::kTick, seconds, at), p)};
+          plan_in(world(setting.wall), hand_path(source, SidewaysBench::kTick, seconds, at), p)};
 }
 
 }  // namespace

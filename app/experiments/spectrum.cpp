@@ -84,7 +84,7 @@ Outcome spectrum(Laboratory& lab) {
     spectra.push_back(spectrum_of(signal, rate));
     total += spectra.back().power();
     below += spectra.back().power(kBand);
-    least = std::min(least, share(spectra.back(), kBand));
+    least = worse_low(least, share(spectra.back(), kBand));
   }
 
   Outcome outcome;

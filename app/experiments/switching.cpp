@@ -22,8 +22,8 @@ constexpr double kLasts = 2.5;     // [s]
 constexpr double kStop = 20, kStiffStop = 500;
 constexpr int kTurret = 0;
 constexpr double kWallDamping = 0.2;  // the fine preset's, as a part of a joint's inertia a tick
-constexpr double kPress = 1, kSwitchingSurface = -0.04;  // [N], [m]
-constexpr double kFirst = 0.8, kEvery = 0.3;             // of the switches [s]
+constexpr double kSwitchingPress = 1, kSwitchingSurface = -0.04;  // [N], [m]
+constexpr double kFirst = 0.8, kEvery = 0.3;                      // of the switches [s]
 constexpr std::array kOrder{CouplingKind::standard,   CouplingKind::proposed,
                             CouplingKind::predictive, CouplingKind::proposed,
                             CouplingKind::standard,   CouplingKind::predictive};
@@ -58,7 +58,7 @@ Trial swinging(CouplingKind kind, double stop) {
 Trial pressing() {
   Parameters p;
   p.kind = CouplingKind::predictive;
-  const double deep = kPress / p.hand_stiffness + kPress / 600;
+  const double deep = kSwitchingPress / p.hand_stiffness + kSwitchingPress / 600;
   const auto at = [deep](double t) {
     return Vec3(0.2, 0, kSwitchingSurface + 0.01 - (0.01 + deep) * minimum_jerk(t / 0.5));
   };
@@ -108,7 +108,7 @@ Balance balance_of(const Trial& trial, const Session& s) {
 
 double furthest(const std::vector<double>& values) {
   double most = 0;
-  for (const double v : values) most = std::max(most, std::abs(v));
+  for (const double v : values) most = worse(most, std::abs(v));
   return most;
 }
 
@@ -116,6 +116,7 @@ double furthest(const std::vector<double>& values) {
 // to the other's, and once it is there.
 struct Steps {
   double on_the_way = 0, there = 0;
+  int arrived = 0;  // how often it got there
 };
 
 Steps steps_of(const Session& s) {
@@ -127,8 +128,10 @@ Steps steps_of(const Session& s) {
     const Eigen::VectorXd torque = vector_at(s, k, Column::motor_torque);
     const Eigen::VectorXd change = torque - vector_at(s, k - 1, Column::motor_torque);
     double& most = there ? steps.there : steps.on_the_way;
-    most = std::max(most, change.cwiseAbs().maxCoeff());
-    there = there || torque == vector_at(s, k, Column::commanded_torque);
+    most = worse(most, change.cwiseAbs().maxCoeff());
+    const bool arrives = !there && torque == vector_at(s, k, Column::commanded_torque);
+    steps.arrived += arrives;
+    there = there || arrives;
   }
   return steps;
 }
@@ -147,8 +150,8 @@ double books_off(const Session& s) {
     const double kinetic =
         s.at(k + 1, Column::proxy_kinetic)[0] - s.at(k, Column::proxy_kinetic)[0];
     const double given = (tau2 + vector_at(s, k, Column::contact_torque)).dot(dx2);
-    most = std::max({most, std::abs(kinetic - given),
-                     std::abs(commanded - s.at(k + 1, Column::energy_commanded)[0])});
+    most = worse(most, std::abs(kinetic - given));
+    most = worse(most, std::abs(commanded - s.at(k + 1, Column::energy_commanded)[0]));
   }
   return most;
 }
@@ -245,15 +248,17 @@ Outcome switching(Laboratory& lab) {
       "{} Hz; the stop is flat in joint space, so that no curvature is left; "
       "what the predictive coupling's damper took is counted in. Below: the hand "
       "presses a table of 600 N/m with {} N while each coupling hands over to each other. eta = 1.",
-      kSwinging, kPress);
+      kSwinging, kSwitchingPress);
   outcome.figure.columns = 2;
   outcome.figure.panels = {stop_panel(ours), gain_panel(paper, papers, ours, own, stiff),
                            torque_panel(turns), apart_panel(turns)};
   outcome.checks = {
       at_least("contacts made with each stop, predictive", std::min(own.touched, stiff.touched), 7),
       at_most("predictive: largest energy from nowhere in making and breaking contact [J]",
-              std::max(furthest(own.gain), furthest(stiff.gain)), 1e-9),
+              worse(furthest(own.gain), furthest(stiff.gain)), 1e-9),
       at_least("proposed: the same, at least [J]", furthest(papers.gain), 1e-6),
+      at_least("switching while pressing: laws that were handed over to, to the end", steps.arrived,
+               kOrder.size() - 1),
       at_most("switching while pressing: largest change of a motor's torque in a tick on the way "
               "to the other law's [N m]",
               steps.on_the_way, 0.0065),

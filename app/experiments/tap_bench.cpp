@@ -9,6 +9,7 @@
 #include "app/base/assets.h"
 #include "app/experiments/series.h"
 #include "app/run/analysis.h"
+#include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
 #include "core/math/high_pass.h"
 #include "devices/files/arm/urdf_file.h"
@@ -17,6 +18,8 @@ namespace limpid {
 namespace {
 
 constexpr double kTapAhead = 0.2;  // [m]
+constexpr double kTapWall = 600,
+                 kTapGrip = 300;  // any: what is named does not depend on them [N/m]
 
 std::string table(double wall) {
   return fmt::format(R"(title = "Table"
@@ -45,7 +48,7 @@ double TapBench::height(double t) const {
   return std::clamp(std::min(in - kRest, period() - kRest - in) * kSpeed, 0.0, down_);
 }
 
-Trial TapBench::trial() const {
+Parameters TapBench::parameters() const {
   Parameters p;
   p.kind = setting_.kind;
   p.eta = setting_.eta;
@@ -57,9 +60,14 @@ Trial TapBench::trial() const {
   if (!setting_.expects_a_mass) p.hand_mass = 0;
   p.hand_stiffness = grip_;
   p.hand_damping = kGripDamping;
-  p.torque_limit = setting_.torque_limit;
+  p.torque_limit = setting_.own_motors ? kFromArm : setting_.torque_limit;
   p.device_delay = static_cast<int>(std::lround(setting_.delay));
   if (setting_.knows_delay) p.delay = p.device_delay;
+  return p;
+}
+
+Trial TapBench::trial() const {
+  const Parameters p = parameters();
   const auto at = [&](double t) { return Vec3(kTapAhead, 0, kSurface + kAbove - height(t)); };
   const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
   Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};
@@ -79,10 +87,10 @@ Touch TapBench::touch(const TrialResult& result) const {
   std::size_t held = 0;
   Vec3 before = arm.tip_at(vector_at(s, 0, Column::device_position));
   for (std::size_t k = 0; k < s.size(); ++k) {
-    touch.energy = std::max(touch.energy, s.at(k, Column::energy_total)[0]);
-    touch.port = std::max(touch.port, s.at(k, Column::energy_port)[0]);
+    touch.energy = worse(touch.energy, s.at(k, Column::energy_total)[0]);
+    touch.port = worse(touch.port, s.at(k, Column::energy_port)[0]);
     touch.torque =
-        std::max(touch.torque, vector_at(s, k, Column::contact_torque).cwiseAbs().maxCoeff());
+        worse(touch.torque, vector_at(s, k, Column::contact_torque).cwiseAbs().maxCoeff());
     const Vec3 tip = arm.tip_at(vector_at(s, k, Column::device_position));
     Vec3 v = (tip - before) / T;
     before = tip;
@@ -104,6 +112,14 @@ TipAlong tip_at_table() {
   const ArmDescription arm = read_urdf(default_device());
   const ArmAt at = arm_at(arm, rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1);
   return tip_along(at.J, at.M, device_damping(arm, {}), Vec3::UnitZ());
+}
+
+double named_wall(const TapSetting& setting) {
+  static const ArmDescription arm = read_urdf(default_device());
+  static const Eigen::VectorXd x = rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1;
+  const Parameters p = TapBench(setting, kTapWall, kTapGrip, 1).parameters();
+  const TipLimits limits = tip_limits(arm, x, p, {});
+  return limits.walls[static_cast<std::size_t>(p.kind)].stiffness;
 }
 
 }  // namespace limpid

@@ -17,7 +17,8 @@ struct TapSetting {
   double hand_mass = 0;        // at the tip [kg]
   bool expects_a_mass = true;  // a second predictor, for a hand with mass
   double press = 4;            // of the hand while it holds, if the wall bears it [N]
-  double torque_limit = 100;   // of every motor [N m]
+  double torque_limit = 100;   // of every motor [N m]: strong ones never meet it
+  bool own_motors = false;     // the arm's own limits instead
   double delay = 0;            // of the device [ticks]
   bool knows_delay = true;     // the law does
 
@@ -43,6 +44,7 @@ class TapBench {
   // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m].
   TapBench(const TapSetting& setting, double wall, double grip, int taps);
 
+  Parameters parameters() const;
   Trial trial() const;
   Touch touch(const TrialResult& result) const;
 
@@ -61,5 +63,7 @@ class TapBench {
 
 // The tip where it meets the table, along the table's normal.
 TipAlong tip_at_table();
+// What `limpid analyze` names there: the stiffest wall that the setting's law renders well [N/m].
+double named_wall(const TapSetting& setting);
 
 }  // namespace limpid

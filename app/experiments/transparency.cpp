@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "app/experiments/felt_impedance.h"
@@ -16,7 +17,7 @@ namespace {
 using Bench = SidewaysBench;
 using Setting = FeltSetting;
 
-constexpr double kWall = 600;  // of the paper [N/m]
+constexpr double kPaperWall = 600;  // of the paper [N/m]
 constexpr double kEtas[] = {0.4, 0.6, 1, 2, 5};
 constexpr double kInContact[] = {0.6, 1, 2};
 constexpr double kWalls[] = {50, 100, 200, 300, 400, 600, 800, 1000};  // [N/m]
@@ -53,14 +54,18 @@ double off(std::complex<double> value, std::complex<double> wanted) {
   return std::abs(value - wanted) / std::abs(wanted);
 }
 
-// Furthest that the measured impedance is from what `wanted` says between two frequencies.
+// Furthest that the measured impedance is from what `wanted` says between two frequencies; infinite
+// where nothing was measured there.
 template <class Wanted>
 double furthest(const Impedance& felt, double from, double to, const Wanted& wanted) {
   double worst = 0;
+  int measured = 0;
   for (std::size_t i = 0; i < felt.f.size(); ++i) {
-    if (felt.f[i] >= from && felt.f[i] <= to) worst = std::max(worst, wanted(felt.f[i], felt.Z[i]));
+    if (felt.f[i] < from || felt.f[i] > to) continue;
+    worst = worse(worst, wanted(felt.f[i], felt.Z[i]));
+    ++measured;
   }
-  return worst;
+  return measured > 0 ? worst : std::numeric_limits<double>::infinity();
 }
 
 struct Felt {
@@ -107,9 +112,9 @@ FigurePanel impedance_panel(const Felt& felt, const std::string& title) {
 double worst_off_theory(const Felt& felt, double to) {
   double worst = 0;
   for (std::size_t i = 0; i < felt.seen.size(); ++i) {
-    worst = std::max(worst, furthest(felt.seen[i], Bench::kLowest, to, [&](double f, auto Z) {
-                       return off(Z, theory(felt.joints[i], felt.settings[i], f));
-                     }));
+    worst = worse(worst, furthest(felt.seen[i], Bench::kLowest, to, [&](double f, auto Z) {
+                    return off(Z, theory(felt.joints[i], felt.settings[i], f));
+                  }));
   }
   return worst;
 }
@@ -163,13 +168,13 @@ void free_motion(Laboratory& lab, const Bench& bench, Outcome& outcome) {
     const auto off_size = [&](double f, std::complex<double> Z) {
       return std::abs(std::abs(Z / joint.ideal(f, eta)) - 1);
     };
-    off_low = std::max(off_low, furthest(felt.seen[i], 0, 1, off_size));
+    off_low = worse(off_low, furthest(felt.seen[i], 0, 1, off_size));
     if (eta > 1) continue;
-    off_ideal = std::max(off_ideal, furthest(felt.seen[i], 5, 15, off_size));
+    off_ideal = worse(off_ideal, furthest(felt.seen[i], 5, 15, off_size));
     Impedance expected{felt.seen[i].f, {}};
     for (const double f : expected.f) expected.Z.push_back(joint.proposed(f, eta, w_f));
     const double inertia_seen = apparent_inertia(felt.seen[i], 3);
-    off_inertia = std::max(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
+    off_inertia = worse(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
   }
   outcome.checks.push_back(at_most("free: impedance off (24) in ticks, 0.5 to 50 Hz, all couplings",
                                    worst_off_theory(felt, 50), 0.10));
@@ -183,11 +188,11 @@ void free_motion(Laboratory& lab, const Bench& bench, Outcome& outcome) {
 }
 
 void in_contact(Laboratory& lab, const Bench& bench, Outcome& outcome) {
-  std::vector<Setting> settings{{CouplingKind::standard, 1, kWall}};
-  for (const double eta : kInContact) settings.push_back({CouplingKind::proposed, eta, kWall});
+  std::vector<Setting> settings{{CouplingKind::standard, 1, kPaperWall}};
+  for (const double eta : kInContact) settings.push_back({CouplingKind::proposed, eta, kPaperWall});
   const Felt felt = shake(lab, bench, settings);
   FigurePanel panel = impedance_panel(
-      felt, fmt::format("Impedance felt at a wall of {} N/m (lines: theory)", kWall));
+      felt, fmt::format("Impedance felt at a wall of {} N/m (lines: theory)", kPaperWall));
   Series wall{"the wall alone", kContactInk, Series::Style::dashed, {}};
   for (const double f : felt.seen.front().f) {
     const double w = 2 * std::numbers::pi * f;
@@ -232,8 +237,8 @@ void stiffness(Laboratory& lab, const Bench& bench, Outcome& outcome) {
     soft.points.push_back({K, expected});
     points[0].points.push_back({K, felt[i]});
     points[1].points.push_back({K, felt[walls + i]});
-    off_series = std::max(off_series, std::abs(felt[i] / expected - 1));
-    off_wall = std::max(off_wall, std::abs(felt[walls + i] / K - 1));
+    off_series = worse(off_series, std::abs(felt[i] / expected - 1));
+    off_wall = worse(off_wall, std::abs(felt[walls + i] / K - 1));
   }
   panel.series = {same, soft, points[0], points[1]};
   outcome.figure.panels.push_back(panel);

@@ -5,8 +5,6 @@
 namespace limpid {
 namespace {
 
-constexpr int kBisections = 6;
-
 struct Search {
   double low = kSoftest, high = kStiffest;
   bool done = false;
@@ -26,6 +24,7 @@ std::vector<char> try_walls(Laboratory& lab, std::span<const TapSetting> setting
       of.push_back(i);
       benches.emplace_back(settings[i], walls[i], grip, 1);
       trials.push_back(benches.back().trial());
+      trials.back().may_diverge = true;  // where that begins is what is looked for
     }
     lab.run(trials, [&](std::size_t t, const TrialResult& result) {
       const bool exact = settings[of[t]].encoder_step == 0;

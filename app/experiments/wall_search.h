@@ -19,6 +19,7 @@ bool well_rendered(const Touch& touch, bool exact_encoder);
 
 inline constexpr double kSoftest = 100, kStiffest = 20000;  // walls that are tried [N/m]
 inline constexpr double kGrips[] = {300, 3000};             // hands that a wall has to stand [N/m]
+inline constexpr int kBisections = 6;
 
 // For each setting the stiffest wall [N/m] within kSoftest and kStiffest, by bisection of its
 // logarithm; kSoftest if not even that one is rendered well. All settings go on side by side.

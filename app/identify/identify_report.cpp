@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "app/base/markup.h"
-#include "app/device/urdf_writer.h"
 #include "app/figure/page.h"
+#include "app/run/urdf_writer.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/file_error.h"
 

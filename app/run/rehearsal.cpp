@@ -133,7 +133,7 @@ struct Promise {
   double inertia, damping;
 };
 Promise promise(const Parameters& p) {
-  if (!info(p.kind).scales_inertia) return {1, 1};
+  if (!info(p.kind).takes_eta) return {1, 1};
   return {p.eta, info(p.kind).observes ? p.eta : p.damping_share(p.eta)};
 }
 

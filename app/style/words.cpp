@@ -14,7 +14,7 @@ namespace limpid {
 namespace {
 
 constexpr std::array kWords{
-    std::pair{"coupling.eta", "Apparent inertia \xCE\xB7"},
+    std::pair{"coupling.eta", "Impedance scaling \xCE\xB7"},
     std::pair{"observer.alpha", "Observer gain \xCE\xB1"},
     std::pair{"coupling.damping", "Damping felt"},
     std::pair{"coupling.band", "Band of the inertia"},

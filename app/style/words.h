@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-// Beside a slider: "Apparent inertia η". What has no words of its own is called by its label.
+// Beside a slider: "Impedance scaling η". What has no words of its own is called by its label.
 const char* caption(const ParameterInfo& info);
 
 // The number with its unit, as a slider shows it; what is not a number is the arm's own.

@@ -96,7 +96,9 @@ std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
 
 std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
                                   const std::atomic<bool>& stop, const PointSink& also) {
-  RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan));
+  const std::vector<Plane>& walls = run.document.scene.planes;
+  RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan),
+                 walls.size() == 1 ? walls.data() : nullptr);
   const auto must_stop = [&] {
     for (const StopRule& rule : plan.stops) {
       if (meter.seconds() >= rule.after && rule.limit.met(rule.limit.measure->value(meter))) {

@@ -51,6 +51,13 @@ constexpr MeasureInfo kTable[] = {
     {"felt_stiffness", "N/m",
      "slope of the hand's force over the tip's way in contact, along the mean force",
      [](const RunMeter& m) { return m.felt_stiffness(); }, true},
+    {"wall", "N/m", "stiffness of the scene's wall, in scenes of one plane",
+     [](const RunMeter& m) { return m.wall(); }},
+    {"wall_felt", "-",
+     "its force over the device's depth in it, in the second half, by that stiffness",
+     [](const RunMeter& m) { return m.wall_felt(); }, true},
+    {"wall_rattle", "N", "rms of its force above 20 Hz in the second half",
+     [](const RunMeter& m) { return m.wall_rattle(); }, true},
     {"felt_inertia", "-", "inertia felt out of contact, of the arm's own",
      [](const RunMeter& m) { return m.felt_inertia_damping()[0]; }, true},
     {"felt_damping", "N m s/rad", "damping felt out of contact, of every joint",
@@ -66,10 +73,17 @@ const MeasureInfo* find_measure(std::string_view name) {
   return found == std::end(kTable) ? nullptr : found;
 }
 
-RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt)
-    : layout_(arm.dof()), summary_(layout_), T_(T), rows_(rows) {
+RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
+                   const Plane* wall)
+    : layout_(arm.dof()),
+      summary_(layout_),
+      T_(T),
+      rows_(rows),
+      wall_stiffness_(wall != nullptr ? wall->material.stiffness : kNoMeasure) {
   const HighPass fast(kFast, 1 / T);
-  if (felt) felt_.emplace(Felt{Arm<kAnyDof>(arm), {fast, fast, fast}});
+  if (!felt) return;
+  felt_.emplace(Felt{Arm<kAnyDof>(arm), {fast, fast, fast}});
+  if (wall != nullptr) wall_.emplace(arm, *wall, T, rows / 2);
 }
 
 void RunMeter::add(std::span<const double> row) {
@@ -87,6 +101,7 @@ void RunMeter::add(std::span<const double> row) {
     contact2_ += contact * contact;
     highest_port_ = std::max(highest_port_, at(Column::energy_port)[0]);
     if (felt_) add_felt(row);
+    if (wall_) wall_->add(layout_, row);
   }
   ++row_;
 }
@@ -150,6 +165,9 @@ double RunMeter::error_slope() const {
 double RunMeter::chatter() const {
   return felt_ && felt_->settled > 0 ? std::sqrt(felt_->fast2 / felt_->settled) : kNoMeasure;
 }
+
+double RunMeter::wall_felt() const { return wall_ ? wall_->felt() : kNoMeasure; }
+double RunMeter::wall_rattle() const { return wall_ ? wall_->rattle() : kNoMeasure; }
 
 double RunMeter::felt_stiffness() const {
   if (!felt_) return kNoMeasure;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/run/summary.h"
+#include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
 #include "core/math/high_pass.h"
 
@@ -34,9 +35,10 @@ inline constexpr double kNoEnergy = 1e-6;
 // number where there is nothing to measure.
 class RunMeter {
  public:
-  // Of a run of `rows` ticks of T [s]. `felt`: whether what needs the arm's inertia and tip is
-  // wanted, which costs as much as a tick.
-  RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt);
+  // Of a run of `rows` ticks of T [s], in a world with this wall. `felt`: whether what needs the
+  // arm's inertia and tip is wanted, which costs as much as a tick.
+  RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
+           const Plane* wall = nullptr);
 
   void add(std::span<const double> row);
   const Summary& summary() const { return summary_; }
@@ -44,6 +46,10 @@ class RunMeter {
   double seconds() const { return static_cast<double>(row_) * T_; }
   double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
   double highest_port() const { return highest_port_; }  // [J]
+  // Of the wall [N/m]; as it is felt, by that; its force above 20 Hz, in the second half, rms [N].
+  double wall() const { return wall_stiffness_; }
+  double wall_felt() const;
+  double wall_rattle() const;
   double chatter() const;  // of the tip above 20 Hz in the second half, rms [m/s]
   double felt_stiffness()
       const;  // slope of the hand's force over the tip's way, along the mean force in contact [N/m]
@@ -85,6 +91,8 @@ class RunMeter {
   std::array<double, kSpans> speed2_{};  // sums over each span
 
   std::optional<Felt> felt_;
+  double wall_stiffness_;
+  std::optional<WallMeter> wall_;  // only with `felt`
 };
 
 }  // namespace limpid

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "app/sweep/sampling.h"
 #include "core/math/elementary.h"
@@ -17,7 +18,25 @@ namespace {
 constexpr std::size_t kLongestName = 40;
 constexpr std::uint64_t kMostValues = 1'000'000;
 constexpr Range kAnything{-1e300, 1e300};
-constexpr Range kStiffness{0, 1e9, true, "N/m"};
+
+// What is no parameter, and no file.
+struct OwnKey {
+  const char* key;
+  const char* unit;
+  double low, high;
+  bool whole;
+  const char* allowed;
+};
+constexpr OwnKey kOwnKeys[] = {{kStiffnessKey, "N/m", std::numeric_limits<double>::min(), 1e9,
+                                false, "numbers above 0 up to 1e9 N/m"},
+                               {kArmJointsKey, "-", 1, kMaxDof, true, "whole numbers from 1 to 32"},
+                               {kArmMassKey, "kg", 1e-3, 1e3, false, "numbers from 1e-3 to 1e3 kg"},
+                               {kArmSeedKey, "-", 0, 1e6, true, "whole numbers from 0 to 1e6"}};
+
+const OwnKey* own_key(const std::string& key) {
+  const auto* found = std::ranges::find(kOwnKeys, key, &OwnKey::key);
+  return found == std::end(kOwnKeys) ? nullptr : found;
+}
 constexpr const char* kScales[] = {"linear", "log"};
 
 std::size_t choice_in(const TomlTable& table, const char* key, std::span<const char* const> words) {
@@ -58,10 +77,9 @@ void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis)
 
 // Refuses what is not allowed of a parameter.
 double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
-  if (axis.key == kStiffnessKey) {
-    if (!(x > kStiffness.minimum && x <= kStiffness.maximum)) {
-      table.refuse(key, fmt::format("numbers above 0 up to {} N/m", kStiffness.maximum));
-    }
+  if (const OwnKey* own = own_key(axis.key)) {
+    const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
+    if (!allowed) table.refuse(key, own->allowed);
     return x;
   }
   Parameters p;
@@ -122,11 +140,15 @@ double scaled(const AxisRange& range, double part, bool logarithmic) {
 }
 
 void refuse_key(const TomlTable& table, const std::string& key) {
-  std::vector<std::string> keys{"device", "scene", "hand", kStiffnessKey};
+  std::vector<std::string> keys{"device", "scene", "hand"};
+  for (const OwnKey& own : kOwnKeys) keys.emplace_back(own.key);
   for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
   const auto meant = nearest(key, keys);
-  table.refuse("key", "device, scene, hand, scene.stiffness, or a parameter of limpid run --help" +
-                          (meant ? "; did you mean " + *meant + "?" : std::string()));
+  table.refuse(
+      "key",
+      "device, scene, hand, scene.stiffness, arm.joints, arm.mass, arm.seed, or a parameter of "
+      "limpid run --help" +
+          (meant ? "; did you mean " + *meant + "?" : std::string()));
 }
 
 void read_numbers(const TomlTable& table, ReadAxis& read) {
@@ -180,11 +202,11 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
       read_files(table, &SweepWorld::scene, axis);
     } else if (key == "hand") {
       read_files(table, &SweepWorld::hand, axis);
-    } else if (info == nullptr && key != kStiffnessKey) {
+    } else if (info == nullptr && own_key(key) == nullptr) {
       refuse_key(table, key);
     } else {
       axis.key = key;
-      axis.unit = info ? info->unit : "N/m";
+      axis.unit = info ? info->unit : own_key(key)->unit;
       if (info) std::ranges::copy(words_of(*info), std::back_inserter(axis.words));
       axis.words.empty() ? read_numbers(table, read) : read_words(table, axis);
     }

@@ -25,6 +25,7 @@ constexpr std::uint64_t kMostPoints = 100'000'000, kMostBlocks = 1000;
 constexpr std::size_t kMostWorlds = 1000;
 constexpr Range kSeconds{0, 3600, true, "s"};
 constexpr Range kMetres{-10, 10, false, "m"};
+constexpr Range kPress{0, 1000, true, "N"};
 
 // The plan while it is read.
 class Reader {
@@ -78,11 +79,22 @@ class Reader {
       return;
     }
     const auto hand = table(file_, "hand", "hand");
-    hand->allow_only({"at", "jump"});
+    hand->allow_only({"at", "jump", "tap"});
+    plan_.tap = hand->number("tap", kPress);
+    if (plan_.tap) return read_tap(*hand);
     plan_.jump = {hand->need(hand->vector("at", kMetres), "at"),
                   hand->vector("jump", kMetres).value_or(Vec3::Zero())};
     if (plan_.seconds == 0) file_.refuse_missing("seconds");
     if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that jumps: all would be alike");
+  }
+
+  // It makes its own wall, and its own way to it.
+  void read_tap(const TomlTable& hand) const {
+    for (const char* key : {"at", "jump"}) {
+      if (hand.find(key) != nullptr) hand.refuse(key, "nothing: a hand that taps finds its way");
+    }
+    if (file_.find("scene") != nullptr) file_.refuse("scene", "nothing: a tap has its own wall");
+    if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that taps: all would be alike");
   }
 
   void read_axes() {
@@ -92,6 +104,9 @@ class Reader {
     for (const TomlTable& each : file_.tables("axis")) {
       axes.push_back(read_axis(each, plan_.parameters));
       sampled = sampled || axes.back().axis.spread != Spread::grid;
+      if (axes.back().axis.key.starts_with("arm.") && !plan_.tap) {
+        each.refuse("key", "arm.joints, arm.mass, arm.seed only with hand = { tap = NEWTONS }");
+      }
       if (names.insert(axes.back().axis.name).second) continue;
       each.refuse(each.find("name") ? "name" : "key", "a name that no other axis has");
     }
@@ -186,6 +201,7 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
   run.arm = read_urdf(file(world.device, "devices", default_device()), {}, plan.xacro);
   run.document = read_scene(file(world.scene, "scenes", default_scene()), run.arm);
   run.models = build_meshes(run.document);
+  if (plan.tap) return run;
   if (plan.jump) {
     run.hand.time = {0, 1e-3};
     run.hand.position = {plan.jump->at, plan.jump->at + plan.jump->by};

@@ -1,8 +1,17 @@
 #include "app/sweep/sweep_plan.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "app/run/tip_limits.h"
+#include "app/run/urdf_writer.h"
 #include "app/run/varied_hand.h"
+#include "app/run/wall_tap.h"
+#include "core/random/random.h"
+#include "core/random/random_arm.h"
+#include "devices/files/arm/urdf_file.h"
 #include "devices/files/config/config_file.h"
 
 namespace limpid {
@@ -15,15 +24,23 @@ void set_stiffness(Scene& scene, double k) {
   for (MeshObstacle& each : scene.meshes) each.material.stiffness = k;
 }
 
-// What an axis does to a run: parameters and the scene; what a case names of the world.
+// What an axis does to a run: parameters, the scene and the arm; what a case names of the world.
 struct Chosen {
   SweepWorld world;
   Parameters parameters;
   std::optional<double> stiffness = {};
+  std::optional<double> joints = {}, mass = {}, seed = {};  // of a random arm
 
+  bool random_arm() const { return joints || mass || seed; }
   void take(const SweepAxis& axis, double value) {
     if (axis.key == kStiffnessKey) {
       stiffness = value;
+    } else if (axis.key == kArmJointsKey) {
+      joints = value;
+    } else if (axis.key == kArmMassKey) {
+      mass = value;
+    } else if (axis.key == kArmSeedKey) {
+      seed = value;
     } else if (!axis.key.empty()) {
       set_parameter_number(parameters, *find_parameter(axis.key), value);
     } else {
@@ -33,6 +50,46 @@ struct Chosen {
     }
   }
 };
+
+// An arm in some pose.
+struct PosedArm {
+  ArmDescription arm;
+  Eigen::VectorXd x;
+};
+
+// As its own file has it: a session of it holds that file, and comes again as it was.
+PosedArm random_one(const Chosen& chosen) {
+  constexpr double kDesktopLink = 0.05;  // [kg]
+  const int joints = static_cast<int>(chosen.joints.value_or(3));
+  const auto seed = static_cast<unsigned>(chosen.seed.value_or(0));
+  const double mass = chosen.mass.value_or(kDesktopLink * joints);
+  const std::string text = urdf_text(
+      weighing(random_arm(joints, seed), mass),
+      fmt::format("an arm that nobody chose: {} joints, {} kg, the {}th", joints, mass, seed));
+  return {parse_urdf(text, "random arm", {}), Random(seed + 1000).vector(joints, 0.6)};
+}
+
+// A hand that taps a wall, as stiff as an axis says or as tip_limits() names it.
+RunPlan tapping(const SweepPlan& plan, const Chosen& chosen, const RunPlan& world) {
+  constexpr double kSoftest = 1;  // where none is named [N/m]
+  PosedArm posed{world.arm, {}};
+  if (chosen.random_arm()) {
+    posed = random_one(chosen);
+  } else {
+    posed.x = rest_pose(posed.arm);
+  }
+  const Parameters& p = chosen.parameters;
+  const TapPlace place = tap_place(posed.arm, posed.x, p);
+  WallTap tap;
+  tap.press = bearable_press(posed.arm, place, p, *plan.tap);
+  tap.hold = plan.seconds > 0 ? plan.seconds : 1;
+  const TipLimits limits = tip_limits(posed.arm, posed.x, p, {});
+  tap.wall = chosen.stiffness.value_or(
+      std::max(kSoftest, limits.walls[static_cast<std::size_t>(p.kind)].stiffness));
+  RunPlan run = tap_plan(posed.arm, place, tap, p);
+  run.seed = plan.seed;
+  return run;
+}
 
 }  // namespace
 
@@ -106,6 +163,7 @@ RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double>
   Chosen chosen{plan.world, plan.parameters};
   for (std::size_t a = 0; a < plan.axes.size(); ++a) chosen.take(plan.axes[a], point.values[a]);
   if (at) chosen.take(plan.boundary->axis, *at);
+  if (plan.tap) return tapping(plan, chosen, *plan.worlds.at(chosen.world));
   RunPlan run = *plan.worlds.at(chosen.world);
   run.parameters = chosen.parameters;
   run.seed = plan.seed;

@@ -46,6 +46,10 @@ struct SweepAxis {
 };
 // Of everything in the scene [N/m].
 inline constexpr const char* kStiffnessKey = "scene.stiffness";
+// Of a random arm in the device's place: how many joints, what its links weigh together, which one.
+inline constexpr const char* kArmJointsKey = "arm.joints";
+inline constexpr const char* kArmMassKey = "arm.mass";  // [kg]
+inline constexpr const char* kArmSeedKey = "arm.seed";
 
 // A measure that must stay on one side.
 struct SweepLimit {
@@ -101,7 +105,8 @@ struct SweepPlan {
   Parameters parameters;
   SweepWorld world;
   std::optional<SweepJump> jump;
-  double seconds = 0;  // of every run; 0: the hand's
+  std::optional<double> tap;  // in place of a path and a scene: how hard a wall is tapped [N]
+  double seconds = 0;         // of every run; 0: the hand's
   std::uint64_t seed = 0, samples = 1, repeats = 1, block = 1;
   std::vector<SweepAxis> axes;  // without a boundary's
   std::vector<const MeasureInfo*> measures;

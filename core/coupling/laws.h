@@ -19,8 +19,9 @@ struct LawInfo {
   const char* label;    // on a button
   const char* meaning;  // in help and tooltips, a sentence after "KEY: "
   const char* verdict;  // in a few words: how it feels, when it is safe
-  // The inertia felt is scaled by eta, (12).
-  bool scales_inertia;
+  // What is felt in free motion is scaled by eta: the inertia under the predictive law; under the
+  // proposed one the damping, though (12) has it of the inertia.
+  bool takes_eta;
   // By feeding the observed human force forward: then the conditions of (25) are its own.
   bool observes;
   // It accounts for the energy that the human is given, and bounds it.
@@ -75,7 +76,7 @@ struct StandardLaw {
       .label = "Standard",
       .meaning = "spring and damper alone, (1)-(2).",
       .verdict = "The usual one: hand and world drift apart.",
-      .scales_inertia = false,
+      .takes_eta = false,
       .observes = false,
       .keeps_ledger = false,
       .sliders = kPaperSliders,
@@ -93,7 +94,7 @@ struct ProposedLaw {
       .label = "Proposed",
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
       .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
-      .scales_inertia = true,
+      .takes_eta = true,
       .observes = true,
       .keeps_ledger = false,
       .sliders = kPaperSliders,
@@ -105,8 +106,12 @@ struct ProposedLaw {
     template <class P>
     static constexpr std::array<Setting<P>, 1> settings() {
       return {{{"coupling.eta", "\xCE\xB7", &P::eta, "-", 0.01, 100, 0.1, 10, true, true,
-                "Apparent inertia: the hand feels eta times M1 + M2, (12). Below eta_min of "
-                "(25) the coupling is not passive."}}};
+                "Impedance scaling: what the hand feels of free motion. Predictive coupling: eta "
+                "times the inertia "
+                "M1 + M2, up to coupling.band. Proposed coupling: eta times the damping, and so "
+                "what is felt of slow motion; the paper has it of the inertia, (12), of which is "
+                "measured 0.7 at eta 0.6 and less than none above eta 1. Below eta_min of (25) the "
+                "proposed coupling is not passive."}}};
     }
   };
 
@@ -193,7 +198,7 @@ struct PredictiveLaw {
           "device and proxy solved together for the coming tick, inertia shaped by passive "
           "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
       .verdict = "Recommended: no drift, stiff walls, light, passive.",
-      .scales_inertia = true,
+      .takes_eta = true,
       .observes = false,
       .keeps_ledger = true,
       .sliders = kSliders,

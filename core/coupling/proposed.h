@@ -1,5 +1,6 @@
 // The paper's coupling: spring and damper with feedforward of the observed human force and of the
-// contact force, (14)-(15), which keeps device and proxy together and scales the inertia felt.
+// contact force, (14)-(15), which keeps device and proxy together and scales what is felt of slow
+// motion.
 #pragma once
 
 #include "core/coupling/spring_damper.h"

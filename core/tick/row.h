@@ -100,7 +100,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      true},
     {Column::kind, "/coupling/kind", ColumnWidth::one, "-", "0 standard, 1 proposed, 2 predictive",
      true},
-    {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "inertia scaling"},
+    {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},
     {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
     {Column::governor, "/coupling/governor", ColumnWidth::one, "-",
      "share of the contact force that the ledger lets through"},

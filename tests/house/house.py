@@ -19,7 +19,7 @@ _INEXACT = re.compile(r"std::(?:a?(?:sin|cos|tan)h?|atan2|exp2?|expm1|log(?:2|10
                   r"|\.(?:sin|cos|exp|log|pow|tanh)\(|AngleAxis")  # fmt: skip
 # Where rows come from.
 ROW_MAKERS = (
-    "core/coupling", "core/dynamics", "core/math", "core/tick", "core/touch",
+    "core/coupling", "core/dynamics", "core/math", "core/random", "core/tick", "core/touch",
     "devices", "devices/hands", "devices/rig",
     "devices/files/arm", "devices/files/hand", "devices/files/scene", "app/run", "app/story",
 )  # fmt: skip

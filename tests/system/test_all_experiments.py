@@ -15,6 +15,9 @@ from support import LIMPID, ROOT, SystemTest, limpid
 
 AT_MOST, AT_LEAST = operator.le, operator.ge
 PASSIVE = ("eta = 0.6", "eta = 1", "eta = 3", "eta = 5", "standard", "predictive, eta = 0.6")
+CORNERS = ("120 corners, built-in arm", "48 corners, other arms, more walls, any eta")
+NAMED = "stiffest wall by that which analyze names"
+STEPS = ("exact encoders", "encoders of 1e-05 rad", "encoders of 0.0001 rad")
 PUSHED = "predictive, pushed with 8 N, motors of 0.4 N m"
 TAPPED = "5000 N/m, eta 0.3 to 1, hand of"
 EVERY_MODEL = "with the model's inertia times"
@@ -73,6 +76,15 @@ PROMISES = {
         (f"{PUSHED}: highest E_c [J]", AT_MOST, 5e-5),
         (f"{PUSHED}: largest contact torque over the motors' limit", AT_MOST, 1.3),
         (f"{PUSHED}: chatter [m/s]", AT_MOST, 1e-4),
+        *((f"{which}: {what}", relation, bound)
+          for which, some, torque in zip(CORNERS, (40, 16), (1.3, 1.6))
+          for what, relation, bound in (
+              ("in how many a motor met its limit", AT_LEAST, some),
+              ("highest E_c [J]", AT_MOST, 5e-5),
+              ("given to the human [J]", AT_MOST, 5e-5),
+              ("largest contact torque over the motors' limit", AT_MOST, torque),
+              ("farthest that the proxy goes in a tick [rad]", AT_MOST, 0.01),
+              ("least reserve [J]", AT_LEAST, 0))),
     ],
     "observer": [
         ("-3 dB bandwidth off alpha / m where w_f T <= 0.05", AT_MOST, 0.02),
@@ -103,6 +115,11 @@ PROMISES = {
           for eta in (0.2, 0.3, 0.5, 2, 5)),
         *((f"predictive, eta = {eta}: damping felt at 0.5 Hz over the least of any passive law",
            AT_LEAST, 1) for eta in (0.2, 0.3, 0.5)),
+        *((f"proposed, eta = {eta}: damping felt at 0.5 Hz by that at eta = 1, off eta, of it",
+           AT_MOST, 0.05) for eta in (0.2, 0.3, 0.5, 2, 5)),
+        *((f"proposed, eta = {eta}: inertia felt at 0.5 Hz, which is not eta", AT_MOST, 0)
+          for eta in (2, 5)),
+        ("proposed: highest E_c while eta changes by a sine, at least [J]", AT_LEAST, 0.1),
         ("predictive: highest E_c in free motion while eta changes between 0.1 and 1 [J]",
          AT_MOST, 1e-6),
     ],
@@ -111,6 +128,15 @@ PROMISES = {
         ("predictive: stiffest wall, exact encoders, hands to 0.2 kg [N/m]", AT_LEAST, 10000),
         ("predictive: stiffest wall, encoders to 1e-4 rad [N/m]", AT_LEAST, 5000),
         ("predictive: stiffest wall, encoders of 5e-4 rad [N/m]", AT_LEAST, 1000),
+        ("predictive: stiffest wall, the arm's own motors, eta 0.3 to 2 [N/m]", AT_LEAST, 10000),
+        # The search is not finer than a part of this.
+        *((f"predictive, {which}: {NAMED}", AT_LEAST, (100 / 20000) ** (1 / 64))
+          for which in ("eta 0.2 to 4", "eta 0.2 to 4, encoders of 1e-4 rad",
+                        "ticks of 0.25 to 2 ms", "ticks of 0.25 to 2 ms, encoders of 1e-4 rad",
+                        "encoders of 1e-5 to 1e-3 rad", "hands to 1 kg",
+                        "hands to 1 kg, one predictor", "delays to 6 ms, known",
+                        "delays to 6 ms, known, encoders of 1e-4 rad",
+                        "delays to 6 ms, not known")),
         *((f"{TAPPED} {mass} kg, {what}", AT_MOST, bound)
           for mass, quiet in ((0, 1e-4), (0.2, 4e-3))
           for what, bound in (("exact encoders: highest E_c [J]", 5e-5),
@@ -119,12 +145,18 @@ PROMISES = {
                               ("encoders of 1e-4 rad: given to the human [J]", 5e-5),
                               ("encoders of 1e-4 rad: highest E_c [J]", 4e-3),
                               ("encoders of 1e-4 rad: chatter [m/s]", 0.02))),
+        *((f"5000 N/m, eta 0.3 to 1, the arm's own motors, pressed with 2 N: {what}",
+           AT_MOST, bound)
+          for what, bound in (("highest E_c [J]", 5e-5),
+                              ("stiffness felt off that set, of it", 0.01),
+                              ("chatter [m/s]", 1e-4))),
     ],
     "switching": [
         ("contacts made with each stop, predictive", AT_LEAST, 7),
         ("predictive: largest energy from nowhere in making and breaking contact [J]",
          AT_MOST, 1e-9),
         ("proposed: the same, at least [J]", AT_LEAST, 1e-6),
+        ("switching while pressing: laws that were handed over to, to the end", AT_LEAST, 5),
         ("switching while pressing: largest change of a motor's torque in a tick on the way to "
          "the other law's [N m]", AT_MOST, 0.0065),
         ("switching while pressing: the same, once it is there [N m]", AT_MOST, 0.05),
@@ -132,6 +164,8 @@ PROMISES = {
          AT_MOST, 1e-12),
     ],
     "friction": [
+        ("plane: ticks in which it surely stuck", AT_LEAST, 100),
+        ("plane: ticks in which it surely slipped", AT_LEAST, 100),
         ("plane: tip moved in a tick, besides the spring of friction, while it stuck [m]",
          AT_MOST, 1e-9),
         ("plane: highest tangential over normal force, of the static coefficient",
@@ -139,11 +173,39 @@ PROMISES = {
         ("plane: friction beyond the static cone, of the normal force", AT_MOST, 1e-6),
         ("plane: tangential force while slipping off the kinetic one, of it", AT_MOST, 0.01),
         ("plane: most that friction gave in a tick [J]", AT_MOST, 1e-7),
-        ("edge and corner: highest E_c [J]", AT_MOST, 5e-5),
-        ("edge and corner: most that friction gave in a tick [J]", AT_MOST, 1e-7),
-        ("edge and corner: friction beyond its cone, of the normal force", AT_MOST, 1e-6),
+        *((f"edge and corner, {motors}: {what}", relation, bound)
+          for motors in ("motors of 100 N m", "the arm's own motors")
+          for what, relation, bound in (
+              ("shortest time in which all walls were touched [s]", AT_LEAST, 0.1),
+              ("highest E_c [J]", AT_MOST, 5e-5),
+              ("most that friction gave in a tick [J]", AT_MOST, 1e-7),
+              ("friction beyond its cone, of the normal force", AT_MOST, 1e-6))),
+    ],
+    "delay": [
+        (f"{delay}: {what}", relation, bound)
+        for delay, wanted in (("delay of 0 to 3 ms, known", "eta"),
+                              ("delay of 1 to 3 ms, not known",
+                               "eta less what late damping takes"))
+        for what, relation, bound in (
+            ("given to the human in free motion [J]", AT_MOST, 5e-3),
+            (f"inertia felt to 1 Hz off {wanted}, by the larger of eta and 1", AT_MOST, 0.05),
+            ("softest wall that analyze names [N/m]", AT_LEAST, 100),
+            ("given to the human at that wall [J]", AT_MOST, 5e-3),
+            ("stiffness felt there off that set, of it", AT_MOST, 0.05))
+    ],
+    "walls": [
+        (f"{step}: {what}", relation, bound)
+        for step, some in zip(STEPS, (36, 36, 24))
+        for what, relation, bound in (
+            ("arms for which analyze names a wall, of 36", AT_LEAST, some),
+            ("stiffness felt off that set, of it", AT_MOST, 0.05),
+            ("rms force above 20 Hz, of what is allowed", AT_MOST, 1),
+            ("given to the human [J]", AT_MOST, 5e-3))
     ],
 }  # fmt: skip
+# Of every one of them.
+for promises in PROMISES.values():
+    promises.append(("trials that diverged, of those that may not", AT_MOST, 0))
 
 
 class AllExperiments(SystemTest):
@@ -167,8 +229,16 @@ class AllExperiments(SystemTest):
         for name, promised in PROMISES.items():
             with self.subTest(name):
                 checks = self.verdict(name)["checks"]
-                self.assertEqual([(c["what"], c["bound"]) for c in checks],
-                                 [(what, bound) for what, _, bound in promised])  # fmt: skip
+                self.assertEqual([c["what"] for c in checks], [what for what, *_ in promised])
+                for check, (what, _, bound) in zip(checks, promised):
+                    self.assertAlmostEqual(check["bound"], bound, delta=1e-12, msg=what)
+
+    def test_every_caption_says_the_motors_limit_and_all_other_conditions(self) -> None:
+        for name in PROMISES:
+            caption = self.verdict(name)["caption"]
+            for words in ("Conditions: arm ", "limit of every motor: ", "grip ", "in the hand",
+                          "encoders", "delay", "tick "):  # fmt: skip
+                self.assertIn(words, caption, name)
 
     def test_every_verdict_is_that_of_value_and_bound(self) -> None:
         for name, promised in PROMISES.items():
@@ -187,7 +257,7 @@ class AllExperiments(SystemTest):
 
 class AFailingCheck(SystemTest):
     """The program beside other assets: an arm whose joints rub. Then the human torque is not
-    proportional to the apparent inertia."""
+    proportional to eta."""
 
     def installed(self) -> Path:
         program = self.directory / "bin/limpid"

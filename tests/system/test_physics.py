@@ -82,7 +82,7 @@ class Contact(SystemTest):
 
 
 class InertiaScaling(SystemTest):
-    """The hand feels eta times the inertia and damping of device and proxy together."""
+    """What the hand feels of a slow free motion, which is mostly damping, goes with eta."""
 
     def test_the_human_torque_of_the_same_free_motion_is_proportional_to_eta(self) -> None:
         hand = free_motion(self.out(".csv"))

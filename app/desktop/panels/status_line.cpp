@@ -52,7 +52,7 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
                                loop.device_in_place() ? "at once" : "after a stall")});
   std::string name = info(law.kind).label;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
-  if (info(law.kind).scales_inertia) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);
+  if (info(law.kind).takes_eta) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);
   parts.push_back({name, colours.text, "C switches"});
   return parts;
 }

@@ -16,7 +16,7 @@ constexpr std::array kShortcuts{
     Shortcut{"wheel", "zoom to the cursor"},
     Shortcut{"1, 2, 3, 0", "front, side, top view; reset the camera"},
     Shortcut{"C", "the next coupling law"},
-    Shortcut{"[, ]", "smaller or larger apparent inertia, eta"},
+    Shortcut{"[, ]", "smaller or larger impedance scaling, eta"},
     Shortcut{"B, Shift+B", "twin: a second coupling on the same hand; both in one picture"},
     Shortcut{"Shift+[, Shift+]", "smaller or larger observer gain, alpha"},
     Shortcut{"Ctrl+[, Ctrl+]", "softer or stiffer coupling spring, k_vc"},

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "app/device/device_hub.h"
-#include "app/device/urdf_writer.h"
+#include "app/run/urdf_writer.h"
 #include "devices/files/arm/urdf_file.h"
 #include "devices/files/file_error.h"
 #include "tests/support/built_in.h"

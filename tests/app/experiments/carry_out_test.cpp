@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "app/experiments/experiment.h"
+#include "app/experiments/series.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -70,6 +70,35 @@ TEST_F(CarryOut, LeavesTableFigureAndVerdict) {
 TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {
   EXPECT_FALSE(carry_out({"broken", "about", broken}, in(dir_)).passed());
   EXPECT_EQ(nlohmann::json::parse(read(dir_ / "broken.json")).at("passed"), false);
+}
+
+Outcome runs_away(Laboratory& lab) {
+  Parameters p;
+  p.eta = 0.05;
+  p.hand_stiffness = 3000;
+  p.hand_damping = 0;
+  p.torque_limit = 1000;
+  lab.run({Trial{"away", plan_of("free", "free", p), false}});
+  return sound(lab);
+}
+
+// Whatever else an experiment makes of it.
+TEST_F(CarryOut, CallsATrialThatDivergedAFailureAndSaysTheConditions) {
+  const Outcome outcome = carry_out({"away", "about", runs_away}, in(dir_));
+  EXPECT_FALSE(outcome.passed());
+  EXPECT_EQ(outcome.checks.back().what, "trials that diverged, of those that may not");
+  EXPECT_EQ(outcome.checks.back().value, 1);
+  EXPECT_THAT(outcome.figure.caption, HasSubstr("Conditions: arm omni"));
+}
+
+TEST(Worse, KeepsWhatIsNoNumberWhereMaximumWouldDropIt) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(worse(1, 2), 2);
+  EXPECT_EQ(worse_low(1, 2), 1);
+  EXPECT_TRUE(std::isnan(worse(1, none)));
+  EXPECT_TRUE(std::isnan(worse(none, 1)));
+  EXPECT_TRUE(std::isnan(worse_low(1, none)));
+  EXPECT_FALSE(at_most("", worse(0, none), 1).passed);
 }
 
 TEST_F(CarryOut, PromisesNothingWithoutChecks) { EXPECT_FALSE(Outcome{}.passed()); }

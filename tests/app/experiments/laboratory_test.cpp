@@ -74,6 +74,34 @@ TEST_F(Laboratories, ReadWhatIsThereInsteadOfRunningIt) {
   for (const auto& [name, time] : written) EXPECT_EQ(fs::last_write_time(file(name)), time);
 }
 
+// Far below its least eta in a stiff grip, with motors that hold nothing back.
+Trial runaway(const std::string& name) {
+  Parameters p;
+  p.eta = 0.05;
+  p.hand_stiffness = 3000;
+  p.hand_damping = 0;
+  p.torque_limit = 1000;
+  return {name, plan_of("free", "free", p), false};
+}
+
+TEST_F(Laboratories, CountWhatDivergedUnlessItMay) {
+  Laboratory lab("test", options_);
+  Trial asked = runaway("asked");
+  asked.may_diverge = true;
+  const auto results = lab.run({trial("a", 1), asked});
+  ASSERT_TRUE(results[1].end.diverged);
+  EXPECT_EQ(lab.diverged(), 0u);
+  lab.run({runaway("b"), runaway("c")});
+  EXPECT_EQ(lab.diverged(), 2u);
+}
+
+TEST_F(Laboratories, RememberUnderWhichConditionsTheyRan) {
+  Laboratory lab("test", options_);
+  EXPECT_EQ(lab.conditions().text(), "");
+  lab.run(three());
+  EXPECT_NE(lab.conditions().text().find("limit of every motor: the arm's own"), std::string::npos);
+}
+
 TEST_F(Laboratories, RunAgainWhatAnotherPlanLeft) {
   Laboratory("test", options_).run({trial("a", 1)});
   const auto result = Laboratory("test", options_).run({trial("a", 2)});

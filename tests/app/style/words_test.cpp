@@ -20,7 +20,7 @@ TEST(Words, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
       EXPECT_NE(words.find(' '), std::string::npos) << words;
     }
   }
-  EXPECT_STREQ(caption(*find_parameter("coupling.eta")), "Apparent inertia \xCE\xB7");
+  EXPECT_STREQ(caption(*find_parameter("coupling.eta")), "Impedance scaling \xCE\xB7");
 }
 
 TEST(Words, MarkAChangeAsTheSliderReads) {

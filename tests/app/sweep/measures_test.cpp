@@ -45,6 +45,38 @@ axis = [{ key = "coupling.k_vc", values = [5, 10, 20] }]
   }
 }
 
+// A wall behind the spring of the standard coupling: 1 / (1 + K lever^2 / k_vc) of it is felt.
+TEST_F(Measures, WallThatIsTappedIsFeltThroughTheCouplingsSpring) {
+  read(R"(hand = { tap = 1 }
+seconds = 2
+measure = ["wall", "wall_felt", "wall_rattle"]
+set = ["coupling.kind = standard"]
+axis = [{ key = "scene.stiffness", values = [100, 400] }]
+)");
+  const RunPlan run = run_of(plan_, 0);
+  const Vec3 n = run.document.scene.planes.front().normal;
+  const Eigen::MatrixXd J = arm_at(run.arm, rest_pose(run.arm)).J;
+  const double lever2 = (J.transpose() * n).squaredNorm();
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    const double wall = plan_.axes[0].values[i];
+    EXPECT_EQ(measured(i, "wall"), wall);
+    EXPECT_NEAR(measured(i, "wall_felt"), 1 / (1 + wall * lever2 / Parameters{}.k_vc), 0.02);
+    EXPECT_LT(measured(i, "wall_rattle"), 0.05);
+  }
+}
+
+TEST_F(Measures, OfAWallAreNoneWhereThereIsNoneOrMoreThanOne) {
+  read(R"(scene = "free.toml"
+hand = "free.csv"
+seconds = 0.1
+measure = ["wall", "wall_felt", "wall_rattle"]
+axis = [{ key = "coupling.eta", values = [1] }]
+)");
+  for (const char* name : {"wall", "wall_felt", "wall_rattle"}) {
+    EXPECT_TRUE(std::isnan(measured(0, name))) << name;
+  }
+}
+
 // Within its band the predictive law shows eta times the arm's own inertia.
 TEST_F(Measures, InertiaFeltInFreeMotionIsEta) {
   read(R"(scene = "free.toml"

@@ -46,6 +46,59 @@ axis = [ { key = "coupling.eta", values = [0.5, 1] },
   EXPECT_EQ(run_of(plan, 1).hand.position, run_of(plan, 3).hand.position);
 }
 
+const std::string kTaps = R"(hand = { tap = 2 }
+measure = ["wall_felt"]
+set = ["coupling.kind = predictive"]
+axis = [ { key = "arm.joints", values = [1, 7] }, { key = "arm.mass", values = [0.1, 10] } ]
+)";
+
+TEST_F(SweepPlans, TapWallsWithArmsOfAnySizeAndMassAsStiffAsAreNamedForThem) {
+  const SweepPlan plan = read(kTaps);
+  for (std::uint64_t i = 0; i < plan.points(); ++i) {
+    const RunPlan run = run_of(plan, i);
+    const SweepPoint point = point_of(plan, i);
+    EXPECT_EQ(run.arm.dof(), point.values[0]);
+    double mass = 0;
+    for (const Link& link : run.arm.links) mass += link.mass;
+    EXPECT_NEAR(mass, point.values[1], 1e-9 * mass);
+    ASSERT_EQ(run.document.scene.planes.size(), 1u);
+    // The tip begins before the wall, and the hand ends in it.
+    const Plane& wall = run.document.scene.planes.front();
+    EXPECT_GT(wall.normal.dot(run.start->target - wall.point), 0);
+    EXPECT_LT(wall.normal.dot(run.hand.position.back() - wall.point), 0);
+    EXPECT_FALSE(run.arm.urdf.empty()) << "a session of it has its file";
+  }
+  EXPECT_EQ(run_of(plan, 0).hand.position, run_of(plan, 0).hand.position);
+}
+
+TEST_F(SweepPlans, TapWallsOfTheStiffnessThatAnAxisHas) {
+  const SweepPlan plan = read(R"(hand = { tap = 2 }
+measure = ["wall"]
+axis = [ { key = "scene.stiffness", values = [200, 400] } ])");
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(run_of(plan, i).document.scene.planes.front().material.stiffness, 200 * (i + 1));
+  }
+}
+
+TEST_F(SweepPlans, RefuseArmsThatNobodyTapsWithAndTapsThatGoElsewhere) {
+  EXPECT_THAT(refusal(with(R"(axis = [ { key = "arm.mass", values = [1] } ])")),
+              HasSubstr("only with hand = { tap"));
+  EXPECT_THAT(refusal(R"(hand = { tap = 2, at = [0, 0, 0] }
+measure = ["energy"]
+axis = [ { key = "coupling.eta", values = [1] } ])"),
+              HasSubstr("finds its way"));
+  EXPECT_THAT(refusal("scene = \"free.toml\"\n" + kTaps), HasSubstr("its own wall"));
+  const auto joints = [](const std::string& count) {
+    return "hand = { tap = 2 }\nmeasure = [\"energy\"]\n[[axis]]\nkey = \"arm.joints\"\nvalues = "
+           "[" +
+           count + "]\n";
+  };
+  for (const char* count : {"0", "33", "2.5"}) {
+    EXPECT_THAT(refusal(joints(count)), HasSubstr("whole numbers from 1 to 32")) << count;
+  }
+  EXPECT_EQ(refusal(joints("32")), "taken");
+}
+
 // A plan of a stranger, or a table that has one in it, must not start a program that runs his code.
 TEST_F(SweepPlans, ExpandNoXacroUnlessTheyMay) {
   std::ofstream(dir_ / "arm.xacro") << "<robot name='r'><xacro:link name='a'/></robot>";

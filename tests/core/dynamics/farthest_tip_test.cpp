@@ -118,7 +118,7 @@ TEST(FarthestTip, IsNeverBelowWhatRandomPosesGiveNorAboveTheBound) {
       }
       most = std::max(most, distance_at(arm, x));
     }
-    EXPECT_GE(found.distance, most) << n;
+    EXPECT_GE(found.distance, most * (1 - 1e-12)) << n;  // of one joint all are as far
     EXPECT_EQ(farthest_tip(arm).at, found.at) << "the same answer every time";
   }
 }

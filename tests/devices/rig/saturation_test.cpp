@@ -4,103 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/dynamics/arm.h"
-#include "devices/rig/rig.h"
+#include "devices/rig/random_corner.h"
 #include "tests/support/built_in.h"
-#include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
 
 namespace limpid {
 namespace {
 
-using test::Random;
 using test::Rows;
 
-// A hand presses the tip into the corner of a few planes, harder than the motors bear, and then
-// rubs along it.
-struct Corner {
-  ArmDescription arm;
-  Scene scene;
-  Parameters p;
-  RigStart start;
-  Vec3 out, along;          // of the first plane
-  double press, rise, way;  // [N, s, m]
-  double limit;             // of each motor [N m]
-
-  Vec3 hand(double t) const {
-    const double in = std::clamp((t - 0.02) / rise, 0.0, 1.0);
-    const double rubs = t > 0.4 ? 0.01 * std::sin(2 * std::numbers::pi * 5 * (t - 0.4)) : 0;
-    return start.target - in * way * out + rubs * along;
-  }
-};
-
-// Uniform in the logarithm.
-double log_between(Random& random, double low, double high) {
-  return std::exp(random.between(std::log(low), std::log(high)));
-}
-
-double one_of(Random& random, std::initializer_list<double> values) {
-  const double at = random.between(0, static_cast<double>(values.size()) - 1e-9);
-  return values.begin()[static_cast<std::size_t>(at)];
-}
-
-struct Width {
-  std::initializer_list<int> dofs{3};
-  int planes = 3;      // at most
-  double grip = 3000;  // stiffest [N/m]
-  std::initializer_list<double> friction{0, 0.3, 0.5, 1};
-  std::initializer_list<double> masses{0, 0.02, 0.1};  // of the hand [kg]
-  bool eta = false;                                    // other than 1
-};
-
-Corner random_corner(unsigned seed, const Width& width) {
-  constexpr double kAway = 0.008;  // of the start from the planes [m]
-  Random random(seed);
-  Corner c;
-  const std::size_t which =
-      static_cast<std::size_t>(random.between(0, static_cast<double>(width.dofs.size()) - 1e-9));
-  const int dof = width.dofs.begin()[which];
-  c.arm = dof == 3 ? test::omni() : test::random_arm(dof, seed);
-  c.limit = log_between(random, 0.1, 0.6);
-  c.p.kind = CouplingKind::predictive;
-  c.p.torque_limit = c.limit;
-  c.p.eta = width.eta ? log_between(random, 0.2, 5) : 1;
-  c.p.hand_stiffness = log_between(random, 100, width.grip);
-  c.p.hand_damping = 1;
-  c.p.hand_mass_at_tip = one_of(random, width.masses);
-  c.out = random.direction();
-  const Arm<kAnyDof> arm(c.arm);
-  if (dof == 3) {
-    c.start = rest_at(c.arm, Vec3(0.13, 0, 0) + random.point(0.02));
-  } else {
-    const Eigen::VectorXd x = random.vector(dof, 0.6);
-    Arm<kAnyDof>::Frames f;
-    arm.frames(x, f);
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dof);
-    c.start.x1 = c.start.x2 = x;
-    c.start.v1 = c.start.v2 = c.start.f1_hat = zero;
-    c.start.target = arm.tip(f);
-  }
-  c.along = c.out.unitOrthogonal();
-  const double stiffness = log_between(random, 300, 10'000);
-  const double friction = one_of(random, width.friction);
-  const int planes = 1 + static_cast<int>(random.between(0, width.planes - 1e-9));
-  for (int i = 0; i < planes; ++i) {
-    Vec3 normal = c.out;
-    while (i > 0) {
-      normal = (c.out + random.between(0.05, 1) * random.direction()).normalized();
-      if (normal.dot(c.out) > 0.3) break;
-    }
-    const double K = i > 0 && random.between(0, 1) < 0.5 ? stiffness / 3 : stiffness;
-    c.scene.planes.push_back(
-        {"", c.start.target - kAway * c.out, normal, {K, 0, friction, friction}});
-  }
-  c.press = random.between(1, 5);
-  c.rise = random.between(0.02, 0.2);
-  c.way = kAway + c.press / c.p.hand_stiffness + c.press / stiffness;
-  return c;
+LimitedCorner random_corner(unsigned seed, const CornerWidth& width) {
+  return limited_corner(seed, width, test::omni());
 }
 
 struct Outcome {
@@ -114,11 +29,11 @@ struct Outcome {
   int ticks = 0;
 };
 
-Outcome run(const Corner& c) {
+Outcome run(const LimitedCorner& c) {
   Rig rig(c.arm, c.scene);
   rig.start(c.p, c.start);
   Rows rows(rig.layout());
-  const std::size_t count = 900;
+  const auto count = static_cast<std::size_t>(std::llround(LimitedCorner::kLasts / c.p.tick));
   for (std::size_t k = 0; k <= count; ++k) {
     rig.step(c.p, {{c.hand(static_cast<double>(k) * c.p.tick), 1}}, rows.add());
   }
@@ -194,13 +109,8 @@ TEST(MotorsAtTheirLimit, BetweenWallsGiveNoEnergyAndLetTheProxyNotJump) {
 // Other arms, more walls, more friction, other eta.
 TEST(MotorsAtTheirLimit, OfOtherArmsInMoreWallsGiveNoEnergyEither) {
   Worst worst;
-  const Width wide{.dofs = {3, 7, 12},
-                   .planes = 6,
-                   .grip = 10'000,
-                   .friction = {0, 0.3, 0.7, 1.5},
-                   .masses = {0, 0.1, 0.5},
-                   .eta = true};
-  for (unsigned seed = 1000; seed < 1150; ++seed) worst.add(seed, run(random_corner(seed, wide)));
+  for (unsigned seed = 1000; seed < 1150; ++seed)
+    worst.add(seed, run(random_corner(seed, kWideCorners)));
   worst.print();
   EXPECT_GT(worst.limited_runs, 50);
   EXPECT_EQ(worst.over_energy, 0);

@@ -21,8 +21,8 @@ TEST(RecordedSettings, TellLawGripAndWhatIsNotAsUsual) {
   const auto plain = recorded_settings(p, nullptr);
   ASSERT_NE(find(plain, "Coupling"), nullptr);
   EXPECT_EQ(find(plain, "Coupling")->value, "proposed");
-  ASSERT_NE(find(plain, "Apparent inertia"), nullptr);
-  EXPECT_NE(find(plain, "Apparent inertia")->value.find("0.25"), std::string::npos);
+  ASSERT_NE(find(plain, "Impedance scaling"), nullptr);
+  EXPECT_NE(find(plain, "Impedance scaling")->value.find("0.25"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(plain, [](const RecordedSetting& each) {
     return each.value.find("450") != std::string::npos;
   }));

@@ -1,4 +1,4 @@
-#include "app/device/urdf_writer.h"
+#include "app/run/urdf_writer.h"
 
 #include <fmt/format.h>
 
