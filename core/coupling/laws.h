@@ -140,10 +140,12 @@ struct PredictorSettings {
   // Encoders coarser than this ask for the coarse preset [rad].
   static constexpr double kCoarse = 1.5e-4;
 
+  bool coarse(double encoder_step) const {
+    return preset == PredictorPreset::coarse ||
+           (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
+  }
   PredictorGains gains(double encoder_step) const {
-    const bool free = preset == PredictorPreset::by_encoder;
-    const bool coarse = preset == PredictorPreset::coarse || (free && encoder_step > kCoarse);
-    PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
+    PredictorGains g = coarse(encoder_step) ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
     if (!std::isnan(memory)) g.p = memory;
     if (!std::isnan(inertia)) g.mu = inertia;
     return g;
@@ -185,8 +187,9 @@ struct LedgerSettings {
     return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
               true, true,
               "Predictive coupling: the human is given at most this energy beyond what came in, "
-              "since the loop was started and in any part of that time. When the reserve runs low "
-              "the contact force, the cancelled damping and the added inertia are cut."}}};
+              "since the loop was started, and at most four times of it in any part of that time. "
+              "When the reserve runs low the contact force, the cancelled damping and the added "
+              "inertia are cut."}}};
   }
 };
 

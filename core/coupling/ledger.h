@@ -13,8 +13,8 @@
 namespace limpid {
 
 // H = E - (what device and proxy have stored): while H >= 0 the energy given at the human's port is
-// at most E0, and what was dissipated since. H is never more than E0, whatever was dissipated: so
-// the human is given at most E0 since the start, and in any part of that time.
+// at most E0 since the start, on top of what came in and was dissipated. Of that no more is kept
+// than makes H four times E0: so much may be given in any part of the time.
 //
 // How late the motors give a torque may not be known. There is an account for every delay that is
 // possible, and the least of them is the one that counts: one of them is right, whichever it is.
@@ -74,7 +74,7 @@ class Ledger {
       fresh_ = false;
       return;
     }
-    for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), E0 + stored);
+    for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
     H_ = E() - stored;
   }
 
@@ -96,8 +96,9 @@ class Ledger {
   const Vec<N>& dx() const { return dx_; }
 
  private:
-  // Of E0, where g_b is 0 and where it is 1.
-  static constexpr double kNone = 0.2, kWhole = 0.8;
+  // Of E0: the most that H may be; where g_b is 0 and where it is 1. A heavy arm on a wall asks for
+  // that much of a reserve, or the force would be cut where the prediction is off by a little.
+  static constexpr double kCap = 4, kNone = 0.2, kWhole = 0.8;
 
   // At once down, slowly up.
   static void follow(double target, double rate, double& g) {
