@@ -6,6 +6,7 @@
 
 #include "core/dynamics/arm.h"
 #include "core/tick/row.h"
+#include "core/touch/scene.h"
 #include "devices/rig/rig.h"
 #include "render/view_state.h"
 

@@ -63,12 +63,6 @@ struct MeshContact {
   Vec3 force = Vec3::Zero();          // over the last tick, with friction [N]
 };
 
-// Where something touches and how hard it pushes on the proxy.
-struct ContactForce {
-  Vec3 point = Vec3::Zero();  // [m]
-  Vec3 force = Vec3::Zero();  // [N]
-};
-
 // What comes of the contacts' torque f2 on the proxy, with what a law makes of it besides:
 //     direct f2 + shared M2 M_L^-1 f2.
 template <int N>

@@ -85,4 +85,10 @@ struct Scene {
   std::vector<Probe> probes;  // besides the tip
 };
 
+// Where something touches and how hard it pushes on the proxy.
+struct ContactForce {
+  Vec3 point = Vec3::Zero();  // [m]
+  Vec3 force = Vec3::Zero();  // [N]
+};
+
 }  // namespace limpid

@@ -1,10 +1,11 @@
+#include "core/coupling/coupling.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "core/coupling/laws.h"
 #include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"
 

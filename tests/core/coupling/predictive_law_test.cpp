@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include "core/coupling/predictive.h"
 #include "core/tick/parameters.h"
 #include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"

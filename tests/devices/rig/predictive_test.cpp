@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "core/touch/contacts.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/taps.h"
