@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -30,7 +31,7 @@ class Ledger {
     }
     fresh_ = true;
     dy_ = dx_ = Vec<N>::Zero(y.size());
-    contact_ = damping_ = 1;
+    contact_ = damping_ = torque_ = 1;
     still_.fill(0);
     y_ = x_ = y;
   }
@@ -69,7 +70,7 @@ class Ledger {
   void settle(double E0, double stored) {
     E0_ = E0;
     if (fresh_) {
-      H_ = std::min(E0, left_);
+      H_ = std::isfinite(left_) ? std::min(kCap * E0, left_) : E0;
       E_.fill(H_ + stored);
       fresh_ = false;
       return;
@@ -81,24 +82,28 @@ class Ledger {
   // `slip`: how far the last prediction was off [rad], f2 the last contact torque, `surprise` by
   // how much a tick may change the device's velocity unforeseen [rad/s].
   void govern(const Vec<N>& f2, const Vec<N>& slip, double surprise, double T) {
-    const double speed = 0.1 * dy_.norm() / T + surprise;
-    const double leak = f2.norm() * (2 * slip.norm() + T * speed);
+    const Vec<N> off = 2 * slip.cwiseAbs() + 0.1 * dy_.cwiseAbs();
+    const double leak = f2.cwiseAbs().dot(off) + T * surprise * f2.norm();
     follow(leak > 0 ? H_ / leak : 1, T / 0.05, contact_);
     follow((H_ / E0_ - kNone) / (kWhole - kNone), T / 0.2, damping_);
+    follow((H_ / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
   }
 
   double reserve() const { return H_; }        // [J]
   double contact() const { return contact_; }  // g_f: share of f2 that reaches the hand, 0 to 1
   // g_b: share of the damping cancelled and of the inertia added, 0 to 1.
   double damping() const { return damping_; }
+  // Share of all torque: what nothing else stops, as a late damper in a stiff hand that does not
+  // damp, ends there.
+  double torque() const { return torque_; }
   // How the device moved, along a path within the cells of the readings that does not jump as they
   // do: a jump would be work that no torque has done [rad].
   const Vec<N>& dx() const { return dx_; }
 
  private:
-  // Of E0: the most that H may be; where g_b is 0 and where it is 1. A heavy arm on a wall asks for
-  // that much of a reserve, or the force would be cut where the prediction is off by a little.
-  static constexpr double kCap = 4, kNone = 0.2, kWhole = 0.8;
+  // Of E0: the most that H may be, as a heavy arm on a wall asks for, or the force would be cut
+  // where the prediction is off by a little; where g_b is 1 and where 0, and all torque 0.
+  static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
 
   // At once down, slowly up.
   static void follow(double target, double rate, double& g) {
@@ -106,16 +111,14 @@ class Ledger {
     g = target < g ? target : g + std::min(rate, 1.0) * (target - g);
   }
   double& at(int delay) { return E_[static_cast<std::size_t>(delay)]; }
-  double E() const {
-    return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1);
-  }
+  double E() const { return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1); }
 
   bool fresh_ = true;
   int least_ = 0, most_ = 0;
   std::array<double, kMostDelay + 1> E_{};  // by the delay [J]
   double E0_ = 0;
   double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
-  double contact_ = 1, damping_ = 1;
+  double contact_ = 1, damping_ = 1, torque_ = 1;
   std::array<int, kMaxDof> still_{};
   Vec<N> y_, dy_, x_, dx_;
 };

@@ -188,7 +188,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
                    quick_);
   proxy.look(T);
   const Decomposition<N> d(in.device, {proxy.M(), proxy.C(), proxy.v()});
-  const auto on_tip = d.M_L_factor.solve(J.transpose().eval());  // what a force there moves
+  const Levers<N> on_tip =
+      d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, {p.delay, in.delay_most}, T), d.M_L, ledger_.damping(), T, p.band);
   Vec<N> b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
@@ -202,7 +203,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   solve.impedance = proxy.impedance(T);
   solve.momentum = proxy.momentum(T);
   solve.limit = in.limit;
-  solve.authority = in.authority;
+  solve.authority = in.authority * ledger_.torque();
 
   ContactAnswer<N> answer = solve.system();
   Motion<N> motion = answer.system.solve(solve.right());
@@ -210,6 +211,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   if (contacts_.any()) {
     answer.inertia = &d.M_L_factor;
     answer.damping = gains.damping;
+    answer.jump = velocity_jump(memory_, in.encoder_step, T);
     answer.most_damping = kMostDamping;
   }
   const bool resumed = goes_on_;
@@ -249,7 +251,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   }
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
-  return tau1_;
+  return ledger_.torque() * tau1_;
 }
 
 // motion: in, a first guess; out, of contacts and motors together. `resumed`: the last tick's

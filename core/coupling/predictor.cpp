@@ -6,8 +6,8 @@ namespace limpid {
 namespace {
 
 constexpr double kMostMemory = 0.85;
-constexpr double kQuiet = 1e-3;        // what a step may change the tip's velocity by [m/s]
-constexpr double kLightest = 0.02;     // of which that is asked in part; in full from twice on [kg]
+constexpr double kQuiet = 1e-4;     // what a step may change the tip's velocity by [m/s]
+constexpr double kLightest = 0.02;  // of which that is asked in part; in full from twice on [kg]
 
 // The largest eigenvalue of a symmetric positive matrix, or up to 15 % more: the eighth root of
 // the sum of their eighth powers.
@@ -35,12 +35,16 @@ TipMoved tip_moved(const Mat3& mobility, const Mat3& levers) {
   return {1 / largest_eigenvalue(mobility), std::sqrt(largest_eigenvalue(levers))};
 }
 
+double WallMemory::shaken(double p, const TipMoved& tip) const {
+  const double jump = velocity_jump(p, q, T) * tip.lever;
+  return (K * T / 2 + wall_damping(K, tip.mass, T, damping, 0)) * jump * T / tip.mass;
+}
+
 double WallMemory::needed(double least, const TipMoved& tip) const {
   if (!(q > 0) || !(K > 0)) return least;
   const double share = std::clamp(tip.mass / kLightest - 1, 0.0, 1.0);
   if (!(share > 0)) return least;
-  const double jump = (K * T / 2 + wall_damping(K, tip.mass, T, damping)) * q * tip.lever;
-  const double g = kQuiet * tip.mass / jump;
+  const double g = 1.5 * kQuiet / shaken(0, tip);
   const double p = g >= 1.5 ? least : std::clamp(memory_of(g), least, 1.0);
   return least + share * (p - least);
 }

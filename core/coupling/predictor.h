@@ -19,14 +19,20 @@ struct TipMoved {
 // By J M^-1 J' and J J'.
 TipMoved tip_moved(const Mat3& mobility, const Mat3& levers);
 
-// The memory that the filter needs where encoders have steps q: a reading that jumps makes the force
-// of a wall K jump by
+// By how much the velocity jumps when an encoder makes a step q: 1.5 (1 - p)^2 (1 + p) q/T [rad/s].
+inline double velocity_jump(double p, double q, double T) {
+  return 1.5 * (1 - p) * (1 - p) * (1 + p) * q / T;
+}
+
+// The memory that the filter needs where encoders have steps q: a reading that jumps makes the
+// force of a wall K jump by
 //     F_q = (K T/2 + B) g_v q L/T,   g_v = 1.5 (1 - p)^2 (1 + p),
 // B the damper that the wall gets by itself. A light arm is held by the damping of the hand; from
 // 40 g on a jump may change the tip's velocity by no more than 1 mm/s, from 20 g on that counts in
 // part. What foretells so slowly has to be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
 struct WallMemory {
   double K, T, q, damping;  // [N/m, s, rad], part of m_n/T that the wall's damper has [-]
+  double shaken(double p, const TipMoved& tip) const;      // by F_q T/m_n [m/s]
   double needed(double least, const TipMoved& tip) const;  // p, from `least` on
   double possible(const TipMoved& tip) const;              // the most of p
   double chosen(double least, const TipMoved& tip) const;  // of both, and never below `least`
@@ -170,7 +176,8 @@ class Predictor {
     return v + ahead_.cwiseProduct(w - v);
   }
   // By how much of w - v the velocity changes over a tick, w the mean: of a joint that dies out by
-  // itself exactly, with a = T b_d (M^-1)_jj, 1/theta of theta = (a/(1 - e^-a) - 1)/a; 2 for a -> 0.
+  // itself exactly, with a = T b_d (M^-1)_jj, 1/theta of theta = (a/(1 - e^-a) - 1)/a; 2 for a ->
+  // 0.
   static Vec<N> exact_decay(const Mat<N>& M, const Vec<N>& b_d, double T) {
     constexpr double kSlow = 1e-3;  // below: theta = 1/2 + a/12
     const Factor<N> factor(M);
@@ -184,9 +191,7 @@ class Predictor {
   }
 
   // The torque that will act in so many ticks, not yet sent for the present one [N m].
-  const Vec<N>& under_way(int ahead) const {
-    return sent(delay_ - 1 - ahead);
-  }
+  const Vec<N>& under_way(int ahead) const { return sent(delay_ - 1 - ahead); }
 
   std::array<Track, 2> tracks_;
   std::size_t active_ = 0;

@@ -45,26 +45,29 @@ double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
 
 namespace {
 
-// With the built-in arm, 10 g at the tip, walls were tried up to 20,000 N/m at 1 ms, at 2 ms they
-// end at 3,500. Of arms below 40 g it was also found by how much a step of the encoder may change a
-// wall's force, and what part of a speed it may be.
-constexpr double kTried = 20000, kTriedTick = 0.001;    // [N/m], [s]
-constexpr double kFineStep = 0.11, kCoarseStep = 0.22;  // [N]
-constexpr double kFineSpeed = 0.3, kSoftest = 100;      // [rad/s], [N/m]
-constexpr double kCoarseWall = 2000;                    // [N/m]
-constexpr double kLight = 0.04;                         // [kg]
-// Of m_n over the square of a time [-]: of a tick, found with 24 arms, failing from 4 on; of a delay
-// that is not reckoned with and of one that is, found with the built-in arm.
-constexpr double kQuick = 3, kUnforeseen = 0.3, kForeseen = 0.2;
+// The stiffest walls that were tried: with exact encoders, and with steps; coarse ones; where steps
+// are too coarse for a tick, which is so from this speed on.
+constexpr double kTried = 20000, kTriedStepped = 10000, kCoarseWall = 2000;  // [N/m]
+constexpr double kSoftest = 100, kFineSpeed = 0.3;                           // [N/m], [rad/s]
+constexpr double kTriedTick = 0.001;                                         // [s]
+// Of m_n over the square of a time [-]: of a tick, found with 24 arms, failing from 3 on; of a
+// delay that is not reckoned with and of one that is, found with the built-in arm.
+constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2;
 constexpr double kSofter = 1.0 / 20;  // part of a wall that the proxy's inertia may take off it
+// By how much a step of the encoder may change the tip's velocity through the wall [m/s]: of arms
+// below 20 g, which are held by the damping of the hand, and of heavier ones.
+constexpr double kLight = 0.02, kLightShaken = 1e-2, kShaken = 3e-4;
 
 // The stiffest wall for which the predictors have a memory that is long enough for the encoder's
 // steps and short enough for the wall [N/m].
 double quiet_wall(const TipMoved& tip, WallMemory wall, double least) {
+  const bool light = tip.mass < kLight;
   double low = 1, high = kTried;
   while (high / low > 1.001) {
     wall.K = std::sqrt(low * high);
-    (wall.needed(least, tip) <= wall.possible(tip) ? low : high) = wall.K;
+    const double p = light ? least : wall.possible(tip);
+    const bool quiet = p >= least && wall.shaken(p, tip) <= (light ? kLightShaken : kShaken);
+    (quiet ? low : high) = wall.K;
   }
   return low;
 }
@@ -79,12 +82,11 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
   };
   bound(kQuick * tip.mass / (T * T), WallBound::quick);
   bound(kSofter * s.at.k_vc / (s.inertia_ratio * tip.lever * tip.lever), WallBound::proxy);
-  if (q > 0 && tip.mass < kLight) {
-    const double step = s.coarse ? kCoarseStep : kFineStep;
-    bound(step / (q * tip.lever), WallBound::encoder);
+  if (q > 0) {
+    bound(kTriedStepped, WallBound::encoder);
+    bound(quiet_wall(tip, {0, T, q, s.gains.damping}, s.gains.p), WallBound::encoder);
     if (!s.coarse && q > kFineSpeed * T) bound(kSoftest, WallBound::rough);
   }
-  if (q > 0) bound(quiet_wall(tip, {0, T, q, s.gains.damping}, s.gains.p), WallBound::encoder);
   if (s.coarse) bound(kCoarseWall, WallBound::encoder);
   if (s.at.hand_mass > s.mass_foreseen) {
     const TipAlong along{tip.mass, 0, tip.lever * tip.lever};

@@ -105,9 +105,13 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   kinetic_ = proxy_.kinetic_energy();
   const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured, v1,   device_,      f1_hat_, vbar2_,        T, frames_, b_d_,
-                        b_d_sure,    left, gate_.gain(), p.tick,  p.encoder_step,
-                        most_delay(p, arm_delay_, in.health.guarded)};
+  const LawInput<N> now{in.measured,    v1,
+                        device_,        f1_hat_,
+                        vbar2_,         T,
+                        frames_,        b_d_,
+                        b_d_sure,       left,
+                        gate_.gain(),   p.tick,
+                        p.encoder_step, most_delay(p, arm_delay_, in.health.guarded)};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
@@ -213,7 +217,8 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::damping_governor, law.damping_governor);
   set(Column::solved, static_cast<double>(law.solved));
   set(Column::unsettled, static_cast<double>(law.unsettled));
-  set(Column::energy_ledger, std::min(p.energy, coupling_.reserve()));
+  const double reserve = coupling_.reserve();
+  set(Column::energy_ledger, std::isfinite(reserve) ? reserve : p.energy);
   set(Column::energy_port, books_.port);
   set(Column::energy_total, books_.total);
   set(Column::energy_commanded, books_.commanded);

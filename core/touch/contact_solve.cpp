@@ -122,7 +122,8 @@ void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, doub
     direction = row.mesh->J.transpose() * along;
   }
   const double mass = 1 / direction.dot(answer.inertia->solve(direction));
-  const double own = wall_damping(row.material.stiffness, mass, T, answer.damping);
+  const double jump = answer.jump * direction.norm();
+  const double own = wall_damping(row.material.stiffness, mass, T, answer.damping, jump);
   row.B = std::min(own + row.material.damping, answer.most_damping * mass / T);
 }
 
