@@ -13,7 +13,8 @@
 
 namespace limpid {
 
-// Along the direction in which the arm's own dampers hold the tip least.
+// Along the direction in which the arm's own dampers hold the tip least; walls of the predictive
+// coupling along the worst.
 struct TipLimits {
   TipAlong tip;
   double delay = 0;  // of the device, that walls are reckoned with [s]
@@ -28,6 +29,7 @@ struct TipLimits {
   double scene;       // stiffest thing in the scene, 0 without any [N/m]
   FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
   double w_f;         // of the observer there [rad/s]
+  AddedMass added;    // of the predictive coupling: eta as the possible delay leaves it
 };
 
 // At configuration x [rad].

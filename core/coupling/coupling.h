@@ -44,6 +44,11 @@ class Coupling {
   void applied(CouplingKind kind, const Vec<N>& torque) {
     with(laws_, kind, [&](auto& law) { law.applied(torque); });
   }
+  // What laws that account for it may still give the human, whichever law is in force [J].
+  double reserve() const {
+    return std::apply([](const auto&... law) { return std::min({law.report().reserve...}); },
+                      laws_);
+  }
   LawReport report(CouplingKind kind) const {
     LawReport report;
     with(laws_, kind, [&](const auto& law) { report = law.report(); });

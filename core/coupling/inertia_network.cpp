@@ -1,14 +1,31 @@
 #include "core/coupling/inertia_network.h"
 
+#include <algorithm>
+
 namespace limpid {
 
-std::complex<double> network_impedance(double eta, double band, double w) {
+AddedMass added_mass(double eta, const LateBy& late, double T) {
+  using N = InertiaShape;
+  if (!(eta > 1)) return {eta, N::kFastest};
+  constexpr double kOwn = 0.9, kBounded = 0.35, kKnown = 1.2;  // of beta t [-]
+  double most = kOwn / T;                                      // of beta [rad/s]
+  if (late.most > late.known) {
+    most = std::min(most, kBounded / (late.most * T));
+  } else if (late.known > 0) {
+    most = std::min(most, kKnown / (late.known * late.known * T));
+  }
+  const double edge = std::min(N::kFastest, most / (2 * N::kZeta * (eta - 1)));
+  if (edge >= N::kSlowest) return {eta, edge};
+  return {1 + most / (2 * N::kZeta * N::kSlowest), N::kSlowest};
+}
+
+std::complex<double> network_impedance(const AddedMass& added, double band, double w) {
   using N = InertiaShape;
   using Complex = std::complex<double>;
-  if (eta >= 1) {
+  if (added.eta >= 1) {
     // The mass moves at g: j w g = X (nu - g), X of its spring and damper.
-    const Complex s(0, w), X = N::kGhost * (N::kGhost / s + 2 * N::kZeta);
-    return (eta - 1) * s * X / (s + X);
+    const Complex s(0, w), X = added.edge * (added.edge / s + 2 * N::kZeta);
+    return (added.eta - 1) * s * X / (s + X);
   }
   // From its end: resistor beside the last spring, in series with mass and damper, beside the
   // first.
@@ -16,7 +33,7 @@ std::complex<double> network_impedance(double eta, double band, double w) {
   const Complex s(0, w / edge);
   const Complex last = 1.0 / (N::kA3 * s + 1 / N::kR);
   const Complex middle = 1.0 / (N::kA2 * s + N::kR1 + last);
-  return edge * (1 - eta) / (N::kA1 * s + middle);
+  return edge * (1 - added.eta) / (N::kA1 * s + middle);
 }
 
 }  // namespace limpid

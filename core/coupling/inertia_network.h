@@ -13,13 +13,34 @@ namespace limpid {
 // optimisation; r1 is what the proof needs. And the added mass on its spring and damper.
 struct InertiaShape {
   static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
-  static constexpr double kGhost = 2 * std::numbers::pi * 25;  // of the added mass [rad/s]
-  static constexpr double kZeta = 0.7;
+  static constexpr double kZeta = 0.7;                             // of the added mass
+  static constexpr double kFastest = 2 * std::numbers::pi * 25;    // it goes along [rad/s]
+  static constexpr double kSlowest = 2 * std::numbers::pi * 2;
 };
 
+// How late a motor's torque may be, beyond the tick [ticks].
+struct LateBy {
+  int known = 0;  // that is reckoned with
+  int most = 0;   // that is possible; `known` where there is no doubt
+};
+
+// What is added to the inertia for eta above 1, and how fast it goes along.
+struct AddedMass {
+  double eta;   // the one asked for, or what of it the delay leaves
+  double edge;  // w_g of its spring; eta is felt up to about there [rad/s]
+};
+
+// Above w_g the added mass is a damper of beta = 2 zeta (eta - 1) w_g for every kg m^2. A torque
+// that is late by t turns a damper into a spring that pushes on at pi/2: with the tick's own
+// t = T/2 and more the device would swing at w_1 = pi/(2 t) from beta = w_1 on. So beta t is held
+// below what was found stable with grips of up to 3000 N/m: 0.9 of the tick itself, 0.35 of a delay
+// that is only bounded, and 1.2 T/t of one that is known. What would leave less than kSlowest
+// leaves less of eta.
+AddedMass added_mass(double eta, const LateBy& late, double T);
+
 // What a network adds to what is felt of an inertia of 1 kg m^2, without ticks: torque over
-// velocity at w [rad/s]. `band`: its edge [Hz].
-std::complex<double> network_impedance(double eta, double band, double w);
+// velocity at w [rad/s]. `band`: its edge below eta 1 [Hz].
+std::complex<double> network_impedance(const AddedMass& added, double band, double w);
 
 // Driven by the device's motion through R_N, M-like: N = R_N R_N^T. All time dependence of eta and
 // of the inertia sits in R_N, so that for every eta(t) the work given over a tick is at most the
@@ -40,7 +61,7 @@ class InertiaNetwork : InertiaShape {
     if (side_ < 0) {
       climb(nu, T * w2_);
     } else {
-      const double h = T * kGhost;
+      const double h = T * w2_;
       const Vec<N> d = (nu - g_ - h / 2 * s_) / (1 + kZeta * h + h * h / 4);
       s_ += h * d;
       g_ = 2 * (nu - d) - g_;
@@ -48,12 +69,13 @@ class InertiaNetwork : InertiaShape {
   }
 
   // For the tick that begins: at this eta, locked inertia M_L, with the share `gain` of what adds
-  // inertia. `band`: edge of the band in which eta holds [Hz].
-  void set(double eta, const Mat<N>& M_L, double gain, double T, double band) {
+  // inertia. `band`: edge of the band in which eta holds below 1 [Hz].
+  void set(const AddedMass& added, const Mat<N>& M_L, double gain, double T, double band) {
+    const double eta = added.eta;
     const int side = eta < 1 ? -1 : eta > 1 ? 1 : 0;
     if (side != side_) start(M_L.rows());  // what was stored is lost, never gained
     side_ = side;
-    w2_ = 2 * std::numbers::pi * band;
+    w2_ = side > 0 ? added.edge : 2 * std::numbers::pi * band;
     const Eigen::Index n = M_L.rows();
     if (side == 0) {
       force_ = Vec<N>::Zero(n);
@@ -66,9 +88,9 @@ class InertiaNetwork : InertiaShape {
       force_ = -w2_ * (R_ * s_);
       K_ = Mat<N>::Zero(n, n);
     } else {
-      const double h = T * kGhost;
-      const double gamma = kGhost * (h / 2 + 2 * kZeta) / (1 + kZeta * h + h * h / 4);
-      force_ = -R_ * (kGhost * s_ - gamma * (g_ + h / 2 * s_));
+      const double h = T * w2_;
+      const double gamma = w2_ * (h / 2 + 2 * kZeta) / (1 + kZeta * h + h * h / 4);
+      force_ = -R_ * (w2_ * s_ - gamma * (g_ + h / 2 * s_));
       K_ = gamma * (R_ * R_.transpose());
     }
   }
@@ -116,7 +138,7 @@ class InertiaNetwork : InertiaShape {
   Vec<N> s_, v_, g_;
   Mat<N> R_;
   int side_ = 0;   // -1 ladder, +1 added mass, 0 neither
-  double w2_ = 0;  // edge of the band, of the tick that R_ is of [rad/s]
+  double w2_ = 0;  // edge of the band or of the added mass, of the tick that R_ is of [rad/s]
   double step_ = 0;
   Mat3 middle_;
   Vec<N> force_;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 #include "core/coupling/decomposition.h"
 #include "core/dynamics/arm.h"
@@ -18,6 +20,8 @@ struct LawStart {
   const Vec<N>& x1;      // as measured [rad]
   const Vec<N>& v1;      // [rad/s]
   const Vec<N>& f1_hat;  // human torque, as far as it is known [N m]
+  // Energy that the human may still be given [J]; none: as it was left in the loop so far.
+  std::optional<double> reserve{};
 };
 
 // What the device says at t_k.
@@ -52,6 +56,7 @@ struct LawInput {
   double authority;                       // share of a torque that leaves for them, 0 to 1
   double tick;                            // as it should be [s]
   double encoder_step;                    // [rad]
+  int delay_most;                         // between command and motor, at most [ticks]
 };
 
 // How a law found the motion of a tick.
@@ -64,7 +69,8 @@ enum class TickSolve : std::uint8_t {
 
 // What a law tells of itself, a tick.
 struct LawReport {
-  double reserve = 0;           // energy left in its ledger [J]
+  // Energy left in its ledger; infinite without one, and before its first tick [J].
+  double reserve = std::numeric_limits<double>::infinity();
   double contact_governor = 1;  // share of the contact force that it lets through
   double damping_governor = 1;  // share of the damping that it may cancel
   TickSolve solved = TickSolve::usual;

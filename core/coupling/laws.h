@@ -124,10 +124,12 @@ inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "c
 
 // What a preset stands for; see the table of constants.
 struct PredictorGains {
-  double p;        // memory of a fading-memory filter, 0 none [-]
+  double p;        // least memory of a fading-memory filter, 0 none [-]
   double mu;       // factor on the device's inertia in the predictor [-]
   double damping;  // that walls get, as a part of m_n/T [-]
 };
+
+inline constexpr int kMostDelay = 20;  // of a device [ticks]
 
 struct PredictorSettings {
   PredictorPreset preset = PredictorPreset::by_encoder;
@@ -135,34 +137,36 @@ struct PredictorSettings {
   double inertia = kAsPreset;  // mu [-]
   double hand_mass = 0.2;      // of the second predictor [kg]
   int delay = 0;               // between command and motor, as far as it is known [ticks]
+  double delay_most = kUnset;  // the most that it may be [ticks]
 
-  // Not a number stands for "as the preset has it".
+  // Not a number stands for "as the preset has it", or "as far as it is known".
   static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
   // Encoders coarser than this ask for the coarse preset [rad].
   static constexpr double kCoarse = 1.5e-4;
 
-  // quick: see dies_within_a_tick().
-  PredictorGains gains(double encoder_step, bool quick) const {
-    const bool free = preset == PredictorPreset::by_encoder;
-    const bool coarse = preset == PredictorPreset::coarse || (free && encoder_step > kCoarse);
-    PredictorGains g = coarse ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
-    if (free && quick) g.p = 0.45;
+  bool coarse(double encoder_step) const {
+    return preset == PredictorPreset::coarse ||
+           (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
+  }
+  PredictorGains gains(double encoder_step) const {
+    PredictorGains g = coarse(encoder_step) ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
     if (!std::isnan(memory)) g.p = memory;
     if (!std::isnan(inertia)) g.mu = inertia;
     return g;
   }
 
   template <class P>
-  static constexpr std::array<Setting<P>, 5> settings() {
+  static constexpr std::array<Setting<P>, 6> settings() {
     return {
         {{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2, 0,
           2, false, true,
           "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
-          "(walls up to 2000 N/m); auto goes by device.encoder_step, and takes the coarse memory "
-          "where a motion of the device dies out within a tick, as that of light links does."},
+          "(walls up to 2000 N/m); auto goes by device.encoder_step."},
          {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
           "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
-          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45."},
+          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45, and up to 0.85 "
+          "where a step of the encoder would shake a heavy arm on the scene's stiffest wall."},
          {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
           "the preset's, 1 or 0.5."},
@@ -171,7 +175,12 @@ struct PredictorSettings {
           "over when it is the better one. 0 does without."},
          {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
           "Predictive coupling: delay between command and motor that it reckons with, in "
-          "ticks."}}};
+          "ticks."},
+         {"model.delay_most", "possible delay", &P::delay_most, "ticks", 0, 20, 0, 5, false, true,
+          "Predictive coupling: the most that the delay between command and motor may be, in "
+          "ticks. The energy given is accounted for every delay from model.delay to this one, and "
+          "eta above 1 is felt in a narrower band. Default: of the virtual arm device.delay; of a "
+          "real device one tick more than was identified, or 3."}}};
   }
 };
 
@@ -182,8 +191,10 @@ struct LedgerSettings {
   static constexpr std::array<Setting<P>, 1> settings() {
     return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
               true, true,
-              "Predictive coupling: energy that the human may ever be given beyond what came in. "
-              "When the reserve runs low the contact force and the cancelled damping are cut."}}};
+              "Predictive coupling: the human is given at most this energy beyond what came in, "
+              "since the loop was started, and at most four times of it in any part of that time. "
+              "When the reserve runs low the contact force, the cancelled damping and the added "
+              "inertia are cut."}}};
   }
 };
 

@@ -4,84 +4,121 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 
+#include "core/coupling/laws.h"
 #include "core/math/sizes.h"
 
 namespace limpid {
 
 // H = E - (what device and proxy have stored): while H >= 0 the energy given at the human's port is
-// at most E0, and what was dissipated since, of which no more than kCap is kept.
+// at most E0 since the start, on top of what came in and was dissipated. Of that no more is kept
+// than makes H four times E0: so much may be given in any part of the time.
+//
+// How late the motors give a torque may not be known. There is an account for every delay that is
+// possible, and the least of them is the one that counts: one of them is right, whichever it is.
 template <int N>
 class Ledger {
  public:
-  void start(const Vec<N>& y) {
-    E_ = H_ = 0;
+  // The reserve that is left of an earlier part of the run [J]; none given: as it was here.
+  void start(const Vec<N>& y, std::optional<double> left) {
+    if (left) {
+      left_ = *left;
+    } else if (!fresh_) {
+      left_ = H_;
+    }
     fresh_ = true;
     dy_ = dx_ = Vec<N>::Zero(y.size());
-    contact_ = damping_ = 1;
+    contact_ = damping_ = torque_ = 1;
     still_.fill(0);
     y_ = x_ = y;
   }
 
-  // The tick just ended: the reading y after it, where the device is thought to be (x), the torque
-  // tau that acted, a safe lower bound b_lo of the device's damping. q: the encoders' step; a
-  // reading that does not change says nothing.
-  void add(const Vec<N>& y, const Vec<N>& x, const Vec<N>& tau, const Vec<N>& b_lo, double q,
+  // Of the delays between command and motor, the least and the most [ticks].
+  void expect(int least, int most) {
+    if (least == least_ && most == most_) return;
+    E_.fill(E());
+    least_ = least;
+    most_ = most;
+  }
+
+  // The tick just ended: the reading y after it, where the device is thought to be (x), a safe
+  // lower bound b_lo of the device's damping. q: the encoders' step; a reading that does not change
+  // says nothing. sent(d): the torque that was sent d ticks before the last one [N m].
+  template <class Sent>
+  void add(const Vec<N>& y, const Vec<N>& x, const Sent& sent, const Vec<N>& b_lo, double q,
            double T) {
     dy_ = y - y_;
     y_ = y;
     const Vec<N> now = y + (x - y).cwiseMin(q / 2).cwiseMax(-q / 2);
     dx_ = now - x_;
     x_ = now;
-    E_ -= tau.dot(dx_);
+    double damped = 0;
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       int& n = still_[static_cast<std::size_t>(i)];
       ++n;
       if (q > 0 && dy_[i] == 0) continue;
-      E_ += b_lo[i] * dy_[i] * dy_[i] / (n * T);
+      damped += b_lo[i] * dy_[i] * dy_[i] / (n * T);
       n = 0;
     }
+    for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_);
   }
 
-  // What is stored meanwhile [J]. At first that is nobody's debt, and E0 is there to give.
+  // What is stored meanwhile [J]. At first that is nobody's debt.
   void settle(double E0, double stored) {
-    if (fresh_) E_ = E0 + stored;
-    fresh_ = false;
-    H_ = E_ - stored;
-    const double over = H_ - kCap;
-    if (over > 0) {
-      H_ = kCap;
-      E_ -= over;
+    E0_ = E0;
+    if (fresh_) {
+      H_ = std::isfinite(left_) ? std::min(kCap * E0, left_) : E0;
+      E_.fill(H_ + stored);
+      fresh_ = false;
+      return;
     }
+    for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
+    H_ = E() - stored;
   }
 
-  // `slip`: how far the last prediction was off [rad], f2 the last contact torque.
-  void govern(const Vec<N>& f2, const Vec<N>& slip, double T) {
-    const double speed = 0.1 * dy_.norm() / T + kSurprise;
-    const double leak = f2.norm() * (2 * slip.norm() + T * speed);
+  // `slip`: how far the last prediction was off [rad], f2 the last contact torque, `surprise` by
+  // how much a tick may change the device's velocity unforeseen [rad/s].
+  void govern(const Vec<N>& f2, const Vec<N>& slip, double surprise, double T) {
+    const Vec<N> off = 2 * slip.cwiseAbs() + 0.1 * dy_.cwiseAbs();
+    const double leak = f2.cwiseAbs().dot(off) + T * surprise * f2.norm();
     follow(leak > 0 ? H_ / leak : 1, T / 0.05, contact_);
-    follow((H_ - 1e-3) / 3e-3, T / 0.2, damping_);
+    follow((H_ / E0_ - kNone) / (kWhole - kNone), T / 0.2, damping_);
+    follow((H_ / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
   }
 
   double reserve() const { return H_; }        // [J]
   double contact() const { return contact_; }  // g_f: share of f2 that reaches the hand, 0 to 1
-  double damping() const { return damping_; }  // g_b: share of the damping cancelled, 0 to 1
+  // g_b: share of the damping cancelled and of the inertia added, 0 to 1.
+  double damping() const { return damping_; }
+  // Share of all torque: what nothing else stops, as a late damper in a stiff hand that does not
+  // damp, ends there.
+  double torque() const { return torque_; }
   // How the device moved, along a path within the cells of the readings that does not jump as they
   // do: a jump would be work that no torque has done [rad].
   const Vec<N>& dx() const { return dx_; }
 
  private:
-  static constexpr double kCap = 0.02;      // [J]
-  static constexpr double kSurprise = 0.5;  // change of velocity in a tick [rad/s]
+  // Of E0: the most that H may be, as a heavy arm on a wall asks for, or the force would be cut
+  // where the prediction is off by a little; where g_b is 1 and where 0, and all torque 0.
+  static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
 
   // At once down, slowly up.
   static void follow(double target, double rate, double& g) {
     target = std::clamp(target, 0.0, 1.0);
     g = target < g ? target : g + std::min(rate, 1.0) * (target - g);
   }
+  double& at(int delay) { return E_[static_cast<std::size_t>(delay)]; }
+  double E() const { return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1); }
 
   bool fresh_ = true;
-  double E_ = 0, H_ = 0, contact_ = 1, damping_ = 1;
+  int least_ = 0, most_ = 0;
+  std::array<double, kMostDelay + 1> E_{};  // by the delay [J]
+  double E0_ = 0;
+  double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
+  double contact_ = 1, damping_ = 1, torque_ = 1;
   std::array<int, kMaxDof> still_{};
   Vec<N> y_, dy_, x_, dx_;
 };

@@ -10,6 +10,8 @@ constexpr double kMostDamping = 0.34;
 // A spring that pulls with more than this part of the limit keeps a tick with motors at their
 // limit from being the last.
 constexpr double kStillPulled = 0.02;
+// What a hand may push unforeseen in a tick, and the most that changes of the device's velocity.
+constexpr double kPushed = 4e-4, kSurprise = 0.5;  // [N s], [rad/s]
 
 template <int N>
 Vec<N> clip(const Vec<N>& x, const Vec<N>& limit) {
@@ -115,8 +117,10 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   const Vec<N> zero = Vec<N>::Zero(at.x1.size());
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
+  ledger_.start(at.x1, at.reserve);
   y_ = at.x1;
-  acted_ = slip_ = tau1_ = cut_ = zero;
+  slip_ = tau1_ = cut_ = zero;
+  memory_ = -1;
   limited_ = goes_on_ = false;
   solved_ = TickSolve::usual;
   unsettled_ = 0;
@@ -129,12 +133,13 @@ template <int N>
 Whereabouts<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<N>& in) {
   elapsed_ = in.elapsed;
   both_ = p.hand_mass > 0;
+  if (memory_ < 0) memory_ = p.gains(in.encoder_step).p;
   if (elapsed_ > 0) {
     slip_ = in.x1 - y_ - elapsed_ * predictor_.w();
-    predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step, quick_).p, both_);
+    predictor_.correct(in.x1, elapsed_, in.encoder_step, memory_, both_);
   } else {  // the first reading, maybe not quite where the device is
     predictor_.begin_at(in.x1);
-    ledger_.start(in.x1);
+    ledger_.start(in.x1, std::nullopt);
   }
   y_ = in.x1;
   return {predictor_.x_now(), predictor_.v_now()};
@@ -143,15 +148,17 @@ Whereabouts<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<
 // The books of the tick just ended, and with them what may be given in the one that begins.
 template <int N>
 void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                                   const Proxy<N>& proxy) {
+                                   const Proxy<N>& proxy, double surprise) {
+  ledger_.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
-    ledger_.add(y_, predictor_.x_now(), acted_, in.b_d_sure, in.encoder_step, elapsed_);
+    const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
+    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, in.encoder_step, elapsed_);
     network_.advance(ledger_.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger_.dx()));
   }
   ledger_.settle(p.energy, held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
                                proxy.kinetic_energy() + proxy.contact_potential());
-  ledger_.govern(proxy.f(), slip_, elapsed_ > 0 ? elapsed_ : in.tick);
+  ledger_.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
 }
 
 // What spring and motors hold. While motors are at their limit they give back what a constant
@@ -173,16 +180,18 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     quick_ = dies_within_a_tick<N>(in.device.M, in.b_d, T);
     b_d_ = in.b_d;
   }
-  const PredictorGains gains = p.gains(in.encoder_step, quick_);
+  const PredictorGains gains = p.gains(in.encoder_step);
   Jacobian<N> J;
   const Arm<N>& arm = proxy.arm();
   arm.point_jacobian(in.frames, arm.dof() - 1, arm.tip(in.frames), J);
-  predictor_.model(in.device.M, in.device.C, in.b_d, J, T, gains, p.hand_mass, p.delay);
+  predictor_.model(in.device.M, in.device.C, in.b_d, J, T, memory_, gains.mu, p.hand_mass, p.delay,
+                   quick_);
   proxy.look(T);
-  balance(p, c, in, proxy);
-
   const Decomposition<N> d(in.device, {proxy.M(), proxy.C(), proxy.v()});
-  network_.set(eta, d.M_L, ledger_.damping(), T, p.band);
+  const Levers<N> on_tip =
+      d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
+  balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
+  network_.set(added_mass(eta, {p.delay, in.delay_most}, T), d.M_L, ledger_.damping(), T, p.band);
   Vec<N> b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
   if (!proxy.contacts().engaged()) {
     b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + b_w);
@@ -194,14 +203,15 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   solve.impedance = proxy.impedance(T);
   solve.momentum = proxy.momentum(T);
   solve.limit = in.limit;
-  solve.authority = in.authority;
+  solve.authority = in.authority * ledger_.torque();
 
   ContactAnswer<N> answer = solve.system();
   Motion<N> motion = answer.system.solve(solve.right());
   contacts_.collect(proxy.contacts(), arm, proxy.frames(), motion.u, T);
   if (contacts_.any()) {
-    answer.inertia = Factor<N>(in.device.M);
+    answer.inertia = &d.M_L_factor;
     answer.damping = gains.damping;
+    answer.jump = velocity_jump(memory_, in.encoder_step, T);
     answer.most_damping = kMostDamping;
   }
   const bool resumed = goes_on_;
@@ -234,9 +244,14 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
                            (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
+  memory_ = gains.p;
+  if (in.encoder_step > 0 && std::isnan(p.memory)) {
+    const WallMemory wall{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping};
+    memory_ = wall.chosen(gains.p, tip_moved(J * on_tip, J * J.transpose()));
+  }
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
-  return tau1_;
+  return ledger_.torque() * tau1_;
 }
 
 // motion: in, a first guess; out, of contacts and motors together. `resumed`: the last tick's
@@ -263,7 +278,6 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
 
 template <int N>
 void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
-  acted_ = predictor_.acting(tau);
   predictor_.applied(tau, both_);
 }
 

@@ -38,19 +38,19 @@ class PredictiveLaw::Of {
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
   void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-               const Proxy<N>& proxy);
+               const Proxy<N>& proxy, double surprise);
 
   Predictor<N> predictor_;
   InertiaNetwork<N> network_;
   Ledger<N> ledger_;
   ContactSolve<N> contacts_;
   Vec<N> y_;              // the last reading [rad]
-  Vec<N> acted_;          // torque of the tick just ended [N m]
   Vec<N> slip_;           // how far its prediction was off [rad]
   Vec<N> tau1_;           // as wanted, this tick [N m]
   Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
   double elapsed_ = 0;    // since the reading before; 0 at the first [s]
   bool both_ = true;      // predictors
+  double memory_ = 0;     // p of the predictors at this reading [-]
   Vec<N> b_d_;            // for which quick_ is
   bool quick_ = false;    // the device, see dies_within_a_tick()
   bool limited_ = false;  // the last tick had motors at their limit,

@@ -11,8 +11,35 @@
 
 namespace limpid {
 
+// An arm's tip, as the easiest of its directions has it.
+struct TipMoved {
+  double mass;   // 1 / (n' J M^-1 J' n), no more than that [kg]
+  double lever;  // |J' n|, no less [m]
+};
+// By J M^-1 J' and J J'.
+TipMoved tip_moved(const Mat3& mobility, const Mat3& levers);
+
+// By how much the velocity jumps when an encoder makes a step q: 1.5 (1 - p)^2 (1 + p) q/T [rad/s].
+inline double velocity_jump(double p, double q, double T) {
+  return 1.5 * (1 - p) * (1 - p) * (1 + p) * q / T;
+}
+
+// The memory that the filter needs where encoders have steps q: a reading that jumps makes the
+// force of a wall K jump by
+//     F_q = (K T/2 + B) g_v q L/T,   g_v = 1.5 (1 - p)^2 (1 + p),
+// B the damper that the wall gets by itself. A light arm is held by the damping of the hand; from
+// 40 g on a jump may change the tip's velocity by no more than 1 mm/s, from 20 g on that counts in
+// part. What foretells so slowly has to be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
+struct WallMemory {
+  double K, T, q, damping;  // [N/m, s, rad], part of m_n/T that the wall's damper has [-]
+  double shaken(double p, const TipMoved& tip) const;      // by F_q T/m_n [m/s]
+  double needed(double least, const TipMoved& tip) const;  // p, from `least` on
+  double possible(const TipMoved& tip) const;              // the most of p
+  double chosen(double least, const TipMoved& tip) const;  // of both, and never below `least`
+};
+
 // Whether some joint that moves alone, the others free, loses its motion to its damping b_d within
-// a tick: T b_d_j (M^-1)_jj > 1. The midpoint rule foretells there that it goes back and forth;
+// a tick: T b_d_j (M^-1)_jj > 1. The midpoint rule foretells from 2 on that it goes back and forth;
 // with little memory that builds up from 2.7 on (chains of 3 to 30 joints, of many masses).
 template <int N>
 bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
@@ -29,11 +56,10 @@ bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
 template <int N>
 class Predictor {
  public:
-  static constexpr std::size_t kMostDelay = 20;
-
   // Velocity and torque of the hand as they are [rad, rad/s, N m].
   void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
+    ahead_ = Vec<N>::Constant(x.size(), kMidpoint);
     tracks_.fill({x, v, zero, f, x, v, 0, zero, x, v});
     sent_.fill(zero);
     active_ = 0;
@@ -49,7 +75,7 @@ class Predictor {
     const double forget = exponential(-elapsed / kJudged);
     for (Track& t : tracks_) {
       t.x_ahead = t.x + elapsed * t.w;  // as foretold
-      t.v_ahead = 2 * t.w - t.v;
+      t.v_ahead = end_velocity(t.v, t.w);
       t.error = y - t.x_ahead;
       if (q > 0) t.error -= t.error.cwiseMin(q / 2).cwiseMax(-q / 2);
       t.x = t.x_ahead + (1 - p * p * p) * t.error;
@@ -70,18 +96,25 @@ class Predictor {
   const Vec<N>& v_now() const { return active().v; }
 
   // The device as modelled there: M, C, its damping b_d, the tip's J; T of the coming tick [s].
-  // Goes on to where the coming torque will meet it, if that is known to be late.
+  // quick: see dies_within_a_tick(). Goes on to where the coming torque will meet it, if that is
+  // known to be late.
   void model(const Mat<N>& M, const Mat<N>& C, const Vec<N>& b_d, const Jacobian<N>& J, double T,
-             const PredictorGains& g, double hand_mass, int delay) {
+             double p, double mu, double hand_mass, int delay, bool quick) {
     T_ = T;
     delay_ = delay;
-    const double fresh = 1 - g.p, gain = fresh * fresh * fresh / (T * T);
+    if (quick) {
+      ahead_ = exact_decay(M, b_d, T);
+    } else {
+      ahead_.setConstant(M.rows(), kMidpoint);
+    }
+    const double fresh = 1 - p, gain = fresh * fresh * fresh / (T * T);
     for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
       Track& t = tracks_[m];
-      t.Mp = g.mu * M;
+      t.Mp = mu * M;
       if (m == 1) t.Mp += hand_mass * (J.transpose() * J);
       t.f += gain * (t.Mp * t.error);
-      t.D0 = 2 / T * t.Mp + C;
+      t.Mp = (t.Mp * (ahead_ / T).asDiagonal()).eval();
+      t.D0 = t.Mp + C;
       t.D0.diagonal() += b_d;
       t.D0_inverse = Factor<N>(t.D0);
       t.x_met = t.x;
@@ -90,7 +123,7 @@ class Predictor {
         const Vec<N> w = mean_velocity(t, t.v_met, under_way(k));
         if (k == 0) t.w = w;
         t.x_met += T * w;
-        t.v_met = 2 * w - t.v_met;
+        t.v_met = end_velocity(t.v_met, w);
       }
     }
   }
@@ -99,20 +132,22 @@ class Predictor {
   // mean velocity over the tick.
   const Vec<N>& x() const { return active().x_met; }
   const Mat<N>& D0() const { return active().D0; }
-  Vec<N> drive() const { return 2 / T_ * (active().Mp * active().v_met) + active().f; }
+  Vec<N> drive() const { return active().Mp * active().v_met + active().f; }
   bool heavy_hand() const { return active_ == 1; }
 
   // The torque as it leaves for the motors at the coming tick [N m].
   void applied(const Vec<N>& tau, bool both) {
-    newest_ = (newest_ + 1) % kMostDelay;
+    newest_ = (newest_ + 1) % sent_.size();
     sent_[newest_] = tau;
     if (delay_ > 0) return;
     for (std::size_t m = 0; m < (both ? 2 : 1); ++m) {
       tracks_[m].w = mean_velocity(tracks_[m], tracks_[m].v, tau);
     }
   }
-  // The torque that acts over the coming tick, if `tau` is sent now [N m].
-  const Vec<N>& acting(const Vec<N>& tau) const { return delay_ > 0 ? under_way(0) : tau; }
+  // The torque that was sent so many ticks before the last one [N m].
+  const Vec<N>& sent(int before) const {
+    return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(before)) % sent_.size()];
+  }
   // Mean velocity foretold for the tick that begins [rad/s].
   const Vec<N>& w() const { return active().w; }
 
@@ -125,26 +160,44 @@ class Predictor {
     double misses = 0;        // squared errors, fading [rad^2]
     Vec<N> error{};           // of the last reading [rad]
     Vec<N> x_met{}, v_met{};  // where the coming torque meets it
-    Mat<N> Mp{}, D0{};        // inertia, and 2/T Mp + C + b_d
+    Mat<N> Mp{}, D0{};        // inertia over the tick that it takes [N m s/rad], Mp + C + b_d
     Factor<N> D0_inverse{};
   };
   static constexpr double kJudged = 0.05;  // predictions count for so long [s]
 
+  static constexpr double kMidpoint = 2;  // mean and end of a tick by the midpoint rule
+
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
-    return t.D0_inverse.solve((2 / T_ * (t.Mp * v) + t.f + tau).eval());
+    return t.D0_inverse.solve((t.Mp * v + t.f + tau).eval());
+  }
+  // After a tick with the mean velocity w.
+  Vec<N> end_velocity(const Vec<N>& v, const Vec<N>& w) const {
+    return v + ahead_.cwiseProduct(w - v);
+  }
+  // By how much of w - v the velocity changes over a tick, w the mean: of a joint that dies out by
+  // itself exactly, with a = T b_d (M^-1)_jj, 1/theta of theta = (a/(1 - e^-a) - 1)/a; 2 for a ->
+  // 0.
+  static Vec<N> exact_decay(const Mat<N>& M, const Vec<N>& b_d, double T) {
+    constexpr double kSlow = 1e-3;  // below: theta = 1/2 + a/12
+    const Factor<N> factor(M);
+    Vec<N> ahead = b_d;
+    for (Eigen::Index j = 0; j < b_d.size(); ++j) {
+      const Vec<N> unit = Vec<N>::Unit(b_d.size(), j);
+      const double a = T * b_d[j] * Vec<N>(factor.solve(unit))[j];
+      ahead[j] = 1 / (a > kSlow ? (a / (1 - exponential(-a)) - 1) / a : 0.5 + a / 12);
+    }
+    return ahead;
   }
 
   // The torque that will act in so many ticks, not yet sent for the present one [N m].
-  const Vec<N>& under_way(int ahead) const {
-    const std::size_t back = static_cast<std::size_t>(delay_ - 1 - ahead);
-    return sent_[(newest_ + kMostDelay - back) % kMostDelay];
-  }
+  const Vec<N>& under_way(int ahead) const { return sent(delay_ - 1 - ahead); }
 
   std::array<Track, 2> tracks_;
   std::size_t active_ = 0;
+  Vec<N> ahead_;  // see exact_decay()
   // All that were sent, in a ring: a delay may turn out to be another one [N m].
-  std::array<Vec<N>, kMostDelay> sent_;
+  std::array<Vec<N>, kMostDelay + 1> sent_;
   std::size_t newest_ = 0;
   int delay_ = 0;
   double T_ = 0.001;

@@ -33,6 +33,8 @@ template <int N>
 using Mat = Eigen::Matrix<double, N, N, 0, kCapacity<N>, kCapacity<N>>;
 template <int N>
 using Jacobian = Eigen::Matrix<double, 3, N, 0, 3, kCapacity<N>>;  // rows x, y, z
+template <int N>
+using Levers = Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3>;  // a Jacobian's transpose
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/coupling/inertia_network.h"
-
 namespace limpid {
 namespace {
 
@@ -27,10 +25,10 @@ std::complex<double> FeltJoint::standard(double f) const {
   return m * s + b_d + coupling * proxy / (coupling + proxy);
 }
 
-std::complex<double> FeltJoint::predictive(double f, double eta, double damping,
+std::complex<double> FeltJoint::predictive(double f, const AddedMass& added, double damping,
                                            double band) const {
   const std::complex<double> s(0, omega(f));
-  return m * (s + network_impedance(eta, band, omega(f))) + damping * (b_d + b_v) + K / s;
+  return m * (s + network_impedance(added, band, omega(f))) + damping * (b_d + b_v) + K / s;
 }
 
 std::complex<double> FeltJoint::ideal(double f, double eta) const {

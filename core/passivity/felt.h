@@ -3,6 +3,8 @@
 
 #include <complex>
 
+#include "core/coupling/inertia_network.h"
+
 namespace limpid {
 
 // A joint of the locked system (23) as the loop in ticks of T makes it; of a tip along a line the
@@ -26,8 +28,9 @@ struct FeltJoint {
   // Standard coupling, (1)-(2): the contact behind spring and damper; the proxy weighs nothing.
   std::complex<double> standard(double f) const;
   // Predictive coupling: the share `damping` of b_d + b_v stays felt, networks shape the inertia up
-  // to `band` [Hz], the contact acts as it is.
-  std::complex<double> predictive(double f, double eta, double damping, double band) const;
+  // to `band` [Hz] or to the edge of what is added, the contact acts as it is.
+  std::complex<double> predictive(double f, const AddedMass& added, double damping,
+                                  double band) const;
   // Without any lag: eta (m s + b) + K/s.
   std::complex<double> ideal(double f, double eta) const;
   double b() const { return b_d + b_v + k_vc * T / 2; }

@@ -1,6 +1,7 @@
 // How stiff walls may be that the tip of an arm touches, in closed form.
 #pragma once
 
+#include "core/coupling/predictor.h"
 #include "core/math/sizes.h"
 
 namespace limpid {
@@ -16,6 +17,8 @@ struct TipAlong {
 // unit.
 TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
                    const Vec3& n);
+// The easiest direction's mass, the longest lever.
+TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M);
 // Unit, the direction in which the joints' own dampers hold the tip least: where walls are hardest
 // to render.
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d);
@@ -39,6 +42,34 @@ double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
 // Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand, by
 // the energy that its error gives away. Infinite without a mass.
 double mistaken_wall(const TipAlong& tip, const WallSetting& s);
+
+// What a wall of the predictive coupling depends on besides.
+struct PredictiveWallSetting {
+  WallSetting at;
+  double encoder_step = 0;    // [rad]
+  PredictorGains gains{};     // for that step
+  bool coarse = false;        // they are the coarse ones
+  double mass_foreseen = 0;   // of the hand, by the predictor [kg]
+  double delay_foreseen = 0;  // part of the delay that is reckoned with [s]
+  double inertia_ratio = 0;   // M2 / M1 [-]
+};
+enum class WallBound {
+  tried,    // no stiffer one was tried
+  quick,    // the tip's mass moves too far in a tick for a prediction that does not know the hand
+  proxy,    // the proxy's inertia is felt through the spring k_vc
+  encoder,  // a step of the encoder shakes the tip
+  rough,    // the encoder's step is too coarse for so short a tick
+  hand,     // it is heavier than foreseen
+  delay,
+};
+struct BoundedWall {
+  double stiffness;  // [N/m]
+  WallBound by;
+};
+// Stiffest wall that the predictive coupling renders without rattle and that is felt as it is set,
+// to 5 %, whatever its direction. tip: along the easiest direction.
+BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s);
+
 // What is felt of a wall through a spring k_vc at every joint is softer than it [N/m].
 double spring_at_tip(const TipAlong& tip, double k_vc);
 

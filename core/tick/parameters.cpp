@@ -143,6 +143,14 @@ struct Text {
 
 }  // namespace
 
+int most_delay(const Parameters& p, std::optional<double> identified, bool real) {
+  constexpr double kUsual = 3;  // of devices of which nothing is known [ticks]
+  double most = p.delay_most;
+  if (std::isnan(most) && !real) most = p.device_delay;
+  if (std::isnan(most)) most = identified ? *identified / p.tick + 1 : kUsual;
+  return std::clamp(static_cast<int>(std::ceil(most)), p.delay, kMostDelay);
+}
+
 std::span<const ParameterInfo> parameter_table() { return kTable; }
 
 const ParameterInfo* find_parameter(std::string_view key) {

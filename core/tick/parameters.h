@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -17,8 +18,6 @@ namespace limpid {
 
 // Not a number stands for "as the arm's file says".
 inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
-
-inline constexpr int kMostDelay = 20;  // of a device [ticks]
 
 // Where down is, in the base's frame.
 enum class Down : std::uint8_t { as_file, minus_z, plus_z, minus_x, plus_x, minus_y, plus_y };
@@ -70,6 +69,10 @@ struct Parameters : LawSettings, ObserverSettings, CompensationSettings {
 
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
+
+// The most that the delay between command and motor may be [ticks]: as it is set, else of the
+// virtual arm as it is, of a real device a tick more than was identified [s], or 3.
+int most_delay(const Parameters& p, std::optional<double> identified, bool real);
 
 using ParameterInfo = Setting<Parameters>;
 

@@ -20,6 +20,7 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
       arm_damping_(of_joints<N>(arm, &Joint::damping)),
       arm_limit_(of_joints<N>(arm, &Joint::effort)),
       arm_friction_(of_joints<N>(arm, &Joint::friction)),
+      arm_delay_(arm.delay),
       velocity_(arm.dof()),
       observer_(arm.dof()),
       proxy_(arm, scene),
@@ -51,7 +52,7 @@ void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   tau1_ = vbar2_ = loads_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  coupling_.start({start.x1, start.v1, start.f1_hat});
+  coupling_.start({start.x1, start.v1, start.f1_hat, start.reserve});
   k_ = period_ = 0;
   diverged_ = false;
 }
@@ -104,8 +105,13 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   kinetic_ = proxy_.kinetic_energy();
   const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured, v1,   device_,      f1_hat_, vbar2_,        T, frames_, b_d_,
-                        b_d_sure,    left, gate_.gain(), p.tick,  p.encoder_step};
+  const LawInput<N> now{in.measured,    v1,
+                        device_,        f1_hat_,
+                        vbar2_,         T,
+                        frames_,        b_d_,
+                        b_d_sure,       left,
+                        gate_.gain(),   p.tick,
+                        p.encoder_step, most_delay(p, arm_delay_, in.health.guarded)};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
@@ -211,7 +217,8 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::damping_governor, law.damping_governor);
   set(Column::solved, static_cast<double>(law.solved));
   set(Column::unsettled, static_cast<double>(law.unsettled));
-  set(Column::energy_ledger, law.reserve);
+  const double reserve = coupling_.reserve();
+  set(Column::energy_ledger, std::isfinite(reserve) ? reserve : p.energy);
   set(Column::energy_port, books_.port);
   set(Column::energy_total, books_.total);
   set(Column::energy_commanded, books_.commanded);

@@ -37,10 +37,12 @@ struct Start {
   Vec<N> x2, v2;      // proxy
   Vec<N> f1_hat;      // estimate of the human torque [N m]
   bool armed = true;  // at full force from the first tick on; not where motors are guarded
+  // What the human may still be given by laws that account for it; they start with no more [J].
+  double reserve = std::numeric_limits<double>::infinity();
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
-    return {x, zero, x, zero, zero, true};
+    return {x, zero, x, zero, zero};
   }
 };
 
@@ -66,6 +68,7 @@ class Tick {
 
   const Proxy<N>& proxy() const { return proxy_; }
   const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
+  double reserve() const { return coupling_.reserve(); }  // see Start [J]
   Vec3 tip() const { return arm_.tip(frames_); }      // where the law takes the device to be [m]
   Vec3 tip_at(const Vec<N>& x) const { return arm_.tip_at(x); }
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
@@ -91,6 +94,7 @@ class Tick {
   RowLayout layout_;
   Arm<N> arm_;
   Vec<N> arm_damping_, arm_limit_, arm_friction_;  // of the arm's file
+  std::optional<double> arm_delay_;                // as it was identified [s]
   typename Arm<N>::Frames frames_;
   Dynamics<N> device_;
   VelocityEstimator<N> velocity_;

@@ -121,9 +121,10 @@ void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, doub
                            : Vec3(row.mesh->direction.col(0));
     direction = row.mesh->J.transpose() * along;
   }
-  const double mass = 1 / direction.dot(answer.inertia.solve(direction));
-  row.B =
-      std::min(answer.damping * mass / T + row.material.damping, answer.most_damping * mass / T);
+  const double mass = 1 / direction.dot(answer.inertia->solve(direction));
+  const double jump = answer.jump * direction.norm();
+  const double own = wall_damping(row.material.stiffness, mass, T, answer.damping, jump);
+  row.B = std::min(own + row.material.damping, answer.most_damping * mass / T);
 }
 
 template <int N>

@@ -15,10 +15,11 @@ namespace limpid {
 template <int N>
 struct ContactAnswer {
   CoupledSystem<N> system;
-  Mat<N> on_device, on_proxy;  // of f2, what reaches each side [-]
-  Factor<N> inertia;           // of the device: how heavy a wall finds it
-  double damping = 0;          // that every wall has, as a part of its mass a tick, m_n/T [-]
-  double most_damping = 0;     // that a wall may have, in the same measure [-]
+  Mat<N> on_device, on_proxy;                   // of f2, what reaches each side [-]
+  const SymmetricFactor<N>* inertia = nullptr;  // of what a wall finds heavy
+  double damping = 0;                           // see wall_damping() [-]
+  double jump = 0;          // of a joint's velocity when its encoder makes a step [rad/s]
+  double most_damping = 0;  // that a wall may have, as a part of its mass a tick, m_n/T [-]
 
   Motion<N> respond(const Vec<N>& f2) const {
     return system.solve({on_device * f2, on_proxy * f2});

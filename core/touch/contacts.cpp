@@ -25,6 +25,13 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene) : scene_(sc
   contacts_.assign(obstacles * probes_.size() + scene.joint_contacts.size(), empty);
   add_mesh_contacts(arm);
   memories_.resize(contacts_.size() + meshes_.size());
+  const auto look = [&](const auto& surfaces) {
+    for (const auto& s : surfaces) stiffest_ = std::max(stiffest_, s.material.stiffness);
+  };
+  look(scene.planes);
+  look(scene.spheres);
+  look(scene.boxes);
+  look(scene.meshes);
 }
 
 template <int N>

@@ -116,6 +116,8 @@ class Contacts {
   // Copies what pushed over the last tick, the hardest if not all fit; returns how many. Contacts
   // in joint space are nowhere and not among them.
   std::size_t forces(std::span<ContactForce> into) const;
+  // Of all surfaces [N/m].
+  double stiffest() const { return stiffest_; }
   // Of all springs as they were found, those of friction too [J].
   double potential() const { return potential_; }
 
@@ -133,6 +135,7 @@ class Contacts {
   std::vector<MeshContact<N>> meshes_;
   std::vector<ContactMemory> memories_;  // by id
   double potential_ = 0;
+  double stiffest_ = 0;
 };
 
 extern template class Contacts<3>;

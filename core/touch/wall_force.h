@@ -7,6 +7,16 @@
 
 namespace limpid {
 
+// The damper that a wall of stiffness K gets by itself for what touches it with the mass m_n
+// [N s/m]: `part` of m_n/T, or less where that is more than critical: a heavy arm needs no more,
+// and a wall that no joint can move along would brake. And where a step of the encoder is a jump of
+// the velocity there [m/s], no more than that jump may push with.
+inline double wall_damping(double K, double m_n, double T, double part, double jump) {
+  constexpr double kPush = 0.05;  // [N]
+  const double quiet = std::min(part * m_n / T, std::sqrt(K * m_n));
+  return jump > 0 ? std::min(quiet, kPush / jump) : quiet;
+}
+
 // A wall of stiffness K [N/m] and damper B [N s/m], the depth d at the tick's start [m], and over
 // the tick of T [s] the change of depth D = a - c F: a without this wall's force, c > 0 what a
 // force takes off it [m, m/N]. In joint space with [rad] and [N m].

@@ -159,7 +159,7 @@ void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
-        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed});
+        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve});
         of->begin_at(start, start.target);
       },
       of_);
@@ -169,7 +169,8 @@ void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
   present(scratch);
   std::visit(
       [&](auto& of) {
-        of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat});
+        of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat, true,
+                             scratch.reserve});
         of->begin_at(scratch, target);
       },
       of_);
@@ -186,6 +187,7 @@ void Rig::present(RigStart& into) const {
         into.f1_hat = of->tick.estimate();
         into.target = of->input.hand.target;
         into.armed = of->tick.force().armed();
+        into.reserve = of->tick.reserve();
       },
       of_);
 }
@@ -230,7 +232,7 @@ RigStart rest_at(const ArmDescription& arm, const Vec3& target) {
   const auto x = inverse_kinematics(arm, target, rest_pose(arm));
   if (!x) throw std::invalid_argument("out of reach");
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
-  return {*x, zero, *x, zero, zero, target, true};
+  return {*x, zero, *x, zero, zero, target};
 }
 
 RigStart start_of(const RowLayout& layout, std::span<const double> row) {
@@ -239,13 +241,16 @@ RigStart start_of(const RowLayout& layout, std::span<const double> row) {
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), layout.width(c)));
   };
   const auto target = layout.in(row, Column::hand_target);
+  // Recordings made before all laws kept the reserve have none with a law that does not use it.
+  const double reserve = layout.in(row, Column::energy_ledger)[0];
   return {vector(Column::device_position),
           vector(Column::device_velocity),
           vector(Column::proxy_position),
           vector(Column::proxy_velocity),
           vector(Column::hand_torque_estimate),
           Vec3(target[0], target[1], target[2]),
-          layout.in(row, Column::force_wanted)[0] != 0};
+          layout.in(row, Column::force_wanted)[0] != 0,
+          reserve != 0 ? reserve : RigStart{}.reserve};
 }
 
 }  // namespace limpid

@@ -3,6 +3,7 @@
 // Live threads, headless runs, re-runs and tests all call the same step.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,6 +36,8 @@ struct RigStart {
   Eigen::VectorXd f1_hat;          // [N m]
   Vec3 target = Vec3::Zero();      // where the hand wants the tip [m]
   bool armed = true;               // at full force at once; a guarded device never is
+  // What laws that account for it may still give the hand; they start with no more [J].
+  double reserve = std::numeric_limits<double>::infinity();
 };
 
 // What a rig's arm can touch, ready to be taken in by a running loop.
