@@ -51,6 +51,9 @@ void print(const TipLimits& tip, const Parameters& p) {
       "delay)\n",
       tip.every_hand);
   if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
+  if (const std::string late = late_text(tip, p); !late.empty()) {
+    fmt::print("eta, predictive            {}\n", late);
+  }
   fmt::print("\nfelt in free motion     ");
   for (const char* key : kLawKeys) fmt::print(" {:>20}", key);
   fmt::print("\n");
@@ -70,7 +73,9 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
                               {"every_hand", tip.every_hand},
                               {"scene", tip.scene},
                               {"least_damping", tip.felt.least_damping(p.eta, p.band)},
-                              {"frequency", kFelt}};
+                              {"frequency", kFelt},
+                              {"eta_felt", tip.added.eta},
+                              {"delay_most", tip.delay_most}};
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     nlohmann::ordered_json law{{"wall", tip.walls[i].stiffness}, {"bound", tip.walls[i].bound}};
     for (const double f : kFelt) {

@@ -77,7 +77,8 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             p.tick,
             0};
   l.w_f = p.alpha / lever2 / l.felt.m;
-  l.added = added_mass(p.eta, {p.delay, most_delay(p, description.delay, description.delay.has_value())}, p.tick);
+  l.delay_most = most_delay(p, description.delay, description.delay.has_value());
+  l.added = added_mass(p.eta, {p.delay, l.delay_most}, p.tick);
   return l;
 }
 
@@ -88,6 +89,12 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
   Parameters q = p;
   q.delay = q.device_delay = 0;
   return tip_limits(prompt, x, q, scene);
+}
+
+std::string late_text(const TipLimits& l, const Parameters& p) {
+  if (p.eta <= 1 || l.added.edge >= added_mass(p.eta, {0, 0}, p.tick).edge) return {};
+  return fmt::format("{:.3g} up to {:.2g} Hz, as the torque may be {:.3g} ms late", l.added.eta,
+                     l.added.edge / (2 * std::numbers::pi), 1e3 * p.tick * l.delay_most);
 }
 
 FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind, double f) {

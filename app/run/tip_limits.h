@@ -30,6 +30,7 @@ struct TipLimits {
   FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
   double w_f;         // of the observer there [rad/s]
   AddedMass added;    // of the predictive coupling: eta as the possible delay leaves it
+  int delay_most;     // that delay [ticks]
 };
 
 // At configuration x [rad].
@@ -39,6 +40,10 @@ TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const 
 // The same if the device's torque answered its readings at once.
 TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                         const Scene& scene);
+
+// What the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3 Hz, as
+// the torque may be 3 ms late"; empty where it leaves all of it.
+std::string late_text(const TipLimits& limits, const Parameters& p);
 
 // What is felt in free motion at f [Hz].
 struct FeltAtTip {

@@ -173,6 +173,13 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
                       "has to make felt for this inertia up to {:.3g} Hz.",
                       least, p.band)
               .c_str());
+  if (p.kind == CouplingKind::predictive) {
+    if (const std::string late = late_text(tip_, p); !late.empty()) {
+      read_out("\xCE\xB7", late, {},
+               "An added mass that moves fast is a damper; where the torque may be late it would "
+               "push on. model.delay_most says how late it may be.");
+    }
+  }
   const FeltAtTip now = felt_at_tip(tip_, p, p.kind, band);
   read_out(fmt::format("felt at {:.3g} Hz", band).c_str(),
            fmt::format("{:.3g} g, {:.2g} N s/m", kGram * now.mass, now.damping), {},

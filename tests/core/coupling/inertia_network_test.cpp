@@ -41,7 +41,7 @@ class Moved {
   };
   Tick tick(double eta, const Matrix& M_L, double gain, const Vector& dx, double T, double band) {
     const double before_set = network.storage();
-    network.set(eta, M_L, gain, T, band);
+    network.set({eta, edge}, M_L, gain, T, band);
     const double before = network.storage();
     EXPECT_LE(before, before_set);  // crossing 1 loses it
     const Vector torque = network.force() - network.damping() * (dx / T);
@@ -54,6 +54,7 @@ class Moved {
   }
 
   Random random;
+  double edge = InertiaShape::kFastest;  // of what is added [rad/s]
   InertiaNetwork<kAnyDof> network;
 };
 
@@ -161,7 +162,7 @@ Complex mass_added(double eta, double M, double hertz, double T) {
   const auto x = [&](double t) { return std::sin(w * t); };
   for (int k = 0; k < settle + 4 * period; ++k) {
     const double t = k * T, dx = x(t + T) - x(t), middle = t + T / 2;
-    network.set(eta, Mat<1>::Constant(M), 1, T, kBand);
+    network.set({eta, InertiaShape::kFastest}, Mat<1>::Constant(M), 1, T, kBand);
     const double f = network.force()[0] - network.damping()(0, 0) * dx / T;
     network.advance(Vec<1>::Constant(dx), T);
     if (k < settle) continue;
@@ -221,6 +222,41 @@ TEST(InertiaNetwork, AboveOneIsAMassOnASpringAndDamper) {
       EXPECT_NEAR(share, eta - 1, 0.03 * (eta - 1)) << eta << " at " << hertz << " Hz";
     }
   }
+}
+
+// Of a device M w' = -B_g w late by t and of a grip k_h without damping: on the axis
+//     M w^2 = k_h + w B_g sin(w t), 0 = B_g cos(w t):
+// the added mass may damp no more than beta = B_g/M of w_1 - w_h^2/w_1 at w_1 = pi/(2 t).
+TEST(AddedMass, DampsNoMoreThanADelayBears) {
+  for (const double T : {0.0005, 0.001, 0.002, 0.004}) {
+    for (const double eta : {1.2, 2.0, 5.0, 20.0, 100.0}) {
+      for (int most = 0; most <= 20; ++most) {
+        for (const int known : {0, most}) {
+          const AddedMass added = added_mass(eta, {known, most}, T);
+          const double beta = 2 * 0.7 * (added.eta - 1) * added.edge;
+          const double w_1 = std::numbers::pi / (2 * T * (most + 0.7));
+          EXPECT_LE(beta, w_1) << "eta " << eta << ", " << most << " ticks of " << T;
+          EXPECT_GE(added.edge, 2 * std::numbers::pi * 2 * (1 - 1e-12));
+          EXPECT_LE(added.edge, 2 * std::numbers::pi * 25);
+          EXPECT_LE(added.eta, eta);
+          EXPECT_GT(added.eta, 1);
+        }
+      }
+    }
+  }
+}
+
+TEST(AddedMass, IsAsItIsSetWhereNothingIsLate) {
+  for (const double eta : {0.1, 1.0, 2.0, 5.0}) {
+    const AddedMass added = added_mass(eta, {0, 0}, 0.001);
+    EXPECT_EQ(added.eta, eta);
+    EXPECT_EQ(added.edge, InertiaShape::kFastest);
+  }
+  // 5 to 10, 5 and 3.3 Hz with 1, 2 and 3 ms that are possible.
+  for (const auto& [most, hertz] : {std::pair(1, 10.0), {2, 5.0}, {3, 3.3}}) {
+    EXPECT_NEAR(added_mass(5, {0, most}, 0.001).edge / 2 / std::numbers::pi, hertz, 0.1);
+  }
+  EXPECT_LT(added_mass(5, {0, 5}, 0.001).eta, 5);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <deque>
 #include <numbers>
 #include <vector>
@@ -51,7 +52,7 @@ class PredictorOfJoints : public testing::TestWithParam<int> {
   // Device and predictor over a tick with a known torque and a hand's unknown one.
   void tick(const Vector& tau, const Vector& hand, const PredictorGains& g) {
     predictor_.correct(device_.x, T, 0, g.p, false);
-    predictor_.model(device_.M, device_.C, device_.b, J_, T, g, 0, 0);
+    predictor_.model(device_.M, device_.C, device_.b, J_, T, g.p, g.mu, 0, 0, false);
     predictor_.applied(tau, false);
     device_.step(tau + hand);
   }
@@ -95,7 +96,7 @@ TEST_P(PredictorOfJoints, CorrectsNothingInsideOfAnEncodersCell) {
       y[i] += beyond[i] == 0 ? q / 2 * random_.between(-1, 1) : std::copysign(q / 2, beyond[i]);
     }
     predictor_.correct(y, T, q, p, false);
-    predictor_.model(device_.M, device_.C, device_.b, J_, T, {p, 1, 0.2}, 0, 0);
+    predictor_.model(device_.M, device_.C, device_.b, J_, T, p, 1, 0, 0, false);
     const Vector w0 = none();  // nothing was foretold of the first tick
     const Vector x_ahead = x + T * w0, v_ahead = 2 * w0 - v;
     const Vector error = y - x_ahead;
@@ -124,14 +125,14 @@ TEST_P(PredictorOfJoints, MeetsTheDeviceWhereItWillBeAfterAKnownDelay) {
       }
       if (static_cast<int>(foretold.size()) == delay) foretold.pop_front();
       predictor_.correct(device_.x, T, 0, 0, false);
-      predictor_.model(device_.M, device_.C, device_.b, J_, T, {0, 1, 0.2}, 0, delay);
+      predictor_.model(device_.M, device_.C, device_.b, J_, T, 0, 1, 0, delay, false);
       foretold.push_back(predictor_.x());
       const Vector tau = random_.vector(n(), 0.2);
       const Vector acts = under_way.front();
       under_way.pop_front();
       under_way.push_back(tau);
-      ASSERT_EQ(predictor_.acting(tau), acts);
       predictor_.applied(tau, false);
+      ASSERT_EQ(predictor_.sent(delay), acts);
       device_.step(acts + hand);
       if (k >= 60) {
         ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9);
@@ -146,11 +147,11 @@ TEST_P(PredictorOfJoints, KnowsWhatIsUnderWayWhenTheDelayTurnsOutToBeAnother) {
   for (const int delay : {0, 3, 1, 20, 0, 5, 2}) {
     for (int k = 0; k < 7; ++k) {
       predictor_.correct(device_.x, T, 0, 0, false);
-      predictor_.model(device_.M, device_.C, device_.b, J_, T, {0, 1, 0.2}, 0, delay);
+      predictor_.model(device_.M, device_.C, device_.b, J_, T, 0, 1, 0, delay, false);
       sent.push_back(random_.vector(n(), 0.2));
       const Vector acts = sent[sent.size() - 1 - static_cast<std::size_t>(delay)];
-      ASSERT_EQ(predictor_.acting(sent.back()), acts) << delay << ' ' << k;
       predictor_.applied(sent.back(), false);
+      ASSERT_EQ(predictor_.sent(delay), acts) << delay << ' ' << k;
       device_.step(acts);
     }
   }
@@ -168,7 +169,7 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
     for (int k = 0; k < 400; ++k) {
       const Vector tau = random_.vector(n(), 0.2);
       predictor_.correct(device_.x, T, 0, g.p, both);
-      predictor_.model(light, device_.C, device_.b, J_, T, g, both ? kMass : 0, 0);
+      predictor_.model(light, device_.C, device_.b, J_, T, g.p, g.mu, both ? kMass : 0, 0, false);
       predictor_.applied(tau, both);
       device_.step(tau);
       if (k >= 250 && predictor_.heavy_hand() != (both && M(0, 0) == heavy(0, 0))) ++wrong;
@@ -187,23 +188,63 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
   EXPECT_EQ(wrong, 0) << "without a second predictor";
 }
 
+// A joint that moves alone: a v' = -b v + f has an exact answer over a tick, also where it dies
+// out.
+TEST(Predictor, OfLinksThatDieOutWithinATickIsExact) {
+  for (const double a : {1e-6, 0.3, 1.5, 4.0, 20.0}) {  // T b / M
+    const double M = 2e-4, b = a * M / T, f = 0.03, v0 = 2, x0 = 0.1;
+    const double dies = std::exp(-a), end = v0 * dies + f / b * (1 - dies);
+    const double mean = a > 1e-3 ? (v0 - f / b) * (1 - dies) / a + f / b : (v0 + end) / 2;
+    Predictor<1> predictor;
+    predictor.start(Vec<1>(x0), Vec<1>(v0), Vec<1>(f));
+    predictor.begin_at(Vec<1>(x0));
+    Jacobian<1> J = Jacobian<1>::Zero();
+    predictor.model(Mat<1>(M), Mat<1>(0.0), Vec<1>(b), J, T, 0, 1, 0, 0, true);
+    predictor.applied(Vec<1>(0.0), false);
+    EXPECT_NEAR(predictor.w()[0], mean, 1e-9 * std::abs(v0)) << a;
+    predictor.correct(Vec<1>(x0 + T * mean), T, 0, 0, false);
+    EXPECT_NEAR(predictor.v_now()[0], end, 1e-6 * std::abs(v0)) << a;
+  }
+}
+
+TEST(WallMemory, IsWhatAStepOfTheEncoderAsksForAndTheWallBears) {
+  Random random(51);
+  for (int i = 0; i < 200; ++i) {
+    const Mat3 A = random.positive_definite(3, 0.01, 50);
+    const TipMoved tip = tip_moved(A, A);
+    const double largest = Eigen::SelfAdjointEigenSolver<Mat3>(A).eigenvalues()[2];
+    ASSERT_LE(tip.mass, 1 / largest * (1 + 1e-12));
+    ASSERT_GE(tip.mass, 1 / largest / std::pow(3.0, 1.0 / 8));
+    ASSERT_GE(tip.lever, std::sqrt(largest) * (1 - 1e-12));
+  }
+  const TipMoved heavy{0.8, 0.7}, light{0.0098, 0.22};
+  const WallMemory wall{2000, T, 1e-4, 0.2};
+  const double p = wall.needed(0.2, heavy);
+  EXPECT_NEAR(wall.shaken(p, heavy), 1e-4, 1e-9) << "what is asked for";
+  EXPECT_EQ(wall.chosen(0.2, heavy), std::min(p, wall.possible(heavy)));
+  EXPECT_NEAR(WallMemory({20000, T, 1e-4, 0.2}).possible(heavy), 1 - T * std::sqrt(20000 / 0.8),
+              1e-12);
+  EXPECT_EQ(wall.chosen(0.2, light), 0.2) << "held by the hand's damping";
+  EXPECT_EQ(WallMemory({2000, T, 0, 0.2}).chosen(0.2, heavy), 0.2) << "no steps";
+  EXPECT_EQ(WallMemory({0, T, 1e-4, 0.2}).chosen(0.2, heavy), 0.2) << "no wall";
+  EXPECT_EQ(WallMemory({1e7, T, 1e-4, 0.2}).chosen(0.2, heavy), 0.2) << "too stiff for any";
+}
+
 TEST(PredictorSettings, GoByTheEncoderUnlessTold) {
   PredictorSettings s;
-  EXPECT_EQ(s.gains(0, false).p, 0.2);
-  EXPECT_EQ(s.gains(1.5e-4, false).mu, 1);
-  EXPECT_EQ(s.gains(1.6e-4, false).p, 0.45);
-  EXPECT_EQ(s.gains(1.6e-4, false).mu, 0.5);
-  EXPECT_EQ(s.gains(1.6e-4, false).damping, 0.1);
-  EXPECT_EQ(s.gains(0, true).p, 0.45);
-  EXPECT_EQ(s.gains(0, true).mu, 1);
+  EXPECT_EQ(s.gains(0).p, 0.2);
+  EXPECT_EQ(s.gains(1.5e-4).mu, 1);
+  EXPECT_EQ(s.gains(1.6e-4).p, 0.45);
+  EXPECT_EQ(s.gains(1.6e-4).mu, 0.5);
+  EXPECT_EQ(s.gains(1.6e-4).damping, 0.1);
   s.preset = PredictorPreset::fine;
-  EXPECT_EQ(s.gains(5e-4, true).p, 0.2);
+  EXPECT_EQ(s.gains(5e-4).p, 0.2);
   s.preset = PredictorPreset::coarse;
-  EXPECT_EQ(s.gains(0, false).damping, 0.1);
+  EXPECT_EQ(s.gains(0).damping, 0.1);
   s.memory = 0;
   s.inertia = 2;
-  EXPECT_EQ(s.gains(0, false).p, 0);
-  EXPECT_EQ(s.gains(0, false).mu, 2);
+  EXPECT_EQ(s.gains(0).p, 0);
+  EXPECT_EQ(s.gains(0).mu, 2);
 }
 
 }  // namespace

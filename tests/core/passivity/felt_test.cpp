@@ -67,7 +67,7 @@ std::complex<double> shaken_network(double eta, double band, double f, double T)
   std::complex<double> torque = 0, velocity = 0;
   const auto ticks = static_cast<int>(std::lround(20 / f / T)), from = ticks / 2;
   for (int k = 0; k < ticks; ++k) {
-    network.set(eta, one, 1, T, band);
+    network.set({eta, InertiaShape::kFastest}, one, 1, T, band);
     const double t = k * T, middle = t + T / 2;
     const double v = (std::sin(w * (t + T)) - std::sin(w * t)) / (w * T);
     const double u = network.force()[0] - network.damping()(0, 0) * v;
@@ -82,7 +82,8 @@ std::complex<double> shaken_network(double eta, double band, double f, double T)
 TEST(NetworkImpedance, IsWhatTheNetworksDoInFineTicks) {
   for (const double eta : {0.2, 0.6, 2.0, 5.0}) {
     for (const double f : {0.5, 2.0, 5.0, 20.0}) {
-      const std::complex<double> Z = network_impedance(eta, 5.3, 2 * pi * f);
+      const std::complex<double> Z =
+          network_impedance({eta, InertiaShape::kFastest}, 5.3, 2 * pi * f);
       const std::complex<double> seen = shaken_network(eta, 5.3, f, 1e-5);
       EXPECT_LT(std::abs(seen - Z) / std::abs(Z), 3e-3) << "eta " << eta << ", " << f << " Hz";
     }
@@ -93,10 +94,12 @@ TEST(NetworkImpedance, ScalesTheInertiaInItsBandAndIsPassive) {
   for (const double eta : {0.1, 0.3, 0.7, 1.0, 3.0}) {
     for (const double f : {0.5, 1.0, 3.0, 5.0}) {
       const double w = 2 * pi * f;
-      EXPECT_NEAR(1 + network_impedance(eta, 5.3, w).imag() / w, eta, 0.04 * std::max(1.0, eta));
+      EXPECT_NEAR(1 + network_impedance({eta, InertiaShape::kFastest}, 5.3, w).imag() / w, eta,
+                  0.04 * std::max(1.0, eta));
     }
     for (double f = 0.01; f < 1000; f *= 1.3) {
-      EXPECT_GE(network_impedance(eta, 5.3, 2 * pi * f).real(), -1e-12) << eta << " " << f;
+      EXPECT_GE(network_impedance({eta, InertiaShape::kFastest}, 5.3, 2 * pi * f).real(), -1e-12)
+          << eta << " " << f;
     }
   }
 }
@@ -104,7 +107,7 @@ TEST(NetworkImpedance, ScalesTheInertiaInItsBandAndIsPassive) {
 TEST(FeltJoint, OfThePredictiveLawPaysForLightnessAtLeastWhatEveryPassiveLawHasTo) {
   const FeltJoint joint{2e-4, 0.012, 0.012, 10, 0.001, 0.001, 0};
   for (const double eta : {0.2, 0.5, 0.9}) {
-    const double paid = joint.predictive(1e-3, eta, 0, 5.3).real();
+    const double paid = joint.predictive(1e-3, {eta, 0}, 0, 5.3).real();
     EXPECT_GT(paid, joint.least_damping(eta, 5.3));
     EXPECT_LT(paid, 1.4 * joint.least_damping(eta, 5.3));
   }
@@ -114,7 +117,7 @@ TEST(FeltJoint, OfThePredictiveLawPaysForLightnessAtLeastWhatEveryPassiveLawHasT
 TEST(FeltJoint, OfThePredictiveLawAtItsOwnInertiaIsInertiaDampingAndWall) {
   const FeltJoint joint{2e-4, 0.012, 0.02, 10, 0.001, 0.001, 30};
   const std::complex<double> s(0, 2 * pi * 7);
-  const auto Z = joint.predictive(7, 1, 0.5, 5.3);
+  const auto Z = joint.predictive(7, {1, 0}, 0.5, 5.3);
   EXPECT_LT(std::abs(Z - (2e-4 * s + 0.016 + 30.0 / s)), 1e-12);
 }
 

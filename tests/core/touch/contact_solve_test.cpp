@@ -31,7 +31,7 @@ struct Answer {
     contact.system = CoupledSystem<3>(ww, -c, -c, uu);
     contact.on_device = governor * Mat3::Identity() - phi;
     contact.on_proxy = phi + (1 - governor) * Mat3::Identity();
-    contact.inertia = Factor<3>(M);
+    contact.inertia = &factor;
     contact.damping = 0.2;
     contact.most_damping = 0.34;
   }
@@ -45,7 +45,11 @@ struct Answer {
     b << contact.on_device * torque, contact.on_proxy * torque;
     return motion(b).u;
   }
+  Answer(const Answer&) = delete;
+  Answer& operator=(const Answer&) = delete;
+
   Mat3 M;
+  SymmetricFactor<3> factor{M};
   Eigen::Matrix<double, 6, 6> A;
   ContactAnswer<3> contact;
 };
