@@ -38,10 +38,13 @@ class Decomposition {
   // C_LE v_E, (11) [N m].
   Vec<N> shape_torque() const { return C2.transpose() * v_E - C_L.transpose() * phi_v_E; }
 
-  Mat<N> phi() const { return M_L_factor.solve(M2); }
-  Mat<N> C_LE(const Mat<N>& phi) const {
-    Mat<N> C = C2.transpose();
-    C.noalias() -= C_L.transpose() * phi;
+  Mat<N> phi() const { return narrowed<N>(phi_T()).transpose(); }
+  Mat<N> C_LE(const Mat<N>& phi) const { return C2.transpose() - C_L.transpose() * phi; }
+  // Transposed, as they are solved with.
+  Wide<N> phi_T() const { return M_L_factor.divide(widened<N>(M2)); }
+  Wide<N> C_LE_T(const Wide<N>& phi_T) const {
+    Wide<N> C = widened<N>(C2);
+    take_product<N>(phi_T, widened<N>(C_L), C);
     return C;
   }
 

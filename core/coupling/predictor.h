@@ -83,7 +83,7 @@ class Predictor {
       t.f += gain * (t.Mp * t.error);
       t.D0 = 2 / T * t.Mp + C;
       t.D0.diagonal() += b_d;
-      t.D0_inverse = Factor<N>(t.D0);
+      t.D0_inverse = SteadyFactor<N>(widened<N>(t.D0));
       t.x_met = t.x;
       t.v_met = t.v;
       for (int k = 0; k < delay; ++k) {
@@ -126,7 +126,7 @@ class Predictor {
     Vec<N> error{};           // of the last reading [rad]
     Vec<N> x_met{}, v_met{};  // where the coming torque meets it
     Mat<N> Mp{}, D0{};        // inertia, and 2/T Mp + C + b_d
-    Factor<N> D0_inverse{};
+    SteadyFactor<N> D0_inverse{};
   };
   static constexpr double kJudged = 0.05;  // predictions count for so long [s]
 

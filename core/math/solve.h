@@ -7,6 +7,7 @@
 
 #include "core/math/pair.h"
 #include "core/math/triangular.h"
+#include "core/math/wide.h"
 
 namespace limpid {
 
@@ -26,6 +27,20 @@ Mat3Of<S> inverse_symmetric(const Mat3Of<S>& A) {
   return inverse;
 }
 
+// Each column of B in the place where `solve` works, whose rows from n on are zero.
+template <int N, class B, class Solve>
+auto solve_columns(const B& b, const Solve& solve) -> typename B::PlainObject {
+  typename B::PlainObject x(b.rows(), b.cols());
+  WideVec<N> column(whole_fours(static_cast<int>(b.rows())));
+  column.template tail<4>().setZero();
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    column.head(b.rows()) = b.col(j);
+    solve(column.data());
+    x.col(j) = column.head(b.rows());
+  }
+  return x;
+}
+
 // A symmetric positive-definite matrix, whose lower triangle alone is read, made ready for several
 // right sides.
 template <int N>
@@ -37,7 +52,9 @@ class SymmetricFactor {
     if constexpr (N == 3) {
       factor_ = inverse_symmetric(A);
     } else {
-      factor_ = cholesky<N>(A);
+      factor_ = widened<N>(A);
+      over_.resize(factor_.rows());
+      wide::factor<N>(A.cols(), factor_.data(), over_.data());
     }
   }
   template <class B>
@@ -45,17 +62,23 @@ class SymmetricFactor {
     if constexpr (N == 3) {
       return factor_ * b;
     } else {
-      typename B::PlainObject x = b;
-      for (Eigen::Index j = 0; j < x.cols(); ++j) {
-        solve_lower<N>(factor_, x.col(j).data());
-        solve_transposed<N>(factor_, x.col(j).data());
-      }
-      return x;
+      return solve_columns<N>(
+          b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
+    }
+  }
+  // X A^-1.
+  Wide<N> divide(Wide<N> X) const {
+    if constexpr (N == 3) {
+      return X * factor_;
+    } else {
+      wide::divide<N>(X.cols(), factor_.data(), over_.data(), X.data());
+      return X;
     }
   }
 
  private:
-  Mat<N> factor_;  // L, or the inverse
+  Wide<N> factor_;   // L, or the inverse
+  WideVec<N> over_;  // one over its diagonal
 };
 
 // A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
@@ -64,11 +87,55 @@ auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
   return SymmetricFactor<N>(A).solve(b);
 }
 
+// A matrix whose symmetric part is positive definite, as those of inertia over time are, turning
+// and damped: it has its factors without its rows being exchanged.
+template <int N>
+class SteadyFactor {
+ public:
+  SteadyFactor() = default;
+  static SteadyFactor of_wide(const Wide<N>& A) { return SteadyFactor(A); }
+  explicit SteadyFactor(const Wide<N>& A) : lower_(A) {
+    if constexpr (N == 3) {
+      lower_ = A.inverse();
+    } else {
+      upper_ = turned<N>(A);
+      over_.resize(A.rows());
+      wide::factor_halves<N>(A.cols(), lower_.data(), upper_.data(), over_.data());
+    }
+  }
+  template <class B>
+  auto solve(const B& b) const -> typename B::PlainObject {
+    if constexpr (N == 3) {
+      return lower_ * b;
+    } else {
+      return solve_columns<N>(b, [&](double* x) {
+        wide::solve_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data(), x);
+      });
+    }
+  }
+  // X A^-1.
+  Wide<N> divide(Wide<N> X) const {
+    if constexpr (N == 3) {
+      return X * lower_;
+    } else {
+      wide::divide_halves<N>(X.cols(), lower_.data(), upper_.data(), over_.data(), X.data());
+      return X;
+    }
+  }
+
+ private:
+  struct Nothing {};
+  Wide<N> lower_;                                         // L, or the inverse
+  std::conditional_t<N == 3, Nothing, Wide<N>> upper_;    // U^T
+  std::conditional_t<N == 3, Nothing, WideVec<N>> over_;  // one over U's diagonal
+};
+
 // A regular matrix made ready for several right sides.
 template <int N>
 class Factor {
  public:
   Factor() = default;
+  static Factor of_wide(const Wide<N>& A) { return Factor(narrowed<N>(A)); }
   explicit Factor(const Mat<N>& A) : factor_(A) {
     if constexpr (N == 3) {
       factor_ = A.inverse();

@@ -11,17 +11,24 @@
 
 namespace limpid {
 
-// How all that moves answers to a torque f2 of the contacts on the proxy.
+// How all that moves answers to torques, and to a torque f2 of the contacts on the proxy. Unknown
+// are the device's motion w and how the proxy moves beside it, u - w.
 template <int N>
 struct ContactAnswer {
   CoupledSystem<N> system;
-  Mat<N> on_device, on_proxy;  // of f2, what reaches each side [-]
-  Factor<N> inertia;           // of the device: how heavy a wall finds it
+  double on_device = 0;        // of f2, what reaches the first rows
+  Wide<N> on_proxy;            // and the second ones [-]
+  SymmetricFactor<N> inertia;  // of the device: how heavy a wall finds it
   double damping = 0;          // that every wall has, as a part of its mass a tick, m_n/T [-]
   double most_damping = 0;     // that a wall may have, in the same measure [-]
 
+  Motion<N> solve(const Motion<N>& b) const {
+    Motion<N> m = system.solve(b);
+    m.u += m.w;
+    return m;
+  }
   Motion<N> respond(const Vec<N>& f2) const {
-    return system.solve({on_device * f2, on_proxy * f2});
+    return solve({on_device * f2, times<N>(on_proxy, f2)});
   }
 };
 

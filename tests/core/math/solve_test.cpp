@@ -33,6 +33,9 @@ TEST(Solve, FactorsByTheLowerTriangleAlone) {
     const Vec<N> b = random.vector(n, 1);
     const Vec<N> x = SymmetricFactor<N>(A).solve(b);
     EXPECT_LT((whole * x - b).norm(), 1e-12) << n;
+    const Mat<N> X = random.matrix(n, 1);
+    const Mat<N> over = narrowed<N>(SymmetricFactor<N>(A).divide(widened<N>(X)));
+    EXPECT_LT((over * whole - X).norm(), 1e-12 * X.norm()) << n;
     Vec<N> y = b, z = b;
     solve_lower<N>(L, y.data());
     solve_transposed<N>(L, z.data());
@@ -54,6 +57,26 @@ TEST(Solve, MovesAFactorAsItsMatrixMoves) {
     const Mat<N> skew = skew_rest<N>(half, L, Ldot), wanted = half - L * Ldot.transpose();
     EXPECT_LT((skew - wanted).norm(), 1e-11 * half.norm()) << n;
     EXPECT_EQ((skew + skew.transpose()).norm(), 0) << n;
+  });
+}
+
+TEST(Solve, MultipliesWideMatricesAsOthers) {
+  Random random(34);
+  for_sizes([&](auto N, int n) {
+    const Mat<N> A = random.matrix(n, 1), B = random.matrix(n, 1), C = random.matrix(n, 1);
+    const Wide<N> a = widened<N>(A), b = widened<N>(B);
+    Wide<N> product = widened<N>(C), turned_product = product;
+    take_product<N>(a, b, product);
+    take_product_turned<N>(a, b, turned_product);
+    EXPECT_LT((narrowed<N>(product) - (C - A * B)).norm(), 1e-13) << n;
+    EXPECT_LT((narrowed<N>(turned_product) - (C - A * B.transpose())).norm(), 1e-13) << n;
+    EXPECT_EQ((narrowed<N>(turned<N>(a)) - A.transpose()).norm(), 0) << n;
+    const Vec<N> x = random.vector(n, 1);
+    EXPECT_LT((times<N>(a, x) - A * x).norm(), 1e-13) << n;
+    EXPECT_LT((turned_times<N>(a, x) - A.transpose() * x).norm(), 1e-13) << n;
+    for (const Wide<N>& wide : {product, turned_product, turned<N>(a)}) {
+      EXPECT_EQ(wide.bottomRows(wide.rows() - n).norm(), 0) << n;
+    }
   });
 }
 

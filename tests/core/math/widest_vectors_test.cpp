@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "core/math/triangular.h"
+#include "core/math/wide.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -54,6 +54,68 @@ TEST(WidestVectors, ReckonEachNumberAsNarrowOnesDo) {
     solve_eliminated_in<kAnyDof>(n, LU.data(), rows.data(), x.data());
     solve_eliminated_in<kByFours>(n, LU.data(), rows.data(), x_narrow.data());
     EXPECT_EQ(x, x_narrow) << n;
+  }
+}
+
+// N: with code of its own, and M the same for narrow vectors.
+template <int N, int M>
+void expect_the_same_of_wide_matrices(Eigen::Index n) {
+  using namespace wide;
+  test::Random random(904);
+  const int dof = static_cast<int>(n);
+  const Mat<N> A = random.positive_definite(dof, 0.1, 10), C = random.matrix(dof, 1);
+  const Wide<N> wide_A = widened<N>(A), wide_C = widened<N>(C);
+  const auto over = [&] { return WideVec<N>::Zero(wide_A.rows()).eval(); };
+
+  Wide<N> L = wide_A, L_narrow = wide_A;
+  WideVec<N> scale = over(), scale_narrow = over();
+  wide::factor<N>(n, L.data(), scale.data());
+  columns_by_fours(n, FactorSymmetric<M>{n, L_narrow.data(), scale_narrow.data()});
+  EXPECT_EQ(L, L_narrow) << n;
+  EXPECT_EQ(scale, scale_narrow) << n;
+
+  Wide<N> X = wide_C, X_narrow = wide_C;
+  wide::divide<N>(n, L.data(), scale.data(), X.data());
+  columns_by_fours(n, Divide<M, true>{n, straight<M>(L.data(), n), scale.data(), X_narrow.data()});
+  columns_by_fours_back(
+      n, Divide<M, false>{n, wide::turned<M>(L.data(), n), scale.data(), X_narrow.data()});
+  EXPECT_EQ(X, X_narrow) << n;
+
+  Wide<N> half = widened<N>(A + C), half_narrow = half;
+  Wide<N> turned_half(half.rows(), n), turned_half_narrow(half.rows(), n);
+  wide::turn<N>(n, half.data(), turned_half.data());
+  turn_in<M>(n, half.data(), turned_half_narrow.data());
+  EXPECT_EQ(turned_half, turned_half_narrow) << n;
+  wide::factor_halves<N>(n, half.data(), turned_half.data(), scale.data());
+  columns_by_fours(
+      n, FactorHalves<M>{n, half_narrow.data(), turned_half_narrow.data(), scale_narrow.data()});
+  EXPECT_EQ(half, half_narrow) << n;
+  EXPECT_EQ(turned_half, turned_half_narrow) << n;
+
+  WideVec<N> x = widened_vector<N>(random.vector(dof, 1)), x_narrow = x;
+  wide::solve_halves<N>(n, half.data(), turned_half.data(), scale.data(), x.data());
+  columns_by_fours(n, SolveLower<M>{n, half.data(), nullptr, x_narrow.data()});
+  columns_by_fours_back(n,
+                        SolveTransposed<M>{n, turned_half.data(), scale.data(), x_narrow.data()});
+  EXPECT_EQ(x, x_narrow) << n;
+
+  WideVec<N> y = over(), y_narrow = over();
+  wide::take_times<N>(n, wide_A.data(), x.data(), y.data());
+  columns_by_fours(n, TakeTimes<M>{n, wide_A.data(), x.data(), y_narrow.data()});
+  wide::take_turned_times<N>(n, wide_C.data(), x.data(), y.data());
+  columns_by_fours(n, TakeTransposedTimes<M>{n, wide_C.data(), x.data(), y_narrow.data()});
+  EXPECT_EQ(y, y_narrow) << n;
+
+  wide::take_product<N>(n, wide_A.data(), wide_C.data(), X.data());
+  columns_by_fours(
+      n, TakeProduct<M>{n, wide_A.data(), wide::turned<M>(wide_C.data(), n), X_narrow.data()});
+  EXPECT_EQ(X, X_narrow) << n;
+}
+
+TEST(WidestVectors, ReckonEachNumberOfWideMatricesAsNarrowOnesDo) {
+  expect_the_same_of_wide_matrices<7, 7>(7);
+  for (Eigen::Index n = 1; n <= kMaxDof; ++n) {
+    expect_the_same_of_wide_matrices<kAnyDof, kByFours>(n);
   }
 }
 
