@@ -41,7 +41,11 @@ class Decomposition {
   Mat<N> phi() const { return narrowed<N>(phi_T()).transpose(); }
   Mat<N> C_LE(const Mat<N>& phi) const { return C2.transpose() - C_L.transpose() * phi; }
   // Transposed, as they are solved with.
-  Wide<N> phi_T() const { return M_L_factor.divide(widened<N>(M2)); }
+  Wide<N> phi_T() const {
+    Wide<N> share = widened<N>(M2);
+    M_L_factor.divide(share);
+    return share;
+  }
   Wide<N> C_LE_T(const Wide<N>& phi_T) const {
     Wide<N> C = widened<N>(C2);
     take_product<N>(phi_T, widened<N>(C_L), C);

@@ -71,25 +71,19 @@ struct PredictiveLaw::Of<N>::Solve {
         C_LE_T(d.C_LE_T(phi_T)) {}
 
   ContactAnswer<N> system() const {
-    const Eigen::Index n = s0.size();
     const Wide<N> Z2 = widened<N>(impedance), C_LE = turned<N>(C_LE_T);
-    Wide<N> ww = widened<N>(D0);
+    Wide<N> ww = widened<N>(D0), uw = Z2 - C_LE_T;
     ww += authority * Z2;
     ww.diagonal() += authority * b_w;
-    Wide<N> proxy_w = Z2 - C_LE_T;
     if (network.damps()) {
-      const Wide<N> K_N = widened<N>(network.damping()), minus_K_N = -K_N;
-      ww += authority * K_N;
-      take_product<N>(phi_T, minus_K_N, proxy_w);
+      const Wide<N> minus_K_N = widened<N>(-network.damping());
+      ww -= authority * minus_K_N;
+      take_product<N>(phi_T, minus_K_N, uw);
     }
-    Wide<N> turning = Wide<N>::Zero(Z2.rows(), n);  // - C_LE^T phi
-    take_product_turned<N>(C_LE_T, phi_T, turning);
-    Wide<N> proxy_E = Z2 + turning - turned<N>(turning);
-    proxy_E.diagonal().array() += c;
-    ContactAnswer<N> answer;
-    answer.system = CoupledSystem<N>(ww, authority * (Z2 + C_LE), proxy_w, std::move(proxy_E));
-    answer.on_device = authority;
-    answer.on_proxy = phi_T;
+    const Wide<N> turning = minus_product_turned<N>(C_LE_T, phi_T);  // - C_LE^T phi
+    Wide<N> uu = Z2 + turning - turned<N>(turning);
+    uu.diagonal().array() += c;
+    ContactAnswer<N> answer(authority, phi_T, ww, authority * (Z2 + C_LE), uw, uu);
     answer.on_proxy.diagonal().array() += 1 - g_f;
     return answer;
   }

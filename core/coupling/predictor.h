@@ -24,6 +24,20 @@ bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
   return false;
 }
 
+// M += mass J^T J, of many joints column by column: a general product would first sort it all anew.
+template <int N>
+void add_mass(double mass, const Jacobian<N>& J, Mat<N>& M) {
+  const Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3> J_T = J.transpose();
+  const double *x = J_T.data(), *y = x + J_T.rows(), *z = y + J_T.rows();
+  for (Eigen::Index j = 0; j < M.cols(); ++j) {
+    const Vec3 a = mass * J.col(j);
+    double* const column = M.data() + j * M.rows();
+    for (Eigen::Index i = 0; i < M.rows(); ++i) {
+      column[i] += x[i] * a.x() + y[i] * a.y() + z[i] * a.z();
+    }
+  }
+}
+
 // Two of them run side by side, for a light hand and for one with mass; the one whose predictions
 // were better lately is active.
 template <int N>
@@ -79,11 +93,11 @@ class Predictor {
     for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
       Track& t = tracks_[m];
       t.Mp = g.mu * M;
-      if (m == 1) t.Mp += hand_mass * (J.transpose() * J);
+      if (m == 1) add_mass(hand_mass, J, t.Mp);
       t.f += gain * (t.Mp * t.error);
       t.D0 = 2 / T * t.Mp + C;
       t.D0.diagonal() += b_d;
-      t.D0_inverse = SteadyFactor<N>(widened<N>(t.D0));
+      t.D0_inverse.compute(widened<N>(t.D0));
       t.x_met = t.x;
       t.v_met = t.v;
       for (int k = 0; k < delay; ++k) {

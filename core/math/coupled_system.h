@@ -24,10 +24,14 @@ template <int N, template <int> class Rest = SteadyFactor>
 class CoupledSystem {
  public:
   CoupledSystem() = default;
-  CoupledSystem(const Wide<N>& ww, const Wide<N>& wu, const Wide<N>& uw, Wide<N> uu)
-      : first_(ww), across_(wu), back_(first_.divide(uw)) {
-    take_product<N>(back_, across_, uu);
-    rest_ = Rest<N>::of_wide(uu);
+  // Each a wide matrix, or an expression of them.
+  template <class WW, class WU, class UW, class UU>
+  CoupledSystem(const WW& ww, const WU& wu, const UW& uw, const UU& uu) : across_(wu), back_(uw) {
+    first_.compute(ww);
+    first_.divide(back_);
+    Wide<N> rest = uu;
+    take_product<N>(back_, across_, rest);
+    rest_.compute(rest);
   }
 
   Motion<N> solve(const Motion<N>& b) const {

@@ -66,13 +66,12 @@ class SymmetricFactor {
           b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
     }
   }
-  // X A^-1.
-  Wide<N> divide(Wide<N> X) const {
+  // X A^-1 in the place of X.
+  void divide(Wide<N>& X) const {
     if constexpr (N == 3) {
-      return X * factor_;
+      X *= factor_;
     } else {
       wide::divide<N>(X.cols(), factor_.data(), over_.data(), X.data());
-      return X;
     }
   }
 
@@ -93,14 +92,18 @@ template <int N>
 class SteadyFactor {
  public:
   SteadyFactor() = default;
-  static SteadyFactor of_wide(const Wide<N>& A) { return SteadyFactor(A); }
-  explicit SteadyFactor(const Wide<N>& A) : lower_(A) {
+  explicit SteadyFactor(const Wide<N>& A) { compute(A); }
+  // A: a wide matrix, or an expression of them.
+  template <class A>
+  void compute(const A& a) {
     if constexpr (N == 3) {
-      lower_ = A.inverse();
+      lower_ = a.inverse();
     } else {
-      upper_ = turned<N>(A);
-      over_.resize(A.rows());
-      wide::factor_halves<N>(A.cols(), lower_.data(), upper_.data(), over_.data());
+      lower_ = a;
+      upper_.resize(lower_.rows(), lower_.cols());
+      over_.resize(lower_.rows());
+      wide::turn<N>(lower_.cols(), lower_.data(), upper_.data());
+      wide::factor_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data());
     }
   }
   template <class B>
@@ -113,13 +116,12 @@ class SteadyFactor {
       });
     }
   }
-  // X A^-1.
-  Wide<N> divide(Wide<N> X) const {
+  // X A^-1 in the place of X.
+  void divide(Wide<N>& X) const {
     if constexpr (N == 3) {
-      return X * lower_;
+      X *= lower_;
     } else {
       wide::divide_halves<N>(X.cols(), lower_.data(), upper_.data(), over_.data(), X.data());
-      return X;
     }
   }
 
@@ -135,12 +137,15 @@ template <int N>
 class Factor {
  public:
   Factor() = default;
-  static Factor of_wide(const Wide<N>& A) { return Factor(narrowed<N>(A)); }
-  explicit Factor(const Mat<N>& A) : factor_(A) {
+  explicit Factor(const Mat<N>& A) { compute(A); }
+  // A: a matrix or a wide one.
+  template <class A>
+  void compute(const A& a) {
     if constexpr (N == 3) {
-      factor_ = A.inverse();
+      factor_ = a.inverse();
     } else {
-      eliminate_in<N>(A.rows(), factor_.data(), rows_.data());
+      factor_ = a.topRows(a.cols());
+      eliminate_in<N>(factor_.rows(), factor_.data(), rows_.data());
     }
   }
   template <class B>

@@ -6,13 +6,20 @@ namespace limpid::wide {
 
 template <>
 LIMPID_WIDE void take_product<kAnyDof>(Index n, const double* A, const double* B, double* C) {
-  columns_by_fours(columns<kByFours>(n), TakeProduct<kByFours>{n, A, turned<kByFours>(B, n), C});
+  columns_by_fours(columns<kByFours>(n),
+                   TakeProduct<kByFours, false>{n, A, turned<kByFours>(B, n), C});
 }
 
 template <>
-LIMPID_WIDE void take_product_turned<kAnyDof>(Index n, const double* A, const double* B,
-                                              double* C) {
-  columns_by_fours(columns<kByFours>(n), TakeProduct<kByFours>{n, A, straight<kByFours>(B, n), C});
+LIMPID_WIDE void minus_product_turned<kAnyDof>(Index n, const double* A, const double* B,
+                                               double* C) {
+  columns_by_fours(columns<kByFours>(n),
+                   TakeProduct<kByFours, true>{n, A, straight<kByFours>(B, n), C});
+}
+
+template <>
+LIMPID_WIDE void widen<kAnyDof>(Index n, const double* A, double* W) {
+  widen_in<kByFours>(n, A, W);
 }
 
 template <>
@@ -72,12 +79,17 @@ LIMPID_WIDE void take_turned_times<kAnyDof>(Index n, const double* A, const doub
 
 template <>
 LIMPID_WIDE void take_product<7>(Index n, const double* A, const double* B, double* C) {
-  columns_by_fours(columns<7>(n), TakeProduct<7>{n, A, turned<7>(B, n), C});
+  columns_by_fours(columns<7>(n), TakeProduct<7, false>{n, A, turned<7>(B, n), C});
 }
 
 template <>
-LIMPID_WIDE void take_product_turned<7>(Index n, const double* A, const double* B, double* C) {
-  columns_by_fours(columns<7>(n), TakeProduct<7>{n, A, straight<7>(B, n), C});
+LIMPID_WIDE void minus_product_turned<7>(Index n, const double* A, const double* B, double* C) {
+  columns_by_fours(columns<7>(n), TakeProduct<7, true>{n, A, straight<7>(B, n), C});
+}
+
+template <>
+LIMPID_WIDE void widen<7>(Index n, const double* A, double* W) {
+  widen_in<7>(n, A, W);
 }
 
 template <>

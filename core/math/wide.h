@@ -61,6 +61,11 @@ struct Tile {
       for (int r = 0; r < R; ++r) x[r][c] = four(from + c * p + 4 * r);
     }
   }
+  [[gnu::always_inline]] void clear() {
+    for (int c = 0; c < W; ++c) {
+      for (int r = 0; r < R; ++r) x[r][c] = Four{};
+    }
+  }
   [[gnu::always_inline]] void store(double* to, Index p) const {
     for (int c = 0; c < W; ++c) {
       for (int r = 0; r < R; ++r) four(to + c * p + 4 * r) = x[r][c];
@@ -125,8 +130,8 @@ template <class Work>
   while ((c -= 4) >= 0) work.template operator()<4>(c);
 }
 
-// C -= A F^T.
-template <int N>
+// C -= A F^T, C anything where Fresh, which counts as zero.
+template <int N, bool Fresh>
 struct TakeProduct {
   Index n;
   const double* A;
@@ -145,7 +150,8 @@ struct TakeProduct {
     template <int R>
     [[gnu::always_inline]] void operator()(Index r) const {
       Tile<R, W> tile;
-      tile.load(all.C + c * p + r, p);
+      if (Fresh) tile.clear();
+      if (!Fresh) tile.load(all.C + c * p + r, p);
       tile.take(all.A + r, p, all.F.of_columns_from(c), 0, columns<N>(all.n));
       tile.store(all.C + c * p + r, p);
     }
@@ -366,12 +372,27 @@ template <int N>
   }
 }
 
+// W becomes A, whose columns have n rows.
+template <int N>
+[[gnu::always_inline]] inline void widen_in(Index n, const double* A, double* W) {
+  const Index p = rows<N>(n), most = columns<N>(n), whole = most / 4 * 4;
+  for (Index c = 0; c < most; ++c, A += most, W += p) {
+    for (Index i = 0; i < whole; i += 4) four(W + i) = four(A + i);
+    if (whole == p) continue;
+    const Index odd = most - whole;
+    four(W + whole) = Four{A[whole], odd > 1 ? A[whole + 1] : 0, odd > 2 ? A[whole + 2] : 0, 0};
+  }
+}
+
 // What of this is called: for 7 joints and for any number of them, in wide.cpp.
-// C -= A B; C -= A B^T.
+// C -= A B; C = - A B^T.
 template <int N>
 void take_product(Index n, const double* A, const double* B, double* C);
 template <int N>
-void take_product_turned(Index n, const double* A, const double* B, double* C);
+void minus_product_turned(Index n, const double* A, const double* B, double* C);
+// W becomes A, whose columns have n rows.
+template <int N>
+void widen(Index n, const double* A, double* W);
 // B becomes A^T.
 template <int N>
 void turn(Index n, const double* A, double* B);
@@ -403,13 +424,8 @@ Wide<N> widened(const Mat<N>& A) {
   if constexpr (N == 3) {
     return A;
   } else {
-    const Eigen::Index n = A.rows();
-    Wide<N> W(whole_fours(static_cast<int>(n)), n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      double* const to = W.data() + j * W.rows();
-      std::copy_n(A.data() + j * n, n, to);
-      std::fill_n(to + n, W.rows() - n, 0.0);
-    }
+    Wide<N> W(whole_fours(static_cast<int>(A.rows())), A.cols());
+    wide::widen<N>(A.cols(), A.data(), W.data());
     return W;
   }
 }
@@ -436,7 +452,7 @@ Mat<N> narrowed(const Wide<N>& W) {
   return W.topRows(W.cols());
 }
 
-// C -= A B, C -= A B^T.
+// C -= A B.
 template <int N>
 void take_product(const Wide<N>& A, const Wide<N>& B, Wide<N>& C) {
   if constexpr (N == 3) {
@@ -445,12 +461,15 @@ void take_product(const Wide<N>& A, const Wide<N>& B, Wide<N>& C) {
     wide::take_product<N>(A.cols(), A.data(), B.data(), C.data());
   }
 }
+// - A B^T.
 template <int N>
-void take_product_turned(const Wide<N>& A, const Wide<N>& B, Wide<N>& C) {
+Wide<N> minus_product_turned(const Wide<N>& A, const Wide<N>& B) {
   if constexpr (N == 3) {
-    C.noalias() -= A * B.transpose();
+    return -A * B.transpose();
   } else {
-    wide::take_product_turned<N>(A.cols(), A.data(), B.data(), C.data());
+    Wide<N> C(A.rows(), A.cols());
+    wide::minus_product_turned<N>(A.cols(), A.data(), B.data(), C.data());
+    return C;
   }
 }
 

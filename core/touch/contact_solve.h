@@ -15,6 +15,12 @@ namespace limpid {
 // are the device's motion w and how the proxy moves beside it, u - w.
 template <int N>
 struct ContactAnswer {
+  ContactAnswer() = default;
+  // Of these blocks.
+  template <class... Blocks>
+  ContactAnswer(double device, const Wide<N>& proxy, const Blocks&... blocks)
+      : system(blocks...), on_device(device), on_proxy(proxy) {}
+
   CoupledSystem<N> system;
   double on_device = 0;        // of f2, what reaches the first rows
   Wide<N> on_proxy;            // and the second ones [-]

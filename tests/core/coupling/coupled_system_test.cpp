@@ -65,8 +65,9 @@ void expect_eigens_solution(int n) {
     ASSERT_LT((A * factor.solve(b) - b).norm(), 1e-13 * b.norm());
     const SteadyFactor<N> steady(widened<N>(A));
     ASSERT_LT((A * steady.solve(b) - b).norm(), 1e-13 * b.norm());
-    const Mat<N> over = narrowed<N>(steady.divide(widened<N>(B)));
-    ASSERT_LT((over * A - B).norm(), 1e-13 * B.norm());
+    Wide<N> over = widened<N>(B);
+    steady.divide(over);
+    ASSERT_LT((narrowed<N>(over) * A - B).norm(), 1e-13 * B.norm());
   }
 }
 

@@ -34,8 +34,9 @@ TEST(Solve, FactorsByTheLowerTriangleAlone) {
     const Vec<N> x = SymmetricFactor<N>(A).solve(b);
     EXPECT_LT((whole * x - b).norm(), 1e-12) << n;
     const Mat<N> X = random.matrix(n, 1);
-    const Mat<N> over = narrowed<N>(SymmetricFactor<N>(A).divide(widened<N>(X)));
-    EXPECT_LT((over * whole - X).norm(), 1e-12 * X.norm()) << n;
+    Wide<N> over = widened<N>(X);
+    SymmetricFactor<N>(A).divide(over);
+    EXPECT_LT((narrowed<N>(over) * whole - X).norm(), 1e-12 * X.norm()) << n;
     Vec<N> y = b, z = b;
     solve_lower<N>(L, y.data());
     solve_transposed<N>(L, z.data());
@@ -65,11 +66,11 @@ TEST(Solve, MultipliesWideMatricesAsOthers) {
   for_sizes([&](auto N, int n) {
     const Mat<N> A = random.matrix(n, 1), B = random.matrix(n, 1), C = random.matrix(n, 1);
     const Wide<N> a = widened<N>(A), b = widened<N>(B);
-    Wide<N> product = widened<N>(C), turned_product = product;
+    Wide<N> product = widened<N>(C);
     take_product<N>(a, b, product);
-    take_product_turned<N>(a, b, turned_product);
+    const Wide<N> turned_product = minus_product_turned<N>(a, b);
     EXPECT_LT((narrowed<N>(product) - (C - A * B)).norm(), 1e-13) << n;
-    EXPECT_LT((narrowed<N>(turned_product) - (C - A * B.transpose())).norm(), 1e-13) << n;
+    EXPECT_LT((narrowed<N>(turned_product) + A * B.transpose()).norm(), 1e-13) << n;
     EXPECT_EQ((narrowed<N>(turned<N>(a)) - A.transpose()).norm(), 0) << n;
     const Vec<N> x = random.vector(n, 1);
     EXPECT_LT((times<N>(a, x) - A * x).norm(), 1e-13) << n;

@@ -107,8 +107,8 @@ void expect_the_same_of_wide_matrices(Eigen::Index n) {
   EXPECT_EQ(y, y_narrow) << n;
 
   wide::take_product<N>(n, wide_A.data(), wide_C.data(), X.data());
-  columns_by_fours(
-      n, TakeProduct<M>{n, wide_A.data(), wide::turned<M>(wide_C.data(), n), X_narrow.data()});
+  columns_by_fours(n, TakeProduct<M, false>{n, wide_A.data(), wide::turned<M>(wide_C.data(), n),
+                                            X_narrow.data()});
   EXPECT_EQ(X, X_narrow) << n;
 }
 

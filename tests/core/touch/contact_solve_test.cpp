@@ -241,7 +241,7 @@ TEST(ContactSolve, MovesAllByTheSumOfItsForcesAndOfTheirPowers) {
     for (int k = 0; k < 10; ++k) {
       bench.tick(press(scene, random));
       Eigen::VectorXd b = bench.base;
-      b.head<3>() += bench.answer.contact.on_device * bench.f2;
+      b.head<3>() += bench.answer.on_device * bench.f2;
       b.tail<3>() += bench.answer.contact.on_proxy * bench.f2;
       const Motion<3> wanted = bench.answer.motion(b);
       ASSERT_LT((bench.motion.w - wanted.w).norm(), 1e-9 * (1 + wanted.w.norm()));
