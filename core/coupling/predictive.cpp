@@ -55,7 +55,8 @@ struct PredictiveLaw::Of<N>::Solve {
   Vec<N> b_w, s0, f1_hat;
   double c, g_f;
   Wide<N> phi_T, C_LE_T;
-  Mat<N> D0, impedance;
+  Mat<N> D0;
+  Wide<N> impedance;
   Vec<N> drive, momentum, limit;
   double authority;
 
@@ -71,7 +72,8 @@ struct PredictiveLaw::Of<N>::Solve {
         C_LE_T(d.C_LE_T(phi_T)) {}
 
   ContactAnswer<N> system() const {
-    const Wide<N> Z2 = widened<N>(impedance), C_LE = turned<N>(C_LE_T);
+    const Wide<N>& Z2 = impedance;
+    const Wide<N> C_LE = turned<N>(C_LE_T);
     Wide<N> ww = widened<N>(D0), uw = Z2 - C_LE_T;
     ww += authority * Z2;
     ww.diagonal() += authority * b_w;
@@ -124,7 +126,7 @@ struct PredictiveLaw::Of<N>::Solve {
     s.rest = {share_N, share_w, share_u};
     s.on_f2 = g_f * I - share;
     s.D0 = D0;
-    s.impedance = impedance;
+    s.impedance = narrowed<N>(impedance);
     s.impedance.diagonal().array() += b_v;
     s.drive = drive;
     s.momentum = momentum;

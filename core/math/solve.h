@@ -53,7 +53,7 @@ class SymmetricFactor {
       factor_ = inverse_symmetric(A);
     } else {
       factor_ = widened<N>(A);
-      over_.resize(factor_.rows());
+      over_.resize(factor_.rows(), Eigen::NoChange);
       wide::factor<N>(A.cols(), factor_.data(), over_.data());
     }
   }
@@ -76,8 +76,9 @@ class SymmetricFactor {
   }
 
  private:
-  Wide<N> factor_;   // L, or the inverse
-  WideVec<N> over_;  // one over its diagonal
+  struct Nothing {};
+  Wide<N> factor_;                                         // L, or the inverse
+  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // L's
 };
 
 // A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
@@ -101,7 +102,7 @@ class SteadyFactor {
     } else {
       lower_ = a;
       upper_.resize(lower_.rows(), lower_.cols());
-      over_.resize(lower_.rows());
+      over_.resize(lower_.rows(), Eigen::NoChange);
       wide::turn<N>(lower_.cols(), lower_.data(), upper_.data());
       wide::factor_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data());
     }
@@ -127,9 +128,9 @@ class SteadyFactor {
 
  private:
   struct Nothing {};
-  Wide<N> lower_;                                         // L, or the inverse
-  std::conditional_t<N == 3, Nothing, Wide<N>> upper_;    // U^T
-  std::conditional_t<N == 3, Nothing, WideVec<N>> over_;  // one over U's diagonal
+  Wide<N> lower_;                                                // L, or the inverse
+  std::conditional_t<N == 3, Nothing, Wide<N>> upper_;           // U^T
+  std::conditional_t<N == 3, Nothing, Diagonal<N, true>> over_;  // of U^T; blocks of both
 };
 
 // A regular matrix made ready for several right sides.

@@ -28,6 +28,28 @@ LIMPID_WIDE void turn<kAnyDof>(Index n, const double* A, double* B) {
 }
 
 template <>
+LIMPID_WIDE void factor_rate<kAnyDof>(Index n, const double* L, const double* over, double* D) {
+  columns_by_fours(columns<kByFours>(n), FactorRate<kByFours>{n, L, over, D});
+}
+
+template <>
+LIMPID_WIDE void skew_rest<kAnyDof>(Index n, const double* L, const double* Ldot, double* S) {
+  columns_by_fours(columns<kByFours>(n), SkewRest<kByFours>{n, L, Ldot, S});
+}
+
+template <>
+LIMPID_WIDE void solve_transposed<kAnyDof>(Index n, const double* L, const double* over,
+                                           double* x) {
+  columns_by_fours_back(columns<kByFours>(n),
+                        SolveTransposed<kByFours>{n, L, over + rows<kByFours>(n), x});
+}
+
+template <>
+LIMPID_WIDE void clear_above<kAnyDof>(Index n, double* L) {
+  clear_above_in<kByFours>(n, L);
+}
+
+template <>
 LIMPID_WIDE void factor<kAnyDof>(Index n, double* L, double* over) {
   columns_by_fours(columns<kByFours>(n), FactorSymmetric<kByFours>{n, L, over});
 }
@@ -56,15 +78,17 @@ LIMPID_WIDE void divide_halves<kAnyDof>(Index n, const double* L, const double* 
 
 template <>
 LIMPID_WIDE void solve<kAnyDof>(Index n, const double* L, const double* over, double* x) {
-  columns_by_fours(columns<kByFours>(n), SolveLower<kByFours>{n, L, over, x});
-  columns_by_fours_back(columns<kByFours>(n), SolveTransposed<kByFours>{n, L, over, x});
+  columns_by_fours(columns<kByFours>(n), SolveLower<kByFours>{n, L, over + rows<kByFours>(n), x});
+  columns_by_fours_back(columns<kByFours>(n),
+                        SolveTransposed<kByFours>{n, L, over + rows<kByFours>(n), x});
 }
 
 template <>
 LIMPID_WIDE void solve_halves<kAnyDof>(Index n, const double* L, const double* Ut,
                                        const double* over, double* x) {
-  columns_by_fours(columns<kByFours>(n), SolveLower<kByFours>{n, L, nullptr, x});
-  columns_by_fours_back(columns<kByFours>(n), SolveTransposed<kByFours>{n, Ut, over, x});
+  columns_by_fours(columns<kByFours>(n), SolveLower<kByFours>{n, L, over + rows<kByFours>(n), x});
+  columns_by_fours_back(columns<kByFours>(n),
+                        SolveTransposed<kByFours>{n, Ut, over + 5 * rows<kByFours>(n), x});
 }
 
 template <>
@@ -98,6 +122,26 @@ LIMPID_WIDE void turn<7>(Index n, const double* A, double* B) {
 }
 
 template <>
+LIMPID_WIDE void factor_rate<7>(Index n, const double* L, const double* over, double* D) {
+  columns_by_fours(columns<7>(n), FactorRate<7>{n, L, over, D});
+}
+
+template <>
+LIMPID_WIDE void skew_rest<7>(Index n, const double* L, const double* Ldot, double* S) {
+  columns_by_fours(columns<7>(n), SkewRest<7>{n, L, Ldot, S});
+}
+
+template <>
+LIMPID_WIDE void solve_transposed<7>(Index n, const double* L, const double* over, double* x) {
+  columns_by_fours_back(columns<7>(n), SolveTransposed<7>{n, L, over + rows<7>(n), x});
+}
+
+template <>
+LIMPID_WIDE void clear_above<7>(Index n, double* L) {
+  clear_above_in<7>(n, L);
+}
+
+template <>
 LIMPID_WIDE void factor<7>(Index n, double* L, double* over) {
   columns_by_fours(columns<7>(n), FactorSymmetric<7>{n, L, over});
 }
@@ -122,15 +166,15 @@ LIMPID_WIDE void divide_halves<7>(Index n, const double* L, const double* Ut, co
 
 template <>
 LIMPID_WIDE void solve<7>(Index n, const double* L, const double* over, double* x) {
-  columns_by_fours(columns<7>(n), SolveLower<7>{n, L, over, x});
-  columns_by_fours_back(columns<7>(n), SolveTransposed<7>{n, L, over, x});
+  columns_by_fours(columns<7>(n), SolveLower<7>{n, L, over + rows<7>(n), x});
+  columns_by_fours_back(columns<7>(n), SolveTransposed<7>{n, L, over + rows<7>(n), x});
 }
 
 template <>
 LIMPID_WIDE void solve_halves<7>(Index n, const double* L, const double* Ut, const double* over,
                                  double* x) {
-  columns_by_fours(columns<7>(n), SolveLower<7>{n, L, nullptr, x});
-  columns_by_fours_back(columns<7>(n), SolveTransposed<7>{n, Ut, over, x});
+  columns_by_fours(columns<7>(n), SolveLower<7>{n, L, over + rows<7>(n), x});
+  columns_by_fours_back(columns<7>(n), SolveTransposed<7>{n, Ut, over + 5 * rows<7>(n), x});
 }
 
 template <>

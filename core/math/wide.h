@@ -17,6 +17,10 @@ inline constexpr int kMostWideRows = N == 3 ? 3 : whole_fours(kCapacity<N>);
 // n columns; their rows from n on are zero. Of three joints an ordinary matrix.
 template <int N>
 using Wide = Eigen::Matrix<double, kWideRows<N>, N, 0, kMostWideRows<N>, kCapacity<N>>;
+// One over a factor's diagonal, and then the inverses of its blocks of four; of two factors, if
+// Two.
+template <int N, bool Two = false>
+using Diagonal = Eigen::Matrix<double, kWideRows<N>, Two ? 9 : 5, 0, kMostWideRows<N>, Two ? 9 : 5>;
 template <int N>
 using WideVec = Eigen::Matrix<double, kWideRows<N>, 1, 0, kMostWideRows<N>, 1>;
 
@@ -212,11 +216,28 @@ struct FactorRows {
   }
 };
 
-// L, given as A's lower triangle, becomes its lower Cholesky factor; what is above is left over.
+// The inverse of a lower triangle, four columns of four. scale: one over its diagonal.
+template <int W>
+[[gnu::always_inline]] inline void invert_corner(const double (&l)[W][W], const double (&scale)[W],
+                                                 double* to) {
+  double v[4][4] = {};
+  for (int j = 0; j < W; ++j) {
+    v[j][j] = scale[j];
+    for (int i = j + 1; i < W; ++i) {
+      double taken = l[i][j] * v[j][j];
+      for (int k = j + 1; k < i; ++k) taken += l[i][k] * v[k][j];
+      v[i][j] = -taken * scale[i];
+    }
+  }
+  for (int j = 0; j < 4; ++j) four(to + 4 * j) = Four{v[0][j], v[1][j], v[2][j], v[3][j]};
+}
+
+// L, given as A's lower triangle, becomes its lower Cholesky factor; above its blocks of four is
+// left over what was there.
 template <int N>
 struct FactorSymmetric {
   Index n;
-  double *L, *over;  // over: one over the diagonal
+  double *L, *over;  // over: one over the diagonal, and then the inverses of its blocks
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
@@ -225,18 +246,111 @@ struct FactorSymmetric {
     Tile<1, W> block;
     block.load(L + c * p + c, p);
     block.take(L + c, p, f.of_columns_from(c), 0, c);
-    block.store(L + c * p + c, p);
-    const auto at = [&](int i, int j) -> double& { return L[(c + j) * p + c + i]; };
+    // Here, not in L: the compiler cannot know what else L might be.
+    double l[W][W] = {}, scale[W];
     for (int j = 0; j < W; ++j) {
-      for (int k = 0; k < j; ++k) {
-        for (int i = j; i < W; ++i) at(i, j) -= at(i, k) * at(j, k);
+      for (int i = j; i < W; ++i) {
+        l[i][j] = block.x[0][j][i];
+        for (int k = 0; k < j; ++k) l[i][j] -= l[i][k] * l[j][k];
       }
-      const double scale = 1 / std::sqrt(at(j, j));
-      for (int i = j; i < W; ++i) at(i, j) *= scale;
-      over[c + j] = scale;
+      scale[j] = 1 / std::sqrt(l[j][j]);
+      for (int i = j; i < W; ++i) l[i][j] *= scale[j];
+    }
+    invert_corner<W>(l, scale, over + p + 4 * c);
+    for (int j = 0; j < W; ++j) {
+      over[c + j] = scale[j];
+      for (int i = 0; i < W; ++i) L[(c + j) * p + c + i] = l[i][j];
     }
     by_eights(c + 4, p, FactorRows<N, W>{n, c, p, L, f, over + c});
   }
+};
+
+// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of the lines
+// above.
+template <int N>
+struct FactorRate {
+  Index n;
+  const double *L, *over;
+  double* D;
+
+  template <int W>
+  [[gnu::always_inline]] void operator()(Index c) const {
+    const Index p = rows<N>(n);
+    const Factors of_L = straight<N>(L, n).of_columns_from(c);
+    const Factors of_D = straight<N>(D, n).of_columns_from(c);
+    Tile<1, W> block;
+    block.load(D + c * p + c, p);
+    block.take(D + c, p, of_L, 0, c);
+    block.take(L + c, p, of_D, 0, c);
+    double l[W][W] = {}, d[W][W] = {};
+    for (int j = 0; j < W; ++j) {
+      const double scale = over[c + j];
+      for (int i = j; i < W; ++i) {
+        l[i][j] = of_L(i, c + j);
+        d[i][j] = block.x[0][j][i];
+        for (int k = 0; k < j; ++k) d[i][j] -= d[i][k] * l[j][k] + l[i][k] * d[j][k];
+        d[i][j] = i == j ? d[i][j] * (0.5 * scale) : (d[i][j] - l[i][j] * d[j][j]) * scale;
+      }
+    }
+    for (int j = 0; j < W; ++j) {
+      for (int i = 0; i < W; ++i) D[(c + j) * p + c + i] = d[i][j];
+    }
+    by_eights(c + 4, p, Rows<W>{*this, of_L, of_D, c, p});
+  }
+  template <int W>
+  struct Rows {
+    const FactorRate& all;
+    Factors of_L, of_D;
+    Index c, p;
+    template <int R>
+    [[gnu::always_inline]] void operator()(Index r) const {
+      Tile<R, W> d, l;
+      d.load(all.D + c * p + r, p);
+      l.load(all.L + c * p + r, p);
+      d.take(all.D + r, p, of_L, 0, c);
+      d.take(all.L + r, p, of_D, 0, c);
+      for (int j = 0; j < W; ++j) {
+        const double rate = of_D(j, c + j), scale = all.over[c + j];
+        for (int i = 0; i < R; ++i) {
+          for (int k = 0; k < j; ++k) {
+            d.x[i][j] -= d.x[i][k] * of_L(j, c + k) + l.x[i][k] * of_D(j, c + k);
+          }
+          d.x[i][j] = (d.x[i][j] - l.x[i][j] * rate) * scale;
+        }
+      }
+      d.store(all.D + c * p + r, p);
+    }
+  };
+};
+
+// S, given as C, becomes C - L Ldot^T where that is skew: half of it says all.
+template <int N>
+struct SkewRest {
+  Index n;
+  const double *L, *Ldot;
+  double* S;
+
+  template <int W>
+  [[gnu::always_inline]] void operator()(Index c) const {
+    const Index p = rows<N>(n);
+    by_eights(c, p, Rows<W>{*this, c, p});
+    for (Index j = c; j < c + W; ++j) {
+      S[j * p + j] = 0;
+      for (Index i = j + 1; i < columns<N>(n); ++i) S[i * p + j] = -S[j * p + i];
+    }
+  }
+  template <int W>
+  struct Rows {
+    const SkewRest& all;
+    Index c, p;
+    template <int R>
+    [[gnu::always_inline]] void operator()(Index r) const {
+      Tile<R, W> tile;
+      tile.load(all.S + c * p + r, p);
+      tile.take(all.L + r, p, straight<N>(all.Ldot, all.n).of_columns_from(c), 0, c + W);
+      tile.store(all.S + c * p + r, p);
+    }
+  };
 };
 
 // L, given as A, and Ut, given as its transpose, become A = L Ut^T with a diagonal of ones in L;
@@ -244,7 +358,8 @@ struct FactorSymmetric {
 template <int N>
 struct FactorHalves {
   Index n;
-  double *L, *Ut, *over;  // over: one over Ut's diagonal
+  // over: one over Ut's diagonal, and then the inverses of L's blocks and of Ut's.
+  double *L, *Ut, *over;
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
@@ -253,62 +368,81 @@ struct FactorHalves {
     Tile<1, W> block;
     block.load(L + c * p + c, p);
     block.take(L + c, p, of_Ut.of_columns_from(c), 0, c);
-    block.store(L + c * p + c, p);
-    const auto at = [&](int i, int j) -> double& { return L[(c + j) * p + c + i]; };
+    double m[W][W], ut[W][W], scale[W], ones[W];
     for (int j = 0; j < W; ++j) {
-      over[c + j] = 1 / at(j, j);
-      for (int i = j + 1; i < W; ++i) at(i, j) *= over[c + j];
-      for (int k = j + 1; k < W; ++k) {
-        for (int i = j + 1; i < W; ++i) at(i, k) -= at(i, j) * at(j, k);
-      }
-      for (int k = j; k < W; ++k) Ut[(c + j) * p + c + k] = at(j, k);
+      for (int i = 0; i < W; ++i) m[i][j] = block.x[0][j][i];
     }
+    for (int j = 0; j < W; ++j) {
+      scale[j] = 1 / m[j][j];
+      ones[j] = 1;
+      for (int i = j + 1; i < W; ++i) {
+        m[i][j] *= scale[j];
+        for (int k = j + 1; k < W; ++k) m[i][k] -= m[i][j] * m[j][k];
+      }
+    }
+    for (int j = 0; j < W; ++j) {
+      over[c + j] = scale[j];
+      for (int i = j + 1; i < W; ++i) L[(c + j) * p + c + i] = m[i][j];
+      for (int k = j; k < W; ++k) Ut[(c + j) * p + c + k] = ut[k][j] = m[j][k];
+    }
+    invert_corner<W>(m, ones, over + p + 4 * c);
+    invert_corner<W>(ut, scale, over + 5 * p + 4 * c);
     by_eights(c + 4, p, FactorRows<N, W>{n, c, p, L, of_Ut, over + c});
     by_eights(c + 4, p, FactorRows<N, W>{n, c, p, Ut, of_L, nullptr});
   }
 };
 
-// L^-1 x in the place of x, four columns at a time.
+// The sums of four vectors' numbers.
+[[gnu::always_inline]] inline void sums_of(const Four (&s)[4], Four& sums) {
+  const Four ab = __builtin_shufflevector(s[0], s[1], 0, 4, 2, 6) +
+                  __builtin_shufflevector(s[0], s[1], 1, 5, 3, 7);
+  const Four cd = __builtin_shufflevector(s[2], s[3], 0, 4, 2, 6) +
+                  __builtin_shufflevector(s[2], s[3], 1, 5, 3, 7);
+  sums = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+// L^-1 x in the place of x, whose rows from n on are zero, four columns at a time: what is waited
+// for is one product with the inverse of a block, and not what goes on between its numbers.
 template <int N>
 struct SolveLower {
   Index n;
-  const double *L, *over;  // over: one over the diagonal; null: that is one
+  const double *L, *corners;  // the inverses of its diagonal's blocks
   double* x;
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
     const Index p = rows<N>(n);
-    const double* const a = L + c * p;
-    for (int j = 0; j < W; ++j) {
-      for (int k = 0; k < j; ++k) x[c + j] -= a[k * p + c + j] * x[c + k];
-      if (over != nullptr) x[c + j] *= over[c + j];
-    }
+    const double *const a = L + c * p, *const v = corners + 4 * c;
+    Four solved = four(v) * x[c];
+    for (int k = 1; k < W; ++k) solved += four(v + 4 * k) * x[c + k];
+    four(x + c) = solved;
     for (Index i = c + 4; i < p; i += 4) {
-      for (int k = 0; k < W; ++k) four(x + i) -= four(a + k * p + i) * x[c + k];
+      Four taken = four(a + i) * solved[0];
+      for (int k = 1; k < W; ++k) taken += four(a + k * p + i) * solved[k];
+      four(x + i) -= taken;
     }
   }
 };
-// L^-T x in the place of x; its rows from n on are zero.
+// L^-T x in the place of x.
 template <int N>
 struct SolveTransposed {
   Index n;
-  const double *L, *over;
+  const double *L, *corners;
   double* x;
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
     const Index p = rows<N>(n);
-    const double* const a = L + c * p;
-    Four sum[W] = {};
+    const double *const a = L + c * p, *const v = corners + 4 * c;
+    Four part[4] = {}, sums;
     for (Index i = c + 4; i < p; i += 4) {
-      for (int k = 0; k < W; ++k) sum[k] += four(a + k * p + i) * four(x + i);
+      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i) * four(x + i);
     }
-    for (int j = W; j-- > 0;) {
-      const Four& s = sum[j];
-      double rest = x[c + j] - ((s[0] + s[1]) + (s[2] + s[3]));
-      for (int k = j + 1; k < W; ++k) rest -= a[j * p + c + k] * x[c + k];
-      x[c + j] = rest * over[c + j];
-    }
+    sums_of(part, sums);
+    const Four rest = four(x + c) - sums;
+    for (int k = 0; k < 4; ++k) part[k] = four(v + 4 * k) * rest;
+    sums_of(part, sums);
+    four(x + c) = sums;
   }
 };
 
@@ -338,13 +472,23 @@ struct TakeTransposedTimes {
   [[gnu::always_inline]] void operator()(Index c) const {
     const Index p = rows<N>(n);
     const double* const a = A + c * p;
-    Four sum[W] = {};
+    Four part[4] = {}, sums;
     for (Index i = 0; i < p; i += 4) {
-      for (int k = 0; k < W; ++k) sum[k] += four(a + k * p + i) * four(x + i);
+      for (int k = 0; k < W; ++k) part[k] += four(a + k * p + i) * four(x + i);
     }
-    for (int k = 0; k < W; ++k) y[c + k] -= (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);
+    sums_of(part, sums);
+    four(y + c) -= sums;
   }
 };
+
+// Zero above the diagonal blocks of four.
+template <int N>
+[[gnu::always_inline]] inline void clear_above_in(Index n, double* L) {
+  const Index p = rows<N>(n);
+  for (Index c = 4; c < columns<N>(n); ++c) {
+    for (Index i = 0; i < c / 4 * 4; i += 4) four(L + c * p + i) = Four{};
+  }
+}
 
 // B becomes A^T.
 template <int N>
@@ -377,10 +521,11 @@ template <int N>
 [[gnu::always_inline]] inline void widen_in(Index n, const double* A, double* W) {
   const Index p = rows<N>(n), most = columns<N>(n), whole = most / 4 * 4;
   for (Index c = 0; c < most; ++c, A += most, W += p) {
+#pragma GCC unroll 8
     for (Index i = 0; i < whole; i += 4) four(W + i) = four(A + i);
-    if (whole == p) continue;
-    const Index odd = most - whole;
-    four(W + whole) = Four{A[whole], odd > 1 ? A[whole + 1] : 0, odd > 2 ? A[whole + 2] : 0, 0};
+    if (most - whole == 1) four(W + whole) = Four{A[whole]};
+    if (most - whole == 2) four(W + whole) = Four{A[whole], A[whole + 1]};
+    if (most - whole == 3) four(W + whole) = Four{A[whole], A[whole + 1], A[whole + 2]};
   }
 }
 
@@ -396,6 +541,18 @@ void widen(Index n, const double* A, double* W);
 // B becomes A^T.
 template <int N>
 void turn(Index n, const double* A, double* B);
+// How L of A = L L^T moves, in the place of Adot; and C - L Ldot^T where that is skew, in that of
+// C.
+template <int N>
+void factor_rate(Index n, const double* L, const double* over, double* D);
+template <int N>
+void skew_rest(Index n, const double* L, const double* Ldot, double* S);
+// Zero above the diagonal blocks of four, where that is to be multiplied with.
+template <int N>
+void clear_above(Index n, double* L);
+// L^-T x in the place of x.
+template <int N>
+void solve_transposed(Index n, const double* L, const double* over, double* x);
 // L of A = L L^T in the place of A; A = L Ut^T, see above.
 template <int N>
 void factor(Index n, double* L, double* over);

@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/math/moving_factor.h"
+#include "core/math/moving_factor.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -58,6 +60,14 @@ TEST(Solve, MovesAFactorAsItsMatrixMoves) {
     const Mat<N> skew = skew_rest<N>(half, L, Ldot), wanted = half - L * Ldot.transpose();
     EXPECT_LT((skew - wanted).norm(), 1e-11 * half.norm()) << n;
     EXPECT_EQ((skew + skew.transpose()).norm(), 0) << n;
+    MovingFactor<N> factor;
+    factor.compute(A);
+    factor.follow(half);
+    EXPECT_LT((narrowed<N>(factor.S()) - wanted).norm(), 1e-11 * half.norm()) << n;
+    const Vec<N> x = random.vector(n, 1);
+    EXPECT_LT((factor.times(x) - L * x).norm(), 1e-12) << n;
+    EXPECT_LT((factor.turned_times(x) - L.transpose() * x).norm(), 1e-12) << n;
+    EXPECT_LT((factor.turned_times(factor.solve_turned(x)) - x).norm(), 1e-12) << n;
   });
 }
 

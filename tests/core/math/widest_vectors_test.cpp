@@ -59,63 +59,86 @@ TEST(WidestVectors, ReckonEachNumberAsNarrowOnesDo) {
 
 // N: with code of its own, and M the same for narrow vectors.
 template <int N, int M>
-void expect_the_same_of_wide_matrices(Eigen::Index n) {
+void expect_the_same_of_wide_factors(Eigen::Index n) {
   using namespace wide;
   test::Random random(904);
   const int dof = static_cast<int>(n);
+  const Eigen::Index p = whole_fours(dof);
   const Mat<N> A = random.positive_definite(dof, 0.1, 10), C = random.matrix(dof, 1);
-  const Wide<N> wide_A = widened<N>(A), wide_C = widened<N>(C);
-  const auto over = [&] { return WideVec<N>::Zero(wide_A.rows()).eval(); };
+  Diagonal<N, true> over = Diagonal<N, true>::Zero(p, 9), over_narrow = over;
 
-  Wide<N> L = wide_A, L_narrow = wide_A;
-  WideVec<N> scale = over(), scale_narrow = over();
-  wide::factor<N>(n, L.data(), scale.data());
-  columns_by_fours(n, FactorSymmetric<M>{n, L_narrow.data(), scale_narrow.data()});
+  Wide<N> L = widened<N>(A), L_narrow = L;
+  wide::factor<N>(n, L.data(), over.data());
+  columns_by_fours(n, FactorSymmetric<M>{n, L_narrow.data(), over_narrow.data()});
   EXPECT_EQ(L, L_narrow) << n;
-  EXPECT_EQ(scale, scale_narrow) << n;
+  EXPECT_EQ(over, over_narrow) << n;
 
-  Wide<N> X = wide_C, X_narrow = wide_C;
-  wide::divide<N>(n, L.data(), scale.data(), X.data());
-  columns_by_fours(n, Divide<M, true>{n, straight<M>(L.data(), n), scale.data(), X_narrow.data()});
+  Wide<N> X = widened<N>(C), X_narrow = X;
+  wide::divide<N>(n, L.data(), over.data(), X.data());
+  columns_by_fours(n, Divide<M, true>{n, straight<M>(L.data(), n), over.data(), X_narrow.data()});
   columns_by_fours_back(
-      n, Divide<M, false>{n, wide::turned<M>(L.data(), n), scale.data(), X_narrow.data()});
+      n, Divide<M, false>{n, wide::turned<M>(L.data(), n), over.data(), X_narrow.data()});
   EXPECT_EQ(X, X_narrow) << n;
 
-  Wide<N> half = widened<N>(A + C), half_narrow = half;
-  Wide<N> turned_half(half.rows(), n), turned_half_narrow(half.rows(), n);
-  wide::turn<N>(n, half.data(), turned_half.data());
-  turn_in<M>(n, half.data(), turned_half_narrow.data());
-  EXPECT_EQ(turned_half, turned_half_narrow) << n;
-  wide::factor_halves<N>(n, half.data(), turned_half.data(), scale.data());
-  columns_by_fours(
-      n, FactorHalves<M>{n, half_narrow.data(), turned_half_narrow.data(), scale_narrow.data()});
+  Wide<N> Ldot = widened<N>(C + C.transpose()), Ldot_narrow = Ldot;
+  wide::factor_rate<N>(n, L.data(), over.data(), Ldot.data());
+  columns_by_fours(n, FactorRate<M>{n, L.data(), over.data(), Ldot_narrow.data()});
+  EXPECT_EQ(Ldot, Ldot_narrow) << n;
+  Wide<N> S = widened<N>(C), S_narrow = S;
+  wide::skew_rest<N>(n, L.data(), Ldot.data(), S.data());
+  columns_by_fours(n, SkewRest<M>{n, L.data(), Ldot.data(), S_narrow.data()});
+  EXPECT_EQ(S, S_narrow) << n;
+
+  Wide<N> half = widened<N>(A + C), half_narrow = half, other(p, n), other_narrow(p, n);
+  wide::turn<N>(n, half.data(), other.data());
+  turn_in<M>(n, half.data(), other_narrow.data());
+  EXPECT_EQ(other, other_narrow) << n;
+  wide::factor_halves<N>(n, half.data(), other.data(), over.data());
+  columns_by_fours(n,
+                   FactorHalves<M>{n, half_narrow.data(), other_narrow.data(), over_narrow.data()});
   EXPECT_EQ(half, half_narrow) << n;
-  EXPECT_EQ(turned_half, turned_half_narrow) << n;
+  EXPECT_EQ(other, other_narrow) << n;
+  EXPECT_EQ(over, over_narrow) << n;
 
   WideVec<N> x = widened_vector<N>(random.vector(dof, 1)), x_narrow = x;
-  wide::solve_halves<N>(n, half.data(), turned_half.data(), scale.data(), x.data());
-  columns_by_fours(n, SolveLower<M>{n, half.data(), nullptr, x_narrow.data()});
+  wide::solve_halves<N>(n, half.data(), other.data(), over.data(), x.data());
+  columns_by_fours(n, SolveLower<M>{n, half.data(), over.data() + p, x_narrow.data()});
   columns_by_fours_back(n,
-                        SolveTransposed<M>{n, turned_half.data(), scale.data(), x_narrow.data()});
+                        SolveTransposed<M>{n, other.data(), over.data() + 5 * p, x_narrow.data()});
   EXPECT_EQ(x, x_narrow) << n;
+}
 
-  WideVec<N> y = over(), y_narrow = over();
-  wide::take_times<N>(n, wide_A.data(), x.data(), y.data());
-  columns_by_fours(n, TakeTimes<M>{n, wide_A.data(), x.data(), y_narrow.data()});
-  wide::take_turned_times<N>(n, wide_C.data(), x.data(), y.data());
-  columns_by_fours(n, TakeTransposedTimes<M>{n, wide_C.data(), x.data(), y_narrow.data()});
+template <int N, int M>
+void expect_the_same_of_wide_products(Eigen::Index n) {
+  using namespace wide;
+  test::Random random(905);
+  const int dof = static_cast<int>(n);
+  const Wide<N> A = widened<N>(random.matrix(dof, 1)), B = widened<N>(random.matrix(dof, 1));
+  const WideVec<N> x = widened_vector<N>(random.vector(dof, 1));
+  WideVec<N> y = WideVec<N>::Zero(A.rows()), y_narrow = y;
+  wide::take_times<N>(n, A.data(), x.data(), y.data());
+  columns_by_fours(n, TakeTimes<M>{n, A.data(), x.data(), y_narrow.data()});
+  EXPECT_EQ(y, y_narrow) << n;
+  wide::take_turned_times<N>(n, A.data(), x.data(), y.data());
+  columns_by_fours(n, TakeTransposedTimes<M>{n, A.data(), x.data(), y_narrow.data()});
   EXPECT_EQ(y, y_narrow) << n;
 
-  wide::take_product<N>(n, wide_A.data(), wide_C.data(), X.data());
-  columns_by_fours(n, TakeProduct<M, false>{n, wide_A.data(), wide::turned<M>(wide_C.data(), n),
-                                            X_narrow.data()});
-  EXPECT_EQ(X, X_narrow) << n;
+  Wide<N> C = A, C_narrow = A;
+  wide::take_product<N>(n, A.data(), B.data(), C.data());
+  columns_by_fours(
+      n, TakeProduct<M, false>{n, A.data(), wide::turned<M>(B.data(), n), C_narrow.data()});
+  EXPECT_EQ(C, C_narrow) << n;
+  wide::minus_product_turned<N>(n, A.data(), B.data(), C.data());
+  columns_by_fours(n, TakeProduct<M, true>{n, A.data(), straight<M>(B.data(), n), C_narrow.data()});
+  EXPECT_EQ(C, C_narrow) << n;
 }
 
 TEST(WidestVectors, ReckonEachNumberOfWideMatricesAsNarrowOnesDo) {
-  expect_the_same_of_wide_matrices<7, 7>(7);
+  expect_the_same_of_wide_factors<7, 7>(7);
+  expect_the_same_of_wide_products<7, 7>(7);
   for (Eigen::Index n = 1; n <= kMaxDof; ++n) {
-    expect_the_same_of_wide_matrices<kAnyDof, kByFours>(n);
+    expect_the_same_of_wide_factors<kAnyDof, kByFours>(n);
+    expect_the_same_of_wide_products<kAnyDof, kByFours>(n);
   }
 }
 
