@@ -52,24 +52,26 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
 template <int N>
 struct PredictiveLaw::Of<N>::Solve {
   const InertiaNetwork<N>& network;
-  Vec<N> b_w, s0, f1_hat;
-  double c, g_f;
-  Wide<N> phi_T, C_LE_T;
-  Mat<N> D0;
-  Wide<N> impedance;
-  Vec<N> drive, momentum, limit;
+  const Mat<N>& D0;
+  const Vec<N>&f1_hat, &limit;
   double authority;
+  Wide<N> phi_T, C_LE_T, impedance;
+  Vec<N> drive, momentum;
+  Vec<N> b_w, s0;
+  double c = 0, g_f = 0;
 
-  Solve(const Decomposition<N>& d, const InertiaNetwork<N>& of_inertia, const Vec<N>& damping,
-        const Vec<N>& spring, const Vec<N>& hand, double tie, double governor)
+  Solve(const Locked<N>& d, const InertiaNetwork<N>& of_inertia, const Predictor<N>& device,
+        const Proxy<N>& proxy, const LawInput<N>& in)
       : network(of_inertia),
-        b_w(damping),
-        s0(spring),
-        f1_hat(hand),
-        c(tie),
-        g_f(governor),
+        D0(device.D0()),
+        f1_hat(in.f1_hat),
+        limit(in.limit),
+        authority(in.authority),
         phi_T(d.phi_T()),
-        C_LE_T(d.C_LE_T(phi_T)) {}
+        C_LE_T(d.C_LE_T(phi_T)),
+        impedance(proxy.impedance(in.tick)),
+        drive(device.drive()),
+        momentum(proxy.momentum(in.tick)) {}
 
   ContactAnswer<N> system() const {
     const Wide<N>& Z2 = impedance;
@@ -207,20 +209,16 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   proxy.look(T);
   balance(p, c, in, proxy);
 
-  const Decomposition<N> d(in.device, {proxy.M(), proxy.C(), proxy.v()});
+  const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   network_.set(eta, d.M_L, ledger_.damping(), T, p.band);
-  Vec<N> b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
+  Solve solve(d, network_, predictor_, proxy, in);
+  solve.c = c.b_vc + c.k_vc * T / 2;
+  solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
+  solve.g_f = ledger_.contact();
+  solve.b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
   if (!proxy.contacts().engaged()) {
-    b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + b_w);
+    solve.b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + solve.b_w);
   }
-  Solve solve(d, network_, b_w, c.k_vc * (predictor_.x() - proxy.x()), in.f1_hat,
-              c.b_vc + c.k_vc * T / 2, ledger_.contact());
-  solve.D0 = predictor_.D0();
-  solve.drive = predictor_.drive();
-  solve.impedance = proxy.impedance(T);
-  solve.momentum = proxy.momentum(T);
-  solve.limit = in.limit;
-  solve.authority = in.authority;
 
   ContactAnswer<N> answer = solve.system();
   Motion<N> motion = answer.solve(solve.right());

@@ -97,7 +97,11 @@ class Predictor {
       t.f += gain * (t.Mp * t.error);
       t.D0 = 2 / T * t.Mp + C;
       t.D0.diagonal() += b_d;
-      t.D0_inverse.compute(widened<N>(t.D0));
+      if (m == 0) {
+        D0_inverse_.compute(widened<N>(t.D0));
+      } else {
+        carry(hand_mass, J);
+      }
       t.x_met = t.x;
       t.v_met = t.v;
       for (int k = 0; k < delay; ++k) {
@@ -140,13 +144,24 @@ class Predictor {
     Vec<N> error{};           // of the last reading [rad]
     Vec<N> x_met{}, v_met{};  // where the coming torque meets it
     Mat<N> Mp{}, D0{};        // inertia, and 2/T Mp + C + b_d
-    SteadyFactor<N> D0_inverse{};
   };
   static constexpr double kJudged = 0.05;  // predictions count for so long [s]
 
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
-    return t.D0_inverse.solve((2 / T_ * (t.Mp * v) + t.f + tau).eval());
+    Vec<N> w = D0_inverse_.solve((2 / T_ * (t.Mp * v) + t.f + tau).eval());
+    if (&t == &tracks_[1]) w -= of_tip_ * (held_ * (J_ * w));
+    return w;
+  }
+
+  // The second one's D0 is the first one's and 2/T m J^T J, m the hand's mass. What that carries of
+  // a motion: D0^-1 J^T (T/(2 m) + J D0^-1 J^T)^-1 J.
+  void carry(double hand_mass, const Jacobian<N>& J) {
+    J_ = J;
+    of_tip_ = D0_inverse_.solve(Tip(J.transpose()));
+    Mat3 yields = J * of_tip_;
+    yields.diagonal().array() += T_ / (2 * hand_mass);
+    held_ = yields.inverse();
   }
 
   // The torque that will act in so many ticks, not yet sent for the present one [N m].
@@ -155,7 +170,13 @@ class Predictor {
     return sent_[(newest_ + kMostDelay - back) % kMostDelay];
   }
 
+  using Tip = Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3>;
+
   std::array<Track, 2> tracks_;
+  SteadyFactor<N> D0_inverse_;  // of the first one
+  Jacobian<N> J_;               // of the tip
+  Tip of_tip_;                  // how a force at the tip moves the first one
+  Mat3 held_;                   // see carry()
   std::size_t active_ = 0;
   // All that were sent, in a ring: a delay may turn out to be another one [N m].
   std::array<Vec<N>, kMostDelay> sent_;

@@ -521,8 +521,12 @@ template <int N>
 [[gnu::always_inline]] inline void widen_in(Index n, const double* A, double* W) {
   const Index p = rows<N>(n), most = columns<N>(n), whole = most / 4 * 4;
   for (Index c = 0; c < most; ++c, A += most, W += p) {
-#pragma GCC unroll 8
-    for (Index i = 0; i < whole; i += 4) four(W + i) = four(A + i);
+    Index i = 0;
+    for (; i + 8 <= whole; i += 8) {
+      four(W + i) = four(A + i);
+      four(W + i + 4) = four(A + i + 4);
+    }
+    if (i < whole) four(W + i) = four(A + i);
     if (most - whole == 1) four(W + whole) = Four{A[whole]};
     if (most - whole == 2) four(W + whole) = Four{A[whole], A[whole + 1]};
     if (most - whole == 3) four(W + whole) = Four{A[whole], A[whole + 1], A[whole + 2]};
