@@ -102,6 +102,20 @@ Vec3Of<S> hand_force(const Drive<N>& d, const Look<N, S>& look, const S& t, cons
   return substeps * d.force_there(look, t + S(0.5 * d.h) * substeps) - look.J * moved;
 }
 
+// Substeps of more than three joints, in columns as wide as they are made up to whole fours: n and
+// where the numbers are. `lower`, `corners`: of A, see SymmetricFactor.
+struct WideSubsteps {
+  Eigen::Index n;
+  const double *lower, *corners;
+  const double *J_T, *steady, *damping;  // 3 columns; what does not change [N m]; of the joints
+  double h, stiffness, along_rate;       // see Drive
+  Vec3 force, force_step;                // of the hand where the arm was looked at; its change [N]
+  double *u, *v, *sum_u, *dv;
+  int count;
+};
+template <int N>
+void go(const WideSubsteps& steps);
+
 // A substep from u and v on, its middle at t from the tick's start, has all taken as v would have
 // it there, and the change that it makes of v then corrects:
 //     A dv = b(t, u, v), x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
@@ -134,10 +148,26 @@ class Stride {
 
   // Where so many substeps lead from t on.
   Going<N, double> gone(Going<N, double> at, double t, int substeps) const {
-    for (int s = 0; s < substeps; ++s) {
-      at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
+    if constexpr (N == 3) {
+      for (int s = 0; s < substeps; ++s) {
+        at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
+      }
+      return at;
+    } else {
+      const Eigen::Index n = at.u.size(), p = whole_fours(static_cast<int>(n));
+      Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T(p, 3);
+      J_T.topRows(n) = look_.J.transpose();
+      J_T.bottomRows(p - n).setZero();
+      const WideVec<N> steady = widened_vector<N>(d_.torque - look_.Cv);
+      const WideVec<N> damping = widened_vector<N>(d_.damping);
+      WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
+      WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
+      go<N>({n, factor_.lower(), factor_.corners(), J_T.data(), steady.data(), damping.data(), h_,
+             d_.stiffness, d_.along_rate(h_), d_.force_there(look_, t + 0.5 * h_),
+             h_ * d_.stiffness * d_.target_rate, u.data(), v.data(), sum_u.data(), dv.data(),
+             substeps});
+      return {u.head(n), v.head(n), sum_u.head(n)};
     }
-    return at;
   }
 
  private:

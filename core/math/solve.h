@@ -66,6 +66,9 @@ class SymmetricFactor {
           b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
     }
   }
+  // L and the inverses of its blocks of four, for loops that solve in the midst of others.
+  const double* lower() const requires(N != 3) { return factor_.data(); }
+  const double* corners() const requires(N != 3) { return over_.data() + over_.rows(); }
   // X A^-1 in the place of X.
   void divide(Wide<N>& X) const {
     if constexpr (N == 3) {
