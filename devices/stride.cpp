@@ -80,7 +80,32 @@ template <int M>
   }
 }
 
+template <int M>
+[[gnu::always_inline]] inline void stiffen_wide(Eigen::Index n, double by, double answer,
+                                                const double* J_T, double* A) {
+  const Eigen::Index p = wide::rows<M>(n);
+  for (Eigen::Index c = 0; c < wide::columns<M>(n); ++c, A += p) {
+    const double x = answer * J_T[c], y = answer * J_T[p + c], z = answer * J_T[2 * p + c];
+    for (Eigen::Index i = 0; i < p; i += 4) {
+      const double* const J = J_T + i;
+      four(A + i) = four(A + i) * by + (four(J) * x + four(J + p) * y + four(J + 2 * p) * z);
+    }
+  }
+}
+
 }  // namespace
+
+template <>
+LIMPID_WIDE void stiffen<kAnyDof>(Eigen::Index n, double by, double answer, const double* J_T,
+                                  double* A) {
+  stiffen_wide<kByFours>(n, by, answer, J_T, A);
+}
+
+template <>
+LIMPID_WIDE void stiffen<7>(Eigen::Index n, double by, double answer, const double* J_T,
+                            double* A) {
+  stiffen_wide<7>(n, by, answer, J_T, A);
+}
 
 template <>
 LIMPID_WIDE void go<kAnyDof>(const WideSubsteps& steps) {

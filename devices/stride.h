@@ -115,6 +115,9 @@ struct WideSubsteps {
 };
 template <int N>
 void go(const WideSubsteps& steps);
+// A times `by` and J^T J times `answer` more.
+template <int N>
+void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
 
 // A substep from u and v on, its middle at t from the tick's start, has all taken as v would have
 // it there, and the change that it makes of v then corrects:
@@ -124,20 +127,29 @@ class Stride {
  public:
   // Both are to live on.
   Stride(const Drive<N>& drive, double h, const Look<N, double>& look)
-      : d_(drive), h_(h), look_(look), A_(look.M) {
-    A_ *= 1 / h;
-    for (Eigen::Index j = 0; j < A_.cols(); ++j) {
-      const Vec3 held = d_.answer(h) * look_.J.col(j);
-      for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
-      A_(j, j) += d_.damping[j] / 2;
+      : d_(drive), h_(h), look_(look), A_(widened<N>(look.M)) {
+    if constexpr (N == 3) {
+      A_ *= 1 / h;
+      for (Eigen::Index j = 0; j < A_.cols(); ++j) {
+        const Vec3 held = d_.answer(h) * look_.J.col(j);
+        for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
+        A_(j, j) += d_.damping[j] / 2;
+      }
+    } else {
+      const Eigen::Index n = A_.cols();
+      J_T_.resize(A_.rows(), Eigen::NoChange);
+      J_T_.topRows(n) = look_.J.transpose();
+      J_T_.bottomRows(A_.rows() - n).setZero();
+      stiffen<N>(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
+      A_.diagonal() += 0.5 * d_.damping;
     }
-    factor_.compute(A_);
+    factor_.compute_wide(A_);
   }
 
   double h() const { return h_; }
   const Vec<N>& x() const { return look_.x; }  // of the look
   double M(Eigen::Index joint) const { return look_.M(joint, joint); }
-  const Mat<N>& A() const { return A_; }  // its lower triangle
+  Mat<N> A() const { return narrowed<N>(A_); }  // its lower triangle
   [[gnu::always_inline]] Vec<N> b(double t, const Vec<N>& u, const Vec<N>& v) const {
     const Vec3 force =
         d_.force_there(look_, t) - look_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
@@ -155,14 +167,11 @@ class Stride {
       return at;
     } else {
       const Eigen::Index n = at.u.size(), p = whole_fours(static_cast<int>(n));
-      Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T(p, 3);
-      J_T.topRows(n) = look_.J.transpose();
-      J_T.bottomRows(p - n).setZero();
       const WideVec<N> steady = widened_vector<N>(d_.torque - look_.Cv);
       const WideVec<N> damping = widened_vector<N>(d_.damping);
       WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
       WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
-      go<N>({n, factor_.lower(), factor_.corners(), J_T.data(), steady.data(), damping.data(), h_,
+      go<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(), damping.data(), h_,
              d_.stiffness, d_.along_rate(h_), d_.force_there(look_, t + 0.5 * h_),
              h_ * d_.stiffness * d_.target_rate, u.data(), v.data(), sum_u.data(), dv.data(),
              substeps});
@@ -174,7 +183,8 @@ class Stride {
   const Drive<N>& d_;
   double h_;
   const Look<N, double>& look_;
-  Mat<N> A_;
+  Wide<N> A_;
+  Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T_;
   SymmetricFactor<N> factor_;
 };
 

@@ -48,13 +48,14 @@ class SymmetricFactor {
  public:
   SymmetricFactor() = default;
   explicit SymmetricFactor(const Mat<N>& A) { compute(A); }
-  void compute(const Mat<N>& A) {
+  void compute(const Mat<N>& A) { compute_wide(widened<N>(A)); }
+  void compute_wide(const Wide<N>& A) {
     if constexpr (N == 3) {
       factor_ = inverse_symmetric(A);
     } else {
-      factor_ = widened<N>(A);
+      factor_ = A;
       over_.resize(factor_.rows(), Eigen::NoChange);
-      wide::factor<N>(A.cols(), factor_.data(), over_.data());
+      wide::factor<N>(factor_.cols(), factor_.data(), over_.data());
     }
   }
   template <class B>
