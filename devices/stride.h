@@ -102,6 +102,23 @@ Vec3Of<S> hand_force(const Drive<N>& d, const Look<N, S>& look, const S& t, cons
   return substeps * d.force_there(look, t + S(0.5 * d.h) * substeps) - look.J * moved;
 }
 
+// Substeps of more than three joints, in columns as wide as they are made up to whole fours: n and
+// where the numbers are. `lower`, `corners`: of A, see SymmetricFactor.
+struct WideSubsteps {
+  Eigen::Index n;
+  const double *lower, *corners;
+  const double *J_T, *steady, *damping;  // 3 columns; what does not change [N m]; of the joints
+  double h, stiffness, along_rate;       // see Drive
+  Vec3 force, force_step;                // of the hand where the arm was looked at; its change [N]
+  double *u, *v, *sum_u, *dv;
+  int count;
+};
+template <int N>
+void go(const WideSubsteps& steps);
+// A times `by` and J^T J times `answer` more.
+template <int N>
+void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
+
 // A substep from u and v on, its middle at t from the tick's start, has all taken as v would have
 // it there, and the change that it makes of v then corrects:
 //     A dv = b(t, u, v), x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
@@ -110,20 +127,29 @@ class Stride {
  public:
   // Both are to live on.
   Stride(const Drive<N>& drive, double h, const Look<N, double>& look)
-      : d_(drive), h_(h), look_(look), A_(look.M) {
-    A_ *= 1 / h;
-    for (Eigen::Index j = 0; j < A_.cols(); ++j) {
-      const Vec3 held = d_.answer(h) * look_.J.col(j);
-      for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
-      A_(j, j) += d_.damping[j] / 2;
+      : d_(drive), h_(h), look_(look), A_(widened<N>(look.M)) {
+    if constexpr (N == 3) {
+      A_ *= 1 / h;
+      for (Eigen::Index j = 0; j < A_.cols(); ++j) {
+        const Vec3 held = d_.answer(h) * look_.J.col(j);
+        for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
+        A_(j, j) += d_.damping[j] / 2;
+      }
+    } else {
+      const Eigen::Index n = A_.cols();
+      J_T_.resize(A_.rows(), Eigen::NoChange);
+      J_T_.topRows(n) = look_.J.transpose();
+      J_T_.bottomRows(A_.rows() - n).setZero();
+      stiffen<N>(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
+      A_.diagonal() += 0.5 * d_.damping;
     }
-    factor_.compute(A_);
+    factor_.compute_wide(A_);
   }
 
   double h() const { return h_; }
   const Vec<N>& x() const { return look_.x; }  // of the look
   double M(Eigen::Index joint) const { return look_.M(joint, joint); }
-  const Mat<N>& A() const { return A_; }  // its lower triangle
+  Mat<N> A() const { return narrowed<N>(A_); }  // its lower triangle
   [[gnu::always_inline]] Vec<N> b(double t, const Vec<N>& u, const Vec<N>& v) const {
     const Vec3 force =
         d_.force_there(look_, t) - look_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
@@ -134,17 +160,31 @@ class Stride {
 
   // Where so many substeps lead from t on.
   Going<N, double> gone(Going<N, double> at, double t, int substeps) const {
-    for (int s = 0; s < substeps; ++s) {
-      at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
+    if constexpr (N == 3) {
+      for (int s = 0; s < substeps; ++s) {
+        at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
+      }
+      return at;
+    } else {
+      const Eigen::Index n = at.u.size(), p = whole_fours(static_cast<int>(n));
+      const WideVec<N> steady = widened_vector<N>(d_.torque - look_.Cv);
+      const WideVec<N> damping = widened_vector<N>(d_.damping);
+      WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
+      WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
+      go<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(), damping.data(), h_,
+             d_.stiffness, d_.along_rate(h_), d_.force_there(look_, t + 0.5 * h_),
+             h_ * d_.stiffness * d_.target_rate, u.data(), v.data(), sum_u.data(), dv.data(),
+             substeps});
+      return {u.head(n), v.head(n), sum_u.head(n)};
     }
-    return at;
   }
 
  private:
   const Drive<N>& d_;
   double h_;
   const Look<N, double>& look_;
-  Mat<N> A_;
+  Wide<N> A_;
+  Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T_;
   SymmetricFactor<N> factor_;
 };
 

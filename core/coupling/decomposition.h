@@ -18,16 +18,38 @@ struct Dynamics {
 //     phi    = M_L^-1 M2,  M_L = M1 + M2
 //     phidot = M_L^-1 (M2dot - M_Ldot phi)
 //     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = C2^T - (C1 + C2)^T phi = -C_EL^T
-// As products with vectors, which cost n^2; laws that solve with the matrices ask for those.
+// The matrices, for laws that solve with them, transposed.
 template <int N>
-class Decomposition {
+class Locked {
  public:
+  Locked(const Mat<N>& M1, const Mat<N>& C1, const Mat<N>& M_2, const Mat<N>& C_2)
+      : M_L(M1 + M_2), M_L_factor(M_L), C_L(C1 + C_2), M2(M_2), C2(C_2) {}
+
+  Wide<N> phi_T() const {
+    Wide<N> share = widened<N>(M2);
+    M_L_factor.divide(share);
+    return share;
+  }
+  Wide<N> C_LE_T(const Wide<N>& phi_T) const {
+    Wide<N> C = widened<N>(C2);
+    take_product<N>(phi_T, widened<N>(C_L), C);
+    return C;
+  }
+  Mat<N> phi() const { return narrowed<N>(phi_T()).transpose(); }
+  Mat<N> C_LE(const Mat<N>& phi) const { return C2.transpose() - C_L.transpose() * phi; }
+
+  Mat<N> M_L;  // locked inertia [kg m^2]
+  SymmetricFactor<N> M_L_factor;
+  Mat<N> C_L, M2, C2;  // C1 + C2; of the proxy
+};
+
+// And as products with vectors, which cost n^2.
+template <int N>
+class Decomposition : public Locked<N> {
+ public:
+  using Locked<N>::M_L_factor, Locked<N>::M2, Locked<N>::C2, Locked<N>::C_L;
   Decomposition(const Dynamics<N>& device, const Dynamics<N>& proxy)
-      : M_L(device.M + proxy.M),
-        M_L_factor(M_L),
-        C_L(device.C + proxy.C),
-        M2(proxy.M),
-        C2(proxy.C),
+      : Locked<N>(device.M, device.C, proxy.M, proxy.C),
         v_E(device.v - proxy.v),
         phi_v_E(times_phi(v_E)),
         v_L(device.v - phi_v_E) {}
@@ -38,16 +60,6 @@ class Decomposition {
   // C_LE v_E, (11) [N m].
   Vec<N> shape_torque() const { return C2.transpose() * v_E - C_L.transpose() * phi_v_E; }
 
-  Mat<N> phi() const { return M_L_factor.solve(M2); }
-  Mat<N> C_LE(const Mat<N>& phi) const {
-    Mat<N> C = C2.transpose();
-    C.noalias() -= C_L.transpose() * phi;
-    return C;
-  }
-
-  Mat<N> M_L;  // locked inertia [kg m^2]
-  SymmetricFactor<N> M_L_factor;
-  Mat<N> C_L, M2, C2;        // C1 + C2; of the proxy
   Vec<N> v_E, phi_v_E, v_L;  // (8) shape and locked velocity [rad/s]
 };
 

@@ -41,15 +41,15 @@ Motion<N> LimitedSolve<N>::residual(ContactSolve<N>& contacts, double T, const M
 
 // Of the residual at the motion just looked at.
 template <int N>
-CoupledSystem<N> LimitedSolve<N>::slopes(const Mat<N>& f2_on_u) const {
+typename LimitedSolve<N>::Slopes LimitedSolve<N>::slopes(const Mat<N>& f2_on_u) const {
   Mat<N> p_w = tE.on_w, p_u = tE.on_u + on_f2 * f2_on_u;
   hold<N>(p_w, wanted_, limit);
   hold<N>(p_u, wanted_, limit);
   Mat<N> tau_w = p_w + tL.on_w, tau_u = p_u + tL.on_u;
   hold<N>(tau_w, given, limit);
   hold<N>(tau_u, given, limit);
-  return CoupledSystem<N>(D0 - authority * tau_w, -authority * tau_u, p_w - rest.on_w,
-                          impedance + p_u - rest.on_u - f2_on_u);
+  return Slopes(widened<N>(D0 - authority * tau_w), widened<N>(-authority * tau_u),
+                widened<N>(p_w - rest.on_w), widened<N>(impedance + p_u - rest.on_u - f2_on_u));
 }
 
 template <int N>
@@ -58,7 +58,7 @@ bool LimitedSolve<N>::solve(ContactSolve<N>& contacts, double T, Motion<N>& m) {
   Mat<N> f2_on_u = Mat<N>::Zero(n, n);
   for (steps = 0; steps < kMostSteps; ++steps) {
     const Motion<N> off = residual(contacts, T, m, &f2_on_u);
-    const CoupledSystem<N> J = slopes(f2_on_u);
+    const Slopes J = slopes(f2_on_u);
     const Motion<N> step = J.solve(off);
     const double far = size(step);
     if (!std::isfinite(far)) return false;

@@ -50,7 +50,8 @@ struct LimitedSolve {
 
  private:
   Motion<N> residual(ContactSolve<N>& contacts, double T, const Motion<N>& m, Mat<N>* slope);
-  CoupledSystem<N> slopes(const Mat<N>& f2_on_u) const;
+  using Slopes = CoupledSystem<N, Factor>;  // friction may turn the proxy's
+  Slopes slopes(const Mat<N>& f2_on_u) const;
 
   Vec<N> wanted_;  // tE with its part of f2
 };

@@ -41,73 +41,101 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
 // The joint system of a tick: unknown the mean velocities (w, u) of device and proxy,
 //     D0 w               = drive + tau1,               tau1 = tE + tL
 //     (2/T M2 + S2) u    = momentum + tau2 + f2,
-//     tE = - c (w - u) - s0 + C_EL v_L + (g_f - phi^T) f2 - phi^T f1_hat
-//     tL = - b_w w + (I - phi^T)(C_LE v_E + u_N - K_N w)
-//     tau2 = c (w - u) + s0 - C_EL v_L + phi^T (C_LE v_E + u_N - K_N w) + phi^T f1_hat
-//            + (phi^T - g_f) f2,
+//     tE = - c v_E - s0 + C_EL v_L + (g_f - phi^T) f2 - phi^T f1_hat
+//     tL = - b_w w + (I - phi^T) sigma,                sigma = C_LE v_E + u_N - K_N w
+//     tau2 = - tE + phi^T sigma,
 // with c = b_vc + k_vc T/2, s0 = k_vc (x1 - x2), v_E = w - u, v_L = w - phi v_E.
+//
+// In tau1 + tau2 = sigma - b_w w all that ties the two together has gone. With the device's rows
+// and the proxy's added up, and unknown w and -v_E, the big numbers stand in one block of four:
+//     [ D0 + Z2 + b_w + K_N         Z2 + C_LE                     ]
+//     [ Z2 - C_LE^T + phi^T K_N     Z2 + c + phi^T C_LE - C_LE^T phi ],    Z2 = 2/T M2 + S2.
+// The motors give the share `authority` a of tau1: a times the proxy's rows are added.
 template <int N>
 struct PredictiveLaw::Of<N>::Solve {
-  LinearTorque<N> tE, tL, tau2;
-  Mat<N> D0, impedance, tE_f2, tau2_f2;
-  Vec<N> drive, momentum, limit;
+  const InertiaNetwork<N>& network;
+  const Mat<N>& D0;
+  const Vec<N>&f1_hat, &limit;
   double authority;
+  Wide<N> phi_T, C_LE_T, impedance;
+  Vec<N> drive, momentum;
+  Vec<N> b_w, s0;
+  double c = 0, g_f = 0;
 
-  Solve(const Decomposition<N>& d, const InertiaNetwork<N>& network, const Vec<N>& b_w,
-        const Vec<N>& s0, const Vec<N>& f1_hat, double c, double g_f) {
-    const Eigen::Index n = s0.size();
-    const Mat<N> I = Mat<N>::Identity(n, n);
-    const Mat<N> phi = d.phi(), phi_T = phi.transpose();
-    const Mat<N> C_LE = d.C_LE(phi);
-    const Mat<N> locked_u = -C_LE.transpose() * phi;
-    const Mat<N> locked_w = -C_LE.transpose() - locked_u;
-    const Mat<N> shaped = network.damps() ? Mat<N>(C_LE - network.damping()) : C_LE;
-    const Vec<N> phi_f1 = phi_T * f1_hat;
-    const Vec<N> phi_u = phi_T * network.force();
-    const Mat<N> phi_shaped = phi_T * shaped;
-    const Mat<N> phi_C = phi_T * C_LE;
-    tE = {-s0 - phi_f1, locked_w - c * I, locked_u + c * I};
-    tL = {network.force() - phi_u, shaped - phi_shaped, phi_C - C_LE};
-    tL.on_w.diagonal() -= b_w;
-    tau2 = {s0 + phi_u + phi_f1, c * I - locked_w + phi_shaped, -c * I - locked_u - phi_C};
-    tE_f2 = g_f * I - phi_T;
-    tau2_f2 = phi_T + (1 - g_f) * I;
-  }
+  Solve(const Locked<N>& d, const InertiaNetwork<N>& of_inertia, const Predictor<N>& device,
+        const Proxy<N>& proxy, const LawInput<N>& in)
+      : network(of_inertia),
+        D0(device.D0()),
+        f1_hat(in.f1_hat),
+        limit(in.limit),
+        authority(in.authority),
+        phi_T(d.phi_T()),
+        C_LE_T(d.C_LE_T(phi_T)),
+        impedance(proxy.impedance(in.tick)),
+        drive(device.drive()),
+        momentum(proxy.momentum(in.tick)) {}
 
   ContactAnswer<N> system() const {
-    ContactAnswer<N> answer;
-    answer.on_device = authority * tE_f2;
-    answer.on_proxy = tau2_f2;
-    answer.system =
-        CoupledSystem<N>(D0 - authority * (tE.on_w + tL.on_w), -authority * (tE.on_u + tL.on_u),
-                         -tau2.on_w, impedance - tau2.on_u);
+    const Wide<N>& Z2 = impedance;
+    const Wide<N> C_LE = turned<N>(C_LE_T);
+    Wide<N> ww = widened<N>(D0), uw = Z2 - C_LE_T;
+    ww += authority * Z2;
+    ww.diagonal() += authority * b_w;
+    if (network.damps()) {
+      const Wide<N> minus_K_N = widened<N>(-network.damping());
+      ww -= authority * minus_K_N;
+      take_product<N>(phi_T, minus_K_N, uw);
+    }
+    const Wide<N> turning = minus_product_turned<N>(C_LE_T, phi_T);  // - C_LE^T phi
+    Wide<N> uu = Z2 + turning - turned<N>(turning);
+    uu.diagonal().array() += c;
+    ContactAnswer<N> answer(authority, phi_T, ww, authority * (Z2 + C_LE), uw, uu);
+    answer.on_proxy.diagonal().array() += 1 - g_f;
     return answer;
   }
 
   Motion<N> right() const {
-    return {drive + authority * (tE.constant + tL.constant), momentum + tau2.constant};
+    const Vec<N>& u_N = network.force();
+    return {drive + authority * (momentum + u_N),
+            momentum + s0 + times<N>(phi_T, (u_N + f1_hat).eval())};
   }
 
   // Between device and proxy, for this motion.
-  Vec<N> wanted(const Motion<N>& m, const Vec<N>& f2) const { return tE.at(m) + tE_f2 * f2; }
+  Vec<N> wanted(const Motion<N>& m, const Vec<N>& f2) const {
+    const Vec<N> v_E = m.w - m.u, v_L = m.w - turned_times<N>(phi_T, v_E);
+    return g_f * f2 - c * v_E - s0 - times<N>(C_LE_T, v_L) - times<N>(phi_T, (f2 + f1_hat).eval());
+  }
+
+  // On the device alone.
+  Vec<N> alone(const Motion<N>& m) const {
+    Vec<N> sigma = turned_times<N>(C_LE_T, (m.w - m.u).eval()) + network.force();
+    if (network.damps()) sigma -= network.damping() * m.w;
+    return sigma - times<N>(phi_T, sigma) - b_w.cwiseProduct(m.w);
+  }
 
   // The same with motors at their limit: the spring is stiff enough in damping for a joint that is
   // let go to come to rest, c' for c, and the proxy's damper holds what no motor does.
   LimitedSolve<N> limited(double stiffer, double b_v) const {
+    const Eigen::Index n = s0.size();
+    const Mat<N> I = Mat<N>::Identity(n, n);
+    const Mat<N> share = narrowed<N>(phi_T), C_T = narrowed<N>(C_LE_T), C_LE = C_T.transpose();
+    const Mat<N> locked_u = -C_T * share.transpose(), locked_w = -C_T - locked_u;
+    const Mat<N> shaped = network.damps() ? Mat<N>(C_LE - network.damping()) : C_LE;
+    const Mat<N> share_w = share * shaped, share_u = -share * C_LE;
+    const Vec<N> share_N = share * network.force();
     LimitedSolve<N> s;
-    s.tE = tE;
-    s.tL = tL;
-    s.rest = {tau2.constant + tE.constant, tau2.on_w + tE.on_w, tau2.on_u + tE.on_u};
-    s.on_f2 = tE_f2;
+    s.tE = {-s0 - share * f1_hat, locked_w - (c + stiffer) * I, locked_u + (c + stiffer) * I};
+    s.tL = {network.force() - share_N, shaped - share_w, -C_LE - share_u};
+    s.tL.on_w.diagonal() -= b_w;
+    s.rest = {share_N, share_w, share_u};
+    s.on_f2 = g_f * I - share;
     s.D0 = D0;
-    s.impedance = impedance;
+    s.impedance = narrowed<N>(impedance);
+    s.impedance.diagonal().array() += b_v;
     s.drive = drive;
     s.momentum = momentum;
     s.limit = limit;
     s.authority = authority;
-    s.tE.on_w.diagonal().array() -= stiffer;
-    s.tE.on_u.diagonal().array() += stiffer;
-    s.impedance.diagonal().array() += b_v;
     return s;
   }
 };
@@ -187,26 +215,23 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   predictor_.model(in.device.M, in.device.C, in.b_d, J, T, memory_, gains.mu, p.hand_mass, p.delay,
                    quick_);
   proxy.look(T);
-  const Decomposition<N> d(in.device, {proxy.M(), proxy.C(), proxy.v()});
+  const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, {p.delay, in.delay_most}, T), d.M_L, ledger_.damping(), T, p.band);
-  Vec<N> b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
+  Solve solve(d, network_, predictor_, proxy, in);
+  solve.authority *= ledger_.torque();
+  solve.c = c.b_vc + c.k_vc * T / 2;
+  solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
+  solve.g_f = ledger_.contact();
+  solve.b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
   if (!proxy.contacts().engaged()) {
-    b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + b_w);
+    solve.b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + solve.b_w);
   }
-  Solve solve(d, network_, b_w, c.k_vc * (predictor_.x() - proxy.x()), in.f1_hat,
-              c.b_vc + c.k_vc * T / 2, ledger_.contact());
-  solve.D0 = predictor_.D0();
-  solve.drive = predictor_.drive();
-  solve.impedance = proxy.impedance(T);
-  solve.momentum = proxy.momentum(T);
-  solve.limit = in.limit;
-  solve.authority = in.authority * ledger_.torque();
 
   ContactAnswer<N> answer = solve.system();
-  Motion<N> motion = answer.system.solve(solve.right());
+  Motion<N> motion = answer.solve(solve.right());
   contacts_.collect(proxy.contacts(), arm, proxy.frames(), motion.u, T);
   if (contacts_.any()) {
     answer.inertia = &d.M_L_factor;
@@ -225,7 +250,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     f2 = contacts_.f2(in.b_d.size());
     const Vec<N> wanted = solve.wanted(motion, f2);
     limited = (wanted.array().abs() > in.limit.array()).any();
-    const Vec<N> given = clip<N>(wanted, in.limit) + solve.tL.at(motion);
+    const Vec<N> given = clip<N>(wanted, in.limit) + solve.alone(motion);
     tau1_ = clip<N>(given, in.limit);
     cut_ = given - tau1_;
   }
@@ -264,7 +289,7 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
   Motion<N> found = resumed ? last_ : motion;
   bool settled = both.solve(contacts_, T, found);
   if (!settled && resumed) {
-    found = answer.system.solve(right);
+    found = answer.solve(right);
     if (contacts_.any()) contacts_.solve(answer, T, found);
     settled = both.solve(contacts_, T, found);
   }

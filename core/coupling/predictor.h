@@ -51,6 +51,20 @@ bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
   return false;
 }
 
+// M += mass J^T J, of many joints column by column: a general product would first sort it all anew.
+template <int N>
+void add_mass(double mass, const Jacobian<N>& J, Mat<N>& M) {
+  const Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3> J_T = J.transpose();
+  const double *x = J_T.data(), *y = x + J_T.rows(), *z = y + J_T.rows();
+  for (Eigen::Index j = 0; j < M.cols(); ++j) {
+    const Vec3 a = mass * J.col(j);
+    double* const column = M.data() + j * M.rows();
+    for (Eigen::Index i = 0; i < M.rows(); ++i) {
+      column[i] += x[i] * a.x() + y[i] * a.y() + z[i] * a.z();
+    }
+  }
+}
+
 // Two of them run side by side, for a light hand and for one with mass; the one whose predictions
 // were better lately is active.
 template <int N>
@@ -111,12 +125,16 @@ class Predictor {
     for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
       Track& t = tracks_[m];
       t.Mp = mu * M;
-      if (m == 1) t.Mp += hand_mass * (J.transpose() * J);
+      if (m == 1) add_mass(hand_mass, J, t.Mp);
       t.f += gain * (t.Mp * t.error);
       t.Mp = (t.Mp * (ahead_ / T).asDiagonal()).eval();
       t.D0 = t.Mp + C;
       t.D0.diagonal() += b_d;
-      t.D0_inverse = Factor<N>(t.D0);
+      if (m == 0) {
+        D0_inverse_.compute(widened<N>(t.D0));
+      } else {
+        carry(hand_mass, J);
+      }
       t.x_met = t.x;
       t.v_met = t.v;
       for (int k = 0; k < delay; ++k) {
@@ -161,7 +179,6 @@ class Predictor {
     Vec<N> error{};           // of the last reading [rad]
     Vec<N> x_met{}, v_met{};  // where the coming torque meets it
     Mat<N> Mp{}, D0{};        // inertia over the tick that it takes [N m s/rad], Mp + C + b_d
-    Factor<N> D0_inverse{};
   };
   static constexpr double kJudged = 0.05;  // predictions count for so long [s]
 
@@ -169,7 +186,9 @@ class Predictor {
 
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
-    return t.D0_inverse.solve((t.Mp * v + t.f + tau).eval());
+    Vec<N> w = D0_inverse_.solve((t.Mp * v + t.f + tau).eval());
+    if (&t == &tracks_[1]) w -= of_tip_ * (held_ * (J_ * w));
+    return w;
   }
   // After a tick with the mean velocity w.
   Vec<N> end_velocity(const Vec<N>& v, const Vec<N>& w) const {
@@ -190,10 +209,24 @@ class Predictor {
     return ahead;
   }
 
+  // The second one's D0 is the first one's and 1/T m J^T J A, m the hand's mass, A the ends by
+  // ahead_. What that carries of a motion: D0^-1 J^T (T/m + J A D0^-1 J^T)^-1 J A.
+  void carry(double hand_mass, const Jacobian<N>& J) {
+    J_ = J * ahead_.asDiagonal();
+    of_tip_ = D0_inverse_.solve(Levers<N>(J.transpose()));
+    Mat3 yields = J_ * of_tip_;
+    yields.diagonal().array() += T_ / hand_mass;
+    held_ = yields.inverse();
+  }
+
   // The torque that will act in so many ticks, not yet sent for the present one [N m].
   const Vec<N>& under_way(int ahead) const { return sent(delay_ - 1 - ahead); }
 
   std::array<Track, 2> tracks_;
+  SteadyFactor<N> D0_inverse_;  // of the first one
+  Jacobian<N> J_;               // of the tip, see carry()
+  Levers<N> of_tip_;            // how a force at the tip moves the first one
+  Mat3 held_;                   // see carry()
   std::size_t active_ = 0;
   Vec<N> ahead_;  // see exact_decay()
   // All that were sent, in a ring: a delay may turn out to be another one [N m].

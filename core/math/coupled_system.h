@@ -18,24 +18,31 @@ struct Motion {
   }
 };
 
-// [ww wu; uw uu] (w, u) = (b_w, b_u), by the complement of the first block.
-template <int N>
+// [ww wu; uw uu] (w, u) = (b_w, b_u), by the complement of the first block. Rest: the factor of
+// that complement, SteadyFactor or, where it is not known to be steady, Factor.
+template <int N, template <int> class Rest = SteadyFactor>
 class CoupledSystem {
  public:
   CoupledSystem() = default;
-  CoupledSystem(const Mat<N>& ww, const Mat<N>& wu, const Mat<N>& uw, const Mat<N>& uu)
-      : first_(ww), across_(first_.solve(wu)), back_(uw), rest_(uu - back_ * across_) {}
+  // Each a wide matrix, or an expression of them.
+  template <class WW, class WU, class UW, class UU>
+  CoupledSystem(const WW& ww, const WU& wu, const UW& uw, const UU& uu) : across_(wu), back_(uw) {
+    first_.compute(ww);
+    first_.divide(back_);
+    Wide<N> rest = uu;
+    take_product<N>(back_, across_, rest);
+    rest_.compute(rest);
+  }
 
   Motion<N> solve(const Motion<N>& b) const {
-    const Vec<N> w = first_.solve(b.w);
-    const Vec<N> u = rest_.solve(b.u - back_ * w);
-    return {w - across_ * u, u};
+    const Vec<N> u = rest_.solve((b.u - times<N>(back_, b.w)).eval());
+    return {first_.solve((b.w - times<N>(across_, u)).eval()), u};
   }
 
  private:
-  Factor<N> first_;
-  Mat<N> across_, back_;  // ww^-1 wu, and uw
-  Factor<N> rest_;
+  SteadyFactor<N> first_;
+  Wide<N> across_, back_;  // wu, and uw ww^-1
+  Rest<N> rest_;
 };
 
 }  // namespace limpid

@@ -7,6 +7,7 @@
 
 #include "core/math/pair.h"
 #include "core/math/triangular.h"
+#include "core/math/wide.h"
 
 namespace limpid {
 
@@ -26,6 +27,20 @@ Mat3Of<S> inverse_symmetric(const Mat3Of<S>& A) {
   return inverse;
 }
 
+// Each column of B in the place where `solve` works, whose rows from n on are zero.
+template <int N, class B, class Solve>
+auto solve_columns(const B& b, const Solve& solve) -> typename B::PlainObject {
+  typename B::PlainObject x(b.rows(), b.cols());
+  WideVec<N> column(whole_fours(static_cast<int>(b.rows())));
+  column.template tail<4>().setZero();
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    column.head(b.rows()) = b.col(j);
+    solve(column.data());
+    x.col(j) = column.head(b.rows());
+  }
+  return x;
+}
+
 // A symmetric positive-definite matrix, whose lower triangle alone is read, made ready for several
 // right sides.
 template <int N>
@@ -33,11 +48,14 @@ class SymmetricFactor {
  public:
   SymmetricFactor() = default;
   explicit SymmetricFactor(const Mat<N>& A) { compute(A); }
-  void compute(const Mat<N>& A) {
+  void compute(const Mat<N>& A) { compute_wide(widened<N>(A)); }
+  void compute_wide(const Wide<N>& A) {
     if constexpr (N == 3) {
       factor_ = inverse_symmetric(A);
     } else {
-      factor_ = cholesky<N>(A);
+      factor_ = A;
+      over_.resize(factor_.rows(), Eigen::NoChange);
+      wide::factor<N>(factor_.cols(), factor_.data(), over_.data());
     }
   }
   template <class B>
@@ -45,17 +63,26 @@ class SymmetricFactor {
     if constexpr (N == 3) {
       return factor_ * b;
     } else {
-      typename B::PlainObject x = b;
-      for (Eigen::Index j = 0; j < x.cols(); ++j) {
-        solve_lower<N>(factor_, x.col(j).data());
-        solve_transposed<N>(factor_, x.col(j).data());
-      }
-      return x;
+      return solve_columns<N>(
+          b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
+    }
+  }
+  // L and the inverses of its blocks of four, for loops that solve in the midst of others.
+  const double* lower() const requires(N != 3) { return factor_.data(); }
+  const double* corners() const requires(N != 3) { return over_.data() + over_.rows(); }
+  // X A^-1 in the place of X.
+  void divide(Wide<N>& X) const {
+    if constexpr (N == 3) {
+      X *= factor_;
+    } else {
+      wide::divide<N>(X.cols(), factor_.data(), over_.data(), X.data());
     }
   }
 
  private:
-  Mat<N> factor_;  // L, or the inverse
+  struct Nothing {};
+  Wide<N> factor_;                                         // L, or the inverse
+  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // L's
 };
 
 // A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
@@ -64,16 +91,66 @@ auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
   return SymmetricFactor<N>(A).solve(b);
 }
 
+// A matrix whose symmetric part is positive definite, as those of inertia over time are, turning
+// and damped: it has its factors without its rows being exchanged.
+template <int N>
+class SteadyFactor {
+ public:
+  SteadyFactor() = default;
+  explicit SteadyFactor(const Wide<N>& A) { compute(A); }
+  // A: a wide matrix, or an expression of them.
+  template <class A>
+  void compute(const A& a) {
+    if constexpr (N == 3) {
+      lower_ = a.inverse();
+    } else {
+      lower_ = a;
+      upper_.resize(lower_.rows(), lower_.cols());
+      over_.resize(lower_.rows(), Eigen::NoChange);
+      wide::turn<N>(lower_.cols(), lower_.data(), upper_.data());
+      wide::factor_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data());
+    }
+  }
+  template <class B>
+  auto solve(const B& b) const -> typename B::PlainObject {
+    if constexpr (N == 3) {
+      return lower_ * b;
+    } else {
+      return solve_columns<N>(b, [&](double* x) {
+        wide::solve_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data(), x);
+      });
+    }
+  }
+  // X A^-1 in the place of X.
+  void divide(Wide<N>& X) const {
+    if constexpr (N == 3) {
+      X *= lower_;
+    } else {
+      wide::divide_halves<N>(X.cols(), lower_.data(), upper_.data(), over_.data(), X.data());
+    }
+  }
+
+ private:
+  struct Nothing {};
+  Wide<N> lower_;                                                // L, or the inverse
+  std::conditional_t<N == 3, Nothing, Wide<N>> upper_;           // U^T
+  std::conditional_t<N == 3, Nothing, Diagonal<N, true>> over_;  // of U^T; blocks of both
+};
+
 // A regular matrix made ready for several right sides.
 template <int N>
 class Factor {
  public:
   Factor() = default;
-  explicit Factor(const Mat<N>& A) : factor_(A) {
+  explicit Factor(const Mat<N>& A) { compute(A); }
+  // A: a matrix or a wide one.
+  template <class A>
+  void compute(const A& a) {
     if constexpr (N == 3) {
-      factor_ = A.inverse();
+      factor_ = a.inverse();
     } else {
-      eliminate_in<N>(A.rows(), factor_.data(), rows_.data());
+      factor_ = a.topRows(a.cols());
+      eliminate_in<N>(factor_.rows(), factor_.data(), rows_.data());
     }
   }
   template <class B>

@@ -1,39 +1,12 @@
 #include "core/math/triangular.h"
 
-// Sanitizers cannot do with functions that are chosen while the program is loaded. No clone may
-// multiply and add in one: recordings are to be the same on all machines.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LIMPID_WIDE [[gnu::target_clones("avx2", "default")]]
-#else
-#define LIMPID_WIDE
-#endif
+#include "core/math/widest.h"
 
 namespace limpid {
 
 template <>
 LIMPID_WIDE void factor_in<kAnyDof>(Eigen::Index n, double* L) {
   factor_in<kByFours>(n, L);
-}
-
-template <>
-LIMPID_WIDE void rate_in<kAnyDof>(Eigen::Index n, const double* L, double* D) {
-  rate_in<kByFours>(n, L, D);
-}
-
-template <>
-LIMPID_WIDE void skew_in<kAnyDof>(Eigen::Index n, const double* L, const double* Ldot, double* S) {
-  skew_in<kByFours>(n, L, Ldot, S);
-}
-
-template <>
-LIMPID_WIDE void solve_lower_in<kAnyDof>(Eigen::Index n, const double* L, double* x) {
-  solve_lower_in<kByFours>(n, L, x);
-}
-
-template <>
-LIMPID_WIDE void solve_transposed_in<kAnyDof>(Eigen::Index n, const double* L, double* x) {
-  solve_transposed_in<kByFours>(n, L, x);
 }
 
 template <>

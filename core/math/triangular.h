@@ -107,50 +107,20 @@ template <int N>
   }
 }
 
-// x becomes L^-1 x. The first columns are worked off one by one until the rest goes by fours.
+// x becomes L^-1 x.
 template <int N>
 [[gnu::always_inline]] inline void solve_lower_in(Eigen::Index n, const double* L, double* x) {
-  const Eigen::Index odd = N == kByFours ? n % 4 : n;
-  for (Eigen::Index j = 0; j < odd; ++j) {
+  for (Eigen::Index j = 0; j < n; ++j) {
     const double* const Lj = L + j * n;
     const double at_j = x[j] *= 1 / Lj[j];
-    for (Eigen::Index i = j + 1; i < odd; ++i) x[i] -= Lj[i] * at_j;
-    for (Eigen::Index i = odd; i < n; i += 4) four(x + i) -= four(Lj + i) * at_j;
-  }
-  for (Eigen::Index j = odd; j < n; j += 4) {
-    const double *a = L + j * n, *b = a + n, *c = b + n, *d = c + n;
-    const double xa = x[j] * (1 / a[j]);
-    const double xb = (x[j + 1] - a[j + 1] * xa) * (1 / b[j + 1]);
-    const double xc = (x[j + 2] - a[j + 2] * xa - b[j + 2] * xb) * (1 / c[j + 2]);
-    const double xd = (x[j + 3] - a[j + 3] * xa - b[j + 3] * xb - c[j + 3] * xc) * (1 / d[j + 3]);
-    four(x + j) = Four{xa, xb, xc, xd};
-    take_four({a, b, c, d}, {xa, xb, xc, xd}, j + 4, n, x);
+    for (Eigen::Index i = j + 1; i < n; ++i) x[i] -= Lj[i] * at_j;
   }
 }
 
 // x becomes L^-T x.
 template <int N>
 [[gnu::always_inline]] inline void solve_transposed_in(Eigen::Index n, const double* L, double* x) {
-  const Eigen::Index odd = N == kByFours ? n % 4 : n;
-  for (Eigen::Index j = n - 4; j >= odd; j -= 4) {
-    const double *a = L + j * n, *b = a + n, *c = b + n, *d = c + n;
-    Four sa{}, sb{}, sc{}, sd{};
-    for (Eigen::Index i = j + 4; i < n; i += 4) {
-      sa += four(a + i) * four(x + i);
-      sb += four(b + i) * four(x + i);
-      sc += four(c + i) * four(x + i);
-      sd += four(d + i) * four(x + i);
-    }
-    const auto rest = [&](Eigen::Index i, const Four& s) {
-      return x[i] - ((s[0] + s[1]) + (s[2] + s[3]));
-    };
-    const double xd = rest(j + 3, sd) * (1 / d[j + 3]);
-    const double xc = (rest(j + 2, sc) - c[j + 3] * xd) * (1 / c[j + 2]);
-    const double xb = (rest(j + 1, sb) - b[j + 2] * xc - b[j + 3] * xd) * (1 / b[j + 1]);
-    const double xa = (rest(j, sa) - a[j + 1] * xb - a[j + 2] * xc - a[j + 3] * xd) * (1 / a[j]);
-    four(x + j) = Four{xa, xb, xc, xd};
-  }
-  for (Eigen::Index j = odd; j-- > 0;) {
+  for (Eigen::Index j = n; j-- > 0;) {
     const double* const Lj = L + j * n;
     double rest = x[j];
     for (Eigen::Index i = j + 1; i < n; ++i) rest -= Lj[i] * x[i];
@@ -225,14 +195,6 @@ template <int N>
 
 template <>
 void factor_in<kAnyDof>(Eigen::Index n, double* L);
-template <>
-void rate_in<kAnyDof>(Eigen::Index n, const double* L, double* D);
-template <>
-void skew_in<kAnyDof>(Eigen::Index n, const double* L, const double* Ldot, double* S);
-template <>
-void solve_lower_in<kAnyDof>(Eigen::Index n, const double* L, double* x);
-template <>
-void solve_transposed_in<kAnyDof>(Eigen::Index n, const double* L, double* x);
 template <>
 void eliminate_in<kAnyDof>(Eigen::Index n, double* A, int* rows);
 template <>

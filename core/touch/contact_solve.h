@@ -11,18 +11,31 @@
 
 namespace limpid {
 
-// How all that moves answers to a torque f2 of the contacts on the proxy.
+// How all that moves answers to torques, and to a torque f2 of the contacts on the proxy. Unknown
+// are the device's motion w and how the proxy moves beside it, u - w.
 template <int N>
 struct ContactAnswer {
+  ContactAnswer() = default;
+  // Of these blocks.
+  template <class... Blocks>
+  ContactAnswer(double device, const Wide<N>& proxy, const Blocks&... blocks)
+      : system(blocks...), on_device(device), on_proxy(proxy) {}
+
   CoupledSystem<N> system;
-  Mat<N> on_device, on_proxy;                   // of f2, what reaches each side [-]
+  double on_device = 0;                         // of f2, what reaches the first rows
+  Wide<N> on_proxy;                             // and the second ones [-]
   const SymmetricFactor<N>* inertia = nullptr;  // of what a wall finds heavy
   double damping = 0;                           // see wall_damping() [-]
   double jump = 0;          // of a joint's velocity when its encoder makes a step [rad/s]
   double most_damping = 0;  // that a wall may have, as a part of its mass a tick, m_n/T [-]
 
+  Motion<N> solve(const Motion<N>& b) const {
+    Motion<N> m = system.solve(b);
+    m.u += m.w;
+    return m;
+  }
   Motion<N> respond(const Vec<N>& f2) const {
-    return system.solve({on_device * f2, on_proxy * f2});
+    return solve({on_device * f2, times<N>(on_proxy, f2)});
   }
 };
 

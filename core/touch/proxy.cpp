@@ -21,7 +21,7 @@ void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
   tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
   behind_ = false;
   catch_up();
-  nu_ = L_.transpose() * v;
+  nu_ = factor_.turned_times(v);
   contacts_->place(arm_, frames_, x_);
 }
 
@@ -63,18 +63,14 @@ void Proxy<N>::catch_up_beside(const Vec<N>& x, const Vec<N>& v, typename Arm<N>
   take(both, 0, M);
   take(both, 1, M_);
   M_ *= ratio_;
-  L_ = cholesky<N>(M_);
-  if (behind_) {
-    v_ = nu_;
-    solve_transposed<N>(L_, v_.data());
-  }
+  factor_.compute(M_);
+  if (behind_) v_ = factor_.solve_turned(nu_);
   behind_ = false;
   arm_.coriolis(f, bodies, paired<N>(v, v_), both);
   take(both, 0, C);
   take(both, 1, C_);
   C_ *= ratio_;
-  // Mdot = C + C^T = Ldot L^T + L Ldot^T makes S skew.
-  S_ = skew_rest<N>(C_, L_, cholesky_rate<N>(L_, C_ + C_.transpose()));
+  factor_.follow(C_);
 }
 
 template <int N>
@@ -85,9 +81,9 @@ Vec<N> Proxy<N>::v() const {
   arm_.frames(x_, f);
   arm_.inertia(f, M);
   M *= ratio_;
-  Vec<N> v = nu_;
-  solve_transposed<N>(cholesky<N>(M), v.data());
-  return v;
+  MovingFactor<N> factor;
+  factor.compute(M);
+  return factor.solve_turned(nu_);
 }
 
 template <int N>
@@ -110,9 +106,9 @@ void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
   f_ = f;
   // The torque as it acted, from the momentum it made: the balance then holds to round-off.
   const Vec<N> nu_before = nu_;
-  nu_ = 2 * (L_.transpose() * vbar_) - nu_before;
-  const Vec<N> impulse = L_ * (nu_ - nu_before) / T;
-  tau_ = impulse + S_ * vbar_ - f_;
+  nu_ = 2 * factor_.turned_times(vbar_) - nu_before;
+  const Vec<N> impulse = factor_.times(nu_ - nu_before) / T;
+  tau_ = impulse + times<N>(factor_.S(), vbar_) - f_;
   x_ += T * vbar_;
   behind_ = true;
 }
@@ -123,7 +119,7 @@ template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
   // (2/T M + S + damping + share K T/2) vbar = 2/T L nu + constant + share f2,
   // f2 - K T/2 vbar the contacts' force.
-  Mat<N> A = impedance(T);
+  Mat<N> A = narrowed<N>(impedance(T));
   A.diagonal().array() += drive.damping;
   Vec<N> b = momentum(T) + drive.constant;
   contacts_->add_to(A, b, T, drive.share, M_);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/dynamics/arm.h"
+#include "core/math/moving_factor.h"
 #include "core/touch/contacts.h"
 
 namespace limpid {
@@ -48,8 +49,13 @@ class Proxy {
   // The same in two halves, for laws that solve device and proxy together. What is near is found;
   void look(double T) { contacts_->find(arm_, frames_, x_, T); }
   // then (2/T M + S) vbar - 2/T L nu = tau + f, for whatever tau is.
-  Mat<N> impedance(double T) const { return 2 / T * M_ + S_; }
-  Vec<N> momentum(double T) const { return 2 / T * (L_ * nu_); }
+  Wide<N> impedance(double T) const {
+    Wide<N> Z = widened<N>(M_);
+    Z *= 2 / T;
+    Z += factor_.S();
+    return Z;
+  }
+  Vec<N> momentum(double T) const { return 2 / T * factor_.times(nu_); }
   // Over the tick it moved like this, under these contact forces [rad/s, N m].
   void step(double T, const Vec<N>& vbar, const Vec<N>& f);
   Contacts<N>& contacts() { return *contacts_; }
@@ -82,7 +88,8 @@ class Proxy {
   typename Arm<N>::Frames frames_;
   bool behind_ = false;  // of what catch_up() brings
   Vec<N> x_, v_, nu_;
-  Mat<N> M_, C_, L_, S_;
+  Mat<N> M_, C_;
+  MovingFactor<N> factor_;  // L, S
   Vec<N> tau_, f_, vbar_;
 };
 

@@ -24,8 +24,11 @@ COUNTED = {  # the line of `limpid bench`, and the function that its instruction
     "tick/3/proposed": "limpid::Tick<3>::run(*",
     "tick/3/predictive": "limpid::Tick<3>::run(*",
     "tick/7/proposed": "limpid::Tick<7>::run(*",
+    "tick/7/predictive": "limpid::Tick<7>::run(*",
     "tick/30/proposed": "limpid::Tick<-1>::run(*",
+    "tick/30/predictive": "limpid::Tick<-1>::run(*",
     "arm/3": "limpid::VirtualArm<3>::live(*",
+    "arm/7": "limpid::VirtualArm<7>::live(*",
 }
 
 

@@ -12,7 +12,7 @@ namespace {
 
 using test::Random;
 
-template <int N>
+template <int N, template <int> class Rest = SteadyFactor>
 void expect_the_dense_solution(int n, unsigned seed) {
   Random random(seed);
   for (int round = 0; round < 100; ++round) {
@@ -24,7 +24,9 @@ void expect_the_dense_solution(int n, unsigned seed) {
     A << ww, wu, uw, uu;
     Eigen::VectorXd b = random.vector(2 * n, 3);
     const Eigen::VectorXd wanted = A.fullPivLu().solve(b);
-    const Motion<N> got = CoupledSystem<N>(ww, wu, uw, uu).solve({b.head(n), b.tail(n)});
+    const CoupledSystem<N, Rest> system(widened<N>(ww), widened<N>(wu), widened<N>(uw),
+                                        widened<N>(uu));
+    const Motion<N> got = system.solve({b.head(n), b.tail(n)});
     const double scale = 1e-12 * wanted.norm();
     ASSERT_LT((got.w - wanted.head(n)).norm(), scale);
     ASSERT_LT((got.u - wanted.tail(n)).norm(), scale);
@@ -33,7 +35,12 @@ void expect_the_dense_solution(int n, unsigned seed) {
 
 TEST(CoupledSystem, HasTheSolutionOfTheWhole) {
   expect_the_dense_solution<3>(3, 51);
-  for (const int n : {1, 2, 3, 7, 32}) expect_the_dense_solution<kAnyDof>(n, 52);
+  expect_the_dense_solution<7>(7, 51);
+  expect_the_dense_solution<7, Factor>(7, 51);
+  for (const int n : {1, 2, 3, 7, 32}) {
+    expect_the_dense_solution<kAnyDof>(n, 52);
+    expect_the_dense_solution<kAnyDof, Factor>(n, 52);
+  }
 }
 
 TEST(CoupledSystem, MotionsAddUp) {
@@ -56,11 +63,17 @@ void expect_eigens_solution(int n) {
     ASSERT_LT((factor.solve(b) - A.fullPivLu().solve(b)).norm(), 1e-11 * b.norm());
     ASSERT_LT((factor.solve(B) - A.fullPivLu().solve(B)).norm(), 1e-11 * B.norm());
     ASSERT_LT((A * factor.solve(b) - b).norm(), 1e-13 * b.norm());
+    const SteadyFactor<N> steady(widened<N>(A));
+    ASSERT_LT((A * steady.solve(b) - b).norm(), 1e-13 * b.norm());
+    Wide<N> over = widened<N>(B);
+    steady.divide(over);
+    ASSERT_LT((narrowed<N>(over) * A - B).norm(), 1e-13 * B.norm());
   }
 }
 
 TEST(Factor, SolvesAsEigenDoes) {
   expect_eigens_solution<3>(3);
+  expect_eigens_solution<7>(7);
   for (const int n : {1, 2, 3, 7, 32}) expect_eigens_solution<kAnyDof>(n);
 }
 

@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/math/moving_factor.h"
+#include "core/math/moving_factor.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -33,6 +35,10 @@ TEST(Solve, FactorsByTheLowerTriangleAlone) {
     const Vec<N> b = random.vector(n, 1);
     const Vec<N> x = SymmetricFactor<N>(A).solve(b);
     EXPECT_LT((whole * x - b).norm(), 1e-12) << n;
+    const Mat<N> X = random.matrix(n, 1);
+    Wide<N> over = widened<N>(X);
+    SymmetricFactor<N>(A).divide(over);
+    EXPECT_LT((narrowed<N>(over) * whole - X).norm(), 1e-12 * X.norm()) << n;
     Vec<N> y = b, z = b;
     solve_lower<N>(L, y.data());
     solve_transposed<N>(L, z.data());
@@ -54,6 +60,34 @@ TEST(Solve, MovesAFactorAsItsMatrixMoves) {
     const Mat<N> skew = skew_rest<N>(half, L, Ldot), wanted = half - L * Ldot.transpose();
     EXPECT_LT((skew - wanted).norm(), 1e-11 * half.norm()) << n;
     EXPECT_EQ((skew + skew.transpose()).norm(), 0) << n;
+    MovingFactor<N> factor;
+    factor.compute(A);
+    factor.follow(half);
+    EXPECT_LT((narrowed<N>(factor.S()) - wanted).norm(), 1e-11 * half.norm()) << n;
+    const Vec<N> x = random.vector(n, 1);
+    EXPECT_LT((factor.times(x) - L * x).norm(), 1e-12) << n;
+    EXPECT_LT((factor.turned_times(x) - L.transpose() * x).norm(), 1e-12) << n;
+    EXPECT_LT((factor.turned_times(factor.solve_turned(x)) - x).norm(), 1e-12) << n;
+  });
+}
+
+TEST(Solve, MultipliesWideMatricesAsOthers) {
+  Random random(34);
+  for_sizes([&](auto N, int n) {
+    const Mat<N> A = random.matrix(n, 1), B = random.matrix(n, 1), C = random.matrix(n, 1);
+    const Wide<N> a = widened<N>(A), b = widened<N>(B);
+    Wide<N> product = widened<N>(C);
+    take_product<N>(a, b, product);
+    const Wide<N> turned_product = minus_product_turned<N>(a, b);
+    EXPECT_LT((narrowed<N>(product) - (C - A * B)).norm(), 1e-13) << n;
+    EXPECT_LT((narrowed<N>(turned_product) + A * B.transpose()).norm(), 1e-13) << n;
+    EXPECT_EQ((narrowed<N>(turned<N>(a)) - A.transpose()).norm(), 0) << n;
+    const Vec<N> x = random.vector(n, 1);
+    EXPECT_LT((times<N>(a, x) - A * x).norm(), 1e-13) << n;
+    EXPECT_LT((turned_times<N>(a, x) - A.transpose() * x).norm(), 1e-13) << n;
+    for (const Wide<N>& wide : {product, turned_product, turned<N>(a)}) {
+      EXPECT_EQ(wide.bottomRows(wide.rows() - n).norm(), 0) << n;
+    }
   });
 }
 

@@ -28,9 +28,12 @@ struct Answer {
     A << ww, -c, -c, uu;
     const Mat3 phi = 1e-4 * random.matrix(3, 1);
     const double governor = random.between(0.7, 1);
-    contact.system = CoupledSystem<3>(ww, -c, -c, uu);
-    contact.on_device = governor * Mat3::Identity() - phi;
+    // Both sides added up, and the proxy's, of the device's motion and the proxy's beside it.
+    const Mat3 proxy_w = uu - c;
+    contact.system = CoupledSystem<3>(ww - c + proxy_w, proxy_w, proxy_w, uu);
+    contact.on_device = 1;
     contact.on_proxy = phi + (1 - governor) * Mat3::Identity();
+    on_device = governor * Mat3::Identity() - phi;
     contact.inertia = &factor;
     contact.damping = 0.2;
     contact.most_damping = 0.34;
@@ -42,13 +45,13 @@ struct Answer {
   // The proxy's part of what a torque moves.
   Vec3 moved(const Vec3& torque) const {
     Eigen::VectorXd b(6);
-    b << contact.on_device * torque, contact.on_proxy * torque;
+    b << on_device * torque, contact.on_proxy * torque;
     return motion(b).u;
   }
   Answer(const Answer&) = delete;
   Answer& operator=(const Answer&) = delete;
 
-  Mat3 M;
+  Mat3 M, on_device;
   SymmetricFactor<3> factor{M};
   Eigen::Matrix<double, 6, 6> A;
   ContactAnswer<3> contact;
@@ -242,7 +245,7 @@ TEST(ContactSolve, MovesAllByTheSumOfItsForcesAndOfTheirPowers) {
     for (int k = 0; k < 10; ++k) {
       bench.tick(press(scene, random));
       Eigen::VectorXd b = bench.base;
-      b.head<3>() += bench.answer.contact.on_device * bench.f2;
+      b.head<3>() += bench.answer.on_device * bench.f2;
       b.tail<3>() += bench.answer.contact.on_proxy * bench.f2;
       const Motion<3> wanted = bench.answer.motion(b);
       ASSERT_LT((bench.motion.w - wanted.w).norm(), 1e-9 * (1 + wanted.w.norm()));
@@ -325,7 +328,7 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
     const Material m{.stiffness = 1000, .friction_static = 0.6, .friction_kinetic = kinetic};
     scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // held by 2 N
     Bench bench(scene, 96);
-    bench.answer.contact.on_device.setIdentity();
+    bench.answer.on_device.setIdentity();
     bench.answer.contact.on_proxy.setZero();
     const auto friction = [&](double pull) {
       bench.tick(Vec3(pull, 0, -2));
