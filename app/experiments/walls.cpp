@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/experiments/experiment.h"
+#include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "app/run/wall_tap.h"
 #include "core/random/random.h"
@@ -58,8 +59,9 @@ AnyArm any_arm(int i) {
   return any;
 }
 
-Parameters wall_parameters(double step) {
-  Parameters p;
+// With the gains that the program fits to the arm.
+Parameters wall_parameters(const ArmDescription& arm, double step) {
+  Parameters p = fitted(arm);
   p.kind = CouplingKind::predictive;
   p.encoder_step = step;
   return p;
@@ -84,7 +86,7 @@ struct AnyTap {
 };
 
 AnyTap any_tap(const AnyArm& any, double step, const WallsPlan::Grip& grip, double wall) {
-  Parameters p = wall_parameters(step);
+  Parameters p = wall_parameters(any.arm, step);
   p.hand_stiffness = grip.stiffness;
   p.hand_damping = grip.damping;
   AnyTap tap;
@@ -110,7 +112,7 @@ std::vector<Felts> tap_all(Laboratory& lab) {
     for (int i = 0; i < WallsPlan::kArms; ++i) {
       const AnyArm any = any_arm(i);
       WallFelt& felt = felts.back()[static_cast<std::size_t>(i)];
-      const TipLimits limits = tip_limits(any.arm, any.x, wall_parameters(step), {});
+      const TipLimits limits = tip_limits(any.arm, any.x, wall_parameters(any.arm, step), {});
       felt.mass = any.mass;
       felt.named = limits.walls[static_cast<std::size_t>(CouplingKind::predictive)].stiffness;
       if (!felt.has_wall()) continue;  // counted: see kNamed

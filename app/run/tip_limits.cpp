@@ -78,7 +78,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             0};
   l.w_f = p.alpha / lever2 / l.felt.m;
   l.delay_most = most_delay(p, description.delay, description.delay.has_value());
-  l.added = added_mass(p.eta, {p.delay, l.delay_most}, p.tick);
+  l.added = added_mass(p.eta, l.delay_most, p.tick);
   return l;
 }
 
@@ -92,7 +92,7 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
 }
 
 std::string late_text(const TipLimits& l, const Parameters& p) {
-  if (p.eta <= 1 || l.added.edge >= added_mass(p.eta, {0, 0}, p.tick).edge) return {};
+  if (p.eta <= 1 || l.added.edge >= added_mass(p.eta, 0, p.tick).edge) return {};
   return fmt::format("{:.3g} up to {:.2g} Hz, as the torque may be {:.3g} ms late", l.added.eta,
                      l.added.edge / (2 * std::numbers::pi), 1e3 * p.tick * l.delay_most);
 }
@@ -103,7 +103,8 @@ FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind
     case CouplingKind::standard: Z = l.felt.standard(f); break;
     case CouplingKind::proposed: Z = l.felt.proposed(f, p.eta, l.w_f); break;
     case CouplingKind::predictive:
-      Z = l.felt.predictive(f, l.added, p.damping_share(p.eta), p.band);
+      Z = l.felt.predictive(f, l.added, p.damping_share(p.eta), p.band,
+                            {l.delay, std::max(0.0, l.delay - p.delay * p.tick)});
       break;
   }
   return {Z.imag() / (2 * std::numbers::pi * f), Z.real()};

@@ -4,16 +4,12 @@
 
 namespace limpid {
 
-AddedMass added_mass(double eta, const LateBy& late, double T) {
+AddedMass added_mass(double eta, int late, double T) {
   using N = InertiaShape;
   if (!(eta > 1)) return {eta, N::kFastest};
-  constexpr double kOwn = 0.9, kBounded = 0.35, kKnown = 1.2;  // of beta t [-]
-  double most = kOwn / T;                                      // of beta [rad/s]
-  if (late.most > late.known) {
-    most = std::min(most, kBounded / (late.most * T));
-  } else if (late.known > 0) {
-    most = std::min(most, kKnown / (late.known * late.known * T));
-  }
+  constexpr double kOwn = 0.9, kLate = 0.35;  // of beta t [-]
+  double most = kOwn / T;                     // of beta [rad/s]
+  if (late > 0) most = std::min(most, kLate / (late * T));
   const double edge = std::min(N::kFastest, most / (2 * N::kZeta * (eta - 1)));
   if (edge >= N::kSlowest) return {eta, edge};
   return {1 + most / (2 * N::kZeta * N::kSlowest), N::kSlowest};

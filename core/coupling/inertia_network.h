@@ -13,15 +13,9 @@ namespace limpid {
 // optimisation; r1 is what the proof needs. And the added mass on its spring and damper.
 struct InertiaShape {
   static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
-  static constexpr double kZeta = 0.7;                             // of the added mass
-  static constexpr double kFastest = 2 * std::numbers::pi * 25;    // it goes along [rad/s]
+  static constexpr double kZeta = 0.7;                           // of the added mass
+  static constexpr double kFastest = 2 * std::numbers::pi * 25;  // it goes along [rad/s]
   static constexpr double kSlowest = 2 * std::numbers::pi * 2;
-};
-
-// How late a motor's torque may be, beyond the tick [ticks].
-struct LateBy {
-  int known = 0;  // that is reckoned with
-  int most = 0;   // that is possible; `known` where there is no doubt
 };
 
 // What is added to the inertia for eta above 1, and how fast it goes along.
@@ -33,10 +27,10 @@ struct AddedMass {
 // Above w_g the added mass is a damper of beta = 2 zeta (eta - 1) w_g for every kg m^2. A torque
 // that is late by t turns a damper into a spring that pushes on at pi/2: with the tick's own
 // t = T/2 and more the device would swing at w_1 = pi/(2 t) from beta = w_1 on. So beta t is held
-// below what was found stable with grips of up to 3000 N/m: 0.9 of the tick itself, 0.35 of a delay
-// that is only bounded, and 1.2 T/t of one that is known. What would leave less than kSlowest
-// leaves less of eta.
-AddedMass added_mass(double eta, const LateBy& late, double T);
+// below what was found stable with grips of up to 3000 N/m: 0.9 of the tick itself, 0.35 of a
+// delay. What would leave less than kSlowest leaves less of eta. late: the most that the delay
+// beyond the tick may be [ticks].
+AddedMass added_mass(double eta, int late, double T);
 
 // What a network adds to what is felt of an inertia of 1 kg m^2, without ticks: torque over
 // velocity at w [rad/s]. `band`: its edge below eta 1 [Hz].
@@ -93,6 +87,12 @@ class InertiaNetwork : InertiaShape {
       force_ = -R_ * (w2_ * s_ - gamma * (g_ + h / 2 * s_));
       K_ = gamma * (R_ * R_.transpose());
     }
+  }
+
+  // Damps by the velocity v that the device has [rad/s], not by the one of the coming tick.
+  void damp_now(const Vec<N>& v) {
+    force_ -= K_ * v;
+    K_.setZero();
   }
 
   // It was meant to take so much more energy [J] than it did, as a motor was at its limit: that is

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -70,7 +69,7 @@ class Ledger {
   void settle(double E0, double stored) {
     E0_ = E0;
     if (fresh_) {
-      H_ = std::isfinite(left_) ? std::min(kCap * E0, left_) : E0;
+      H_ = std::min(E0, left_);
       E_.fill(H_ + stored);
       fresh_ = false;
       return;
@@ -89,7 +88,8 @@ class Ledger {
     follow((H_ / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
   }
 
-  double reserve() const { return H_; }        // [J]
+  // [J]; before its first tick what it may start with, infinite if it never had one.
+  double reserve() const { return fresh_ ? left_ : H_; }
   double contact() const { return contact_; }  // g_f: share of f2 that reaches the hand, 0 to 1
   // g_b: share of the damping cancelled and of the inertia added, 0 to 1.
   double damping() const { return damping_; }

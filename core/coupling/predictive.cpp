@@ -219,7 +219,9 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
-  network_.set(added_mass(eta, {p.delay, in.delay_most}, T), d.M_L, ledger_.damping(), T, p.band);
+  network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
+  // What the prediction foretells of where the torque meets the device is no later than the rest.
+  if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
   solve.authority *= ledger_.torque();
   solve.c = c.b_vc + c.k_vc * T / 2;

@@ -26,9 +26,13 @@ std::complex<double> FeltJoint::standard(double f) const {
 }
 
 std::complex<double> FeltJoint::predictive(double f, const AddedMass& added, double damping,
-                                           double band) const {
+                                           double band, const LateMotors& late) const {
   const std::complex<double> s(0, omega(f));
-  return m * (s + network_impedance(added, band, omega(f))) + damping * (b_d + b_v) + K / s;
+  const std::complex<double> networks =
+      network_impedance(added, band, omega(f)) * std::exp(-s * late.networks);
+  const std::complex<double> by_motors =
+      (damping * (b_d + b_v) - b_d) * std::exp(-s * late.damping);
+  return m * (s + networks) + b_d + by_motors + K / s;
 }
 
 std::complex<double> FeltJoint::ideal(double f, double eta) const {

@@ -7,6 +7,11 @@
 
 namespace limpid {
 
+// How late comes what motors give for the inertia networks and for damping [s].
+struct LateMotors {
+  double networks = 0, damping = 0;
+};
+
 // A joint of the locked system (23) as the loop in ticks of T makes it; of a tip along a line the
 // same in kg, N s/m and N/m.
 //
@@ -28,9 +33,9 @@ struct FeltJoint {
   // Standard coupling, (1)-(2): the contact behind spring and damper; the proxy weighs nothing.
   std::complex<double> standard(double f) const;
   // Predictive coupling: the share `damping` of b_d + b_v stays felt, networks shape the inertia up
-  // to `band` [Hz] or to the edge of what is added, the contact acts as it is.
-  std::complex<double> predictive(double f, const AddedMass& added, double damping,
-                                  double band) const;
+  // to `band` [Hz] or to the edge of what is added, the contact acts as it is. 
+  std::complex<double> predictive(double f, const AddedMass& added, double damping, double band,
+                                  const LateMotors& late = {}) const;
   // Without any lag: eta (m s + b) + K/s.
   std::complex<double> ideal(double f, double eta) const;
   double b() const { return b_d + b_v + k_vc * T / 2; }

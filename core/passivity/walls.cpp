@@ -53,7 +53,7 @@ constexpr double kTriedTick = 0.001;                                         // 
 // Of m_n over the square of a time [-]: of a tick, found with 24 arms, failing from 3 on; of a
 // delay that is not reckoned with and of one that is, found with the built-in arm.
 constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2;
-constexpr double kSofter = 1.0 / 20;  // part of a wall that the proxy's inertia may take off it
+constexpr double kSofter = 1.0 / 25;  // part of a wall that the proxy's inertia may take off it
 // By how much a step of the encoder may change the tip's velocity through the wall [m/s]: of arms
 // below 20 g, which are held by the damping of the hand, and of heavier ones.
 constexpr double kLight = 0.02, kLightShaken = 1e-2, kShaken = 3e-4;

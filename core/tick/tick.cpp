@@ -218,7 +218,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::solved, static_cast<double>(law.solved));
   set(Column::unsettled, static_cast<double>(law.unsettled));
   const double reserve = coupling_.reserve();
-  set(Column::energy_ledger, std::isfinite(reserve) ? reserve : p.energy);
+  set(Column::energy_ledger, std::isfinite(reserve) ? reserve : 0);
   set(Column::energy_port, books_.port);
   set(Column::energy_total, books_.total);
   set(Column::energy_commanded, books_.commanded);

@@ -241,7 +241,7 @@ RigStart start_of(const RowLayout& layout, std::span<const double> row) {
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), layout.width(c)));
   };
   const auto target = layout.in(row, Column::hand_target);
-  // Recordings made before all laws kept the reserve have none with a law that does not use it.
+  // 0 where no law had kept account until then.
   const double reserve = layout.in(row, Column::energy_ledger)[0];
   return {vector(Column::device_position),
           vector(Column::device_velocity),

@@ -142,7 +142,7 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
     const Vec<kAnyDof> x = x1, v = v1, f1 = r.f1, vbar = vbar2;
     const Vec<kAnyDof> b = Vector::Zero(n), limit = Vector::Constant(n, 1);
     const Arm<kAnyDof>::Frames frames{};
-    const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001, frames, b, b, limit, 1, 0.001, 0};
+    const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001, frames, b, b, limit, 1, 0.001, 0, 0};
     const Vector tau = coupling.step(CouplingKind::standard, p, in, proxy);
     const Vector on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
     EXPECT_LT((tau - on_device).norm(), 1e-13);

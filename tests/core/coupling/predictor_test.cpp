@@ -193,16 +193,18 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
 TEST(Predictor, OfLinksThatDieOutWithinATickIsExact) {
   for (const double a : {1e-6, 0.3, 1.5, 4.0, 20.0}) {  // T b / M
     const double M = 2e-4, b = a * M / T, f = 0.03, v0 = 2, x0 = 0.1;
-    const double dies = std::exp(-a), end = v0 * dies + f / b * (1 - dies);
-    const double mean = a > 1e-3 ? (v0 - f / b) * (1 - dies) / a + f / b : (v0 + end) / 2;
-    Predictor<1> predictor;
-    predictor.start(Vec<1>(x0), Vec<1>(v0), Vec<1>(f));
-    predictor.begin_at(Vec<1>(x0));
-    Jacobian<1> J = Jacobian<1>::Zero();
-    predictor.model(Mat<1>(M), Mat<1>(0.0), Vec<1>(b), J, T, 0, 1, 0, 0, true);
-    predictor.applied(Vec<1>(0.0), false);
+    const double dies = std::exp(-a), end = v0 * dies - f / b * std::expm1(-a);
+    const double mean = f / b - (v0 - f / b) * std::expm1(-a) / a;
+    Predictor<kAnyDof> predictor;
+    const auto of = [](double value) { return Vec<kAnyDof>::Constant(1, value).eval(); };
+    predictor.start(of(x0), of(v0), of(f));
+    predictor.begin_at(of(x0));
+    const Jacobian<kAnyDof> J = Jacobian<kAnyDof>::Zero(3, 1);
+    predictor.model(Mat<kAnyDof>::Constant(1, 1, M), Mat<kAnyDof>::Zero(1, 1), of(b), J, T, 0, 1, 0,
+                    0, true);
+    predictor.applied(of(0.0), false);
     EXPECT_NEAR(predictor.w()[0], mean, 1e-9 * std::abs(v0)) << a;
-    predictor.correct(Vec<1>(x0 + T * mean), T, 0, 0, false);
+    predictor.correct(of(x0 + T * mean), T, 0, 0, false);
     EXPECT_NEAR(predictor.v_now()[0], end, 1e-6 * std::abs(v0)) << a;
   }
 }

@@ -50,8 +50,8 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
       "device.damping",      "device.torque_limit", "coupling.damping",     "coupling.band",
       "predictor.preset",    "predictor.p",         "predictor.mu",         "predictor.hand_mass",
       "ledger.energy",       "hand.mass",           "device.delay",         "model.delay",
-      "model.gravity",       "device.down",         "model.friction",       "model.springs",
-      "device.gravity",      "device.springs"};
+      "model.delay_most",    "model.gravity",       "device.down",          "model.friction",
+      "model.springs",       "device.gravity",      "device.springs"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;

@@ -44,6 +44,7 @@ TEST_P(LedgerOf, TheTickIsThatOfTheTorqueThatActedAndOfTheDampingThatIsSure) {
   p.kind = CouplingKind::predictive;
   p.damping = kDamping;
   p.delay = delay;
+  p.delay_most = delay;
   p.inertia_ratio = 0.05;
   Tick<3> tick(arm, Scene{});
   tick.start(p, Start<3>::at_rest(led(0, p.tick)));
