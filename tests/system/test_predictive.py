@@ -211,7 +211,7 @@ class Predictive(SystemTest):
         for eta, delays in (("3", ["device.delay=2"]), ("3", ["device.delay=2", "model.delay=2"]),
                             ("0.3", ["device.delay=2", "model.delay=1"]),
                             ("2", ["device.delay=1", "model.delay_most=3.5"]),
-                            ("20", ["model.delay_most=20"])):  # fmt: skip
+                            ("20", ["model.delay_most=20"]), ("8", [])):  # fmt: skip
             for encoder in ([], _FINE):
                 with self.subTest(eta=eta, delays=delays, encoder=encoder):
                     s = self.recorded(*self.tap_smooth, "--eta", eta, *_set(*delays), *encoder)
@@ -224,6 +224,7 @@ class Predictive(SystemTest):
         for weight, stiffness, step, memory in (
             (8, 600, "2e-5", (0.69, 0.7)), (8, 600, "1e-4", (0.85, 0.85)),
             (8, 2000, "5e-4", (0.85, 0.85)), (2.5, 2000, "1e-4", (0.7, 0.8)),
+            (1.8, 600, "1e-4", (0.3, 0.7)),
         ):  # fmt: skip
             with self.subTest(weight=weight, stiffness=stiffness, step=step):
                 files = arms.write_arm(self.directory, 2, weight)
@@ -245,6 +246,15 @@ class Predictive(SystemTest):
                 self.assert_touched(s)
                 self.assert_recomputed(s, "wall force", "tau1 predictive")
                 self.assertFalse(np.allclose(self.replayed(s).prediction.ahead, 2))
+
+    def test_a_plane_that_damps_is_recomputed(self) -> None:
+        for damping in ("1.0", "50.0"):
+            with self.subTest(damping=damping):
+                scene = self.out(".toml")
+                scene.write_text(self.smooth.read_text() + f"damping = {damping}\n")
+                s = self.recorded("--scene", scene, *self.tap, "--eta", "0.6")
+                self.assert_touched(s)
+                self.assert_recomputed(s, "wall force", "tau1 predictive")
 
     def test_the_governor_of_all_torque_is_recomputed(self) -> None:
         for energy in ("1e-4", "0.002", "0.005"):

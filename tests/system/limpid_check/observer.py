@@ -18,7 +18,8 @@ def expected_input(s: Session) -> Array:
 
     With the right model and the true torque that is f1 (/hand/torque) itself. A model wrong by a
     factor e sees e (M a + C v) - tau instead of M a + C v - tau = f1, and an observer without the
-    saturation remedy takes the commanded torque for tau; what is late it takes for prompt. Held weight and springs cancel.
+    saturation remedy takes the commanded torque for tau; what is late it takes for prompt. Held weight
+    and springs cancel.
     """
     own = s.damping[:-1] * np.diff(s["/device/position"], axis=0) / s.tick
     motor = (s["/device/motor_torque"] - s["/device/compensation_torque"])[:-1]

@@ -211,9 +211,9 @@ def check_predictive(s: Session) -> list[Check]:
         *_reserve_checks(s, done.reserve, done.sure),
         Check("unchecked rows", unsure, 1, "of all: what the predictor was is not known"),
     ]
-    coarse = np.any(s.number("device.encoder_step") > 0)
     how = s["/coupling/solved"]
-    if not np.all(done.sure) and coarse and (np.any(how != 0) or np.any(done.reserve.torque_governor < 1)):
+    held_back = np.any(how != 0) or np.any(done.reserve.torque_governor < 1)
+    if not np.all(done.sure) and held_back:
         why = "encoder steps and motors at their limit or governed: the predictor is not known"
         return checks + [not_applicable("torques, wall force", why)]
     checks += _torque_checks(s, done.given, done.sure & (how == 0), "predictive")

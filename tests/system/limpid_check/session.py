@@ -178,7 +178,8 @@ class Session:
 
     @property
     def possible_delays(self) -> tuple[Array, Array]:
-        """Between command and motor of the virtual arm, the least and the most of every row (N,) [ticks]."""
+        """Between command and motor of the virtual arm, the least and the most of every row (N,)
+        [ticks]."""
         least, most = self.number("model.delay")[:, 0], self.number("model.delay_most")[:, 0]
         most = np.where(np.isnan(most), self.number("device.delay")[:, 0], np.ceil(most))
         return least.astype(int), np.clip(most, least, MOST_DELAY).astype(int)
