@@ -42,9 +42,11 @@ def _triple(values: Array) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-def _inertial(rng: np.random.Generator, mass: float, length: float) -> str:
-    """A body whose inertia has no symmetry: unequal moments, turned axes, products."""
-    moments = 2e-4 + mass * length**2 * np.array([0.3, 0.9, 1.0])
+def _inertial(rng: np.random.Generator, mass: float, length: float, weight: float) -> str:
+    """A body whose inertia has no symmetry: unequal moments, turned axes, products; all of it
+    `weight` times."""
+    moments = weight * (2e-4 + mass * length**2 * np.array([0.3, 0.9, 1.0]))
+    mass *= weight
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     tensor = turn @ np.diag(moments) @ turn.T
     names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2)}
@@ -70,8 +72,9 @@ def _joint(name: str, kind: str, parent: str, child: str, xyz: Array, rpy: Array
     )
 
 
-def arm_urdf(dof: int) -> str:
-    """A URDF chain of `dof` joints; every third link is followed by a fixed one with a mass."""
+def arm_urdf(dof: int, weight: float = 1) -> str:
+    """A URDF chain of `dof` joints; every third link is followed by a fixed one with a mass. All of
+    it can be `weight` times as heavy."""
     rng = np.random.default_rng(1000 + dof)
     length, mass = _REACH / dof, _MASS / dof
     parts = [_link("base")]
@@ -89,14 +92,14 @@ def arm_urdf(dof: int) -> str:
         parts.append(
             _joint(f"joint{i + 1}", kind, parent, link, offset, 0.2 * rng.normal(size=3), more)
         )
-        parts.append(_link(link, _inertial(rng, mass, length)))
+        parts.append(_link(link, _inertial(rng, mass, length, weight)))
         parent, offset = link, np.array([length, 0.05 * length, -0.03 * length])
         if i % 3 == 2 and i + 1 < dof:
             flange = f"flange{i + 1}"
             parts.append(
                 _joint(f"weld{i + 1}", "fixed", parent, flange, offset, [0.1, -0.2, 0.3], "")
             )
-            parts.append(_link(flange, _inertial(rng, 0.2 * mass, 0.3 * length)))
+            parts.append(_link(flange, _inertial(rng, 0.2 * mass, 0.3 * length, weight)))
             parent, offset = flange, np.zeros(3)
     parts.append(_joint("weld_tip", "fixed", parent, "tip", offset, [0.3, 0.2, -0.1], ""))
     parts.append(_link("tip"))
@@ -141,10 +144,10 @@ def _scene_toml(dof: int, tip: Array) -> str:
     )
 
 
-def write_arm(directory: Path, dof: int) -> ArmFiles:
+def write_arm(directory: Path, dof: int, weight: float = 1) -> ArmFiles:
     """Writes armN.urdf, armN.toml and armN.csv into `directory`."""
     files = ArmFiles(*(directory / f"arm{dof}{kind}" for kind in (".urdf", ".toml", ".csv")))
-    urdf = arm_urdf(dof)
+    urdf = arm_urdf(dof, weight)
     chain = parse_chain(urdf)
     time, x = _smooth_motion(chain)
     tip = tip_position(chain, x)

@@ -12,6 +12,7 @@ import numpy as np
 
 import arms
 from limpid_check.checks import verify
+from limpid_check.predictive import Replayed, replay
 from limpid_check.report import Check, table
 from limpid_check.session import Session, read_session
 from limpid_check.urdf import Array
@@ -20,6 +21,8 @@ from support import ASSETS, SystemTest, Words
 
 _FINE = ["--set", "device.encoder_step=1e-4"]
 _HEAVY = ["--set", "hand.mass=0.2", "--set", "device.torque_limit=5"]
+# An undamped hand that holds hard: with a late damper it swings up until the reserve is used up.
+_GRIP = ["hand.damping=0", "hand.stiffness=3000", "device.delay=3"]
 
 
 class WallForce(unittest.TestCase):
@@ -47,6 +50,10 @@ class WallForce(unittest.TestCase):
                 work = (force * change)[which]
                 np.testing.assert_allclose(work, (stored + b * inside * change)[which], atol=1e-12)
         self.assertTrue(np.all(force[(d < 0) & (d + a < 0)] == 0))
+
+
+def _set(*settings: str) -> list[str]:
+    return [word for setting in settings for word in ("--set", setting)]
 
 
 def _nudged(path: str, amount: float, row: float = 0.3) -> Callable[[dict[str, Array]], None]:
@@ -83,11 +90,22 @@ _COARSE_BREACHES = [
     ("motion predictive", _nudged("/device/measured_position", 1e-4)),
     ("motion predictive", _nudged("/device/motor_torque", 1e-5)),
 ]
+# The same with a delay that is not known and a reserve that runs low.
+_LATE_BREACHES = [
+    ("tau1 predictive", _nudged("/device/commanded_torque", 1e-8)),
+    ("tau2 predictive", _nudged("/proxy/torque", 1e-8)),
+    ("motion predictive", _nudged("/proxy/position", 1e-8)),
+    ("wall force", _nudged("/proxy/contact_torque", 1e-8)),
+    ("ledger", _nudged("/energy/ledger", 1e-9)),
+    ("ledger", _nudged("/device/motor_torque", 1e-6, row=0.17)),
+    ("damping governor", _nudged("/coupling/damping_governor", 1e-6)),
+    ("tau1 predictive", _nudged("/device/measured_position", 1e-8)),
+]
 # Settings that are not those of the run, and the check that must notice.
 _WRONG_SETTINGS = {
     "coupling.band": ("5.3", "5.31", "ledger"),
     "predictor.hand_mass": ("0.2", "0.201", "motion predictive"),
-    "ledger.energy": ("0.005", "0.00501", "ledger"),
+    "ledger.energy": ("0.001", "0.00101", "ledger"),
     "coupling.b_vc": ("0.001", "0.00101", "tau2 predictive"),
     "model.inertia_error": ("1.0", "1.001", "tau1 predictive"),
 }
@@ -122,7 +140,14 @@ class Predictive(SystemTest):
     def recorded(self, *options: str | Path) -> Session:
         return self.run_and_read("--coupling", "predictive", *options)
 
+    def replayed(self, s: Session) -> Replayed:
+        done = replay(s)
+        self.assertIsNotNone(done)
+        return done
+
     def assert_recomputed(self, s: Session, *names: str) -> list[Check]:
+        """A run of its own, which begins with the whole reserve."""
+        self.assertEqual(s["/energy/ledger"][0], s.number("ledger.energy")[0, 0])
         checks = verify(s)
         self.assertTrue(all(check.passed for check in checks), "\n" + table(checks))
         applying = {check.name: check.value for check in checks if check.applies}
@@ -177,11 +202,70 @@ class Predictive(SystemTest):
         settings = ["ledger.energy=1e-4", "predictor.hand_mass=0", "predictor.mu=0.3",
                     "hand.mass=0.3", "hand.stiffness=3000", "hand.damping=0",
                     "device.torque_limit=50"]  # fmt: skip
-        words = [word for setting in settings for word in ("--set", setting)]
-        s = self.recorded("--scene", scene, *self.tap, "--eta", "0.3", *words)
+        s = self.recorded("--scene", scene, *self.tap, "--eta", "0.3", *_set(*settings))
         self.assertLess(s["/coupling/governor"].min(), 0.5)
         self.assertLess(s["/coupling/damping_governor"].min(), 0.5)
         self.assert_recomputed(s, "wall force", "tau1 predictive")
+
+    def test_delays_are_recomputed_whether_they_are_known_or_not(self) -> None:
+        for eta, delays in (("3", ["device.delay=2"]), ("3", ["device.delay=2", "model.delay=2"]),
+                            ("0.3", ["device.delay=2", "model.delay=1"]),
+                            ("2", ["device.delay=1", "model.delay_most=3.5"]),
+                            ("20", ["model.delay_most=20"]), ("8", [])):  # fmt: skip
+            for encoder in ([], _FINE):
+                with self.subTest(eta=eta, delays=delays, encoder=encoder):
+                    s = self.recorded(*self.tap_smooth, "--eta", eta, *_set(*delays), *encoder)
+                    self.assert_touched(s)
+                    self.assert_recomputed(s, "wall force", "tau1 predictive")
+
+    def test_heavy_arms_with_encoder_steps_are_recomputed(self) -> None:
+        """Their predictors remember for as long as the steps ask for, but no longer than the wall
+        leaves or 0.85; and a step pushes less with the wall's damper."""
+        for weight, stiffness, step, memory in (
+            (8, 600, "2e-5", (0.69, 0.7)), (8, 600, "1e-4", (0.85, 0.85)),
+            (8, 2000, "5e-4", (0.85, 0.85)), (2.5, 2000, "1e-4", (0.7, 0.8)),
+            (1.8, 600, "1e-4", (0.3, 0.7)),
+        ):  # fmt: skip
+            with self.subTest(weight=weight, stiffness=stiffness, step=step):
+                files = arms.write_arm(self.directory, 2, weight)
+                scene = files.scene.read_text()
+                files.scene.write_text(scene.replace("stiffness = 600.0", f"stiffness = {stiffness}"))
+                s = self.recorded("--device", files.urdf, "--scene", files.scene, "--hand",
+                                  files.hand, "--duration", "1.2", "--eta", "0.5",
+                                  *_set(f"device.encoder_step={step}"))  # fmt: skip
+                self.assert_touched(s)
+                self.assert_recomputed(s, "wall force", "tau1 predictive")
+                chosen = self.replayed(s).prediction.memory[1:]
+                self.assertGreaterEqual(chosen.min(), memory[0])
+                self.assertLessEqual(chosen.max(), memory[1])
+
+    def test_arms_whose_motion_dies_within_a_tick_are_recomputed(self) -> None:
+        for eta, delays in (("1", []), ("0.5", ["device.delay=2", "model.delay=2"])):
+            with self.subTest(eta=eta, delays=delays):
+                s = self.recorded(*self.tap_smooth, "--eta", eta, *_set("device.damping=1", *delays))
+                self.assert_touched(s)
+                self.assert_recomputed(s, "wall force", "tau1 predictive")
+                self.assertFalse(np.allclose(self.replayed(s).prediction.ahead, 2))
+
+    def test_a_plane_that_damps_is_recomputed(self) -> None:
+        for damping in ("1.0", "50.0"):
+            with self.subTest(damping=damping):
+                scene = self.out(".toml")
+                scene.write_text(self.smooth.read_text() + f"damping = {damping}\n")
+                s = self.recorded("--scene", scene, *self.tap, "--eta", "0.6")
+                self.assert_touched(s)
+                self.assert_recomputed(s, "wall force", "tau1 predictive")
+
+    def test_the_governor_of_all_torque_is_recomputed(self) -> None:
+        for energy in ("1e-4", "0.002", "0.005"):
+            for encoder in ([], _FINE):
+                with self.subTest(energy=energy, encoder=encoder):
+                    settings = _set(*_GRIP, f"ledger.energy={energy}")
+                    s = self.recorded(*self.tap_smooth, "--eta", "3", *settings, *encoder)
+                    self.assert_recomputed(s, "wall force", "tau1 predictive")
+                    share = self.replayed(s).reserve.torque_governor
+                    self.assertLess(share.min(), 0.9)
+                    self.assertTrue(np.any((share > 0) & (share < 1)))
 
     def test_other_settings_are_recomputed(self) -> None:
         for name, settings in {
@@ -193,8 +277,7 @@ class Predictive(SystemTest):
             "coarse encoders": ["device.encoder_step=5e-4", "device.friction=0.005"],
         }.items():  # fmt: skip
             with self.subTest(name):
-                words = [word for setting in settings for word in ("--set", setting)]
-                s = self.recorded(*self.tap_smooth, "--eta", "0.8", *words)
+                s = self.recorded(*self.tap_smooth, "--eta", "0.8", *_set(*settings))
                 self.assert_recomputed(s, "wall force", "tau1 predictive")
 
     def assert_caught(self, name: str, path: Path) -> None:
@@ -203,13 +286,16 @@ class Predictive(SystemTest):
         self.assertTrue(any(f.startswith(name) for f in failed), f"{name}\n{table(checks)}")
 
     def test_each_breach_is_caught(self) -> None:
-        for encoder, breaches in (([], _BREACHES), (_FINE, _COARSE_BREACHES)):
-            path = self.record("--coupling", "predictive", "--eta", "0.3", *encoder, *self.tap_smooth)
+        late = ["--eta", "3", *_set(*_GRIP, "ledger.energy=1e-4")]
+        for options, breaches in ((["--eta", "0.3"], _BREACHES),
+                                  (["--eta", "0.3", *_FINE], _COARSE_BREACHES),
+                                  (late, _LATE_BREACHES)):  # fmt: skip
+            path = self.record("--coupling", "predictive", *options, *self.tap_smooth)
             with h5py.File(path, "r") as file:
                 names = {name for name, _ in _columns(file)}
                 rows = {name: file[name][()] for name in names}
             for check, change in breaches:
-                with self.subTest(check, encoder=encoder):
+                with self.subTest(check, options=" ".join(options)):
                     changed = dict(rows)
                     change(changed)
                     other = self.out()
@@ -221,9 +307,24 @@ class Predictive(SystemTest):
                     self.assert_caught(check, other)
 
     def test_wrong_settings_are_caught(self) -> None:
-        path = self.record("--coupling", "predictive", "--eta", "0.3", *self.tap_smooth)
+        path = self.record("--coupling", "predictive", "--eta", "0.3", *self.tap_smooth,
+                           *_set("ledger.energy=0.001"))  # fmt: skip
         config = read_session(path).attributes["config"]
-        for key, (right, wrong, check) in _WRONG_SETTINGS.items():
+        self.assert_wrong_settings_caught(path, config, _WRONG_SETTINGS)
+
+    def test_wrong_delays_are_caught(self) -> None:
+        delays = _set("device.delay=2", "model.delay=1", "model.delay_most=3")
+        path = self.record("--coupling", "predictive", "--eta", "3", *delays, *self.tap_smooth)
+        config = read_session(path).attributes["config"]
+        self.assert_wrong_settings_caught(path, config, {
+            "model.delay": ("1", "2", "tau1 predictive"),
+            "model.delay_most": ("3.0", "4.0", "tau1 predictive"),
+        })  # fmt: skip
+
+    def assert_wrong_settings_caught(
+        self, path: Path, config: str, settings: dict[str, tuple[str, str, str]]
+    ) -> None:
+        for key, (right, wrong, check) in settings.items():
             with self.subTest(key):
                 line = f"{key.split('.')[1]} = "
                 self.assertIn(line + right, config)

@@ -62,6 +62,7 @@ class Affine:
 class Law:
     """tau1 = tE + tL and tau2 of the sheet."""
 
+    authority: Array  # share of tau1 that leaves for the motors (N, 1)
     shared: Affine  # C_LE v_E + u_N - K_N w, of which each side gets a part
     spring: Affine  # tE
     locked: Affine  # tL
@@ -76,7 +77,7 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
     c_le = transposed(proxy.c) - transposed(p.c1 + proxy.c) @ phi
     c_el = -transposed(c_le)
     c = (b_vc + k_vc * s.tick / 2)[:, :, None] * one
-    s0 = k_vc * (p.x - s["/proxy/position"])
+    s0 = k_vc * (p.met_x - s["/proxy/position"])
     gf = r.governor[:, None, None] * one
     f1 = apply(phi_t, s["/hand/torque_estimate"])
     # v_E = w - u, v_L = (1 - phi) w + phi u
@@ -94,7 +95,7 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
         phi_t - gf,
         s0 + apply(phi_t, shared.rest) + f1,
     )
-    return Law(shared, spring, locked, tau2)
+    return Law(r.torque_governor[:, None], shared, spring, locked, tau2)
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ class Solved:
     w: Array
     u: Array
     f2: Array
-    tau1: Array
+    tau1: Array  # as it leaves for the motors
     tau2: Array
     over: Array  # (N,) bool: a motor would have to pass its limit
     on: Array  # (N,) bool: after this the next tick has limits as well, if this one has
@@ -118,29 +119,31 @@ def _system(p: Prediction, proxy: Proxy, the: Law, drive: Array, momentum: Array
     tuple[Array, Array, Array]
 ):
     """A (N, 2n, 2n), b (N, 2n) and the columns of f2 (N, 2n, n), no motor at its limit."""
-    tau1_w, tau1_u = the.spring.w + the.locked.w, the.spring.u + the.locked.u
+    share = the.authority[:, :, None]
+    tau1_w, tau1_u = share * (the.spring.w + the.locked.w), share * (the.spring.u + the.locked.u)
     a = np.block(
         [[p.d0 - tau1_w, -tau1_u],
          [-the.proxy.w, 2 / tick * proxy.m + proxy.skew - the.proxy.u]]
     )  # fmt: skip
     b = np.concatenate(
-        [drive + the.spring.rest + the.locked.rest, momentum + the.proxy.rest], axis=1
+        [drive + the.authority * (the.spring.rest + the.locked.rest), momentum + the.proxy.rest],
+        axis=1,
     )
-    h = np.concatenate([the.spring.f2, the.proxy.f2 + np.eye(drive.shape[1])], axis=1)
+    h = np.concatenate([share * the.spring.f2, the.proxy.f2 + np.eye(drive.shape[1])], axis=1)
     return a, b, h
 
 
 def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSolve) -> Solved:
     """(6) to (8) as without limits: everything a tick does, from what was before it."""
     n, limit = s.dof, s.law_limit
-    drive, momentum = p.drive(s.tick), 2 / s.tick * apply(proxy.m, s["/proxy/velocity"])
+    drive, momentum = p.drive, 2 / s.tick * apply(proxy.m, s["/proxy/velocity"])
     a, b, h = _system(p, proxy, the, drive, momentum, s.tick)
     z = np.linalg.solve(a, np.concatenate([b[:, :, None], h], axis=2))
     f2 = contact(z[:, n:, 0], z[:, n:, 1:])
     both = z[:, :, 0] + apply(z[:, :, 1:], f2)
     w, u = both[:, :n], both[:, n:]
     spring, locked = the.spring.at(w, u, f2), the.locked.at(w, u, f2)
-    tau1 = np.clip(np.clip(spring, -limit, limit) + locked, -limit, limit)
+    tau1 = the.authority * np.clip(np.clip(spring, -limit, limit) + locked, -limit, limit)
     over = np.any(np.abs(spring) > limit, axis=1)
     return Solved(w, u, f2, tau1, the.proxy.at(w, u, f2), over, 0 * over)
 
@@ -150,11 +153,11 @@ def solve_limited(s: Session, p: Prediction, the: Law, u: Array, f2: Array) -> S
     have to be those that they started from."""
     limit, none = s.law_limit, 0 * f2
     k_vc, b_vc, b_v = (s.number(f"coupling.{name}") for name in ("k_vc", "b_vc", "b_v"))
-    w = np.linalg.solve(p.d0, (p.drive(s.tick) + s["/device/commanded_torque"])[:, :, None])[:, :, 0]
+    w = np.linalg.solve(p.d0, (p.drive + s["/device/commanded_torque"])[:, :, None])[:, :, 0]
     stiffer = np.maximum(k_vc * s.tick / 2 - b_vc, 0)
     pull = np.clip(the.spring.at(w, u, f2) - stiffer * (w - u), -limit, limit)
     rest = the.proxy.at(w, u, none) + the.spring.at(w, u, none)
-    tau1 = np.clip(pull + the.locked.at(w, u, f2), -limit, limit)
-    apart = k_vc * (p.x - s["/proxy/position"] + s.tick * (w - u))
+    tau1 = the.authority * np.clip(pull + the.locked.at(w, u, f2), -limit, limit)
+    apart = k_vc * (p.met_x - s["/proxy/position"] + s.tick * (w - u))
     on = np.any((np.abs(pull) >= limit) | (np.abs(apart) > STILL_PULLED * limit), axis=1)
     return Solved(w, u, f2, tau1, rest - pull - b_v * u, 0 * on, on)

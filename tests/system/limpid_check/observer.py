@@ -18,12 +18,13 @@ def expected_input(s: Session) -> Array:
 
     With the right model and the true torque that is f1 (/hand/torque) itself. A model wrong by a
     factor e sees e (M a + C v) - tau instead of M a + C v - tau = f1, and an observer without the
-    saturation remedy takes the commanded torque for tau. Held weight and springs cancel.
+    saturation remedy takes the commanded torque for tau; what is late it takes for prompt. Held weight
+    and springs cancel.
     """
     own = s.damping[:-1] * np.diff(s["/device/position"], axis=0) / s.tick
-    motor = s.law_torque[:-1]
+    motor = (s["/device/motor_torque"] - s["/device/compensation_torque"])[:-1]
     remedy = np.array(s.settings["observer.anti_windup"], dtype=bool)[:-1, None]
-    assumed = np.where(remedy, motor, s["/device/commanded_torque"][:-1])
+    assumed = np.where(remedy, s.law_torque[:-1], s["/device/commanded_torque"][:-1])
     believed = s.number("model.inertia_error")[:-1]
     return believed * (s["/hand/torque"][:-1] + motor - own) - (assumed - own)
 

@@ -5,10 +5,10 @@ Nothing inside a law is recorded, so it runs again here: on readings, torques as
 proxy's recorded states. What comes out of a tick is then compared with what the row says.
 
 With encoder steps the predictors are now and then left alone between two steps and then corrected
-hard; what they are off by may grow from tick to tick until round-off decides what they do. So there
-each tick is recomputed from what the torques of the row before say of the active predictor. Where
+hard; what they are off by may grow from tick to tick until round-off decides what they do. Where it
+does, each tick is recomputed from what the torques of the row before say of the active predictor. Where
 they say nothing, and where the other one takes over, rows go unchecked; where motors are at their
-limit, torques are not recomputed at all.
+limit or all torque is governed, torques are not recomputed at all.
 """
 
 from __future__ import annotations
@@ -52,8 +52,7 @@ def _motion(s: Session) -> Array:
 
 def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen:
     """tau1 + tau2 = -b_w w + C_LE (w - u) + u_N - K_N w tells w, tau2 then x."""
-    tau1, tau2 = s["/device/commanded_torque"], s["/proxy/torque"]
-    u = _motion(s)
+    u, tau1, tau2 = _motion(s), s["/device/commanded_torque"], s["/proxy/torque"]
     c_le = -the.shared.u
     left = r.b_w[:, :, None] * np.eye(s.dof) - the.shared.w
     tells = np.min(np.abs(np.linalg.eigvals(left)), axis=1) > _LEAST_DAMPING
@@ -61,20 +60,36 @@ def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen
     w = np.linalg.solve(left, (r.u_n - apply(c_le, u) - tau1 - tau2)[:, :, None])[:, :, 0]
     off = tau2 - the.proxy.at(w, u, s["/proxy/contact_torque"])
     x = p.x + off / s.number("coupling.k_vc")
-    known = tells & (s["/coupling/solved"] == 0) & ~np.any(np.abs(tau1) >= s.law_limit, axis=1)
+    free = ~np.any(np.abs(tau1) >= s.law_limit, axis=1) & (the.authority[:, 0] == 1)
+    known = tells & (s["/coupling/solved"] == 0) & free
     known[-1] = False
     return Seen(x, w, known)
 
 
-def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array]:
-    """And which rows they are sure of."""
-    if not np.any(s.number("device.encoder_step") > 0):
-        return predict(s), np.ones(len(s), dtype=bool)
-    p = unseen(s)
+def _followed(s: Session, p: Prediction, proxy: Proxy) -> bool:
+    """The predictors, run over the whole session, are still where the torques say."""
+    the = law(s, p, proxy, balance(s, p, proxy.m, proxy.c, _motion(s)))
+    u, tau1, f2 = _motion(s), s["/device/commanded_torque"], s["/proxy/contact_torque"]
+    usual = solve(s, p, proxy, the, lambda u0, per_torque: f2)
+    limited = solve_limited(s, p, the, u, f2)
+    at_limit = (s["/coupling/solved"] == LIMITED)[:, None]
+    off = np.where(at_limit, limited.tau1, usual.tau1) - tau1, np.where(at_limit, 0, usual.u - u)
+    worst = max(_largest(a[:-1]) / _largest(b) for a, b in zip(off, (tau1, u)))
+    return worst < _TOLERANCE / 10
+
+
+def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array] | None:
+    """And which rows they are sure of; nothing where no row would be."""
+    p, stepped = predict(s, proxy.m), np.any(s.number("device.encoder_step") > 0)
+    if not stepped or _followed(s, p, proxy):
+        return p, np.ones(len(s), dtype=bool)
+    if np.any(s.number("model.delay") > 0):  # what the torques say is of a tick to come
+        return None
+    p = unseen(s, proxy.m)
     for _ in range(_ROUNDS):
         r = balance(s, p, proxy.m, proxy.c, _motion(s))
         seen = _seen(s, p, proxy, r, law(s, p, proxy, r))
-        p, moved = predict_seen(s, p, seen)
+        p, moved = predict_seen(s, proxy.m, p, seen)
         if moved < 1e-14:
             break
     return p, _sure(p, seen.known)
@@ -93,14 +108,17 @@ def _sure(p: Prediction, known: Array) -> Array:
     return sure
 
 
-def replay(s: Session) -> Replayed:
+def replay(s: Session) -> Replayed | None:
     proxy = proxy_dynamics(s)
-    p, sure = _predictions(s, proxy)
+    found = _predictions(s, proxy)
+    if found is None:
+        return None
+    p, sure = found
     r = balance(s, p, proxy.m, proxy.c, _motion(s))
     the = law(s, p, proxy, r)
     f2 = s["/proxy/contact_torque"]
     given = solve(s, p, proxy, the, lambda u0, per_torque: f2)
-    wall = only_wall(s, p)
+    wall = only_wall(s, p, proxy.m)
     forces = wall and solve(s, p, proxy, the, contact_solve(wall, s.tick))
     limited = solve_limited(s, p, the, _motion(s), f2)
     return Replayed(p, r, given, wall, forces, limited, sure)
@@ -183,19 +201,20 @@ def check_predictive(s: Session) -> list[Check]:
         return [not_applicable("predictive", "another law")]
     if kinds != {KIND}:
         return [not_applicable("predictive", "the law is changed on the way")]
-    if np.any(s.number("model.delay") > 0):
-        return [not_applicable("predictive", "a delay is reckoned with")]
     done = replay(s)
+    if done is None:
+        why = "encoder steps and a delay that is reckoned with: the predictor is not known"
+        return [not_applicable("predictive", why)]
     unsure = 1 - float(np.mean(done.sure))
     checks = [
         _port_check(s),
         *_reserve_checks(s, done.reserve, done.sure),
         Check("unchecked rows", unsure, 1, "of all: what the predictor was is not known"),
     ]
-    coarse = np.any(s.number("device.encoder_step") > 0)
     how = s["/coupling/solved"]
-    if coarse and np.any(how != 0):
-        why = "encoder steps and motors at their limit: the predictor is not known"
+    held_back = np.any(how != 0) or np.any(done.reserve.torque_governor < 1)
+    if not np.all(done.sure) and held_back:
+        why = "encoder steps and motors at their limit or governed: the predictor is not known"
         return checks + [not_applicable("torques, wall force", why)]
     checks += _torque_checks(s, done.given, done.sure & (how == 0), "predictive")
     if np.any(how == LIMITED):

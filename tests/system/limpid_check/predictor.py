@@ -2,7 +2,8 @@
 
 Both run on the readings and on the torques as applied, alone: nothing of the proxy enters. The
 model's M1 and C1 are taken where the active predictor is, which is known only after the recursion;
-so the recursion is repeated with the model at its own last answer until nothing changes.
+so the recursion is repeated with the model at its own last answer until nothing changes. With a
+delay that is known the device is foretold on from there, to where the coming torque meets it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from .decomposition import apply, transposed
 from .dynamics import coriolis, inertia, tip_jacobian
+from .memory import Tip, chosen, stiffest
 from .session import Session
 from .urdf import Array
 
@@ -32,7 +34,8 @@ _SAME = 1e-9  # a predictor this near to what was seen was the active one [rad]
 class Gains:
     """Of every row (N,)."""
 
-    p: Array
+    p: Array  # the least
+    own: Array  # bool: it is set, and no other is chosen
     mu: Array
     wall: Array  # damper of a wall, as a part of m_n / T
 
@@ -45,17 +48,23 @@ class Prediction:
     v: Array
     f: Array  # external torque [N m]
     w: Array  # mean velocity over the tick, with the torque as applied
+    met_x: Array  # x and v where the coming torque meets the device
+    met_v: Array
     heavy: Array  # bool (N,): the one with a hand's mass
+    memory: Array  # p (N,)
+    ahead: Array  # theta^-1 (N, n): 2 by the midpoint rule
+    jacobian: Array  # of the tip (N, 3, n)
     m1: Array  # M1 and C1 as the controller believes them, at (x, v)
     c1: Array
-    mp: Array  # inertia of the predictor
-    d0: Array  # 2/T Mp + C1 + b_d
+    mt: Array  # inertia of the predictor over the tick it takes, Mp theta^-1/T
+    d0: Array  # Mp theta^-1/T + C1 + b_d
     surprise: Array  # delta_k = y_k - y_{k-1} - T w_{k-1}
     confirmed: Array  # bool (N,): it is where it was seen
 
-    def drive(self, tick: float) -> Array:
-        """What moves the device besides the motors."""
-        return 2 / tick * apply(self.mp, self.v) + self.f
+    @property
+    def drive(self) -> Array:
+        """What moves the device besides the motors, in the tick that the torque meets."""
+        return apply(self.mt, self.met_v) + self.f
 
 
 def gains(s: Session) -> Gains:
@@ -67,7 +76,8 @@ def gains(s: Session) -> Gains:
     ]
     p, mu, wall = np.array(named).T
     own_p, own_mu = (s.number(f"predictor.{name}")[:, 0] for name in ("p", "mu"))
-    return Gains(np.where(np.isnan(own_p), p, own_p), np.where(np.isnan(own_mu), mu, own_mu), wall)
+    return Gains(np.where(np.isnan(own_p), p, own_p), ~np.isnan(own_p),
+                 np.where(np.isnan(own_mu), mu, own_mu), wall)  # fmt: skip
 
 
 def _model(s: Session, x: Array, v: Array) -> tuple[Array, Array]:
@@ -100,9 +110,34 @@ class _Pair:
             self.active = int(not light < heavy)
 
 
-def _masses(s: Session, x: Array, m1: Array, mu: Array) -> Array:
+def _decays(s: Session, m1: Array) -> Array:
+    """a = T b_d (M^-1)_jj: how much of a joint's motion, the others free, dies in a tick (N, n)."""
+    return s.tick * s.damping * np.diagonal(np.linalg.inv(m1), axis1=1, axis2=2)
+
+
+def _quick(s: Session) -> Array:
+    """Whether the motion of some joint dies within a tick, as it was judged when b_d last changed
+    (N,)."""
+    y = s["/device/measured_position"]
+    now = np.any(_decays(s, _model(s, y, 0 * y)[0]) > 1, axis=1)
+    fresh = np.any(np.diff(s.damping, axis=0, prepend=0) != 0, axis=1)
+    judged = np.maximum.accumulate(np.where(fresh, np.arange(len(s)), -1))
+    return np.where(judged < 0, False, now[judged])
+
+
+def _ahead(s: Session, m1: Array, quick: Array) -> Array:
+    """1/theta (N, n): by how much of w - v the velocity changes over a tick, w the mean. By the
+    midpoint rule twice; with a motion that dies as exp(-a t/T), which ends at v exp(-a) and has the
+    mean v (1 - exp(-a))/a, so that the velocity does."""
+    a = _decays(s, m1)
+    safe = np.where(a > 1e-3, a, 1.0)
+    lost = -np.expm1(-safe)
+    exact = np.where(a > 1e-3, lost / (1 - lost / safe), 12 / (6 + a))
+    return np.where(quick[:, None], exact, 2.0)
+
+
+def _masses(s: Session, jacobian: Array, m1: Array, mu: Array) -> Array:
     """Mp of both predictors (N, 2, n, n)."""
-    jacobian = tip_jacobian(s.chain, x)
     light = mu[:, None, None] * m1
     hand = s.number("predictor.hand_mass")[:, :, None] * (transposed(jacobian) @ jacobian)
     return np.stack([light, light + hand], axis=1)
@@ -118,99 +153,143 @@ class Seen:
 
 
 @dataclass(frozen=True)
+class _Model:
+    """The device as both predictors have it, of every row."""
+
+    m1: Array
+    c1: Array
+    jacobian: Array
+    mp: Array  # Mp (N, 2, n, n)
+    mt: Array  # Mp theta^-1/T
+    d0: Array
+    ahead: Array  # theta^-1 (N, n)
+    memory: Array  # p (N,)
+    after: float  # p of the row that follows
+
+
+def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array, p0: float) -> _Model:
+    """With the device there; M2 of the proxy and p of the first row are given."""
+    g = gains(s)
+    m1, c1 = _model(s, x, v)
+    jacobian, ahead = tip_jacobian(s.chain, x), _ahead(s, m1, quick)
+    mp = _masses(s, jacobian, m1, g.mu)
+    mt = mp * ahead[:, None, None, :] / s.tick
+    d0 = mt + (c1 + np.eye(s.dof) * s.damping[:, :, None])[:, None]
+    step = s.number("device.encoder_step")[:, 0]
+    p = chosen(stiffest(s), Tip.of(jacobian, m1 + m2), step, g.p, g.wall, s.tick)
+    p = np.concatenate([[p0], np.where(g.own, g.p, p)])
+    return _Model(m1, c1, jacobian, mp, mt, d0, ahead, p[:-1], float(p[-1]))
+
+
+@dataclass(frozen=True)
 class _Input:
     """What the recursion is fed with, of every row."""
 
     y: Array
-    tau: Array
-    gains: Gains
+    tau: Array  # as it left for the motors
+    delay: Array  # that is known (N,) [ticks]
     half: Array  # of an encoder's step (N,) [rad]
     both: Array  # bool (N,): there is a heavy one
+    quick: Array  # bool (N,)
     tick: float
     seen: Seen | None
     confirmed: Array  # filled in
 
-    def recur(self, pair: _Pair, rows: range, mp: Array, d0: Array) -> tuple[Array, ...]:
-        """x, v, f, w and which one, of the active predictor at these rows; `pair` goes on."""
-        p, t, keep = self.gains.p, self.tick, float(np.exp(-self.tick / _FORGETTING))
-        inverse = np.linalg.inv(d0)
-        out = np.zeros((4, len(rows), self.y.shape[1]))
+    def recur(self, pair: _Pair, rows: range, model: _Model) -> tuple[Array, ...]:
+        """x, v, f, w, x and v where the torque meets the device, and which one, of the active
+        predictor at these rows; `pair` goes on."""
+        t, keep = self.tick, float(np.exp(-self.tick / _FORGETTING))
+        inverse = np.linalg.inv(model.d0)
+        out = np.zeros((6, len(rows), self.y.shape[1]))
         heavy = np.zeros(len(rows), dtype=bool)
         for i, k in enumerate(rows):
+            p, ahead = model.memory[i], model.ahead[i]
             e = self.y[k] - pair.x
             e = e - np.clip(e, -self.half[k], self.half[k])
             stayed = pair.active
-            pair.correct(e, p[k], t, keep, bool(self.both[k]))
-            pair.f = pair.f + (1 - p[k]) ** 3 / t**2 * (mp[i] @ e[..., None])[..., 0]
-            push = 2 / t * (mp[i] @ pair.v[..., None])[..., 0] + pair.f + self.tau[k]
-            w = (inverse[i] @ push[..., None])[..., 0]
+            pair.correct(e, p, t, keep, bool(self.both[k]))
+            pair.f = pair.f + (1 - p) ** 3 / t**2 * (model.mp[i] @ e[..., None])[..., 0]
+
+            def mean(v: Array, tau: Array, i: int = i) -> Array:
+                push = (model.mt[i] @ v[..., None])[..., 0] + pair.f + tau
+                return (inverse[i] @ push[..., None])[..., 0]
+
+            w, met_x, met_v = None, pair.x, pair.v
+            for sent in range(k - self.delay[k], k):
+                mean_then = mean(met_v, self.tau[sent] if sent >= 0 else 0 * self.tau[0])
+                w = mean_then if w is None else w
+                met_x, met_v = met_x + t * mean_then, met_v + ahead * (mean_then - met_v)
+            w = mean(met_v, self.tau[k]) if w is None else w
             if self.seen is not None and self.seen.known[k]:
                 off = self._off(k, pair.x, w)
                 if self.both[k]:
                     pair.active = stayed if off[stayed] < _SAME else int(np.argmin(off))
                 a = pair.active
                 self.confirmed[k] = off[a] < _SAME
-                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a]
-                self._believe(k, pair, w, mp[i, a], d0[i, a])
+                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a], met_x[a], met_v[a]
+                self._believe(k, pair, w, model.mt[i, a], model.d0[i, a])
             else:
                 a = pair.active
-                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a]
+                out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a], met_x[a], met_v[a]
             heavy[i] = a == 1
             pair.x = pair.x + t * w
-            pair.v = 2 * w - pair.v
+            pair.v = pair.v + ahead * (w - pair.v)
         return *out, heavy
 
     def _off(self, k: int, x: Array, w: Array) -> Array:
         """How far each is from what was seen (2,) [rad]."""
         return np.max(np.abs(x - self.seen.x[k]) + self.tick * np.abs(w - self.seen.w[k]), axis=1)
 
-    def _believe(self, k: int, pair: _Pair, w: Array, mp: Array, d0: Array) -> None:
-        """Takes over what was seen. x and w are; of v and f only the sum is, 2/T Mp v + f, and of
+    def _believe(self, k: int, pair: _Pair, w: Array, mt: Array, d0: Array) -> None:
+        """Takes over what was seen. x and w are; of v and f only the sum is, mt v + f, and of
         the sum's error each gets half: then both are right after two rows."""
         a = pair.active
         half = d0 @ (self.seen.w[k] - w[a]) / 2
         pair.f[a] += half
-        pair.v[a] += self.tick / 2 * np.linalg.solve(mp, half)
+        pair.v[a] += np.linalg.solve(mt, half)
         pair.x[a], w[a] = self.seen.x[k], self.seen.w[k]
 
 
 def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
     """And the pair at the first row."""
-    given = _Input(s["/device/measured_position"], s.law_torque, gains(s),
+    given = _Input(s["/device/measured_position"], s.law_torque,
+                   s.number("model.delay")[:, 0].astype(int),
                    s.number("device.encoder_step")[:, 0] / 2,
-                   s.number("predictor.hand_mass")[:, 0] > 0, s.tick, seen,
+                   s.number("predictor.hand_mass")[:, 0] > 0, _quick(s), s.tick, seen,
                    np.zeros(len(s), dtype=bool))  # fmt: skip
     start = (s[f"/{name}"][0] for name in ("device/measured_position", "device/velocity",
                                            "hand/torque_estimate"))  # fmt: skip
     return given, _Pair(*(np.tile(value, (2, 1)) for value in start), np.zeros(2))
 
 
-def _dynamics(s: Session, x: Array, v: Array) -> tuple[Array, Array, Array, Array]:
-    """M1, C1, and Mp and D0 of both predictors."""
-    m1, c1 = _model(s, x, v)
-    mp = _masses(s, x, m1, gains(s).mu)
-    return m1, c1, mp, 2 / s.tick * mp + (c1 + np.eye(s.dof) * s.damping[:, :, None])[:, None]
-
-
 def _apart(s: Session, a: tuple[Array, Array], b: tuple[Array, Array]) -> float:
     return max(np.max(np.abs(a[0] - b[0])), s.tick * np.max(np.abs(a[1] - b[1])))
 
 
-_Fields = tuple[Array, ...]  # x, v, f, w, heavy, M1, C1, Mp, D0
+_Fields = tuple[Array, ...]  # those of Prediction up to d0
 
 
-def _window(s: Session, given: _Input, pair: _Pair, rows: range) -> tuple[_Pair, _Fields]:
-    """The pair after these rows, and what they have."""
-    part = s.rows(slice(rows.start, rows.stop))
-    x, v = given.y[rows.start : rows.stop], np.tile(pair.v[pair.active], (len(rows), 1))
+def _fields(model: _Model, moved: tuple[Array, ...]) -> _Fields:
+    each, which = np.arange(len(moved[0])), moved[-1].astype(int)
+    return (*moved, model.memory, model.ahead, model.jacobian, model.m1, model.c1,
+            model.mt[each, which], model.d0[each, which])  # fmt: skip
+
+
+def _window(s: Session, m2: Array, given: _Input, pair: _Pair, rows: range, p0: float) -> (
+    tuple[_Pair, float, _Fields]
+):
+    """The pair and p after these rows, and what they have."""
+    which = slice(rows.start, rows.stop)
+    part = s.rows(which)
+    x, v = given.y[which], np.tile(pair.v[pair.active], (len(rows), 1))
     for _ in range(_ROUNDS):
-        m1, c1, mp, d0 = _dynamics(part, x, v)
+        model = _model_at(part, x, v, m2[which], given.quick[which], p0)
         after, before = copy.copy(pair), (x, v)
-        x, v, f, w, heavy = given.recur(after, rows, mp, d0)
+        moved = given.recur(after, rows, model)
+        x, v = moved[:2]
         if _apart(s, (x, v), before) < _SETTLED:
             break
-    each, which = np.arange(len(rows)), heavy.astype(int)
-    return after, (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
+    return after, model.after, _fields(model, moved)
 
 
 def _prediction(s: Session, fields: _Fields, w: Array, confirmed: Array) -> Prediction:
@@ -220,35 +299,35 @@ def _prediction(s: Session, fields: _Fields, w: Array, confirmed: Array) -> Pred
     return Prediction(*fields, surprise, confirmed)
 
 
-def predict(s: Session) -> Prediction:
-    """Both predictors over the whole session, which the law is in force in from the first row."""
+def predict(s: Session, m2: Array) -> Prediction:
+    """Both predictors over the whole session, which the law is in force in from the first row; M2
+    of the proxy (N, n, n)."""
     given, pair = _input(s)
-    parts = []
+    parts, p0 = [], float(gains(s).p[0])
     for begin in range(0, len(s), _WINDOW):
-        pair, part = _window(s, given, pair, range(begin, min(begin + _WINDOW, len(s))))
+        rows = range(begin, min(begin + _WINDOW, len(s)))
+        pair, p0, part = _window(s, m2, given, pair, rows, p0)
         parts.append(part)
     fields = tuple(np.concatenate(field) for field in zip(*parts))
     return _prediction(s, fields, fields[3], given.confirmed)
 
 
-def unseen(s: Session) -> Prediction:
+def unseen(s: Session, m2: Array) -> Prediction:
     """Something to begin with: the model where the readings are, at rest."""
     y = s["/device/measured_position"]
-    return _from(s, y, 0 * y, Seen(y, y, np.zeros(len(s), dtype=bool)))
+    return _from(s, m2, y, 0 * y, Seen(y, y, np.zeros(len(s), dtype=bool)))
 
 
-def predict_seen(s: Session, model: Prediction, seen: Seen) -> tuple[Prediction, float]:
+def predict_seen(s: Session, m2: Array, model: Prediction, seen: Seen) -> tuple[Prediction, float]:
     """Every row from what was seen until the row before, with the model where `model` is; and how
     far from there it leads."""
-    p = _from(s, model.x, model.v, seen)
+    p = _from(s, m2, model.x, model.v, seen)
     return p, _apart(s, (p.x, p.v), (model.x, model.v))
 
 
-def _from(s: Session, model_x: Array, model_v: Array, seen: Seen) -> Prediction:
+def _from(s: Session, m2: Array, x: Array, v: Array, seen: Seen) -> Prediction:
     given, pair = _input(s, seen)
-    m1, c1, mp, d0 = _dynamics(s, model_x, model_v)
-    x, v, f, w, heavy = given.recur(pair, range(len(s)), mp, d0)
-    each, which = np.arange(len(s)), heavy.astype(int)
-    fields = (x, v, f, w, heavy, m1, c1, mp[each, which], d0[each, which])
-    used = np.where(seen.known[:, None], seen.w, w)
-    return _prediction(s, fields, used, given.confirmed)
+    model = _model_at(s, x, v, m2, given.quick, float(gains(s).p[0]))
+    moved = given.recur(pair, range(len(s)), model)
+    used = np.where(seen.known[:, None], seen.w, moved[3])
+    return _prediction(s, _fields(model, moved), used, given.confirmed)

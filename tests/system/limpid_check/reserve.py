@@ -10,17 +10,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .decomposition import transposed
 from .predictor import Prediction
 from .session import Session
 from .urdf import Array
 
 # the ladder: inertances and resistances that make an inertia up to the band's edge
 _A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
-_GHOST_EDGE, _GHOST_DAMPING = 2 * np.pi * 25, 0.7  # w_g [rad/s], zeta
+_FASTEST, _SLOWEST = 2 * np.pi * 25, 2 * np.pi * 2  # w_g of the added mass [rad/s]
+_GHOST_DAMPING = 0.7  # zeta
+# of beta, the added mass's damping for its inertia, times how late it is
+_OWN, _BOUNDED, _KNOWN = 0.9, 0.35, 1.2
 LIMITED = 1  # in /coupling/solved: motors at their limit and contacts were solved in one
-_CAP = 0.02  # largest reserve [J]
-_FULL, _EMPTY = 4e-3, 1e-3  # reserve above and below which the damping is whole and gone [J]
+# of ledger.energy: the largest reserve; where the damping is whole and gone; where all torque is
+_CAP, _FULL, _EMPTY, _NOTHING = 4, 0.8, 0.35, 0.25
 _CONTACT_RECOVERY, _DAMPING_RECOVERY = 0.05, 0.2  # [s]
+_PUSHED, _MOST_SURPRISE = 4e-4, 0.5  # of a hand in a tick [N s], what it makes of velocity [rad/s]
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,7 @@ class Reserve:
     stored: Array  # V + S + W2 [J], what H is small beside
     governor: Array  # gf
     damping_governor: Array  # gb
+    torque_governor: Array  # ga
     b_w: Array  # [N m s/rad]
     u_n: Array  # inertia torque without what damps the coming tick [N m]
     k_n: Array  # K_N (N, n, n)
@@ -43,11 +49,12 @@ class _Network:
         self.tick = tick
         self.side = 0.0  # -1 below eta 1, 1 above
         self.q = np.zeros((3, joints))  # (s, w', s2) or (s, g, -)
-        self.r = np.zeros((joints, joints))  # R_N of the tick just ended
+        self.r = np.zeros((joints, joints))  # R_N of the tick just ended, and its edge
+        self.edge = 0.0
 
-    def advance(self, moved: Array, edge: float) -> None:
+    def advance(self, moved: Array) -> None:
         """Over the tick just ended, in which the reading changed by `moved`."""
-        t, nu = self.tick, self.r.T @ moved / self.tick
+        t, edge, nu = self.tick, self.edge, self.r.T @ moved / self.tick
         if self.side < 0:
             a = np.array([[0, -1 / _A1, 0], [1 / _A2, -_R1 / _A2, -1 / _A2],
                           [0, 1 / _A3, -1 / (_A3 * _R)]])  # fmt: skip
@@ -55,7 +62,7 @@ class _Network:
             middle = np.linalg.solve(np.eye(3) - t * edge / 2 * a, driven)
             self.q = 2 * middle - self.q
         elif self.side > 0:
-            h, (s, g, _) = t * _GHOST_EDGE, self.q
+            h, (s, g, _) = t * edge, self.q
             d = (nu - g - h * s / 2) / (1 + _GHOST_DAMPING * h + h * h / 4)
             self.q = np.stack([s + h * d, 2 * (nu - d) - g, 0 * s])
 
@@ -77,8 +84,9 @@ class _Network:
         return float(weights @ np.sum(self.q**2, axis=1) / 2)
 
     def torque(self, eta: float, gb: float, locked: Array, edge: float) -> tuple[Array, Array]:
-        """u_N and K_N over the coming tick."""
+        """u_N and K_N over the coming tick; `edge` of the ladder's band or w_g."""
         s, g, _ = self.q
+        self.edge = edge
         if self.side == 0:
             self.r = 0 * locked
             return 0 * s, 0 * locked
@@ -87,11 +95,52 @@ class _Network:
             self.r = np.linalg.cholesky((1 - eta) * locked / share)
             return -edge * self.r @ s, 0 * locked
         self.r = np.sqrt(gb * (eta - 1)) * np.linalg.cholesky(locked)
-        h = self.tick * _GHOST_EDGE
-        gain = _GHOST_EDGE * (h / 2 + 2 * _GHOST_DAMPING)
+        h = self.tick * edge
+        gain = edge * (h / 2 + 2 * _GHOST_DAMPING)
         gain /= 1 + _GHOST_DAMPING * h + h * h / 4
-        u_n = -self.r @ (_GHOST_EDGE * s - gain * (g + h * s / 2))
+        u_n = -self.r @ (edge * s - gain * (g + h * s / 2))
         return u_n, gain * self.r @ self.r.T
+
+
+def _added_mass(s: Session) -> tuple[Array, Array]:
+    """eta and w_g of every row (N,), where eta is above 1. Above w_g the added mass is a damper of
+    beta = 2 zeta (eta - 1) w_g; how late that may be bounds beta, and so w_g, or at last eta."""
+    eta, t = s["/coupling/eta"], s.tick
+    known, most = s.possible_delays
+    with np.errstate(divide="ignore"):
+        bounded, foretold = _BOUNDED / (most * t), _KNOWN / (known**2 * t)
+    late = np.where(most > known, bounded, np.where(known > 0, foretold, np.inf))
+    beta = np.minimum(_OWN / t, late)
+    above = np.where(eta > 1, eta - 1, 1)
+    edge = np.minimum(_FASTEST, beta / (2 * _GHOST_DAMPING * above))
+    left = np.minimum(above, beta / (2 * _GHOST_DAMPING * _SLOWEST))
+    return np.where(eta > 1, 1 + left, eta), np.maximum(edge, _SLOWEST)
+
+
+class _Account:
+    """What may be given, by the delay between command and motor: the least of them counts."""
+
+    def __init__(self) -> None:
+        self.delays = range(1)
+        self.energy = np.zeros(1)
+
+    def expect(self, delays: range) -> None:
+        """What is known when other delays become possible is the least."""
+        if delays != self.delays:
+            self.delays, self.energy = delays, np.full(len(delays), self.least)
+
+    def add(self, sent: Array, k: int, along: Array, damped: float) -> None:
+        """The tick before row k, of torques as they were sent at each row."""
+        ticks = k - 1 - np.array(self.delays)
+        acted = np.where(ticks[:, None] < 0, 0, sent[np.maximum(ticks, 0)])
+        self.energy = self.energy + damped - acted @ along
+
+    def keep(self, most: float) -> None:
+        self.energy = np.minimum(self.energy, most)
+
+    @property
+    def least(self) -> float:
+        return float(np.min(self.energy))
 
 
 class _Clock:
@@ -116,16 +165,23 @@ def spring_energy(x_e: Array, k_vc: Array, limit: Array) -> Array:
     return np.sum(np.where(k_vc * x > limit, beyond, k_vc * x**2 / 2), axis=1)
 
 
-def _leaks(s: Session, p: Prediction) -> Array:
-    """The most that the contact force may give away in the tick, as assumed (N,) [J]."""
+def _leaks(s: Session, p: Prediction, locked: Array) -> Array:
+    """The most that the contact force may give away in the tick, as assumed (N,) [J]: by joints
+    where the device is not where it was foretold, and by what a push makes of its velocity."""
     y, f2 = s["/device/measured_position"], s["/proxy/contact_torque"]
-    moved = np.linalg.norm(np.diff(y, axis=0), axis=1)
-    off = 2 * np.linalg.norm(p.surprise[1:], axis=1) + 0.1 * moved + 0.5 * s.tick
-    return np.concatenate([[0.0], np.linalg.norm(f2[:-1], axis=1) * off])
+    off = 2 * np.abs(p.surprise[1:]) + 0.1 * np.abs(np.diff(y, axis=0))
+    moved = np.linalg.solve(locked, transposed(p.jacobian))
+    push = np.minimum(_PUSHED * np.sqrt(np.sum(moved**2, axis=(1, 2))), _MOST_SURPRISE)
+    by_push = s.tick * push[1:] * np.linalg.norm(f2[:-1], axis=1)
+    return np.concatenate([[0.0], np.sum(np.abs(f2[:-1]) * off, axis=1) + by_push])
 
 
 def _follow(value: float, target: float, share: float) -> float:
     return target if target < value else value + share * (target - value)
+
+
+def _between(value: float, nothing: float, whole: float) -> float:
+    return float(np.clip((value - nothing) / (whole - nothing), 0, 1))
 
 
 def _share_cancelled(s: Session) -> Array:
@@ -150,71 +206,78 @@ def _springs(s: Session) -> Array:
 
 
 class _Cut:
-    """What the motors' limit takes off tE + tL: tau1 + tau2 and the motion tell it."""
+    """What the motors' limit takes off tE + tL: tau2 and the motion tell it."""
 
     def __init__(self, s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> None:
         self.s, self.p, self.u = s, p, u
         phi = np.linalg.solve(p.m1 + m2, m2)
         self.c_le = np.swapaxes(c2, 1, 2) - np.swapaxes(p.c1 + c2, 1, 2) @ phi
-        self.drive, self.b_v = p.drive(s.tick), s.number("coupling.b_v")
-        self.clipped = np.any(np.abs(s["/device/commanded_torque"]) >= s.law_limit, axis=1)
+        self.drive, self.b_v, self.limit = p.drive, s.number("coupling.b_v"), s.law_limit
 
-    def at(self, k: int, b_w: float | Array, u_n: Array, k_n: Array) -> Array:
+    def possible(self, k: int, ga: float) -> bool:
+        """A motor is at its limit, or nobody knows because none is asked."""
+        asked = np.abs(self.s["/device/commanded_torque"][k])
+        return bool(np.any(asked >= ga * self.limit[k] * (1 - 1e-12)))
+
+    def at(self, k: int, b_w: float | Array, u_n: Array, k_n: Array, ga: float) -> Array:
         s, u = self.s, self.u[k]
-        tau1, tau2 = s["/device/commanded_torque"][k], s["/proxy/torque"][k]
+        sent, tau2 = s["/device/commanded_torque"][k], s["/proxy/torque"][k]
         on_w = self.c_le[k] - k_n - np.eye(s.dof) * b_w
         rest = u_n - self.c_le[k] @ u - tau2
         if s["/coupling/solved"][k] == LIMITED:
-            w = np.linalg.solve(self.p.d0[k], self.drive[k] + tau1)
+            w = np.linalg.solve(self.p.d0[k], self.drive[k] + sent)
             rest = rest - self.b_v[k] * u
         else:
-            w = np.linalg.solve(self.p.d0[k] - on_w, self.drive[k] + rest)
-        return on_w @ w + rest - tau1
+            w = np.linalg.solve(self.p.d0[k] - ga * on_w, self.drive[k] + ga * rest)
+        given = on_w @ w + rest
+        return given - np.clip(given, -self.limit[k], self.limit[k])
 
 
 def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserve:
     """M2 and C2 of the proxy (N, n, n), its mean velocities (N, n)."""
-    rows, n, t = len(s), s.dof, s.tick
-    locked = p.m1 + m2
+    rows, n, t, sent = len(s), s.dof, s.tick, s.law_torque
+    locked, damping = p.m1 + m2, s.damping
     cut = _Cut(s, p, m2, c2, u)
-    y, eta = s["/device/measured_position"], s["/coupling/eta"]
+    y, (eta, ghost_edge) = s["/device/measured_position"], _added_mass(s)
     moved = np.diff(y, axis=0, prepend=y[:1])
-    edge = 2 * np.pi * s.number("coupling.band")[:, 0]
+    edge = np.where(eta > 1, ghost_edge, 2 * np.pi * s.number("coupling.band")[:, 0])
     step = s.number("device.encoder_step")[:, 0]
     cell = step[:, None] / 2
     path = y + np.clip(p.x - y, -cell, cell)  # within the readings' cells, without their jumps
     path[0] = y[0]
     along = np.diff(path, axis=0, prepend=path[:1])
     held = _springs(s) + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
-    given = np.sum(s.law_torque[:-1] * along[1:], axis=1)
-    leak, cancelled = _leaks(s, p), _share_cancelled(s)
+    leak, cancelled = _leaks(s, p, locked), _share_cancelled(s)
     pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
     touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed])
-    b_v, energy0 = s.number("coupling.b_v")[:, 0], float(s.number("ledger.energy")[0, 0])
+    b_v, energy = (s.number(key)[:, 0] for key in ("coupling.b_v", "ledger.energy"))
+    least, most = s.possible_delays
 
-    network, clock = _Network(t, n), _Clock(n)
-    out = np.zeros((4, rows))
+    network, clock, account = _Network(t, n), _Clock(n), _Account()
+    out = np.zeros((5, rows))
     b_w, u_n, k_n = np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n, n))
-    gf, gb, account = 1.0, 1.0, 0.0
+    gf = gb = ga = 1.0
     for k in range(rows):
+        account.expect(range(least[k], most[k] + 1))
         if k > 0:
-            network.advance(along[k], edge[k])
-            if cut.clipped[k - 1]:
-                network.lose(-cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1]) @ along[k])
+            network.advance(along[k])
+            if cut.possible(k - 1, ga):
+                lost = cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1], ga)
+                network.lose(-lost @ along[k])
             ticks = clock.changed(moved[k], step[k])
-            account += np.sum(s.damping[k] * moved[k] ** 2 / ticks) / t - given[k - 1]
+            account.add(sent, k, along[k], np.sum(damping[k] * moved[k] ** 2 / ticks) / t)
         network.turn(eta[k])
         stored = held[k] + network.stored
-        if k == 0:
-            account = energy0 + stored
-        account = min(account, stored + _CAP)
-        h = account - stored
+        if k == 0:  # as an earlier part of the run has left it
+            account.energy += s["/energy/ledger"][0] + stored
+        account.keep(stored + _CAP * energy[k])
+        h = account.least - stored
         held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
         gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
-        wanted = float(np.clip((h - _EMPTY) / (_FULL - _EMPTY), 0, 1))
-        gb = _follow(gb, wanted, t / _DAMPING_RECOVERY)
-        out[:, k] = h, stored, gf, gb
+        gb = _follow(gb, _between(h / energy[k], _EMPTY, _FULL), t / _DAMPING_RECOVERY)
+        ga = _follow(ga, _between(h / energy[k], _NOTHING, _EMPTY), t / _DAMPING_RECOVERY)
+        out[:, k] = h, stored, gf, gb, ga
         less = 0.0 if touching[k] else gb * cancelled[k]
-        b_w[k] = b_v[k] - less * (s.damping[k] + b_v[k])
+        b_w[k] = b_v[k] - less * (damping[k] + b_v[k])
         u_n[k], k_n[k] = network.torque(eta[k], gb, locked[k], edge[k])
     return Reserve(*out, b_w, u_n, k_n)

@@ -21,6 +21,8 @@ from .urdf import SLIDE_UNIT, Array, Chain, parse_chain
 # From a unit of a slide to that of the equations.
 _OF_SLIDES: Mapping[str, float] = {"m": 1 / SLIDE_UNIT, "m/s": 1 / SLIDE_UNIT, "N": SLIDE_UNIT}
 
+MOST_DELAY = 20  # of a device [ticks]
+
 # dataset -> how many columns: 1 for shape N, 3 for N x 3, 0 for N x n
 DATASETS: Mapping[str, int] = {
     "/time": 1,
@@ -76,6 +78,8 @@ _DEFAULTS: Mapping[str, Any] = {
     "proxy.inertia_ratio": 1e-4,
     "model.inertia_error": 1.0,
     "model.delay": 0,
+    "model.delay_most": None,
+    "device.delay": 0,
     "coupling.damping": None,
     "coupling.band": 5.3,
     "predictor.preset": "auto",
@@ -154,9 +158,36 @@ class Session:
         return self.joint_number("device.torque_limit", [j.effort for j in self.chain.joints])
 
     @property
+    def late(self) -> Array:
+        """By how many rows what was sent acts later (N,): the virtual arm's delay."""
+        return self.number("device.delay")[:, 0].astype(int)
+
+    @property
+    def asked_torque(self) -> Array:
+        """What the motors are asked for, within their limit (N, n) [N m]."""
+        asked = self["/device/commanded_torque"] + self["/device/compensation_torque"]
+        return np.clip(asked, -self.torque_limit, self.torque_limit)
+
+    @property
+    def sent_torque(self) -> Array:
+        """As it left for the motors, which give it at `late` (N, n) [N m]; what acts after the last
+        row is not known but by what was asked."""
+        acts, after = np.arange(len(self)) + self.late, len(self) - 1
+        acted = self["/device/motor_torque"][np.minimum(acts, after)]
+        return np.where(acts[:, None] > after, self.asked_torque, acted)
+
+    @property
+    def possible_delays(self) -> tuple[Array, Array]:
+        """Between command and motor of the virtual arm, the least and the most of every row (N,)
+        [ticks]."""
+        least, most = self.number("model.delay")[:, 0], self.number("model.delay_most")[:, 0]
+        most = np.where(np.isnan(most), self.number("device.delay")[:, 0], np.ceil(most))
+        return least.astype(int), np.clip(most, least, MOST_DELAY).astype(int)
+
+    @property
     def law_torque(self) -> Array:
-        """What the motors gave, but for the device's own forces (N, n) [N m]."""
-        return self["/device/motor_torque"] - self["/device/compensation_torque"]
+        """What of it was not for the device's own forces (N, n) [N m]."""
+        return self.sent_torque - self["/device/compensation_torque"]
 
     @property
     def law_limit(self) -> Array:

@@ -108,12 +108,9 @@ def switching_rows(s: Session) -> Array:
 
 def check_motors(s: Session) -> list[Check]:
     """Motors get the commanded torque, and what holds the device's own forces, clipped at their limit; never more than the limit."""
-    limit = s.torque_limit
-    commanded = s["/device/commanded_torque"] + s["/device/compensation_torque"]
-    motor = s["/device/motor_torque"]
-    error = np.abs(motor - np.clip(commanded, -limit, limit))
+    error = np.abs(s.sent_torque - s.asked_torque)
     steady = ~switching_rows(s)
-    above = float(np.max(np.abs(motor) - limit))
+    above = float(np.max(np.abs(s["/device/motor_torque"]) - s.torque_limit))
     return [
         Check(
             "motor torque",

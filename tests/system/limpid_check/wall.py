@@ -10,13 +10,14 @@ import numpy as np
 
 from .decomposition import apply
 from .dynamics import tip_jacobian, tip_position
+from .memory import jump, own_damper
 from .predictor import Prediction, gains
 from .session import Session
 from .urdf import Array
 
 _OTHERS = ("sphere", "box", "mesh", "joint_contact", "probe")
 _NEAR = 2e-3  # farther walls that are not approached are left out [m]
-_MOST_DAMPING = 0.34  # of m_n/T, for the wall's own damper and the preset's together
+_MOST_DAMPING = 0.34  # of m_n/T, for the material's damper and the wall's own together
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Wall:
         return self.stiffness * np.maximum(self.depth, 0) ** 2 / 2
 
 
-def only_wall(s: Session, p: Prediction) -> Wall | None:
+def only_wall(s: Session, p: Prediction, m2: Array) -> Wall | None:
     """The wall of a scene that holds nothing but one plane for the tip; else nothing."""
     scene = tomllib.loads(s.attributes["scene"])
     planes = scene.get("plane", [])
@@ -46,11 +47,15 @@ def only_wall(s: Session, p: Prediction) -> Wall | None:
     normal /= np.linalg.norm(normal)
     height = (tip_position(s.chain, x2) - np.array(plane["point"], dtype=float)) @ normal
     push = normal @ tip_jacobian(s.chain, x2)
-    mass = 1 / np.sum(push * np.linalg.solve(p.m1, push[:, :, None])[:, :, 0], axis=1)  # m_n
-    damper = gains(s).wall * mass / s.tick + plane.get("damping", 0)
+    stiffness = float(plane.get("stiffness", 600))
+    eased = np.linalg.solve(p.m1 + m2, push[:, :, None])[:, :, 0]
+    mass = 1 / np.sum(push * eased, axis=1)  # m_n
+    stepped = jump(p.memory, s.number("device.encoder_step")[:, 0], s.tick)
+    stepped = stepped * np.linalg.norm(push, axis=1)
+    damper = own_damper(stiffness, mass, gains(s).wall, stepped, s.tick) + plane.get("damping", 0)
     damper = np.minimum(damper, _MOST_DAMPING * mass / s.tick)
     depth = scene.get("tip_radius", 0) - height
-    return Wall(float(plane.get("stiffness", 600)), damper, depth, push)
+    return Wall(stiffness, damper, depth, push)
 
 
 def _kept(k: Array, b: Array, d: Array, a: Array, c: Array) -> Array:
