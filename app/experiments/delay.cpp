@@ -11,6 +11,7 @@
 #include "app/experiments/roaming.h"
 #include "app/experiments/series.h"
 #include "app/experiments/tap_bench.h"
+#include "core/coupling/inertia_network.h"
 
 namespace limpid {
 namespace {

@@ -41,8 +41,8 @@ TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const 
 TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                         const Scene& scene);
 
-// What the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3 Hz, as
-// the torque may be 3 ms late"; empty where it leaves all of it.
+// What the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3 Hz,
+// as the torque may be 3 ms late"; empty where it leaves all of it.
 std::string late_text(const TipLimits& limits, const Parameters& p);
 
 // What is felt in free motion at f [Hz].

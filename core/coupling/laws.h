@@ -150,7 +150,8 @@ struct PredictorSettings {
            (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
   }
   PredictorGains gains(double encoder_step) const {
-    PredictorGains g = coarse(encoder_step) ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
+    PredictorGains g =
+        coarse(encoder_step) ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
     if (!std::isnan(memory)) g.p = memory;
     if (!std::isnan(inertia)) g.mu = inertia;
     return g;

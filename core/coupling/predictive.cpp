@@ -204,10 +204,8 @@ template <int N>
 Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDamper& c,
                                   const LawInput<N>& in, Proxy<N>& proxy) {
   const double T = in.tick;
-  if (in.b_d != b_d_) {
-    quick_ = dies_within_a_tick<N>(in.device.M, in.b_d, T);
-    b_d_ = in.b_d;
-  }
+  if (in.b_d != b_d_) quick_ = dies_within_a_tick<N>(in.device.M, in.b_d, T);
+  b_d_ = in.b_d;
   const PredictorGains gains = p.gains(in.encoder_step);
   Jacobian<N> J;
   const Arm<N>& arm = proxy.arm();
@@ -273,8 +271,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   limited_ = limited;
   memory_ = gains.p;
   if (in.encoder_step > 0 && std::isnan(p.memory)) {
-    const WallMemory wall{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping};
-    memory_ = wall.chosen(gains.p, tip_moved(J * on_tip, J * J.transpose()));
+    memory_ = WallMemory{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping}.chosen(
+        gains.p, tip_moved(J * on_tip, J * J.transpose()));
   }
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);

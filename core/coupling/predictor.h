@@ -28,8 +28,8 @@ inline double velocity_jump(double p, double q, double T) {
 // force of a wall K jump by
 //     F_q = (K T/2 + B) g_v q L/T,   g_v = 1.5 (1 - p)^2 (1 + p),
 // B the damper that the wall gets by itself. A light arm is held by the damping of the hand; from
-// 40 g on a jump may change the tip's velocity by no more than 0.1 mm/s, from 20 g on that counts in
-// part. What foretells so slowly has to be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
+// 40 g on a jump may change the tip's velocity by no more than 0.1 mm/s, from 20 g on that counts
+// in part. What foretells so slowly has to be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
 struct WallMemory {
   double K, T, q, damping;  // [N/m, s, rad], part of m_n/T that the wall's damper has [-]
   double shaken(double p, const TipMoved& tip) const;      // by F_q T/m_n [m/s]

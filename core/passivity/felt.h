@@ -33,7 +33,7 @@ struct FeltJoint {
   // Standard coupling, (1)-(2): the contact behind spring and damper; the proxy weighs nothing.
   std::complex<double> standard(double f) const;
   // Predictive coupling: the share `damping` of b_d + b_v stays felt, networks shape the inertia up
-  // to `band` [Hz] or to the edge of what is added, the contact acts as it is. 
+  // to `band` [Hz] or to the edge of what is added, the contact acts as it is.
   std::complex<double> predictive(double f, const AddedMass& added, double damping, double band,
                                   const LateMotors& late = {}) const;
   // Without any lag: eta (m s + b) + K/s.

@@ -67,9 +67,9 @@ class Tick {
   void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
   const Proxy<N>& proxy() const { return proxy_; }
-  const Vec<N>& estimate() const { return f1_hat_; }  // f1_hat of the last tick [N m]
+  const Vec<N>& estimate() const { return f1_hat_; }      // f1_hat of the last tick [N m]
   double reserve() const { return coupling_.reserve(); }  // see Start [J]
-  Vec3 tip() const { return arm_.tip(frames_); }      // where the law takes the device to be [m]
+  Vec3 tip() const { return arm_.tip(frames_); }  // where the law takes the device to be [m]
   Vec3 tip_at(const Vec<N>& x) const { return arm_.tip_at(x); }
   // No force is fading, no coupling being switched, and the contacts remember nothing that a new
   // start here would not find.

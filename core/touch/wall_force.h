@@ -8,9 +8,9 @@
 namespace limpid {
 
 // The damper that a wall of stiffness K gets by itself for what touches it with the mass m_n
-// [N s/m]: `part` of m_n/T, or less where that is more than critical: a heavy arm needs no more,
-// and a wall that no joint can move along would brake. And where a step of the encoder is a jump of
-// the velocity there [m/s], no more than that jump may push with.
+// [N s/m]: `part` of m_n/T, or half of critical damping where that is less: a heavy arm needs no
+// more, and a wall that no joint can move along would brake. And where a step of the encoder is a
+// jump of the velocity there [m/s], no more than that jump may push with.
 inline double wall_damping(double K, double m_n, double T, double part, double jump) {
   constexpr double kPush = 0.05;  // [N]
   const double quiet = std::min(part * m_n / T, std::sqrt(K * m_n));

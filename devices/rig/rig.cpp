@@ -159,7 +159,8 @@ void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
-        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve});
+        of->tick.start(
+            p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve});
         of->begin_at(start, start.target);
       },
       of_);
@@ -170,7 +171,7 @@ void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
   std::visit(
       [&](auto& of) {
         of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat, true,
-                             scratch.reserve});
+                            scratch.reserve});
         of->begin_at(scratch, target);
       },
       of_);

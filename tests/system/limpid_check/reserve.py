@@ -20,7 +20,7 @@ _A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
 _FASTEST, _SLOWEST = 2 * np.pi * 25, 2 * np.pi * 2  # w_g of the added mass [rad/s]
 _GHOST_DAMPING = 0.7  # zeta
 # of beta, the added mass's damping for its inertia, times how late it is
-_OWN, _BOUNDED, _KNOWN = 0.9, 0.35, 1.2
+_OWN, _LATE = 0.9, 0.35
 LIMITED = 1  # in /coupling/solved: motors at their limit and contacts were solved in one
 # of ledger.energy: the largest reserve; where the damping is whole and gone; where all torque is
 _CAP, _FULL, _EMPTY, _NOTHING = 4, 0.8, 0.35, 0.25
@@ -106,11 +106,9 @@ def _added_mass(s: Session) -> tuple[Array, Array]:
     """eta and w_g of every row (N,), where eta is above 1. Above w_g the added mass is a damper of
     beta = 2 zeta (eta - 1) w_g; how late that may be bounds beta, and so w_g, or at last eta."""
     eta, t = s["/coupling/eta"], s.tick
-    known, most = s.possible_delays
+    _, most = s.possible_delays
     with np.errstate(divide="ignore"):
-        bounded, foretold = _BOUNDED / (most * t), _KNOWN / (known**2 * t)
-    late = np.where(most > known, bounded, np.where(known > 0, foretold, np.inf))
-    beta = np.minimum(_OWN / t, late)
+        beta = np.minimum(_OWN / t, _LATE / (most * t))
     above = np.where(eta > 1, eta - 1, 1)
     edge = np.minimum(_FASTEST, beta / (2 * _GHOST_DAMPING * above))
     left = np.minimum(above, beta / (2 * _GHOST_DAMPING * _SLOWEST))
@@ -280,4 +278,6 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
         less = 0.0 if touching[k] else gb * cancelled[k]
         b_w[k] = b_v[k] - less * (damping[k] + b_v[k])
         u_n[k], k_n[k] = network.torque(eta[k], gb, locked[k], edge[k])
+        if least[k] > 0:  # it damps by the velocity that there is, not by the one foretold
+            u_n[k], k_n[k] = u_n[k] - k_n[k] @ p.v[k], 0
     return Reserve(*out, b_w, u_n, k_n)
