@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 
 #include "core/math/moving_factor.h"
-#include "core/math/moving_factor.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
