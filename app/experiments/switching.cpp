@@ -9,6 +9,7 @@
 #include "app/experiments/excitation.h"
 #include "app/experiments/series.h"
 #include "core/math/elementary.h"
+#include "core/touch/wall_force.h"
 
 namespace limpid {
 namespace {
@@ -95,8 +96,9 @@ Balance balance_of(const Trial& trial, const Session& s) {
     if (damper == 0 || (d <= 0 && next <= 0)) continue;
     // It acts for the share of the tick that is spent inside.
     const Eigen::MatrixXd M =
+        (1 + trial.plan.parameters.inertia_ratio) *
         inertia_at(trial.plan.arm, vector_at(s, k, Column::measured_position));
-    const double B = damper / M.inverse()(kTurret, kTurret) / kSwitchingTick;
+    const double B = wall_damping(K, 1 / M.inverse()(kTurret, kTurret), kSwitchingTick, damper, 0);
     const double in = std::max(d, 0.0), in_next = std::max(next, 0.0);
     // A wall does not pull: where its damper would, that has what the spring lets go.
     const bool pushes = s.at(k, Column::contact_torque)[kTurret] != 0;

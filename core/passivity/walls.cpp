@@ -51,8 +51,9 @@ constexpr double kTried = 20000, kTriedStepped = 10000, kCoarseWall = 2000;  // 
 constexpr double kSoftest = 100, kFineSpeed = 0.3;                           // [N/m], [rad/s]
 constexpr double kTriedTick = 0.001;                                         // [s]
 // Of m_n over the square of a time [-]: of a tick, found with 24 arms, failing from 3 on; of a
-// delay that is not reckoned with and of one that is, found with the built-in arm.
-constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2;
+// delay that is not reckoned with and of one that is, without and with steps, found with the
+// built-in arm.
+constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2, kForeseenStepped = 0.08;
 constexpr double kSofter = 1.0 / 25;  // part of a wall that the proxy's inertia may take off it
 // By how much a step of the encoder may change the tip's velocity through the wall [m/s]: of arms
 // below 20 g, which are held by the damping of the hand, and of heavier ones.
@@ -96,7 +97,9 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
     if (by > T / 4) bound(part * tip.mass / (by * by), WallBound::delay);
   };
   late(std::abs(s.at.delay - s.delay_foreseen), kUnforeseen);
-  late(s.at.delay, s.at.delay > s.delay_foreseen ? kUnforeseen : kForeseen);
+  late(s.at.delay, s.at.delay > s.delay_foreseen ? kUnforeseen
+                   : q > 0                       ? kForeseenStepped
+                                                 : kForeseen);
   return wall;
 }
 
