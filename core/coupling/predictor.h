@@ -43,7 +43,7 @@ struct WallMemory {
 // with little memory that builds up from 2.7 on (chains of 3 to 30 joints, of many masses).
 template <int N>
 bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
-  const Factor<N> factor(M);
+  const SymmetricFactor<N> factor(M);
   for (Eigen::Index j = 0; j < b_d.size(); ++j) {
     const Vec<N> unit = Vec<N>::Unit(b_d.size(), j);
     if (T * b_d[j] * Vec<N>(factor.solve(unit))[j] > 1) return true;
@@ -199,7 +199,7 @@ class Predictor {
   // 0.
   static Vec<N> exact_decay(const Mat<N>& M, const Vec<N>& b_d, double T) {
     constexpr double kSlow = 1e-3;  // below: theta = 1/2 + a/12
-    const Factor<N> factor(M);
+    const SymmetricFactor<N> factor(M);
     Vec<N> ahead = b_d;
     for (Eigen::Index j = 0; j < b_d.size(); ++j) {
       const Vec<N> unit = Vec<N>::Unit(b_d.size(), j);

@@ -183,12 +183,11 @@ PROMISES = {
     ],
     "delay": [
         (f"{delay}: {what}", relation, bound)
-        for delay, wanted in (("delay of 0 to 3 ms, known", "eta"),
-                              ("delay of 1 to 3 ms, not known",
-                               "eta less what late damping takes"))
+        for delay, off in (("delay of 0 to 3 ms, known", 0.15),
+                           ("delay of 1 to 3 ms, not known", 0.05))
         for what, relation, bound in (
             ("given to the human in free motion [J]", AT_MOST, 5e-3),
-            (f"inertia felt to 1 Hz off {wanted}, by the larger of eta and 1", AT_MOST, 0.05),
+            ("inertia felt to 1 Hz off what analyze says, by the larger of eta and 1", AT_MOST, off),
             ("softest wall that analyze names [N/m]", AT_LEAST, 100),
             ("given to the human at that wall [J]", AT_MOST, 5e-3),
             ("stiffness felt there off that set, of it", AT_MOST, 0.05))
