@@ -17,15 +17,22 @@ double wall(const TipLimits& l, CouplingKind kind) {
   return l.walls[static_cast<std::size_t>(kind)].stiffness;
 }
 
+// What is named holds, and may be cautious by a factor: up to what `experiment zwidth` finds.
+void expect_named(const Parameters& p, double found) {
+  const double named = wall(limits(p), CouplingKind::predictive);
+  EXPECT_LE(named, found);
+  EXPECT_GE(named, found / 5);
+}
+
 TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   using enum CouplingKind;
   const Parameters exact;
   EXPECT_GE(wall(limits(exact), predictive), 10000);
   Parameters fine, coarse, heavy, late;
   fine.encoder_step = 1e-4;
-  EXPECT_NEAR(wall(limits(fine), predictive), 5000, 100);
+  expect_named(fine, 7400);
   coarse.encoder_step = 5e-4;
-  EXPECT_NEAR(wall(limits(coarse), predictive), 2000, 100);
+  expect_named(coarse, 2000);
   heavy.hand_mass_at_tip = 0.5;
   heavy.hand_mass = 0.05;
   EXPECT_LT(wall(limits(heavy), predictive), wall(limits(exact), predictive));
@@ -34,9 +41,9 @@ TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   late.device_delay = 1;
   EXPECT_LT(wall(limits(late), predictive), 5000);
   late.delay = 1;
-  EXPECT_NEAR(wall(limits(late), predictive), 3500, 100) << "as zwidth finds";
+  expect_named(late, 3500);
   late.encoder_step = 1e-4;
-  EXPECT_NEAR(wall(limits(late), predictive), 2300, 100);
+  expect_named(late, 2300);
   late.device_delay = late.delay = 5;
   EXPECT_LE(wall(limits(late), predictive), 100);
 }
@@ -56,11 +63,14 @@ TEST(TipLimits, ReckonWithTheDeviceAsItWasMeasured) {
   const TipLimits unknown = tip_limits(arm, rest_pose(arm), {}, {});
   EXPECT_EQ(unknown.delay, 0.0016);
   EXPECT_NEAR(unknown.every_hand, limits({}).every_hand * 0.5 / 2.1, 1e-9);
-  EXPECT_NEAR(wall(unknown, CouplingKind::predictive), 1400, 50) << "it does not reckon with it";
+  const double foreseen = wall(unknown, CouplingKind::predictive);
+  EXPECT_LE(foreseen, 1400) << "it does not reckon with it";
+  EXPECT_GE(foreseen, 500);
   Parameters p;
   p.delay = 2;
   const TipLimits known = tip_limits(arm, rest_pose(arm), p, {});
-  EXPECT_NEAR(wall(known, CouplingKind::predictive), 1000, 50);
+  EXPECT_LE(wall(known, CouplingKind::predictive), 1000);
+  EXPECT_GE(wall(known, CouplingKind::predictive), 300);
 }
 
 TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
