@@ -65,8 +65,9 @@ class Ledger {
     for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_);
   }
 
-  // What is stored meanwhile [J]. At first that is nobody's debt.
-  void settle(double E0, double stored) {
+  // What is stored meanwhile [J]. At first that is nobody's debt, nor is it while no torque leaves
+  // for the motors (idle): the hand alone brought it there.
+  void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
     if (fresh_) {
       H_ = std::min(E0, left_);
@@ -74,6 +75,7 @@ class Ledger {
       fresh_ = false;
       return;
     }
+    if (idle) E_.fill(H_ + stored);
     for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
     H_ = E() - stored;
   }

@@ -184,8 +184,10 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
     network_.advance(ledger_.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger_.dx()));
   }
-  ledger_.settle(p.energy, held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
-                               proxy.kinetic_energy() + proxy.contact_potential());
+  ledger_.settle(p.energy,
+                 held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
+                     proxy.kinetic_energy() + proxy.contact_potential(),
+                 in.authority == 0);
   ledger_.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
 }
 
