@@ -223,7 +223,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   // What the prediction foretells of where the torque meets the device is no later than the rest.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
-  solve.authority *= ledger_.torque();
+  const double share = in.b_d_sure.isZero(0) ? 1 : ledger_.torque();  // of a device that is known
+  solve.authority *= share;
   solve.c = c.b_vc + c.k_vc * T / 2;
   solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
   solve.g_f = ledger_.contact();
@@ -278,7 +279,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   }
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
-  return ledger_.torque() * tau1_;
+  return share * tau1_;
 }
 
 // motion: in, a first guess; out, of contacts and motors together. `resumed`: the last tick's
