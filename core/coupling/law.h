@@ -73,6 +73,7 @@ struct LawReport {
   double reserve = std::numeric_limits<double>::infinity();
   double contact_governor = 1;  // share of the contact force that it lets through
   double damping_governor = 1;  // share of the damping that it may cancel
+  double torque_governor = 1;   // share of all torque that leaves
   TickSolve solved = TickSolve::usual;
   int unsettled = 0;  // ticks so far in which the proxy stood still for want of a solution
 };

@@ -32,6 +32,7 @@ class Ledger {
     dy_ = dx_ = Vec<N>::Zero(y.size());
     contact_ = damping_ = torque_ = 1;
     still_.fill(0);
+    on_its_way_ = 0;
     y_ = x_ = y;
   }
 
@@ -63,6 +64,8 @@ class Ledger {
       n = 0;
     }
     for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_);
+    on_its_way_ = 0;
+    for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
   // What is stored meanwhile [J]. At first that is nobody's debt, nor is it while no torque leaves
@@ -75,7 +78,7 @@ class Ledger {
       fresh_ = false;
       return;
     }
-    if (idle) E_.fill(H_ + stored);
+    if (idle) E_.fill(E0 + stored);
     for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
     H_ = E() - stored;
   }
@@ -87,7 +90,7 @@ class Ledger {
     const double leak = f2.cwiseAbs().dot(off) + T * surprise * f2.norm();
     follow(leak > 0 ? H_ / leak : 1, T / 0.05, contact_);
     follow((H_ / E0_ - kNone) / (kWhole - kNone), T / 0.2, damping_);
-    follow((H_ / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
+    follow(((E() - on_its_way_) / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
   }
 
   // [J]; before its first tick what it may start with, infinite if it never had one.
@@ -96,7 +99,8 @@ class Ledger {
   // g_b: share of the damping cancelled and of the inertia added, 0 to 1.
   double damping() const { return damping_; }
   // Share of all torque: what nothing else stops, as a late damper in a stiff hand that does not
-  // damp, ends there.
+  // damp, ends there. It follows what was given, not what is stored: a hand that holds still in a
+  // wall keeps its force.
   double torque() const { return torque_; }
   // How the device moved, along a path within the cells of the readings that does not jump as they
   // do: a jump would be work that no torque has done [rad].
@@ -118,7 +122,7 @@ class Ledger {
   bool fresh_ = true;
   int least_ = 0, most_ = 0;
   std::array<double, kMostDelay + 1> E_{};  // by the delay [J]
-  double E0_ = 0;
+  double E0_ = 0, on_its_way_ = 0;
   double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
   double contact_ = 1, damping_ = 1, torque_ = 1;
   std::array<int, kMaxDof> still_{};

@@ -223,7 +223,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   // What the prediction foretells of where the torque meets the device is no later than the rest.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
-  const double share = in.b_d_sure.isZero(0) ? 1 : ledger_.torque();  // of a device that is known
+  const double share = ledger_.torque();
   solve.authority *= share;
   solve.c = c.b_vc + c.k_vc * T / 2;
   solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
@@ -311,7 +311,8 @@ void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
 
 template <int N>
 LawReport PredictiveLaw::Of<N>::report() const {
-  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(), solved_, unsettled_};
+  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(),
+          ledger_.torque(),  solved_,           unsettled_};
 }
 
 template class PredictiveLaw::Of<3>;

@@ -199,11 +199,11 @@ class Predictor {
   // 0.
   static Vec<N> exact_decay(const Mat<N>& M, const Vec<N>& b_d, double T) {
     constexpr double kSlow = 1e-3;  // below: theta = 1/2 + a/12
-    const SymmetricFactor<N> factor(M);
+    Wide<N> M_inverse = widened<N>(Mat<N>::Identity(M.rows(), M.cols()));
+    SymmetricFactor<N>(M).divide(M_inverse);
     Vec<N> ahead = b_d;
     for (Eigen::Index j = 0; j < b_d.size(); ++j) {
-      const Vec<N> unit = Vec<N>::Unit(b_d.size(), j);
-      const double a = T * b_d[j] * Vec<N>(factor.solve(unit))[j];
+      const double a = T * b_d[j] * M_inverse(j, j);
       ahead[j] = 1 / (a > kSlow ? (a / (1 - exponential(-a)) - 1) / a : 0.5 + a / 12);
     }
     return ahead;

@@ -36,6 +36,7 @@ enum class Column : std::uint8_t {
   alpha,
   governor,
   damping_governor,
+  torque_governor,
   solved,
   unsettled,
   energy_total,
@@ -106,6 +107,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "share of the contact force that the ledger lets through"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
      "share of the damping that the ledger lets the law cancel"},
+    {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
+     "share of all torque that the ledger lets through"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
      "how the predictive law solved the tick: 0 as usual, 1 with motors at their limit, 2 contacts "
      "that did not settle one after the other, 3 not at all: the proxy stood still",

@@ -215,6 +215,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   const LawReport law = coupling_.report(p.kind);
   set(Column::governor, law.contact_governor);
   set(Column::damping_governor, law.damping_governor);
+  set(Column::torque_governor, law.torque_governor);
   set(Column::solved, static_cast<double>(law.solved));
   set(Column::unsettled, static_cast<double>(law.unsettled));
   const double reserve = coupling_.reserve();

@@ -77,6 +77,7 @@ _BREACHES: list[tuple[str, Callable[[dict[str, Array]], None]]] = [
     ("ledger", _nudged("/device/motor_torque", 1e-6)),
     ("governor", _nudged("/coupling/governor", -1e-6)),
     ("damping governor", _nudged("/coupling/damping_governor", -1e-6)),
+    ("torque governor", _nudged("/coupling/torque_governor", -1e-6)),
     ("energy port", _nudged("/energy/port", 1e-9)),
     ("tau1 predictive", _nudged("/device/measured_position", 1e-8)),
     ("tau1 predictive", _nudged("/device/motor_torque", 1e-4)),

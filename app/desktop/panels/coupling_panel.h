@@ -17,6 +17,7 @@ struct CouplingReading {
   double reserve;            // of the ledger [J]
   double contact_governor;   // shares let through, 0 to 1
   double damping_governor;
+  double torque_governor;
   double unsettled;  // ticks without a solution for motors at their limit and contacts together
 };
 

@@ -151,6 +151,7 @@ void Frame::draw_coupling(ScreenRect rect) {
                           at(Column::energy_ledger),
                           at(Column::governor),
                           at(Column::damping_governor),
+                          at(Column::torque_governor),
                           at(Column::unsettled)};
   for (int j = 0; j < layout.dof(); ++j) {
     if (channels.limited(row, j)) reading.limited.push_back(j);

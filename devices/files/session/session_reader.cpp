@@ -33,7 +33,8 @@ std::optional<double> default_of(Column column) {
     case Column::hand_grip:
     case Column::force_wanted:
     case Column::governor:
-    case Column::damping_governor: return 1.0;
+    case Column::damping_governor:
+    case Column::torque_governor: return 1.0;
     case Column::solved:
     case Column::unsettled:
     case Column::force_state:

@@ -135,14 +135,16 @@ def _compare(name: str, mine: Array, theirs: Array, scale: float, what: str) -> 
 
 def _reserve_checks(s: Session, r: Reserve, sure: Array) -> list[Check]:
     """The ledger's network sees the predictor by the inertia where that is: hardly."""
-    reserve, gf, gb = (s[path] for path in ("/energy/ledger", "/coupling/governor",
-                                            "/coupling/damping_governor"))  # fmt: skip
+    reserve, gf, gb, ga = (s[path] for path in (
+        "/energy/ledger", "/coupling/governor", "/coupling/damping_governor",
+        "/coupling/torque_governor"))
     energy, one = _largest(r.reserve, r.stored), "1, not governed"
     rough = 1 if np.all(sure) else _HARDLY
     return [
         _compare("ledger", r.reserve, reserve, rough * energy, f"{rough:g} largest energy [J]"),
         _compare("governor", r.governor[sure], gf[sure], 1, one),
         _compare("damping governor", r.damping_governor, gb, rough, one),
+        _compare("torque governor", r.torque_governor, ga, rough, one),
     ]
 
 

@@ -121,6 +121,7 @@ class _Account:
     def __init__(self) -> None:
         self.delays = range(1)
         self.energy = np.zeros(1)
+        self.on_its_way = 0.0  # what torques that may not have acted yet would put out if all goes on
 
     def expect(self, delays: range) -> None:
         """What is known when other delays become possible is the least."""
@@ -132,6 +133,9 @@ class _Account:
         ticks = k - 1 - np.array(self.delays)
         acted = np.where(ticks[:, None] < 0, 0, sent[np.maximum(ticks, 0)])
         self.energy = self.energy + damped - acted @ along
+        later = k - 1 - np.arange(self.delays[-1])
+        coming = np.where(later[:, None] < 0, 0, sent[np.maximum(later, 0)])
+        self.on_its_way = float(np.sum(np.maximum(0, coming @ along)))
 
     def keep(self, most: float) -> None:
         self.energy = np.minimum(self.energy, most)
@@ -273,7 +277,7 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
         held_back = float(np.clip(h / leak[k], 0, 1)) if leak[k] > 0 else 1.0  # without contact
         gf = _follow(gf, held_back, t / _CONTACT_RECOVERY)
         gb = _follow(gb, _between(h / energy[k], _EMPTY, _FULL), t / _DAMPING_RECOVERY)
-        ga = _follow(ga, _between(h / energy[k], _NOTHING, _EMPTY), t / _DAMPING_RECOVERY)
+        ga = _follow(ga, _between((account.least - account.on_its_way) / energy[k], _NOTHING, _EMPTY), t / _DAMPING_RECOVERY)
         out[:, k] = h, stored, gf, gb, ga
         less = 0.0 if touching[k] else gb * cancelled[k]
         b_w[k] = b_v[k] - less * (damping[k] + b_v[k])

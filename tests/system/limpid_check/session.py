@@ -54,6 +54,7 @@ _LATER = (
     "/device/force_wanted",
     "/coupling/governor",
     "/coupling/damping_governor",
+    "/coupling/torque_governor",
     "/energy/port",
     "/energy/ledger",
     "/energy/contact_potential",
