@@ -12,9 +12,17 @@
 
 #include "core/math/sizes.h"
 #include "core/tick/parameters.h"
-#include "devices/hand_input.h"
+#include "core/tick/safety.h"
 
 namespace limpid {
+
+// The hand that holds a simulated device, over a tick: it goes on from where it wanted the tip a
+// tick ago to `target`.
+struct HandInput {
+  Vec3 target = Vec3::Zero();        // [m]
+  double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
+  std::span<const double> torque{};  // pushed on the joints besides [N m]; empty: none
+};
 
 // What it is; does not change while it is connected.
 struct DeviceTraits {
@@ -74,6 +82,44 @@ inline bool await_reading(Device& device, std::chrono::milliseconds longest) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return reading.count > 0;
+}
+
+// What a device's buttons ask for.
+
+// A button counts when it goes down after it was seen up: one that is held while the device is
+// plugged in asks for nothing.
+class ButtonPresses {
+ public:
+  void forget() { down_ = ~0u; }
+
+  // Those that went down since the last call; one bit each, as in DeviceReading.
+  std::uint32_t take(std::uint32_t now) {
+    const std::uint32_t pressed = now & ~down_;
+    down_ = now;
+    return pressed;
+  }
+
+ private:
+  std::uint32_t down_ = ~0u;
+};
+
+// What a reading says of a device's health, for whoever judges whether its motors may push.
+
+// `here`: read() said that the device is there. `dt`: since the reading before [s]. `silence`:
+// since its watcher last answered [s]. `lapses`: how many of the device's are known of; none: all
+// are news.
+inline DeviceHealth health_of(const DeviceReading& reading, bool here, bool guarded, double dt,
+                              double silence, std::optional<std::uint32_t>& lapses) {
+  DeviceHealth health{.guarded = guarded,
+                      .hand = reading.hand,
+                      .fault = reading.fault,
+                      .lost = !here,
+                      .age = reading.age,
+                      .gap = dt > SafetyLimits::kGap || (here && lapses != reading.lapses),
+                      .silence = silence};
+  if (reading.count == 0) health.age = SafetyLimits::kStaleReading * 2;
+  if (here) lapses = reading.lapses;
+  return health;
 }
 
 }  // namespace limpid

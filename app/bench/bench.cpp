@@ -2,20 +2,75 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <linux/perf_event.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+#include <sys/utsname.h>
+#include <unistd.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <ctime>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "app/base/version.h"
-#include "app/bench/instruction_counter.h"
 #include "app/bench/mesh_stroke.h"
 #include "app/bench/pressed.h"
 #include "app/bench/recorded_run.h"
+#include "app/live/rtkit.h"
 #include "core/realtime/clock.h"
+#include "core/realtime/realtime.h"
 
 namespace limpid::bench {
+
+double Samples::quantile(double share) const {
+  std::vector<double> sorted = values_;
+  const auto last = static_cast<double>(sorted.size() - 1);
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::floor(share * last));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+namespace {
+
+int open_counter() {
+  perf_event_attr event{};
+  event.type = PERF_TYPE_HARDWARE;
+  event.size = sizeof event;
+  event.config = PERF_COUNT_HW_INSTRUCTIONS;
+  event.disabled = 1;
+  event.exclude_kernel = 1;
+  event.exclude_hv = 1;
+  return static_cast<int>(syscall(SYS_perf_event_open, &event, 0, -1, -1, PERF_FLAG_FD_CLOEXEC));
+}
+
+}  // namespace
+
+InstructionCounter::InstructionCounter() : file_(open_counter()) {}
+
+InstructionCounter::~InstructionCounter() {
+  if (counts()) close(file_);
+}
+
+void InstructionCounter::start() const {
+  if (counts()) ioctl(file_, PERF_EVENT_IOC_ENABLE, 0);
+}
+
+void InstructionCounter::stop() const {
+  if (counts()) ioctl(file_, PERF_EVENT_IOC_DISABLE, 0);
+}
+
+std::optional<std::uint64_t> InstructionCounter::total() const {
+  std::uint64_t count = 0;
+  if (!counts() || read(file_, &count, sizeof count) != sizeof count) return std::nullopt;
+  return count;
+}
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -220,6 +275,127 @@ Report measure(const Wishes& wishes, const std::function<void(double, const std:
   const double took = in_seconds(time.now() - began) - asleep;
   if (took > 0.1) report.share = std::min(1.0, (processor_seconds() - worked) / took);
   return report;
+}
+
+namespace {
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+// In a thread that ends at once: this one stays as it is.
+std::string granted() {
+  std::string said;
+  std::thread([&said] { said = become_realtime(by_rtkit()).explanation; }).join();
+  return said.substr(0, said.find(';'));
+}
+
+}  // namespace
+
+Machine this_machine() {
+  utsname name{};
+  uname(&name);
+  return {
+    processor(), static_cast<int>(std::thread::hardware_concurrency()),
+        fmt::format("{} {} {}", name.sysname, name.release, name.machine),
+#if defined(__clang__)
+        fmt::format("clang {}", __clang_version__),
+#else
+        fmt::format("gcc {}", __VERSION__),
+#endif
+        granted(), InstructionCounter().counts()
+  };
+}
+
+namespace {
+
+nlohmann::ordered_json json_of(const Machine& m) {
+  return {{"processor", m.processor}, {"processors", m.processors}, {"kernel", m.kernel},
+          {"compiler", m.compiler},   {"haptic_thread", m.threads}, {"counts", m.counts}};
+}
+
+nlohmann::ordered_json json_of(const Line& line) {
+  nlohmann::ordered_json json{{"id", line.id},         {"what", line.what}, {"unit", line.unit},
+                              {"median", line.median}, {"p99", line.p99},   {"p99.9", line.p999},
+                              {"max", line.largest}};
+  if (line.ratio) {
+    json["of"] = line.of;
+    json["ratio"] = *line.ratio;
+  }
+  if (line.instructions) json["instructions"] = *line.instructions;
+  if (line.real_time) json["real_time"] = *line.real_time;
+  return json;
+}
+
+// In us as far as that can be read.
+std::string time_text(double us) {
+  if (us < 9.995) return fmt::format("{:.2f}", us);
+  if (us < 9999) return fmt::format("{:.{}f}", us, us < 99.95 ? 1 : 0);
+  return us < 999.5e3 ? fmt::format("{:.3g} ms", 1e-3 * us) : fmt::format("{:.3g} s", 1e-6 * us);
+}
+
+}  // namespace
+
+Line line_of(std::string id, std::string what, const Samples& times, const Line* yardstick) {
+  Line line{std::move(id),       std::move(what),      "us",
+            times.quantile(0.5), times.quantile(0.99), times.quantile(0.999),
+            times.quantile(1)};
+  if (yardstick != nullptr) {
+    line.of = yardstick->id;
+    line.ratio = line.median / yardstick->median;
+  }
+  return line;
+}
+
+std::string table_head() {
+  return fmt::format("{:<46}{:>9}{:>9}{:>9}{:>9}{:>8}{:>14}\n", "times in us", "median", "p99",
+                     "p99.9", "max", "ratio", "instructions");
+}
+
+std::string table_line(const Line& line) {
+  const bool many = line.largest > line.median || line.p99 > line.median;  // or only one
+  const auto beside = [&](double us) { return many ? time_text(us) : std::string(); };
+  return fmt::format("{:<46}{:>9}{:>9}{:>9}{:>9}{:>8}{:>14}\n", line.what, time_text(line.median),
+                     beside(line.p99), beside(line.p999), beside(line.largest),
+                     line.ratio ? fmt::format("{:.2f}", *line.ratio) : "",
+                     line.instructions ? fmt::format("{:.0f}", *line.instructions)
+                     : line.real_time  ? fmt::format("{:.0f} x life", *line.real_time)
+                                       : "");
+}
+
+std::string text_of(const Report& report) {
+  const Machine& m = report.machine;
+  std::string text = fmt::format("limpid {}, {}\n{}, {} of them; {}; {}\nhaptic thread: {}\n\n{}",
+                                 report.program, report.date, m.processor, m.processors, m.kernel,
+                                 m.compiler, m.threads, table_head());
+  for (const Line& line : report.lines) text += table_line(line);
+  text +=
+      "\nratio: of the medians, to the yardstick above, for meshes to the nearest point found by "
+      "Embree. Medians "
+      "and p99 are the\nprogram's; p99.9 and max are the machine's.\n";
+  if (!m.counts) text += "Instructions cannot be counted here (perf_event_open).\n";
+  if (report.share < 0.95) {
+    text += fmt::format(
+        "The machine was busy: this had {:.0f} % of a processor. Ratios hold, times do not.\n",
+        100 * report.share);
+  }
+  return text;
+}
+
+std::string json_of(const Report& report) {
+  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  for (const Line& line : report.lines) lines.push_back(json_of(line));
+  const nlohmann::ordered_json all{{"limpid", report.program},
+                                   {"date", report.date},
+                                   {"machine", json_of(report.machine)},
+                                   {"share", report.share},
+                                   {"lines", lines}};
+  return all.dump(2) + "\n";
 }
 
 }  // namespace limpid::bench

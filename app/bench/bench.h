@@ -1,13 +1,70 @@
-// How fast the parts of the program are here, in times, ratios and instructions.
+// Times of many runs of the same thing, and what they amount to.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include "app/bench/samples.h"
+namespace limpid::bench {
+
+class Samples {
+ public:
+  explicit Samples(std::size_t expected) { values_.reserve(expected); }
+
+  // Runs `work` once and keeps how long it took [us].
+  template <class Work>
+  void time(Work&& work) {
+    const auto began = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - began;
+    add(took.count());
+  }
+  void add(double value) { values_.push_back(value); }
+
+  // What a share of all values stays below, 0.5 the median, 1 the largest; there must be one.
+  double quantile(double share) const;
+
+ private:
+  std::vector<double> values_;
+};
+
+}  // namespace limpid::bench
+// Counts the instructions of the calling thread, where processor and system let one.
+
+namespace limpid::bench {
+
+class InstructionCounter {
+ public:
+  InstructionCounter();
+  InstructionCounter(const InstructionCounter&) = delete;
+  InstructionCounter& operator=(const InstructionCounter&) = delete;
+  ~InstructionCounter();
+
+  bool counts() const { return file_ >= 0; }
+  // Of `work`, without what the system does for it.
+  template <class Work>
+  void count(Work&& work) {
+    start();
+    work();
+    stop();
+  }
+  // All so far; nothing where they cannot be counted.
+  std::optional<std::uint64_t> total() const;
+
+ private:
+  void start() const;
+  void stop() const;
+
+  int file_;
+};
+
+}  // namespace limpid::bench
+// How fast the parts of the program are here, in times, ratios and instructions.
 
 namespace limpid::bench {
 

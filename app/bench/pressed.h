@@ -6,7 +6,7 @@
 
 #include "app/bench/bench_arm.h"
 #include "core/tick/tick.h"
-#include "devices/virtual_arm.h"
+#include "devices/simulated/virtual_arm.h"
 
 namespace limpid::bench {
 

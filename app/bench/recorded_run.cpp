@@ -7,12 +7,12 @@
 #include <ctime>
 #include <filesystem>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/simulate.h"
-#include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid::bench {
 namespace {

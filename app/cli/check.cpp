@@ -14,8 +14,8 @@
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/tick/safety_limits.h"
-#include "devices/files/file_error.h"
 #include "devices/files/scene/model_units.h"
+#include "devices/files/text_file.h"
 #include "render/model/model_file.h"
 
 namespace limpid {

@@ -7,7 +7,7 @@
 #include "app/cli/options.h"
 #include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
-#include "app/sweep/open_table.h"
+#include "app/study/sweep_table.h"
 
 namespace limpid {
 namespace {

@@ -33,7 +33,7 @@ Command declare_devices(CLI::App& app) {
   command->footer(
       "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "
-      "(devices/hid/protocols/raw_protocol.h),\nalso programs that do so on a socket, "
+      "(devices/hid/raw_protocol.h),\nalso programs that do so on a socket, "
       "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
       "a "
       "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "

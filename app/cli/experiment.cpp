@@ -10,8 +10,8 @@
 #include "app/cli/options.h"
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
-#include "app/experiments/live.h"
-#include "core/realtime/memory_lock.h"
+#include "app/study/live.h"
+#include "core/realtime/realtime.h"
 #include "devices/files/scene/scene_writer.h"
 
 namespace limpid {

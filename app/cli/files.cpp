@@ -7,9 +7,8 @@
 #include <filesystem>
 
 #include "app/cli/commands.h"
-#include "app/run/force_tally.h"
 #include "app/run/summary.h"
-#include "app/story/told_steps.h"
+#include "app/story/tell.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"

@@ -1,7 +1,7 @@
 // What was found of a device, as tables.
 #pragma once
 
-#include "app/identify/findings.h"
+#include "app/study/identification.h"
 
 namespace limpid {
 

@@ -17,8 +17,8 @@
 #include "app/cli/prompt.h"
 #include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
-#include "app/identify/identify_report.h"
-#include "app/identify/simulated_bench.h"
+#include "app/study/identification.h"
+#include "app/study/identify_report.h"
 
 namespace limpid {
 namespace {

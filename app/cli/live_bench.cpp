@@ -12,7 +12,7 @@
 #include "app/live/rtkit.h"
 #include "app/run/own_world.h"
 #include "app/run/replay.h"
-#include "devices/files/place.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid {

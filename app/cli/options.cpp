@@ -8,16 +8,16 @@
 #include <cmath>
 #include <limits>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/device/device_hub.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "app/run/reach_check.h"
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {

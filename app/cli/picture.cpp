@@ -1,7 +1,6 @@
 #include "app/cli/picture.h"
 
-#include "app/base/assets.h"
-#include "app/view/mesh_pictures.h"
+#include "app/base/folders.h"
 #include "app/view/row_view.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"

@@ -18,7 +18,7 @@
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/summary.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 
 namespace limpid {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/cli/complete.h"
 #include "app/cli/manual.h"
 #include "app/desktop/shell/icon.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 #include "render/gl/offscreen.h"
 
 namespace limpid {

@@ -11,11 +11,10 @@
 #include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/cli/sweep_point.h"
-#include "app/sweep/map_text.h"
-#include "app/sweep/ranks.h"
-#include "app/sweep/slurm.h"
-#include "app/sweep/sweep_figure.h"
-#include "app/sweep/sweep_work.h"
+#include "app/study/slurm.h"
+#include "app/study/sweep_figure.h"
+#include "app/study/sweep_map.h"
+#include "app/study/sweep_work.h"
 
 namespace limpid {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/cli/options.h"
-#include "app/sweep/record_point.h"
+#include "app/study/record_point.h"
 
 namespace limpid {
 

@@ -1,7 +1,7 @@
 // A point of a sweep on its own.
 #pragma once
 
-#include "app/sweep/sweep_plan.h"
+#include "app/study/sweep_plan.h"
 
 namespace limpid {
 

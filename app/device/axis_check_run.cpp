@@ -7,8 +7,8 @@
 
 #include "core/dynamics/arm.h"
 #include "core/realtime/haptic_thread.h"
+#include "core/tick/motor_stage.h"
 #include "core/tick/safety.h"
-#include "core/tick/torque_limits.h"
 
 namespace limpid {
 namespace {

@@ -8,9 +8,8 @@
 #include <span>
 #include <sstream>
 
-#include "app/base/user_dirs.h"
-#include "devices/files/file_error.h"
-#include "devices/files/file_update.h"
+#include "app/base/folders.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 

@@ -11,7 +11,7 @@
 #include "core/tick/safety_limits.h"
 #include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
-#include "devices/hid/protocols/pid_joystick.h"
+#include "devices/hid/pid_joystick.h"
 
 namespace limpid {
 

@@ -9,13 +9,12 @@
 #include <iterator>
 #include <optional>
 
-#include "app/base/assets.h"
-#include "app/base/user_dirs.h"
-#include "devices/files/arm/urdf_file.h"
+#include "app/base/folders.h"
 #include "devices/files/atomic_file.h"
-#include "devices/files/file_error.h"
-#include "devices/hid/hid_error.h"
-#include "devices/registry/inverse_devices.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
+#include "devices/hid/device_list.h"
+#include "devices/hid/hid_transport.h"
 
 namespace limpid {
 namespace {

@@ -10,8 +10,8 @@
 #include "app/device/axis_check_run.h"
 #include "app/device/device_book.h"
 #include "core/dynamics/arm_description.h"
-#include "devices/hid/hid_error.h"
-#include "devices/registry/device_list.h"
+#include "devices/hid/device_list.h"
+#include "devices/hid/hid_transport.h"
 
 namespace limpid {
 

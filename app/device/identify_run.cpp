@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "core/realtime/haptic_thread.h"
-#include "devices/reading_health.h"
+#include "devices/device.h"
 
 namespace limpid {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/doctor/doctor.h"
-#include "devices/registry/device_list.h"
+#include "devices/hid/device_list.h"
 
 namespace limpid {
 namespace {

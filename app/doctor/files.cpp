@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "app/base/assets.h"
-#include "app/base/user_dirs.h"
+#include "app/base/folders.h"
 #include "app/doctor/doctor.h"
 
 namespace limpid {

@@ -1,4 +1,4 @@
-// The video of a recorded session.
+// One picture of a video: the 3D picture, the window's plots below it and a caption above.
 #pragma once
 
 #include <atomic>
@@ -8,13 +8,68 @@
 #include <string>
 #include <vector>
 
-#include "app/film/film_frame.h"
+#include "app/desktop/base/stage.h"
+#include "app/film/video_file.h"
+#include "app/plot/plot_frame.h"
 #include "app/story/story.h"
-#include "app/video/video_file.h"
+#include "app/style/imgui_gl.h"
 #include "devices/files/session/session.h"
+#include "render/camera.h"
+#include "render/gl/offscreen.h"
 
 namespace limpid {
 
+struct FilmLook {
+  int width = 1280, height = 720;  // [px]
+  bool plots = true;               // left out where there is no room for them
+  bool overlaid = false;           // a twin's two runs in one picture
+  double text_scale = 0;           // 1 is the window's on an ordinary screen; 0: by the size
+  Theme theme = Theme::dark;
+};
+
+struct FilmCaption {
+  std::string time;       // "12.34 s"
+  std::string text;       // what is in force
+  std::string aside;      // at the right, if there is room
+  std::string told = {};  // over the picture, in lines as they fit
+  std::string sign = {};  // there, at the top: what must not be missed
+};
+
+// Draws without a display, in an OpenGL context of its own: make it before the stages it draws, on
+// the thread that draws them. ImGui being what it is, not beside a window in the same program.
+class FilmFrame {
+ public:
+  // Errors: std::runtime_error where OpenGL cannot be had.
+  explicit FilmFrame(const FilmLook& look);
+
+  // `view` in the stage's picture, and of its plots what its history holds by now, with a line at
+  // the newest row; `elapsed` since the last picture [s]. With a second run `beside` it, each has
+  // half of the picture and the name that the stage gives it, unless they are overlaid. Four bytes
+  // a pixel, top row first.
+  std::vector<unsigned char> draw(Stage& stage, ViewState view, const Camera& camera,
+                                  const FilmCaption& caption, double elapsed,
+                                  std::optional<ViewState> beside = {});
+  // The viewport that the camera should expect [px], of one run or of a twin's two.
+  ImVec2 viewport(bool twin) const;
+
+ private:
+  struct Places {
+    ScreenRect caption, picture, plots;
+  };
+  Places lay_out() const;
+  void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
+                    const Camera& camera, const ViewState* beside) const;
+  void draw_legend(const ScreenRect& rect, const RunNames& overlaid) const;
+  void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
+  void draw_plots(const ScreenRect& rect, Stage& stage) const;
+
+  FilmLook look_;
+  float scale_;
+  OffscreenContext context_;
+  ImGuiGl imgui_;
+};
+
+// The video of a recorded session.
 struct FilmOrder {
   std::filesystem::path out = {};
   bool force = false;

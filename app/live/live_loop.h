@@ -13,9 +13,8 @@
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
 #include "core/realtime/triple_buffer.h"
-#include "devices/hands/guided_hand.h"
-#include "devices/hands/mouse_hand.h"
-#include "devices/rig/rig.h"
+#include "devices/simulated/hands.h"
+#include "devices/simulated/rig.h"
 
 namespace limpid {
 

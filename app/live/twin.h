@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 
 namespace limpid {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/plot/axis_map.h"
+#include "app/plot/axis.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
 

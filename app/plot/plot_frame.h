@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/plot/autoscale.h"
+#include "app/plot/axis.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
 #include "app/plot/trace.h"

@@ -1,3 +1,4 @@
+// Grid and labels of a plot's axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,11 +7,300 @@
 #include <optional>
 #include <utility>
 
-#include "app/plot/band_stretches.h"
+#include "app/plot/axis.h"
 #include "app/plot/plot_frame.h"
+#include "app/plot/trace.h"
 #include "app/style/ticks.h"
 
 namespace limpid {
+
+namespace {
+
+void level_line(const PlotFrame& frame, float y, ImU32 rgba, float thickness = 1) {
+  const float at = std::round(y);
+  frame.list.AddRectFilled({frame.area.min.x, at}, {frame.area.max.x, at + thickness}, rgba);
+}
+
+void upright_line(const PlotFrame& frame, float x, ImU32 rgba, float thickness = 1) {
+  const float at = std::round(x);
+  frame.list.AddRectFilled({at, frame.area.min.y}, {at + thickness, frame.area.max.y}, rgba);
+}
+
+void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
+  const float text_height = text_size(Face::small, "0").y;
+  const auto most = static_cast<double>(frame.area.height() / (2.0f * text_height));
+  for (const AxisPlace& place : axis_places(spec.y, frame.y, most)) {
+    const float y = frame.y_of(place.value);
+    level_line(frame, y, colour(frame.palette.grid));
+    const ImVec2 size = text_size(Face::small, place.label);
+    // Pushed inwards at the ends rather than cut off or left out.
+    const float middle = y - 0.5f * size.y;
+    const float top = std::clamp(middle, frame.area.min.y - 3, frame.area.max.y + 3 - size.y);
+    if (std::abs(top - middle) > 0.6f * size.y) continue;
+    draw_text(frame.list, Face::small, {frame.area.min.x - size.x - 6 * frame.scale, top},
+              frame.palette.muted, place.label);
+  }
+}
+
+// Labels under the area, from the left; pushed inwards at the ends rather than cut off or left out.
+void draw_place_below(const PlotFrame& frame, double at, const std::string& label, float right) {
+  const float x = frame.x_of(at);
+  upright_line(frame, x, colour(frame.palette.grid));
+  const ImVec2 size = text_size(Face::small, label);
+  const float left = std::clamp(x - 0.5f * size.x, frame.area.min.x - 0.3f * size.x,
+                                std::max(frame.area.min.x - 0.3f * size.x, right - size.x));
+  if (std::abs(left + 0.5f * size.x - x) > 0.4f * size.x) return;
+  draw_text(frame.list, Face::small, {left, frame.area.max.y + 4 * frame.scale},
+            frame.palette.muted, label);
+}
+
+void draw_time_axis(const PlotFrame& frame, double time_offset) {
+  const double low = frame.window.start() - time_offset;
+  const double high = frame.window.stop() - time_offset;
+  const bool clock = std::max(std::abs(low), std::abs(high)) >= 60;
+  const double step_guess = nice_step(high - low, 8);
+  const ImVec2 widest = text_size(Face::small, time_text(-std::abs(high), step_guess, clock));
+  const int most = std::max(1, static_cast<int>(frame.area.width() / (1.9f * widest.x)));
+  const Ticks ticks = time_ticks(low, high, most);
+  for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
+    draw_place_below(frame, ticks.at(i) + time_offset, time_text(ticks.at(i), ticks.step, clock),
+                     frame.outer.max.x);
+  }
+}
+
+// What the axis shows, at its right end; its numbers leave room for that.
+void draw_across_axis(const PlotFrame& frame, const PlotSpec& spec) {
+  const std::string unit = unit_text(spec.x, frame.x);
+  const std::string name = spec.x.label.empty() ? unit : spec.x.label + "  " + unit;
+  const float room = 0.75f * frame.area.width();
+  const float wide = std::min(room, text_size(Face::small, name).x);
+  const float left = frame.area.max.x - wide;
+  draw_clipped_text(frame.list, Face::small, {left, frame.area.max.y + 4 * frame.scale},
+                    frame.palette.text, name, room);
+  const float widest = text_size(Face::small, "\u22120.00").x;
+  const auto most = static_cast<double>(frame.area.width() / (1.6f * widest));
+  for (const AxisPlace& place : axis_places(spec.x, frame.x, most)) {
+    draw_place_below(frame, place.value, place.label, left - 4 * frame.scale);
+  }
+}
+
+}  // namespace
+
+void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset) {
+  if (spec.kind == PlotKind::time) {
+    draw_time_axis(frame, time_offset);
+  } else {
+    draw_across_axis(frame, spec);
+  }
+  draw_value_axis(frame, spec);
+  const float zero = frame.y_of(0);
+  if (spec.y.zero_line && !frame.y.log && zero >= frame.area.min.y && zero <= frame.area.max.y) {
+    level_line(frame, zero, colour(frame.palette.axis));
+  }
+  const float left = frame.x_of(0);
+  if (spec.kind == PlotKind::cross && spec.x.zero_line && left >= frame.area.min.x &&
+      left <= frame.area.max.x) {
+    upright_line(frame, left, colour(frame.palette.axis));
+  }
+}
+
+namespace {
+
+constexpr float kThickness = 2;             // [px] at scale 1
+constexpr float kDotsFrom = 7;              // samples further apart than this get dots [px]
+constexpr float kTolerance = 0.2f;          // by which points may be left out [px]
+constexpr float kTallFrom = 6;              // height that neighbouring columns share [px]
+constexpr std::size_t kGroup = 12;          // columns looked at together
+constexpr std::size_t kLongestPath = 2000;  // what ImGui counts in 16 bits
+constexpr float kSoftUpTo = 2.5f;           // wider bands need no soft rim [px]
+
+// A point on the screen with the upper and lower edge of the curve there.
+struct ScreenPoint {
+  float x;
+  float top;
+  float bottom;
+};
+
+// Slopes a line from an anchor may have to pass all points so far closely.
+class Cone {
+ public:
+  bool admits(float dx, float dy) const { return dy >= low_ * dx && dy <= high_ * dx; }
+  void narrow(float dx, float dy) {
+    low_ = std::max(low_, (dy - kTolerance) / dx);
+    high_ = std::min(high_, (dy + kTolerance) / dx);
+  }
+
+ private:
+  float low_ = -1e9f;
+  float high_ = 1e9f;
+};
+
+// Leaves out points that lie on the line between their neighbours: smooth curves need a tenth of
+// them, and triangles are what drawing in software costs.
+void simplify(std::vector<ScreenPoint>& points) {
+  if (points.size() < 3) return;
+  std::size_t kept = 1;
+  ScreenPoint anchor = points.front();
+  ScreenPoint last = points[1];
+  Cone top;
+  Cone bottom;
+  const auto narrow = [&](const ScreenPoint& p) {
+    top.narrow(p.x - anchor.x, p.top - anchor.top);
+    bottom.narrow(p.x - anchor.x, p.bottom - anchor.bottom);
+  };
+  narrow(last);
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const ScreenPoint p = points[i];
+    const float dx = p.x - anchor.x;
+    if (!top.admits(dx, p.top - anchor.top) || !bottom.admits(dx, p.bottom - anchor.bottom)) {
+      points[kept++] = anchor = last;
+      top = bottom = Cone();
+    }
+    narrow(p);
+    last = p;
+  }
+  points[kept++] = last;
+  points.resize(kept);
+}
+
+// Four rows of vertices, one column for each point, and the quads between them.
+class Mesh {
+ public:
+  // `quads`: at most so many will be added.
+  Mesh(ImDrawList& list, int points, int quads)
+      : list_(list), white_(ImGui::GetFontTexUvWhitePixel()), unused_(6 * quads) {
+    list.PrimReserve(unused_, 4 * points);
+    base_ = list._VtxCurrentIdx;
+  }
+  Mesh(const Mesh&) = delete;
+  Mesh& operator=(const Mesh&) = delete;
+  ~Mesh() { list_.PrimUnreserve(unused_, 0); }
+
+  void column(float x, std::array<float, 4> y, ImU32 outer, ImU32 inner) {
+    list_.PrimWriteVtx({x, y[0]}, white_, outer);
+    list_.PrimWriteVtx({x, y[1]}, white_, inner);
+    list_.PrimWriteVtx({x, y[2]}, white_, inner);
+    list_.PrimWriteVtx({x, y[3]}, white_, outer);
+  }
+
+  // Between rows `row` and `row` + 1 from one column to another.
+  void quad(std::size_t from, std::size_t to, unsigned row) {
+    const unsigned a = base_ + 4 * static_cast<unsigned>(from) + row;
+    const unsigned b = base_ + 4 * static_cast<unsigned>(to) + row;
+    for (const unsigned index : {a, a + 1, b + 1, a, b + 1, b}) {
+      list_.PrimWriteIdx(static_cast<ImDrawIdx>(index));
+    }
+    unused_ -= 6;
+  }
+
+ private:
+  ImDrawList& list_;
+  ImVec2 white_;
+  int unused_;
+  unsigned base_ = 0;
+};
+
+// A soft rim where the band is thin, like that of an antialiased line; none where it is as wide as
+// the signal's noise.
+void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
+  const ImU32 clear = solid & ~IM_COL32_A_MASK;
+  const auto count = static_cast<int>(points.size());
+  Mesh mesh(list, count, 3 * (count - 1));
+  for (const ScreenPoint& p : points) {
+    mesh.column(p.x, {p.top - 1, p.top, p.bottom, p.bottom + 1}, clear, solid);
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    mesh.quad(i, i + 1, 1);
+    const ScreenPoint& a = points[i];
+    const ScreenPoint& b = points[i + 1];
+    if (std::min(a.bottom - a.top, b.bottom - b.top) > kSoftUpTo) continue;
+    mesh.quad(i, i + 1, 0);
+    mesh.quad(i, i + 1, 2);
+  }
+}
+
+// What all columns have in common is one rectangle: filling it in pieces a pixel wide is what
+// takes a software renderer long.
+void draw_tall(ImDrawList& list, std::span<const ScreenPoint> points, float core_top,
+               float core_bottom, ImU32 solid) {
+  const auto count = static_cast<int>(points.size());
+  Mesh mesh(list, count, 2 * (count - 1) + 1);
+  for (const ScreenPoint& p : points) {
+    mesh.column(p.x, {p.top, core_top, core_bottom, p.bottom}, solid, solid);
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    mesh.quad(i, i + 1, 0);
+    mesh.quad(i, i + 1, 2);
+  }
+  mesh.quad(0, points.size() - 1, 1);
+}
+
+void draw_band(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
+  if (points.size() == 1) {
+    const ScreenPoint& p = points.front();
+    list.AddRectFilled({p.x - 0.5f, p.top - 0.5f}, {p.x + 0.5f, p.bottom + 0.5f}, solid);
+    return;
+  }
+  for (std::size_t from = 0; from + 1 < points.size(); from += kGroup) {
+    const auto group = points.subspan(from, std::min(kGroup + 1, points.size() - from));
+    const float top = std::ranges::max(group, {}, &ScreenPoint::top).top;
+    const float bottom = std::ranges::min(group, {}, &ScreenPoint::bottom).bottom;
+    if (bottom - top > kTallFrom) {
+      draw_tall(list, group, top, bottom, solid);
+    } else {
+      draw_thin(list, group, solid);
+    }
+  }
+}
+
+void draw_line(const PlotFrame& frame, std::span<const ScreenPoint> points, ImU32 solid,
+               float thickness) {
+  for (std::size_t from = 0; from + 1 < points.size(); from += kLongestPath) {
+    const auto part = points.subspan(from, std::min(kLongestPath + 1, points.size() - from));
+    for (const ScreenPoint& p : part) frame.list.PathLineTo({p.x, p.top});
+    // Whole pixels let ImGui draw a line with a third of the triangles.
+    frame.list.PathStroke(solid, 0, std::round(thickness));
+  }
+}
+
+void draw_dots(const PlotFrame& frame, std::span<const TracePoint> points, ImU32 solid) {
+  for (const TracePoint& p : points) {
+    frame.list.AddCircleFilled({frame.area.min.x + p.x, frame.y_of(p.low)}, 2.2f * frame.scale,
+                               solid, 8);
+  }
+}
+
+bool far_apart(const PlotFrame& frame, std::span<const TracePoint> points) {
+  if (points.size() < 2) return true;
+  const float apart = (points.back().x - points.front().x) / static_cast<float>(points.size() - 1);
+  return apart >= kDotsFrom * frame.scale;
+}
+
+}  // namespace
+
+void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis) {
+  const float thickness = kThickness * frame.scale * std::max(1.0f, emphasis);
+  const float half = trace.band ? 0.5f * (thickness - 1) : 0;
+  const float alpha = std::min(1.0f, emphasis);
+  std::vector<ScreenPoint> on_screen;
+  for (const TraceRun& run : trace.runs) {
+    const auto points = std::span(trace.points).subspan(run.first, run.count);
+    on_screen.clear();
+    for (const TracePoint& p : points) {
+      on_screen.push_back(
+          {frame.area.min.x + p.x, frame.y_of(p.high) - half, frame.y_of(p.low) + half});
+    }
+    if (!trace.wanders) simplify(on_screen);
+    const ImU32 solid = colour(rgb, alpha);
+    if (trace.band) {
+      draw_band(frame.list, on_screen, solid);
+    } else {
+      draw_line(frame, on_screen, solid, thickness);
+      if (!trace.wanders && far_apart(frame, points)) draw_dots(frame, points, solid);
+    }
+  }
+}
+
 namespace {
 
 void dashed_line(const PlotFrame& frame, ImVec2 from, ImVec2 to, ImU32 rgba, float dash) {

@@ -4,6 +4,29 @@
 #include <cmath>
 
 namespace limpid {
+
+std::vector<BandStretch> band_stretches(const Band& band, const History& history,
+                                        const std::vector<SampleIndex>& rows) {
+  std::vector<BandStretch> stretches;
+  if (history.empty() || rows.size() < 2) return stretches;
+  const Extent all = history.extent(band.channel, rows.front(), rows.back());
+  if (!(all.low < all.high) && !band.names.front().empty()) return stretches;
+  const auto most = static_cast<int>(band.names.size()) - 1;
+  const auto at = [&](std::size_t pixel) {
+    if (rows[pixel] >= rows[pixel + 1]) return -1;
+    const Extent said = history.extent(band.channel, rows[pixel], rows[pixel + 1]);
+    return said.empty() ? -1 : std::clamp(static_cast<int>(std::lround(said.high)), 0, most);
+  };
+  for (std::size_t pixel = 0; pixel + 1 < rows.size(); ++pixel) {
+    const int now = at(pixel);
+    if (now < 0) continue;
+    const std::size_t from = pixel;
+    while (pixel + 2 < rows.size() && at(pixel + 1) == now) ++pixel;
+    stretches.push_back({now, from, pixel + 1});
+  }
+  return stretches;
+}
+
 namespace {
 
 // Extends two neighbouring bands to the middle of the step between them: no holes where steep.
@@ -82,6 +105,68 @@ void make_trace(const History& history, const Curve& curve, const PixelWindow& w
   } else {
     trace_samples(history, curve, window, rows, pen);
   }
+}
+
+// Traces over anything but time.
+
+namespace {
+
+constexpr double kApart = 0.5;  // points closer than that are one [pixel]
+
+}  // namespace
+
+void make_cross_trace(const History& history, const Curve& curve, SampleIndex from, SampleIndex to,
+                      const TraceArea& area, Trace& trace) {
+  TracePen pen(trace);
+  trace.wanders = true;
+  double last_x = 0, last_y = 0;
+  for (SampleIndex row = from; row < to; ++row) {
+    const float across = history.value(curve.across, row);
+    const float value = history.value(curve.channel, row);
+    const bool there = std::isfinite(across) && std::isfinite(value);
+    if (!there || history.gap_before(row)) pen.lift();
+    if (!there) continue;
+    const double x = area.x.part(static_cast<double>(across)) * area.width;
+    const double y = area.y.part(static_cast<double>(value)) * area.height;
+    if (pen.down() && std::max(std::abs(x - last_x), std::abs(y - last_y)) < kApart) continue;
+    last_x = x;
+    last_y = y;
+    pen.put({static_cast<float>(std::clamp(x, -1e5, 1e5)), value, value});
+  }
+}
+
+void make_spectrum_trace(const AmplitudeSpectrum& spectrum, const TraceArea& area, Trace& trace) {
+  TracePen pen(trace);
+  double shown = -1e9;  // the pixel that the last point stands for
+  for (std::size_t i = 1; i < spectrum.amplitude.size(); ++i) {
+    const double x = area.x.part(static_cast<double>(i) * spectrum.step) * area.width;
+    const auto value = static_cast<float>(spectrum.amplitude[i]);
+    const TracePoint point{static_cast<float>(std::clamp(x, -1e5, 1e5)), value, value};
+    if (std::floor(x) > shown) {
+      pen.put(point);
+      shown = std::floor(x);
+    } else if (value > pen.last().high) {
+      pen.last() = point;
+    }
+  }
+}
+
+AmplitudeSpectrum spectrum_between(const History& history, int channel, double start, double stop) {
+  const SampleIndex to = history.lower_bound(stop);
+  const SampleIndex first = history.lower_bound(start);
+  const SampleIndex from = to - std::min(to - std::min(first, to), kMostOfSpectrum);
+  std::vector<double> part, longest;
+  const auto end_part = [&] {
+    if (part.size() > longest.size()) longest.swap(part);
+    part.clear();
+  };
+  for (SampleIndex row = from; row < to; ++row) {
+    const auto value = static_cast<double>(history.value(channel, row));
+    if (history.gap_before(row) || !std::isfinite(value)) end_part();
+    if (std::isfinite(value)) part.push_back(value);
+  }
+  end_part();
+  return amplitude_spectrum(longest, 1 / history.tick());
 }
 
 }  // namespace limpid

@@ -1,16 +1,29 @@
-// What of a curve falls on which pixel: the shape that the window draws and picture files store.
+// Where a band of a plot says what.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "app/plot/axis_map.h"
+#include "app/base/welch.h"
+#include "app/plot/axis.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
-#include "app/signal/welch.h"
 
 namespace limpid {
+
+// From one pixel up to another one the band's channel says the same: the number of a name.
+struct BandStretch {
+  int said;
+  std::size_t from, to;  // [px]
+};
+
+// One after the other, `rows` being those of the pixels; none of a band that says nothing of
+// interest there.
+std::vector<BandStretch> band_stretches(const Band& band, const History& history,
+                                        const std::vector<SampleIndex>& rows);
+
+// What of a curve falls on which pixel: the shape that the window draws and picture files store.
 
 // A stretch of the time axis over a row of pixels. It begins at a whole multiple of a pixel's
 // duration, so that a moving window gathers the same samples in a pixel from frame to frame and

@@ -1,4 +1,4 @@
-// What there is to know about a model's file before it is touched.
+// What the numbers of a model's file are likely to mean.
 #pragma once
 
 #include <atomic>
@@ -13,6 +13,20 @@
 
 namespace limpid {
 
+struct ModelAxes {
+  double unit = 1;       // of the coordinates [m]
+  bool y_up = false;     // else z
+  bool guessed = false;  // the file does not say all of it
+};
+
+// As the file says; else the usual: STL in millimetres unless it is then smaller than one, as it
+// is with robots' parts, others in metres; z up in STL and PLY, y in OBJ.
+ModelAxes axes_of(const Model& model, const std::filesystem::path& file);
+
+// For people: "in mm, z up", "(guessed)" behind it if it is.
+std::string text_of(const ModelAxes& axes);
+
+// What there is to know about a model's file before it is touched.
 struct ModelReport {
   std::vector<std::string> facts;     // "triangles    12000", a line each
   std::vector<std::string> warnings;  // what was left out, and what touching will feel odd

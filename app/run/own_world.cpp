@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "core/math/elementary.h"
-#include "devices/files/hand/hand_through.h"
+#include "devices/files/session/hand_file.h"
 
 namespace limpid {
 namespace {

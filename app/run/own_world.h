@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "core/dynamics/arm_description.h"
-#include "devices/files/hand/hand_file.h"
-#include "devices/rig/rig.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/simulated/rig.h"
 
 namespace limpid {
 

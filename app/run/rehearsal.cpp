@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/math/elementary.h"
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 
 namespace limpid {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <cmath>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/base/program_build.h"
 #include "app/base/version.h"
 #include "app/run/scene_meshes.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "app/run/replay.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 
 namespace limpid {
 namespace {

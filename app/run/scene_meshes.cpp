@@ -5,7 +5,7 @@
 
 #include "app/run/model_report.h"
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 #include "render/model/model_file.h"
 #include "render/model/simplify.h"
 

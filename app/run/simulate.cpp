@@ -8,9 +8,9 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "app/run/divergence.h"
+#include "app/run/summary.h"
 #include "core/realtime/haptic_thread.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 
 namespace limpid {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "app/run/scene_meshes.h"
 #include "core/tick/parameters.h"
-#include "devices/files/hand/hand_file.h"
+#include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 
 namespace limpid {
 

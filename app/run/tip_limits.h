@@ -5,9 +5,9 @@
 #include <array>
 #include <string>
 
+#include "core/coupling/felt.h"
+#include "core/coupling/walls.h"
 #include "core/dynamics/arm_description.h"
-#include "core/passivity/felt.h"
-#include "core/passivity/walls.h"
 #include "core/tick/parameters.h"
 #include "core/touch/scene.h"
 

@@ -12,7 +12,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kRate = 100;            // of a path's samples [Hz]
+constexpr double kSampleRate = 100;      // of a path's samples [Hz]
 constexpr double kTremor = 5e-5;         // amplitude of one sine of it [m]
 constexpr std::size_t kTremorSines = 3;  // an axis
 
@@ -62,12 +62,12 @@ HandPath varied(const HandPath& path, std::uint64_t seed, std::uint64_t variatio
   const Vec3 start = path.position.front();
   const Vec3 factor(m.horizontal, m.horizontal, m.vertical);
   const double duration = m.duration * path.duration();
-  const int last = static_cast<int>(std::floor(duration * kRate));
+  const int last = static_cast<int>(std::floor(duration * kSampleRate));
   std::string csv = "time_s,x_m,y_m,z_m\n";
   for (int i = 0; i <= last; ++i) {
     const double u = static_cast<double>(i) / last;
     const double pace = u + m.hurry * sine(2 * std::numbers::pi * u) / (2 * std::numbers::pi);
-    const double t = i / kRate;
+    const double t = i / kSampleRate;
     // The tremor grows from and fades to nothing, so that a trial starts and ends at rest.
     const Vec3 p = start + factor.cwiseProduct(path.at(pace * path.duration()) - start) +
                    sine(std::numbers::pi * u) * tremor_at(m, t);

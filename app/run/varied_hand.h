@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "devices/files/hand/hand_file.h"
+#include "devices/files/session/hand_file.h"
 
 namespace limpid {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/run/analysis.h"
-#include "core/passivity/walls.h"
+#include "core/coupling/walls.h"
 #include "devices/files/scene/scene_file.h"
 
 namespace limpid {

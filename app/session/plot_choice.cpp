@@ -5,7 +5,7 @@
 #include <cctype>
 #include <set>
 
-#include "core/tick/force_text.h"
+#include "core/tick/arming.h"
 
 namespace limpid {
 namespace {

@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "app/run/simulate.h"
+#include "core/dynamics/arm_description.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/files/toml_reader.h"
 #include "render/camera.h"
 
 namespace limpid {
@@ -53,5 +56,59 @@ Story parse_story(const std::string& text, const std::string& where,
                   const std::filesystem::path& folder);
 
 std::filesystem::path default_story();
+
+// Parts of a step that a script and a session's file spell alike.
+const char* view_word(Camera::View view);
+
+// Errors of all: FileError for values that are not allowed. Nothing where the key is missing.
+std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where);
+std::optional<std::array<std::string, 2>> names_said(const TomlTable& step);
+bool flag_in(const TomlTable& step, const char* key, bool otherwise);
+
+// The settings of a story's two runs, step by step.
+class StorySettings {
+ public:
+  // Takes in what a step that begins at time [s] says under `set` (both runs), `first` and `twin`.
+  // Errors: FileError.
+  void read(const TomlTable& step, const std::string& where, double time);
+
+  const Parameters& now(std::size_t lane) const { return now_[lane]; }
+  // What the runs begin with, and what changes at which row.
+  void into(RunPlan& plan) const;
+
+ private:
+  struct Change {
+    double time;
+    std::string setting;
+  };
+  std::array<Parameters, 2> began_, now_;
+  std::array<std::vector<Change>, 2> changes_;
+};
+
+// Where a story's hand goes, step by step.
+class StoryHand {
+ public:
+  StoryHand(const ArmDescription& arm, std::string where, std::filesystem::path folder)
+      : arm_(arm), where_(std::move(where)), folder_(std::move(folder)) {}
+
+  // Takes in the `hand` of a step from `begins` to `ends` [s]: a file, or points with their times
+  // after the step's beginning. Without one the hand stays. Errors: FileError, also for points that
+  // the arm does not reach.
+  void read(const TomlTable& step, double begins, double ends);
+
+  HandPath path() const;
+
+ private:
+  void read_points(const TomlTable& step, double begins, double ends);
+  void read_file(const TomlTable& step, const std::string& file, double begins, double ends);
+  void add(double time, const Vec3& point, std::uint32_t line);
+
+  const ArmDescription& arm_;
+  std::string where_;
+  std::filesystem::path folder_;
+  std::vector<double> time_;
+  std::vector<Vec3> position_;
+  Eigen::VectorXd near_;  // a configuration with the tip on the last point [rad]
+};
 
 }  // namespace limpid

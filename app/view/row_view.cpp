@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace limpid {
+
 namespace {
 
 constexpr double kTrail = 1.0;        // [s]

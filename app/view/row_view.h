@@ -1,17 +1,43 @@
-// From a row of the trace to what the 3D view shows.
+// A scene's models as the 3D view wants them.
 #pragma once
 
+#include <algorithm>
 #include <deque>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "app/run/scene_meshes.h"
 #include "core/dynamics/arm.h"
 #include "core/tick/row.h"
 #include "core/touch/scene.h"
-#include "devices/rig/rig.h"
+#include "devices/files/scene/model_units.h"
+#include "devices/simulated/rig.h"
+#include "render/scene_view.h"
 #include "render/view_state.h"
 
 namespace limpid {
 
+// `models` in the order of the scene's meshes.
+inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshModels& models,
+                                              std::optional<std::size_t> highlighted = {}) {
+  std::vector<MeshPicture> pictures;
+  for (std::size_t i = 0; i < std::min(scene.meshes.size(), models.size()); ++i) {
+    const MeshObstacle& mesh = scene.meshes[i];
+    pictures.push_back({models[i], mesh.stood(), mesh.size(), highlighted == i});
+  }
+  return pictures;
+}
+
+inline std::vector<VisualPicture> visual_pictures(const SceneDocument& document) {
+  std::vector<VisualPicture> pictures;
+  for (const SceneVisual& visual : document.visuals) {
+    pictures.push_back({visual.file, visual.pose, usual_unit(visual.file) * visual.scale});
+  }
+  return pictures;
+}
+
+// From a row of the trace to what the 3D view shows.
 class RowView {
  public:
   explicit RowView(const ArmDescription& arm);

@@ -10,7 +10,7 @@
 #include "core/coupling/ledger.h"
 #include "core/coupling/limited_solve.h"
 #include "core/coupling/predictor.h"
-#include "core/coupling/spring_damper.h"
+#include "core/coupling/standard.h"
 
 namespace limpid {
 

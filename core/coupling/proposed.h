@@ -3,7 +3,7 @@
 // motion.
 #pragma once
 
-#include "core/coupling/spring_damper.h"
+#include "core/coupling/standard.h"
 
 namespace limpid {
 

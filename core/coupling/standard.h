@@ -1,10 +1,29 @@
-// The standard coupling: spring and damper alone, (1)-(2).
+// The virtual coupling by spring and damper, (1)-(2). All laws of the paper add to it.
 #pragma once
 
-#include "core/coupling/spring_damper.h"
+#include "core/coupling/law.h"
+#include "core/coupling/laws.h"
+#include "core/touch/contacts.h"
 
 namespace limpid {
 
+// What (14)-(15) add to (1)-(2): without the contact torque f2, and of it, which is known only once
+// the proxy has stepped. The proxy's share counts the f2 that acts on it anyway.
+template <int N>
+struct Feedforward {
+  Vec<N> tau1, tau2;  // [N m]
+  ContactShare<N> on_device{0}, on_proxy{1};
+
+  static Feedforward none(Eigen::Index n) { return {Vec<N>::Zero(n), Vec<N>::Zero(n)}; }
+};
+
+// Steps the proxy, (4), with the springs and dampers of (2) at the midpoint; returns the torque on
+// the device without its own damping, (1), which is what the motors are asked for [N m].
+template <int N>
+Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
+              Proxy<N>& proxy);
+
+// The standard coupling: spring and damper alone, (1)-(2).
 template <int N>
 struct StandardLaw::Of : PlainLaw<N> {
   Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy) {

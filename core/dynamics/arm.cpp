@@ -7,6 +7,7 @@
 #include "core/math/elementary.h"
 
 namespace limpid {
+
 template <int N>
 Arm<N>::Arm(const ArmDescription& description) : dof_(description.dof()) {
   for (std::size_t i = 0; i < size(); ++i) {
@@ -159,5 +160,57 @@ template void Arm<kAnyDof>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
 template class Arm<3>;
 template class Arm<7>;
 template class Arm<kAnyDof>;
+
+// An axis is carried along by the links before it, S_j' = V x S_j.
+template <int N>
+template <class S>
+Vec3Of<S> Arm<N>::point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
+                              const VecOf<N, S>& v) const {
+  Vec3Of<S> turning = Vec3Of<S>::Zero(), moving = turning;  // V of the links before
+  Vec3Of<S> drift = turning;
+  for (int j = 0; j <= link; ++j) {
+    const Vec3Of<S>& a = f.a[static_cast<std::size_t>(j)];
+    const Vec3Of<S>& o = f.o[static_cast<std::size_t>(j)];
+    drift += v[j] * (turning.cross(o) + moving.cross(a) + turning.cross(a).cross(world));
+    moving += v[j] * o;
+    turning += v[j] * a;
+  }
+  return drift + turning.cross(moving + turning.cross(world));
+}
+
+template Vec3Of<double> Arm<3>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                            const VecOf<3, double>&) const;
+template Vec3Of<double> Arm<7>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                            const VecOf<7, double>&) const;
+template Vec3Of<Pair> Arm<3>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                          const VecOf<3, Pair>&) const;
+template Vec3Of<Pair> Arm<7>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                          const VecOf<7, Pair>&) const;
+template Vec3Of<double> Arm<kAnyDof>::point_drift(const FramesOf<double>&, int,
+                                                  const Vec3Of<double>&,
+                                                  const VecOf<kAnyDof, double>&) const;
+template Vec3Of<Pair> Arm<kAnyDof>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                                const VecOf<kAnyDof, Pair>&) const;
+
+// All beyond a joint weighs on it as one body.
+template <int N>
+Vec<N> Arm<N>::weight(const Frames& f, const Vec3& gravity) const {
+  Vec<N> torque = Vec<N>::Zero(dof());
+  double m = 0;
+  Vec3 mc = Vec3::Zero();
+  for (std::size_t j = size(); j-- > 0;) {
+    const LinkModel& link = links_[j];
+    const double mass = link.mass[0];
+    m += mass;
+    mc += mass * (f.p[j] + f.R[j] * link.com.template cast<double>());
+    torque[static_cast<Eigen::Index>(j)] =
+        -(f.a[j].dot(mc.cross(gravity)) + m * f.o[j].dot(gravity));
+  }
+  return torque;
+}
+
+template Vec<3> Arm<3>::weight(const Frames& f, const Vec3& gravity) const;
+template Vec<7> Arm<7>::weight(const Frames& f, const Vec3& gravity) const;
+template Vec<kAnyDof> Arm<kAnyDof>::weight(const Frames& f, const Vec3& gravity) const;
 
 }  // namespace limpid

@@ -1,7 +1,5 @@
 #include "core/math/triangular.h"
 
-#include "core/math/widest.h"
-
 namespace limpid {
 
 template <>

@@ -1,7 +1,4 @@
-// Triangular matrices of joint size: factors, their rates, and solves in place, without allocation.
-// Columns are stored one after another. Where the number of joints is known when compiling, the
-// loops unroll; of many, four columns and four rows are worked on at a time, by the widest vectors
-// that the processor has, each number reckoned in the same way with all of them.
+// Functions that are compiled twice, for SSE2 and AVX2, and chosen when the program is loaded.
 #pragma once
 
 #include <array>
@@ -10,8 +7,20 @@
 
 #include "core/math/sizes.h"
 
+// Sanitizers cannot do with functions that are chosen while the program is loaded. No clone may
+// multiply and add in one: recordings are to be the same on all machines.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define LIMPID_WIDE [[gnu::target_clones("avx2", "default")]]
+#else
+#define LIMPID_WIDE
+#endif
 namespace limpid {
 
+// Triangular matrices of joint size: factors, their rates, and solves in place, without allocation.
+// Columns are stored one after another. Where the number of joints is known when compiling, the
+// loops unroll; of many, four columns and four rows are worked on at a time, by the widest vectors
+// that the processor has, each number reckoned in the same way with all of them.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 [[gnu::always_inline]] inline Four& four(double* x) { return *reinterpret_cast<Four*>(x); }
 [[gnu::always_inline]] inline const Four& four(const double* x) {

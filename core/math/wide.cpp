@@ -1,6 +1,6 @@
 #include "core/math/wide.h"
 
-#include "core/math/widest.h"
+#include "core/math/triangular.h"
 
 namespace limpid::wide {
 

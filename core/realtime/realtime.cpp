@@ -1,17 +1,85 @@
 #include "core/realtime/realtime.h"
 
+#include <link.h>
+#include <linux/capability.h>
+#include <malloc.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-
-#include "core/realtime/memory_lock.h"
+#include <cstdint>
+#include <string_view>
 
 namespace limpid {
+
+namespace {
+
+bool has_capability(unsigned capability) {
+  __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
+  std::array<__user_cap_data_struct, 2> data{};
+  if (syscall(SYS_capget, &header, data.data()) != 0) return false;
+  return (data[capability / 32].effective >> (capability % 32)) & 1u;
+}
+
+// Under a finite limit, locking what will be mapped later makes the allocations of the OpenGL
+// driver fail, and a locked stack cannot grow. So all is locked or nothing.
+bool may_lock_everything() {
+  if (has_capability(CAP_IPC_LOCK)) return true;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_max != RLIM_INFINITY) return false;
+  limit.rlim_cur = RLIM_INFINITY;
+  return setrlimit(RLIMIT_MEMLOCK, &limit) == 0;
+}
+
+// The program itself has no name here.
+bool is_run_by_ticks(std::string_view file) {
+  constexpr std::array<std::string_view, 9> kLibraries = {
+      "libc.so",  "libm.so",    "libstdc++.so", "libgcc_s.so", "libpthread.so",
+      "ld-linux", "linux-vdso", "libhidapi",    "libudev.so"};
+  file.remove_prefix(file.rfind('/') + 1);
+  return file.empty() || std::ranges::any_of(kLibraries, [&](std::string_view library) {
+           return file.starts_with(library);
+         });
+}
+
+// Unlike what was mapped with MCL_ONFAULT, a range that is locked by itself is brought in.
+int bring_in(dl_phdr_info* object, std::size_t, void* done) {
+  if (!is_run_by_ticks(object->dlpi_name)) return 0;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  for (int i = 0; i < object->dlpi_phnum; ++i) {
+    const ElfW(Phdr)& segment = object->dlpi_phdr[i];
+    if (segment.p_type != PT_LOAD) continue;
+    const std::uintptr_t from = (object->dlpi_addr + segment.p_vaddr) / page * page;
+    const std::uintptr_t to = object->dlpi_addr + segment.p_vaddr + segment.p_memsz;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the loader tells where things are.
+    if (mlock(reinterpret_cast<const void*>(from), to - from) != 0)
+      *static_cast<bool*>(done) = false;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool lock_memory() {
+  if (!may_lock_everything() || mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return false;
+  bool done = true;
+  dl_iterate_phdr(bring_in, &done);
+  return done;
+}
+
+void give_back_what_is_freed() { mallopt(M_MMAP_THRESHOLD, 128 << 10); }
+
+void keep_what_is_freed() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the highest that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 namespace {
 
 constexpr int kPriority = 80;

@@ -1,13 +1,45 @@
-// Whether the motors may push, and how much: the one state machine between somebody's wish for
-// force and the motors. Nothing else arms, fades in or trips.
+// Why there is no force, or less of it.
 #pragma once
 
 #include <cstdint>
-
-#include "core/tick/force_state.h"
+#include <string>
 
 namespace limpid {
 
+// The order is that of the session file's /device/force_state.
+enum class ForceState : std::uint8_t {
+  on,
+  off,        // not armed
+  no_hand,    // the dead-man switch is open
+  stale,      // no reading for kStaleReading
+  fault,      // the device says that it is not well
+  lost,       // unplugged
+  too_fast,   // fades with the speed
+  too_far,    // fades outside of the range of a joint
+  energy,     // the motors have put more energy out than they should
+  diverged,   // the command was not finite
+  unwatched,  // the window does not answer; fades
+  stalled,    // the loop or the device stood still; fades in anew
+  frozen,     // the readings stand still while the motors push; fades
+};
+const char* explain(ForceState state);  // for people, a short clause
+
+// What is said of a moment without force, or with less of it.
+
+// A reason for less force, which may end in none.
+constexpr bool holds_back(ForceState state) {
+  using enum ForceState;
+  return state == too_fast || state == too_far || state == unwatched || state == stalled;
+}
+
+// "force off: not armed"; empty while force is on.
+inline std::string force_text(ForceState state) {
+  if (state == ForceState::on) return {};
+  return std::string(holds_back(state) ? "force held back: " : "force off: ") + explain(state);
+}
+
+// Whether the motors may push, and how much: the one state machine between somebody's wish for
+// force and the motors. Nothing else arms, fades in or trips.
 enum class Arming : std::uint8_t {
   off,
   waiting,  // armed; the hand does not hold the device

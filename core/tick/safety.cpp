@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/tick/torque_limits.h"
+#include "core/tick/motor_stage.h"
 
 namespace limpid {
 namespace {

@@ -6,6 +6,7 @@
 #include "core/math/subnormals.h"
 
 namespace limpid {
+
 namespace {
 
 // The least of a motor's limit that is left to the law, whatever the arm weighs.

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/dynamics/arm.h"
-#include "core/math/moving_factor.h"
+#include "core/math/solve.h"
 #include "core/touch/contacts.h"
 
 namespace limpid {

@@ -7,8 +7,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "devices/files/file_error.h"
-
 namespace limpid {
 
 std::string read_text(const std::filesystem::path& file, std::size_t limit) {

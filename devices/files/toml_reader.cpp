@@ -6,9 +6,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
+
 namespace {
 
 std::string allowed_text(const Range& range) {

@@ -1,19 +1,38 @@
-// TOML tables read strictly: what is unknown, of the wrong type or out of range is refused with
-// file, line, key, what was found and what is allowed.
+// Which numbers a file may have somewhere.
 #pragma once
 
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/math/sizes.h"
-#include "devices/files/range.h"
 
 namespace limpid {
+
+struct Range {
+  double minimum;
+  double maximum;
+  bool exclusive_minimum = false;
+  const char* unit = "";
+
+  // The allowed number nearest to x; `otherwise` in place of what is no number.
+  double hold(double x, double otherwise) const {
+    if (std::isnan(x)) return otherwise;
+    const double least =
+        exclusive_minimum ? std::max(minimum, std::numeric_limits<double>::min()) : minimum;
+    return std::clamp(x, least, maximum);
+  }
+};
+
+// TOML tables read strictly: what is unknown, of the wrong type or out of range is refused with
+// file, line, key, what was found and what is allowed.
 
 // Errors: FileError "WHERE:LINE: ..." for text that is not TOML.
 toml::table parse_toml(std::string_view text, const std::string& where);

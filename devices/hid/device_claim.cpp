@@ -21,7 +21,7 @@
 #include <thread>
 #include <utility>
 
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 
 namespace limpid {
 namespace {

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <new>
 
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 
 namespace limpid {
 

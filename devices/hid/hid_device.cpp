@@ -6,7 +6,7 @@
 
 #include "core/realtime/clock.h"
 #include "devices/hid/guardian.h"
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 
 namespace limpid {
 

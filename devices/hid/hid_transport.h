@@ -1,15 +1,21 @@
-// The way to one device that speaks in HID reports: they come in and go out.
-//
-// A report always begins with the byte of its id, which is 0 where the device numbers none; sizes
-// count that byte.
+// What is wrong with a HID device, in one line for people.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 namespace limpid {
 
+struct HidError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The way to one device that speaks in HID reports: they come in and go out.
+//
+// A report always begins with the byte of its id, which is 0 where the device numbers none; sizes
+// count that byte.
 using Report = std::vector<std::uint8_t>;
 
 // How a process that has nothing else can still say something: the descriptor, its own, and what it

@@ -4,11 +4,54 @@
 
 #include <algorithm>
 
-#include "devices/hid/hid_error.h"
 #include "devices/hid/hid_transport.h"
-#include "devices/hid/report_items.h"
 
 namespace limpid {
+
+namespace {
+
+constexpr std::uint8_t kLongItem = 0xFE;
+constexpr const char* kCutOff = "the item is cut off";
+
+}  // namespace
+
+std::int64_t ReportItem::as_signed() const {
+  if (size == 1) return static_cast<std::int8_t>(value);
+  if (size == 2) return static_cast<std::int16_t>(value);
+  return static_cast<std::int32_t>(value);
+}
+
+void refuse(const ReportItem& item, std::string_view what) {
+  throw HidError(fmt::format("report descriptor, byte {}: {}", item.offset, what));
+}
+
+std::optional<ReportItem> ReportItems::next() {
+  skip_long_items();
+  if (at_ == bytes_.size()) return std::nullopt;
+  const std::uint8_t prefix = bytes_[at_];
+  ReportItem item;
+  item.offset = at_;
+  item.type = (prefix >> 2) & 3;
+  item.tag = prefix >> 4;
+  item.size = (prefix & 3) == 3 ? 4 : prefix & 3;
+  if (bytes_.size() - at_ - 1 < item.size) refuse(item, kCutOff);
+  for (std::size_t i = 0; i < item.size; ++i) {
+    item.value |= static_cast<std::uint32_t>(bytes_[at_ + 1 + i]) << (8 * i);
+  }
+  at_ += 1u + item.size;
+  return item;
+}
+
+void ReportItems::skip_long_items() {
+  while (at_ < bytes_.size() && bytes_[at_] == kLongItem) {
+    ReportItem item;
+    item.offset = at_;
+    const std::size_t left = bytes_.size() - at_;
+    if (left < 2 || left < 3u + bytes_[at_ + 1]) refuse(item, kCutOff);
+    at_ += 3u + bytes_[at_ + 1];
+  }
+}
+
 namespace {
 
 constexpr std::size_t kMaxDescriptor = 4096;  // as the kernel
@@ -266,6 +309,87 @@ ReportDescriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) {
         fmt::format("report descriptor: {} bytes, {} at most", bytes.size(), kMaxDescriptor));
   }
   return Parser(bytes).parse();
+}
+
+namespace {
+
+// The first bit of the value, or nothing if the value is not all in the report.
+std::optional<std::uint64_t> first_bit(std::size_t bytes, const ReportField& field,
+                                       std::uint32_t index) {
+  const std::uint64_t first = field.bit_offset + static_cast<std::uint64_t>(index) * field.bit_size;
+  if (field.bit_size < 1 || field.bit_size > 32 || index >= field.count ||
+      first + field.bit_size > 8 * static_cast<std::uint64_t>(bytes)) {
+    return std::nullopt;
+  }
+  return first;
+}
+
+bool fits(std::int64_t value, const ReportField& field) {
+  const std::int64_t values = std::int64_t{1} << field.bit_size;
+  if (field.logical_min < 0) return value >= -values / 2 && value < values / 2;
+  return value >= 0 && value < values;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> get_field(std::span<const std::uint8_t> report,
+                                      const ReportField& field, std::uint32_t index) {
+  const auto first = first_bit(report.size(), field, index);
+  if (!first) return std::nullopt;
+  std::int64_t value = 0;
+  for (std::uint32_t i = 0; i < field.bit_size; ++i) {
+    const std::uint64_t bit = *first + i;
+    value |= static_cast<std::int64_t>(report[bit / 8] >> (bit % 8) & 1) << i;
+  }
+  const std::int64_t sign = std::int64_t{1} << (field.bit_size - 1);
+  const bool negative = field.logical_min < 0 && (value & sign);
+  return negative ? value - 2 * sign : value;
+}
+
+bool put_field(std::span<std::uint8_t> report, const ReportField& field, std::int64_t value,
+               std::uint32_t index) {
+  const auto first = first_bit(report.size(), field, index);
+  if (!first || !fits(value, field)) return false;
+  for (std::uint32_t i = 0; i < field.bit_size; ++i) {
+    const std::uint64_t bit = *first + i;
+    const auto mask = static_cast<std::uint8_t>(1u << (bit % 8));
+    std::uint8_t& byte = report[bit / 8];
+    byte = static_cast<std::uint8_t>((value >> i & 1) ? byte | mask : byte & ~mask);
+  }
+  return true;
+}
+
+namespace {
+
+constexpr Usage kFirst = make_usage(0x09, 1);
+constexpr Usage kLast = make_usage(0x09, 32);
+
+}  // namespace
+
+std::vector<ReportField> button_fields(const ReportDescriptor& descriptor) {
+  std::vector<ReportField> buttons;
+  for (const ReportField& field : descriptor.fields) {
+    const bool one_button = field.kind == ReportKind::input && !field.array &&
+                            field.bit_size == 1 && field.usages.size() == 1;
+    if (one_button && field.usages[0] >= kFirst && field.usages[0] <= kLast) {
+      buttons.push_back(field);
+    }
+  }
+  return buttons;
+}
+
+bool decode_buttons(std::span<const std::uint8_t> report, std::span<const ReportField> fields,
+                    std::uint32_t& buttons) noexcept {
+  bool any = false;
+  for (const ReportField& field : fields) {
+    if (report.empty() || report[0] != field.report_id) continue;
+    const auto pressed = get_field(report, field);
+    if (!pressed) continue;
+    const std::uint32_t bit = 1u << (field.usages[0] - kFirst);
+    buttons = *pressed ? buttons | bit : buttons & ~bit;
+    any = true;
+  }
+  return any;
 }
 
 }  // namespace limpid

@@ -1,13 +1,46 @@
-// HID report descriptor (USB HID 1.11, chapter 6.2.2): what a device says its reports contain.
+// The items that a HID report descriptor is a row of (USB HID 1.11, chapter 6.2.2.2).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace limpid {
 
+struct ReportItem {
+  enum Type : std::uint8_t { kMain = 0, kGlobal = 1, kLocal = 2 };
+
+  std::size_t offset = 0;  // in the descriptor, for messages
+  std::uint8_t type = 0;
+  std::uint8_t tag = 0;
+  std::uint8_t size = 0;  // of the data [bytes]
+  std::uint32_t value = 0;
+
+  std::int64_t as_signed() const;
+};
+
+// Throws HidError naming the place of the item.
+[[noreturn]] void refuse(const ReportItem& item, std::string_view what);
+
+class ReportItems {
+ public:
+  explicit ReportItems(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  // The next one, or nothing at the end. Throws HidError if it is cut off. Long items, which nobody
+  // has ever given a meaning, are passed over.
+  std::optional<ReportItem> next();
+
+ private:
+  void skip_long_items();
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+};
+
+// HID report descriptor (USB HID 1.11, chapter 6.2.2): what a device says its reports contain.
 enum class ReportKind : std::uint8_t { input, output, feature };
 
 // Usage page in the upper half, usage within it in the lower.
@@ -54,5 +87,25 @@ struct ReportDescriptor {
 // Throws HidError with the offset of the first item that makes no sense. Whatever the bytes, no
 // report is longer than the kernel's limit and time and memory stay small.
 ReportDescriptor parse_report_descriptor(std::span<const std::uint8_t> bytes);
+
+// The number of a field in the bytes of a report.
+
+// Value `index` of the field; nothing if the report is too short for it.
+std::optional<std::int64_t> get_field(std::span<const std::uint8_t> report,
+                                      const ReportField& field, std::uint32_t index = 0);
+
+// Sets it; false, and nothing done, if it lies outside the report or the field's bits cannot hold
+// the number.
+bool put_field(std::span<std::uint8_t> report, const ReportField& field, std::int64_t value,
+               std::uint32_t index = 0);
+
+// The buttons that a device describes, as one bit each.
+
+// Buttons 1 to 32 of the input reports, which are one bit each.
+std::vector<ReportField> button_fields(const ReportDescriptor& descriptor);
+
+// Takes those in this report into `buttons`; true if there are any.
+bool decode_buttons(std::span<const std::uint8_t> report, std::span<const ReportField> fields,
+                    std::uint32_t& buttons) noexcept;
 
 }  // namespace limpid

@@ -2,15 +2,164 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <unsupported/Eigen/LevenbergMarquardt>
 
-#include "devices/identify/equations.h"
-#include "devices/identify/plausible.h"
-
 namespace limpid {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double kLeastSpeed = 0.05;  // that is motion [rad/s]
+
+// About that time the joint moves in the direction of v all along, faster than one that sticks or
+// an encoder that flickers.
+bool moves_on(const MotionRecord& record, const Smoothing& window, double time, Index joint,
+              double v, double step) {
+  const double piece = std::max(window.sigma, 0.01);
+  const double least = std::max(1.5 * step, kLeastSpeed * piece);
+  const auto at = [&](double t) {
+    const auto row = static_cast<Index>(std::llround(t / record.T));
+    return record.x(std::clamp<Index>(row, 0, record.rows() - 1), joint);
+  };
+  const double edge = 3 * window.sigma;
+  for (double t = time - edge; t < time + edge - 1e-9; t += piece) {
+    const double moved = at(t + piece) - at(t);
+    if (!(v > 0 ? moved >= least : moved <= -least)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
+                                  double longest_delay) {
+  const double margin = 1.5 * window.reach() + longest_delay;
+  const double spacing = window.independent();
+  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
+  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
+  const auto count = static_cast<Index>(length / spacing);
+  return Eigen::VectorXd::LinSpaced(count, margin,
+                                    margin + static_cast<double>(count - 1) * spacing);
+}
+
+Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
+                       const Smoothing& window, const Eigen::VectorXd& times) {
+  const Motion3 motion = motion_at(record, window, times);
+  const Eigen::VectorXd step = encoder_steps(record);
+  const Arm<kAnyDof> arm(guess);
+  const Index n = record.joints(), of_links = kLinkParameters * n;
+  Equations out;
+  std::vector<Eigen::RowVectorXd> lines;
+  for (Index k = 0; k < times.size(); ++k) {
+    const Eigen::MatrixXd Y =
+        regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
+                  motion.a.row(k).transpose(), gravity);
+    for (Index j = 0; j < n; ++j) {
+      const double v = motion.v(k, j);
+      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
+      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero(of_links + kOwnParameters * n);
+      line.head(of_links) = Y.row(j);
+      line.segment<kOwnParameters>(of_links + kOwnParameters * j) << v, v > 0 ? 1 : -1, 1,
+          motion.x(k, j);
+      lines.push_back(std::move(line));
+      out.time.push_back(k);
+      out.joint.push_back(j);
+    }
+  }
+  out.A.resize(static_cast<Index>(lines.size()), of_links + kOwnParameters * n);
+  for (Index i = 0; i < out.A.rows(); ++i) out.A.row(i) = lines[static_cast<std::size_t>(i)];
+  return out;
+}
+
+Eigen::VectorXd Equations::of(const Eigen::MatrixXd& torque) const {
+  Eigen::VectorXd b(A.rows());
+  for (Index i = 0; i < b.size(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    b[i] = torque(time[row], joint[row]);
+  }
+  return b;
+}
+
+namespace {
+
+using Eigen::Matrix4d;
+
+Matrix4d pseudo_inertia(const LinkParameters& p) {
+  const double half = 0.5 * (p[4] + p[7] + p[9]);
+  Matrix4d J;
+  J << half - p[4], -p[5], -p[6], p[1],  //
+      -p[5], half - p[7], -p[8], p[2],   //
+      -p[6], -p[8], half - p[9], p[3],   //
+      p[1], p[2], p[3], p[0];
+  return J;
+}
+
+LinkParameters parameters_of(const Matrix4d& J) {
+  const double trace = J(0, 0) + J(1, 1) + J(2, 2);
+  LinkParameters p;
+  p << J(3, 3), J(0, 3), J(1, 3), J(2, 3), trace - J(0, 0), -J(0, 1), -J(0, 2), trace - J(1, 1),
+      -J(1, 2), trace - J(2, 2);
+  return p;
+}
+
+Matrix4d triangle(const LinkParameters& d) {
+  Matrix4d E = Matrix4d::Zero();
+  Eigen::Index k = 0;
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    E(j, j) = std::exp(d[k++]);
+    for (Eigen::Index i = j + 1; i < 4; ++i) E(i, j) = d[k++];
+  }
+  return E;
+}
+
+}  // namespace
+
+PlausibleLink::PlausibleLink(const LinkParameters& guess) {
+  Matrix4d J = pseudo_inertia(guess);
+  // In units in which all of a body is about one: its mass and its size squared.
+  const double mass = std::max(guess[0], 1e-9);
+  const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
+  Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
+  unit[3] = std::sqrt(mass);
+  Matrix4d scaled = unit.cwiseInverse().asDiagonal() * J * unit.cwiseInverse().asDiagonal();
+  for (double more = 1e-3;; more *= 2) {
+    const Eigen::LLT<Matrix4d> factor(scaled);
+    const Matrix4d L = factor.matrixL();
+    if (factor.info() == Eigen::Success && L.diagonal().minCoeff() > 0.01) {
+      L0_ = unit.asDiagonal() * L;
+      return;
+    }
+    scaled.diagonal().array() += more;
+  }
+}
+
+LinkParameters PlausibleLink::at(const LinkParameters& d) const {
+  const Matrix4d L = L0_ * triangle(d);
+  return parameters_of(Matrix4d(L * L.transpose()));
+}
+
+Eigen::Matrix<double, kLinkParameters, kLinkParameters> PlausibleLink::slope(
+    const LinkParameters& d) const {
+  const Matrix4d E = triangle(d);
+  Eigen::Matrix<double, kLinkParameters, kLinkParameters> out;
+  Eigen::Index k = 0;
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    for (Eigen::Index i = j; i < 4; ++i) {
+      Matrix4d dE = Matrix4d::Zero();
+      dE(i, j) = i == j ? E(j, j) : 1;
+      const Matrix4d half = L0_ * dE * E.transpose() * L0_.transpose();
+      out.col(k++) = parameters_of(Matrix4d(half + half.transpose()));
+    }
+  }
+  return out;
+}
+
 namespace {
 
 using Eigen::Index;

@@ -1,4 +1,4 @@
-// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
+// The equations of motion that a record gives, for what is unknown in them.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,53 @@
 #include "devices/identify/motion_record.h"
 
 namespace limpid {
+
+// Of a joint besides its link's: viscous, Coulomb, offset, spring.
+inline constexpr Eigen::Index kOwnParameters = 4;
+
+// tau = A z, a row for each time and joint that can be trusted: a joint that moves on throughout
+// the window, as friction is what it is taken for only there. z: the links' parameters one after
+// another, then the joints' own.
+struct Equations {
+  Eigen::MatrixXd A;
+  std::vector<Eigen::Index> time, joint;  // of each row
+
+  // The torques of these rows; `torque`: a row for each time, a column for each joint.
+  Eigen::VectorXd of(const Eigen::MatrixXd& torque) const;
+};
+
+// Moments at which noise is independent, far enough within the record [s]. Errors:
+// std::invalid_argument where it is too short for any.
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
+                                  double longest_delay);
+
+// `times` as in motion_at(); `gravity` in the base's frame [m/s^2].
+Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
+                       const Smoothing& window, const Eigen::VectorXd& times);
+
+// Inertial parameters of links that some body has, near those of a guess.
+//
+// A body's second moments about its origin, Sigma = int r r^T dm = (tr I / 2) 1 - I, its first
+// moment h = m c and its mass make the pseudo-inertia
+//     J = [ Sigma  h ]
+//         [ h^T    m ],
+// which is positive definite for every body of some extent and for nothing else (Wensing, Kim and
+// Slotine, 2017). With J = L0 E E^T L0^T, L0 the guess's and E a lower triangle with the diagonal
+// e^d, every vector of ten numbers is a body, and the zero vector is the guess.
+class PlausibleLink {
+ public:
+  // A guess without extent is given a little.
+  explicit PlausibleLink(const LinkParameters& guess);
+
+  LinkParameters at(const LinkParameters& d) const;
+  // Its derivative, a column for each number.
+  Eigen::Matrix<double, kLinkParameters, kLinkParameters> slope(const LinkParameters& d) const;
+
+ private:
+  Eigen::Matrix4d L0_;
+};
+
+// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
 
 // A found value and its standard deviation.
 struct Found {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "devices/identify/equations.h"
+#include "devices/identify/fit.h"
 
 namespace limpid {
 namespace {

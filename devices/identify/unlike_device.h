@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/dynamics/regressor.h"
-#include "devices/virtual_arm.h"
+#include "devices/simulated/virtual_arm.h"
 
 namespace limpid {
 

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "core/text/utf8.h"
+#include "core/base/utf8.h"
 #include "render/model/companions.h"
 #include "render/model/gltf_model.h"
 #include "render/model/gltf_pack.h"

@@ -15,8 +15,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "core/process/child.h"
-#include "core/process/descriptor.h"
+#include "core/base/child.h"
+#include "core/base/descriptor.h"
 #include "render/model/companions.h"
 
 namespace limpid {

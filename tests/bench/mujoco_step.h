@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "app/bench/samples.h"
+#include "app/bench/bench.h"
 #include "core/dynamics/arm_description.h"
 #include "core/touch/scene.h"
 

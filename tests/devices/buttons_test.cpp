@@ -1,6 +1,6 @@
-#include "devices/buttons.h"
-
 #include <gtest/gtest.h>
+
+#include "devices/device.h"
 
 namespace limpid {
 namespace {

@@ -1,5 +1,5 @@
 // The virtual device against motions known otherwise.
-#include "devices/virtual_arm.h"
+#include "devices/simulated/virtual_arm.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "devices/hid/hid_error.h"
-#include "devices/hid/protocols/pid_joystick.h"
-#include "devices/hid/protocols/space_mouse.h"
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/pid_joystick.h"
 #include "devices/hid/report_descriptor.h"
-#include "devices/hid/report_fields.h"
+#include "devices/hid/space_mouse.h"
 
 namespace {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "devices/hid/hid_error.h"
 #include "devices/hid/hid_exchange.h"
-#include "devices/hid/protocols/pid_joystick.h"
-#include "devices/hid/protocols/raw_protocol.h"
-#include "devices/hid/protocols/space_mouse.h"
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/pid_joystick.h"
+#include "devices/hid/raw_protocol.h"
+#include "devices/hid/space_mouse.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/hid_descriptors.h"
 #include "tests/support/raw_reports.h"

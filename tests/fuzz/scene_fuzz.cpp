@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_writer.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace {
 

@@ -6,13 +6,13 @@
 
 #include <cstdlib>
 
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
-#include "devices/files/file_error.h"
-#include "devices/files/hand/hand_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/files/session/session_program.h"
 #include "devices/files/session/session_reader.h"
-#include "devices/files/session/session_wire.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "devices/files/arm/urdf_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/temp_dir.h"
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/hand/hand_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid::test {
 

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "devices/inverse3/web_socket.h"
+#include "devices/hid/web_socket.h"
 
 namespace limpid::test {
 

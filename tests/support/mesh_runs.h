@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
 #include "tests/support/meshes.h"
 #include "tests/support/rows.h"

@@ -1,8 +1,8 @@
 // Arms that nobody chose, and matrices.
 #pragma once
 
-#include "core/random/random.h"
-#include "core/random/random_arm.h"
+#include "core/dynamics/random.h"
+#include "core/dynamics/random_arm.h"
 
 namespace limpid::test {
 

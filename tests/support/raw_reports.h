@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "devices/hid/little_endian.h"
-#include "devices/hid/protocols/raw_protocol.h"
+#include "devices/hid/raw_protocol.h"
 
 namespace limpid::test {
 

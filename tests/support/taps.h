@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/dynamics/arm.h"
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 #include "tests/support/rows.h"
 
 namespace limpid::test {

@@ -13,9 +13,9 @@
 
 #include "app/live/live_loop.h"
 #include "app/run/replay.h"
-#include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
-#include "devices/registry/device_list.h"
+#include "devices/files/urdf_file.h"
+#include "devices/hid/device_list.h"
 #include "tests/support/hid/pid_joystick_model.h"
 #include "tests/support/hid/raw_device_model.h"
 #include "tests/support/hid/space_mouse_model.h"

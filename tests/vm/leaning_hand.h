@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "devices/rig/rig.h"
+#include "devices/simulated/rig.h"
 #include "tests/support/hid/sprung_hand.h"
 #include "tests/support/rows.h"
 

@@ -6,7 +6,7 @@
 
 #include <tuple>
 
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 #include "tests/vm/desk.h"
 #include "tests/vm/driver.h"
 #include "tests/vm/models.h"

@@ -5,7 +5,7 @@
 
 #include "devices/adjusted_device.h"
 #include "devices/hid/axis_check.h"
-#include "devices/hid/protocols/raw_protocol.h"
+#include "devices/hid/raw_protocol.h"
 #include "tests/vm/simulated_desk.h"
 
 namespace limpid::test {

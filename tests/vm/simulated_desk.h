@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "devices/hid/hid_exchange.h"
-#include "devices/hid/protocols/pid_joystick.h"
-#include "devices/hid/protocols/raw_protocol.h"
-#include "devices/rig/rig.h"
+#include "devices/hid/pid_joystick.h"
+#include "devices/hid/raw_protocol.h"
+#include "devices/simulated/rig.h"
 #include "tests/support/hid/pid_joystick_model.h"
 #include "tests/support/hid/raw_device_model.h"
 #include "tests/support/wisher.h"

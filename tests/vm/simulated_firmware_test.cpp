@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 #include "tests/vm/simulated_desk.h"
 
 namespace limpid::test {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "devices/files/arm/urdf_file.h"
+#include "devices/files/urdf_file.h"
 #include "devices/identify/excitation.h"
 #include "devices/identify/fit.h"
 #include "tests/support/built_in.h"

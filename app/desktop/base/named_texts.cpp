@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "devices/files/file_error.h"
-#include "devices/files/file_update.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <sstream>
 
-#include "app/base/user_dirs.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/plot_toml.h"
-#include "devices/files/config/config_file.h"
-#include "devices/files/file_update.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 

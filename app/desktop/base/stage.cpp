@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/base/assets.h"
-#include "app/view/mesh_pictures.h"
+#include "app/base/folders.h"
+#include "app/view/row_view.h"
 #include "render/arm_look.h"
 
 namespace limpid {

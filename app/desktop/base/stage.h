@@ -6,7 +6,6 @@
 
 #include "app/plot/history.h"
 #include "app/plot/plot.h"
-#include "app/plot/plot_group.h"
 #include "app/run/scene_meshes.h"
 #include "app/session/energy_account.h"
 #include "app/session/plot_choice.h"

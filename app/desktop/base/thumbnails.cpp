@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/base/user_dirs.h"
+#include "app/base/folders.h"
 #include "render/damage.h"
 #include "render/gl/offscreen.h"
 

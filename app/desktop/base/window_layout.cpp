@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "app/desktop/base/plot_toml.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/toml_reader.h"
 
 namespace limpid {

@@ -12,7 +12,7 @@
 
 #include "app/desktop/desk/desk.h"
 #include "app/device/device_hub.h"
-#include "devices/buttons.h"
+#include "devices/device.h"
 
 namespace limpid {
 

@@ -6,8 +6,8 @@
 #include <ctime>
 #include <utility>
 
-#include "app/base/user_dirs.h"
-#include "app/identify/identify_report.h"
+#include "app/base/folders.h"
+#include "app/study/identify_report.h"
 
 namespace limpid {
 namespace {

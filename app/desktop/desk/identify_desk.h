@@ -9,8 +9,7 @@
 #include <string>
 
 #include "app/desktop/desk/device_desk.h"
-#include "app/identify/findings.h"
-#include "app/identify/simulated_bench.h"
+#include "app/study/identification.h"
 
 namespace limpid {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/run/twin_settings.h"
 #include "core/touch/triangle_mesh.h"

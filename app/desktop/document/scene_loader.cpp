@@ -7,12 +7,11 @@
 #include <algorithm>
 
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/arm/urdf_collisions.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
+#include "devices/files/urdf_visuals.h"
 #include "render/arm_look.h"
 
 namespace limpid {

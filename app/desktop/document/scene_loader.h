@@ -7,11 +7,11 @@
 #include <string>
 #include <variant>
 
-#include "app/run/model_axes.h"
+#include "app/run/model_report.h"
 #include "app/run/scene_meshes.h"
 #include "app/session/background.h"
 #include "core/dynamics/arm_description.h"
-#include "devices/files/arm/xacro_consent.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 

@@ -9,8 +9,8 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/widgets/picture_texture.h"
-#include "app/experiments/experiment.h"
 #include "app/session/background.h"
+#include "app/study/experiment.h"
 
 namespace limpid {
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/settings.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/widgets/modal.h"

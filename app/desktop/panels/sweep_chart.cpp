@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "app/desktop/widgets/chart.h"
+#include "app/study/sweep_map.h"
 #include "app/style/colour_scale.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
-#include "app/sweep/axis_cells.h"
 
 namespace limpid {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/study/sweep_map.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
-#include "app/sweep/axis_cells.h"
 
 namespace limpid {
 namespace {

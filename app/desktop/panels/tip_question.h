@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "devices/files/arm/arm_tip.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 

@@ -10,8 +10,8 @@
 #include "app/run/twin_settings.h"
 #include "app/story/tell.h"
 #include "app/style/words.h"
-#include "devices/files/file_error.h"
-#include "devices/files/hand/hand_file.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {

@@ -4,8 +4,7 @@
 
 #include <tuple>
 
-#include "app/base/assets.h"
-#include "app/base/user_dirs.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/sweep/sweep_desk.h"
@@ -14,9 +13,9 @@
 #include "app/run/twin_settings.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/config/config_file.h"
+#include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 

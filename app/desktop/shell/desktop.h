@@ -15,8 +15,7 @@
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/focus.h"
 #include "app/run/analysis.h"
-#include "devices/files/arm/arm_tip.h"
-#include "devices/files/arm/xacro_consent.h"
+#include "devices/files/urdf_file.h"
 #include "render/camera.h"
 #include "render/quality.h"
 

@@ -1,15 +1,15 @@
 // What the desktop does with arms.
 #include <fmt/format.h>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/dynamics/inverse_kinematics.h"
-#include "devices/files/arm/urdf_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {

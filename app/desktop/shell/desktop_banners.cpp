@@ -7,7 +7,7 @@
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
-#include "core/tick/force_text.h"
+#include "core/tick/arming.h"
 
 namespace limpid {
 namespace {

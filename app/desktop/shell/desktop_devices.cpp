@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/run/own_world.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/file_error.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {

@@ -1,6 +1,6 @@
 #include "app/desktop/shell/dialogs.h"
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/window_layout.h"
 #include "app/desktop/panels/sweep_panel.h"
 #include "app/desktop/panels/unsaved_question.h"

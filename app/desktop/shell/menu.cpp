@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/panels/status_line.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"

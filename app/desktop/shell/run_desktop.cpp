@@ -15,7 +15,7 @@
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
 #include "app/live/rtkit.h"
-#include "core/realtime/memory_lock.h"
+#include "core/realtime/realtime.h"
 
 namespace limpid {
 namespace {

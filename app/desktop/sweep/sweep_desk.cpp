@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include "app/desktop/base/settings.h"
-#include "app/sweep/axis_cells.h"
-#include "app/sweep/record_point.h"
-#include "devices/files/file_error.h"
+#include "app/study/record_point.h"
+#include "app/study/sweep_map.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/desktop/playback/playback.h"
 #include "app/plot/plot_frame.h"
-#include "app/sweep/sweep_map.h"
+#include "app/study/sweep_map.h"
 
 namespace limpid {
 

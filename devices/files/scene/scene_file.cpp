@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/model_units.h"

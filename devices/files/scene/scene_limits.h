@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "devices/files/range.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid::scene_limits {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "devices/files/atomic_file.h"
-#include "devices/files/file_error.h"
 #include "devices/files/scene/model_units.h"
 #include "devices/files/scene/obj_companions.h"
 #include "devices/files/scene/scene_file.h"

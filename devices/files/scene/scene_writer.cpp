@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "devices/files/file_error.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/model_units.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {

@@ -1,8 +1,8 @@
 #include "devices/files/session/derived_columns.h"
 
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/file_error.h"
 #include "devices/files/session/session.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {

@@ -7,14 +7,258 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cerrno>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <string>
+#include <string_view>
 
-#include "devices/files/file_error.h"
-#include "devices/files/session/hdf5_heaps.h"
+#include "devices/files/text_file.h"
 
 namespace limpid::hdf5 {
+namespace {
+
+constexpr std::size_t kLongestText = std::size_t{64} << 20;  // [bytes]
+
+struct Reasons {
+  std::string system;
+  std::string innermost;
+};
+
+// HDF5 hides errno in its text: "file write failed: ..., errno = 28, error message = ...".
+herr_t collect(unsigned, const H5E_error2_t* error, void* data) {
+  auto& reasons = *static_cast<Reasons*>(data);
+  const std::string text = error->desc ? error->desc : "";
+  if (reasons.innermost.empty()) reasons.innermost = text;
+  const auto at = text.find("errno = ");
+  if (reasons.system.empty() && at != std::string::npos) {
+    const int code = std::atoi(text.c_str() + at + std::strlen("errno = "));
+    if (code != 0) reasons.system = std::strerror(code);
+  }
+  return 0;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const char* name, const char* found,
+                         const char* allowed) {
+  throw FileError(
+      fmt::format("{}: attribute {}: {}; needed: {}", file.string(), name, found, allowed));
+}
+
+// Opens a scalar attribute of one class of type.
+Attribute open_scalar(hid_t object, const char* name, H5T_class_t wanted, const char* allowed,
+                      const std::filesystem::path& file) {
+  if (H5Aexists(object, name) <= 0) refuse(file, name, "missing", allowed);
+  Attribute attribute(H5Aopen(object, name, H5P_DEFAULT));
+  const Datatype type(H5Aget_type(attribute.get()));
+  const Dataspace space(H5Aget_space(attribute.get()));
+  if (!attribute || !type || !space) refuse(file, name, "unreadable", allowed);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) {
+    refuse(file, name, "not a single value", allowed);
+  }
+  if (H5Tget_class(type.get()) != wanted) refuse(file, name, "of another type", allowed);
+  return attribute;
+}
+
+Datatype text_type() {
+  Datatype type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+}  // namespace
+
+std::string last_error() {
+  Reasons reasons;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, &collect, &reasons);
+  if (!reasons.system.empty()) return reasons.system;
+  return reasons.innermost.empty() ? "HDF5 gives no reason" : reasons.innermost;
+}
+
+void check(bool ok, const std::filesystem::path& file, const char* what) {
+  if (!ok) throw FileError(fmt::format("{}: {}: {}", file.string(), what, last_error()));
+}
+
+void write_texts(hid_t object, const char* name, const std::vector<std::string>& texts,
+                 const std::filesystem::path& file) {
+  const Datatype type = text_type();
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const hsize_t count = pointers.size();
+  const Dataspace space(H5Screate_simple(1, &count, nullptr));
+  const Attribute attribute(
+      H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  check(attribute && H5Awrite(attribute.get(), type.get(), pointers.data()) >= 0, file,
+        "cannot write");
+}
+
+void write_text(hid_t object, const char* name, const std::string& text,
+                const std::filesystem::path& file) {
+  const Datatype type = text_type();
+  const char* pointer = text.c_str();
+  write_scalar(object, name, type.get(), type.get(), &pointer, file);
+}
+
+void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as, const void* value,
+                  const std::filesystem::path& file) {
+  const Dataspace space(H5Screate(H5S_SCALAR));
+  const Attribute attribute(
+      H5Acreate2(object, name, stored_as, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+  check(attribute && H5Awrite(attribute.get(), held_as, value) >= 0, file, "cannot write");
+}
+
+std::string read_text(hid_t object, const char* name, const std::filesystem::path& file) {
+  const Attribute attribute = open_scalar(object, name, H5T_STRING, "text", file);
+  const Datatype type(H5Aget_type(attribute.get()));
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* text = nullptr;
+    if (H5Aread(attribute.get(), type.get(), &text) < 0) {
+      refuse(file, name, "unreadable", "text");
+    }
+    const std::string copy = text ? text : "";
+    H5free_memory(text);
+    return copy;
+  }
+  if (H5Tget_size(type.get()) > kLongestText) refuse(file, name, "too long", "at most 64 MiB");
+  std::string text(H5Tget_size(type.get()), '\0');
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) {
+    refuse(file, name, "unreadable", "text");
+  }
+  text.resize(std::strlen(text.c_str()));
+  return text;
+}
+
+std::vector<std::string> read_texts(hid_t object, const char* name, std::size_t most,
+                                    const std::filesystem::path& file) {
+  constexpr const char* kNeeded = "a list of texts";
+  const Attribute attribute(H5Aopen(object, name, H5P_DEFAULT));
+  const Datatype type(attribute ? H5Aget_type(attribute.get()) : H5I_INVALID_HID);
+  const Dataspace space(attribute ? H5Aget_space(attribute.get()) : H5I_INVALID_HID);
+  if (!type || !space) refuse(file, name, "unreadable", kNeeded);
+  if (H5Tget_class(type.get()) != H5T_STRING) refuse(file, name, "of another type", kNeeded);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count < 0 || static_cast<std::size_t>(count) > most) {
+    refuse(file, name, "too many", kNeeded);
+  }
+  const auto texts = static_cast<std::size_t>(count);
+  std::vector<std::string> all;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    std::vector<char*> pointers(texts, nullptr);
+    if (H5Aread(attribute.get(), type.get(), pointers.data()) < 0) {
+      refuse(file, name, "unreadable", kNeeded);
+    }
+    for (char* text : pointers) {
+      all.emplace_back(text ? text : "");
+      H5free_memory(text);
+    }
+    return all;
+  }
+  const std::size_t length = H5Tget_size(type.get());
+  std::string bytes(texts * length, '\0');
+  if (H5Aread(attribute.get(), type.get(), bytes.data()) < 0) {
+    refuse(file, name, "unreadable", kNeeded);
+  }
+  for (std::size_t at = 0; at < bytes.size(); at += length) {
+    all.emplace_back(bytes.substr(at, length).c_str());
+  }
+  return all;
+}
+
+double read_number(hid_t object, const char* name, const std::filesystem::path& file) {
+  const Attribute attribute = open_scalar(object, name, H5T_FLOAT, "a number", file);
+  double value = 0;
+  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) {
+    refuse(file, name, "unreadable", "a number");
+  }
+  return value;
+}
+
+unsigned long long read_count(hid_t object, const char* name, const std::filesystem::path& file) {
+  const Attribute attribute = open_scalar(object, name, H5T_INTEGER, "a whole number", file);
+  unsigned long long value = 0;
+  if (H5Aread(attribute.get(), H5T_NATIVE_ULLONG, &value) < 0) {
+    refuse(file, name, "unreadable", "a whole number");
+  }
+  return value;
+}
+
+}  // namespace limpid::hdf5
+// The format: "HDF5 File Format Specification", III.E, Disk Format: Level 1E - Global Heap.
+
+namespace limpid::hdf5 {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kSignature = "GCOL\1\0\0\0"sv;  // and version 1
+constexpr std::uint64_t kHeader = 16;                      // of a heap, and of each object in it
+constexpr std::size_t kBlock = 1 << 20;
+
+// `size` bytes at `at`; fewer at the end of the file.
+std::string bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t size) {
+  std::string bytes(size, '\0');
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(at));
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+template <class T>
+T number_at(std::string_view bytes, std::uint64_t at) {
+  T x;
+  std::memcpy(&x, bytes.data() + at, sizeof x);
+  return x;
+}
+
+// Objects follow each other to the end of the heap: number, count, reserved, size; then that many
+// bytes, padded to 8. Object 0 is free space, with its header in its size.
+bool whole(std::string_view heap) {
+  std::bitset<65536> seen;
+  std::uint64_t at = kHeader;
+  while (heap.size() - at >= kHeader) {
+    const auto number = number_at<std::uint16_t>(heap, at);
+    const auto size = number_at<std::uint64_t>(heap, at + 8);
+    const std::uint64_t room = heap.size() - at;
+    if (size > room || seen[number]) return false;
+    seen.set(number);
+    const std::uint64_t taken = number == 0 ? size : kHeader + (size + 7) / 8 * 8;
+    if (taken < kHeader || taken > room) return false;
+    at += taken;
+  }
+  return true;
+}
+
+void check_heap(std::ifstream& in, std::uint64_t at, std::uint64_t file_size,
+                const std::filesystem::path& file) {
+  const std::string header = bytes_at(in, at, kHeader);
+  if (header.size() == kHeader) {
+    const auto size = number_at<std::uint64_t>(header, 8);
+    if (size >= kHeader && size <= file_size - at && whole(bytes_at(in, at, size))) return;
+  }
+  throw FileError(fmt::format("{}: damaged (text at byte {})", file.string(), at));
+}
+
+}  // namespace
+
+void check_heaps(const std::filesystem::path& file) {
+  const std::uint64_t size = std::filesystem::file_size(file);
+  std::ifstream in(file, std::ios::binary);
+  // Blocks overlap, so that no signature is cut in two.
+  for (std::uint64_t from = 0; from < size; from += kBlock) {
+    const std::string block = bytes_at(in, from, kBlock + kSignature.size() - 1);
+    // By its first letter, which numbers seldom have: memmem() looks at every byte of them.
+    for (auto at = block.find(kSignature); at != std::string::npos;
+         at = block.find(kSignature, at + 1)) {
+      check_heap(in, from + at, size, file);
+    }
+  }
+}
+
 namespace {
 
 namespace fs = std::filesystem;

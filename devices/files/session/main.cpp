@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/process/sandbox.h"
+#include "core/base/sandbox.h"
 #include "devices/files/session/session_reader.h"
 
 namespace {

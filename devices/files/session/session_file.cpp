@@ -4,15 +4,122 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <ctime>
 #include <stdexcept>
 
-#include "devices/files/file_size_signal.h"
-#include "devices/files/session/dimension_scales.h"
-#include "devices/files/session/session_attributes.h"
-#include "devices/files/session/session_models.h"
-#include "devices/files/session/session_names.h"
+#include "core/dynamics/arm_description.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session.h"
+#include "devices/files/session/session_lane.h"
+#include "devices/files/session/session_source.h"
 
 namespace limpid {
+
+namespace {
+
+std::string now() {
+  const std::time_t t = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&t, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+constexpr const char* kConventions =
+    "Row k is the state at /time[k] and the torques held from then to the next row. Units are SI: "
+    "rad, rad/s and N m of joints that turn, m, m/s and N of joints that slide; the attribute unit "
+    "of a dataset says which, once for all of its columns or once for each joint. Places, "
+    "velocities and forces at the tip are x, y, z in the frame of the root link of device_urdf. "
+    "The device is the arm in the hand, the proxy its image in the simulated world; contact forces "
+    "act on the proxy. Where nothing touches, /contact/force and /contact/total_force are 0 and "
+    "/contact/point is not a number. /check is for the program: sums that show damage, and what "
+    "the units' rounding took. Whoever changes a dataset deletes /check.";
+
+void write_arm(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
+  std::vector<std::string> types;
+  for (const bool slide : info.slides) types.emplace_back(slide ? kSlidingType : kTurningType);
+  if (!types.empty()) hdf5::write_texts(root, kJointTypes, types, file);
+  if (!info.arm) return;
+  std::vector<std::string> names;
+  for (const Joint& joint : info.arm->joints) names.push_back(joint.name);
+  hdf5::write_texts(root, "joints", names, file);
+  hdf5::write_text(root, "tip", info.arm->tip_link, file);
+}
+
+}  // namespace
+
+void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
+  const std::int64_t version = kSessionVersion;
+  const std::int64_t dof = info.dof;
+  hdf5::write_text(root, "format", kSessionFormat, file);
+  hdf5::write_scalar(root, "version", H5T_STD_I64LE, H5T_NATIVE_INT64, &version, file);
+  hdf5::write_scalar(root, "tick", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &info.tick, file);
+  hdf5::write_scalar(root, "dof", H5T_STD_I64LE, H5T_NATIVE_INT64, &dof, file);
+  hdf5::write_scalar(root, "seed", H5T_STD_U64LE, H5T_NATIVE_UINT64, &info.seed, file);
+  hdf5::write_text(root, "created", info.created.empty() ? now() : info.created, file);
+  hdf5::write_text(root, "app_version", info.app_version, file);
+  hdf5::write_text(root, "build", info.build, file);
+  hdf5::write_text(root, "conventions", kConventions, file);
+  hdf5::write_text(root, "source", info.source, file);
+  hdf5::write_text(root, "config", info.config, file);
+  hdf5::write_text(root, "device_urdf", info.device_urdf, file);
+  hdf5::write_text(root, "scene", info.scene, file);
+  hdf5::write_text(root, "safety_limits", info.safety, file);
+  write_arm(root, info, file);
+}
+
+namespace {
+
+constexpr const char* kGroup = "/models";
+constexpr std::size_t kMostModels = 64;
+
+std::string dataset_path(std::size_t i) { return fmt::format("{}/{}", kGroup, i); }
+
+}  // namespace
+
+void write_models(hid_t root, const SceneFiles& models, const std::filesystem::path& file) {
+  const hdf5::Properties links(H5Pcreate(H5P_LINK_CREATE));
+  H5Pset_create_intermediate_group(links.get(), 1);
+  std::size_t i = 0;
+  for (const auto& [name, bytes] : models) {
+    const hsize_t size = bytes->size();
+    const hdf5::Dataspace space(H5Screate_simple(1, &size, nullptr));
+    const hdf5::Dataset dataset(H5Dcreate2(root, dataset_path(i++).c_str(), H5T_STD_U8LE,
+                                           space.get(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
+    hdf5::check(dataset && H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                                    bytes->data()) >= 0,
+                file, "cannot write");
+    hdf5::write_text(dataset.get(), "name", name, file);
+  }
+}
+
+SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims) {
+  std::vector<Source> sources;
+  for (std::size_t i = 0; i < kMostModels && hdf5::has(root, dataset_path(i), file); ++i) {
+    const Source& source =
+        sources.emplace_back(open_source(root, dataset_path(i).c_str(), 1, file));
+    claims.stored(source.dataset);
+    claims.take(source.rows, 1, source.path);
+  }
+  SceneFiles models;
+  for (const Source& source : sources) {
+    const std::string& path = source.path;
+    const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+    std::vector<unsigned char> bytes(source.rows);
+    if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 1 ||
+        (!bytes.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL,
+                                   H5P_DEFAULT, bytes.data()) < 0)) {
+      refuse(file, path + ": cannot be read as bytes");
+    }
+    const std::string name = hdf5::read_text(source.dataset.get(), "name", file);
+    models[name] = std::make_shared<const std::vector<unsigned char>>(std::move(bytes));
+  }
+  return models;
+}
+
 namespace {
 
 using hdf5::check;

@@ -1,17 +1,35 @@
-// One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
-// what it is called when done.
+// What a session file says of itself and of its input, beside the rows.
 #pragma once
+
+#include <hdf5.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
 
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/scene_files.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_lane.h"
 
 namespace limpid {
+
+// Writes the attributes of the `root` group. Errors: FileError naming `file`.
+void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem::path& file);
+
+// The models of a scene inside a session file: /models/0, /models/1, ... as bytes, each with the
+// name that the scene's text has for it as the attribute "name".
+
+// Before the first row. Errors: FileError.
+void write_models(hid_t root, const SceneFiles& models, const std::filesystem::path& file);
+
+// None in a session that has none. Errors: FileError for what is no such dataset or claims more
+// than a file of this size can hold.
+SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
+
+// One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
+// what it is called when done.
 
 // A file that survives being killed, by HDF5's rules (single writer, multiple readers: everything
 // is created before writing starts) and one of its own. HDF5 rewrites some things in place: how

@@ -1,16 +1,101 @@
 #include "devices/files/session/session_lane.h"
 
+#include <hdf5_hl.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "devices/files/session/growing_dataset.h"
-#include "devices/files/session/session_check.h"
-#include "devices/files/session/session_names.h"
+#include "devices/files/session/session.h"
+#include "devices/files/session/session_source.h"
 
+namespace limpid::hdf5 {
+namespace {
+
+Dataset create_names(hid_t root, const char* name, const std::vector<std::string>& names,
+                     const std::filesystem::path& file) {
+  std::size_t length = 1;
+  for (const std::string& each : names) length = std::max(length, each.size());
+  std::string bytes;
+  for (const std::string& each : names) bytes += each + std::string(length - each.size(), '\0');
+  const Datatype type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), length);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  const hsize_t count = names.size();
+  const Dataspace space(H5Screate_simple(1, &count, nullptr));
+  Dataset dataset(
+      H5Dcreate2(root, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  check(dataset &&
+            H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0,
+        file, "cannot write");
+  make_scale(dataset, name, file);
+  return dataset;
+}
+
+}  // namespace
+
+Scales create_scales(hid_t root, const ArmDescription& arm, const std::filesystem::path& file) {
+  std::vector<std::string> joints;
+  for (const Joint& joint : arm.joints) joints.push_back(joint.name);
+  return {create_names(root, "joint", joints, file),
+          create_names(root, "axis", {"x", "y", "z"}, file)};
+}
+
+void make_scale(const Dataset& dataset, const char* name, const std::filesystem::path& file) {
+  check(H5DSset_scale(dataset.get(), name) >= 0, file, "cannot write");
+}
+
+void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimension,
+                  const std::filesystem::path& file) {
+  check(H5DSattach_scale(dataset.get(), scale.get(), dimension) >= 0, file, "cannot write");
+}
+
+
+Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
+                       hsize_t chunk, std::optional<double> fill) {
+  const Properties creation(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_fill_time(creation.get(), fill ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
+  if (fill) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &*fill);
+  const std::array<hsize_t, 2> none{0, width};
+  const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
+  const std::array<hsize_t, 2> chunks{chunk, width};
+  const Dataspace space(H5Screate_simple(rank, none.data(), unlimited.data()));
+  const Properties links(H5Pcreate(H5P_LINK_CREATE));
+  H5Pset_create_intermediate_group(links.get(), 1);
+  H5Pset_chunk(creation.get(), rank, chunks.data());
+  return Dataset(
+      H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
+}
+
+void append_to(const Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+               const void* data, const std::filesystem::path& file) {
+  const std::array<hsize_t, 2> extent{from + count, width};
+  const std::array<hsize_t, 2> start{from, 0};
+  const std::array<hsize_t, 2> block{count, width};
+  check(H5Dset_extent(dataset.get(), extent.data()) >= 0, file, "cannot write");
+  if (data == nullptr) {
+    check(H5Dflush(dataset.get()) >= 0, file, "cannot write");
+    return;
+  }
+  const Dataspace in_file(H5Dget_space(dataset.get()));
+  const int rank = H5Sget_simple_extent_ndims(in_file.get());
+  const Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
+  check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
+                            nullptr) >= 0 &&
+            H5Dwrite(dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, data) >= 0 &&
+            H5Dflush(dataset.get()) >= 0,
+        file, "cannot write");
+}
+
+}  // namespace limpid::hdf5
 namespace limpid {
+
 namespace {
 
 using hdf5::append_to;

@@ -1,20 +1,56 @@
-// The datasets of one run in a session file: rows, what changed while they were made, and sums that
-// tell what was really written.
+// What the rows and columns of a session's datasets stand for, in HDF5's own way: dimension scales.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/dynamics/arm_description.h"
 #include "devices/files/session/derived_columns.h"
-#include "devices/files/session/dimension_scales.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_units.h"
 
+namespace limpid::hdf5 {
+
+// The scales that the whole file has once: /joint, the names of the joints, and /axis, x, y, z.
+// Invalid in a file whose arm is not known.
+struct Scales {
+  Dataset joint, axis;
+};
+// Errors: FileError naming `file`.
+Scales create_scales(hid_t root, const ArmDescription& arm, const std::filesystem::path& file);
+
+void make_scale(const Dataset& dataset, const char* name, const std::filesystem::path& file);
+// Says that `scale` numbers the dataset's rows (0) or columns (1).
+void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimension,
+                  const std::filesystem::path& file);
+
+}  // namespace limpid::hdf5
+// Datasets of HDF5 that rows are appended to.
+
+namespace limpid::hdf5 {
+
+// A list of rank 1, or a table of rank 2 with rows of `width`; invalid if it cannot be created.
+// `fill`: what rows read as that are announced and never written; none: as anything.
+Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
+                       hsize_t chunk, std::optional<double> fill = std::nullopt);
+
+// Appends `count` rows behind the first `from` and flushes them; without data they are what the
+// dataset is filled with. Errors: FileError naming `file`; asked for at once, as closing any handle
+// makes HDF5 forget them.
+void append_to(const Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+               const void* data, const std::filesystem::path& file);
+
+}  // namespace limpid::hdf5
 namespace limpid {
+
+// The datasets of one run in a session file: rows, what changed while they were made, and sums that
+// tell what was really written.
 
 // Rows go straight behind those that are there, in blocks, without a filter, so that nothing that
 // was written is ever written again. A block is a power of two of rows, 512 at 1 kHz: what the

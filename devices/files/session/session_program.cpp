@@ -6,17 +6,161 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 
-#include "core/process/child.h"
-#include "core/process/descriptor.h"
+#include "core/base/child.h"
+#include "core/base/descriptor.h"
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_reader.h"
 #include "devices/files/session/session_source.h"
 #include "devices/files/session/session_story.h"
 
+namespace limpid::wire {
+
+void Writer::bytes(std::span<const unsigned char> all) {
+  if (!write_all(to_, all)) throw Broken("nobody reads");
+}
+
+void Reader::bytes(std::span<unsigned char> all) {
+  if (all.size() > left_) throw Broken("too much");
+  left_ -= all.size();
+  while (!all.empty()) {
+    const ssize_t read = ::read(from_, all.data(), all.size());
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) throw Broken("cut off");
+    all = all.subspan(static_cast<std::size_t>(read));
+  }
+}
+
+std::size_t Reader::taken(std::size_t size) {
+  const auto count = number<std::uint64_t>();
+  if (count > left_ / size) throw Broken("too much");
+  return static_cast<std::size_t>(count);
+}
+
+namespace {
+
+void put_run(Writer& to, const Session& run) {
+  to.list(std::span<const double>(run.rows));
+  to.number<std::uint64_t>(run.changes.size());
+  for (const SettingChange& change : run.changes) {
+    to.number(change.row);
+    to.text(change.setting);
+  }
+}
+
+void take_run(Reader& from, Session& run) {
+  run.layout = RowLayout(run.info.dof);
+  run.rows = from.list<std::vector<double>>();
+  if (run.rows.size() % static_cast<std::size_t>(run.layout.stride()) != 0) {
+    throw Broken("rows that are not whole");
+  }
+  const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
+  for (std::size_t i = 0; i < changes; ++i) {
+    const auto row = from.number<std::uint64_t>();
+    if (row > run.size() || (i > 0 && row < run.changes.back().row)) {
+      throw Broken("changes that do not follow each other");
+    }
+    run.changes.push_back({row, from.text()});
+  }
+}
+
+// Each text of SessionInfo, in the same order at both ends.
+template <class Info, class Work>
+void each_text(Info& info, Work work) {
+  for (auto* const text : {&info.created, &info.app_version, &info.build, &info.source,
+                           &info.config, &info.safety, &info.device_urdf, &info.scene}) {
+    work(*text);
+  }
+}
+
+}  // namespace
+
+void put_session(Writer& to, const Session& session) {
+  const SessionInfo& info = session.info;
+  to.number(info.tick);
+  to.number(info.dof);
+  to.number(info.seed);
+  each_text(info, [&](const std::string& text) { to.text(text); });
+  to.number<std::uint64_t>(info.models.size());
+  for (const auto& [name, bytes] : info.models) {
+    to.text(name);
+    to.list(std::span<const unsigned char>(*bytes));
+  }
+  to.list(std::span<const unsigned char>(
+      std::vector<unsigned char>(info.slides.begin(), info.slides.end())));
+  put_run(to, session);
+  to.number<std::uint8_t>(session.twin != nullptr);
+  if (session.twin == nullptr) return;
+  to.text(session.twin->info.config);
+  put_run(to, *session.twin);
+}
+
+Session take_session(Reader& from) {
+  Session session;
+  SessionInfo& info = session.info;
+  info.tick = from.number<double>();
+  info.dof = from.number<int>();
+  // As check_session_info() has it, which names what is wrong with a file.
+  if (!(info.tick > 0 && info.tick <= 0.1) || info.dof < 1 || info.dof > kMaxDof) {
+    throw Broken("no arm of that kind");
+  }
+  info.seed = from.number<std::uint64_t>();
+  each_text(info, [&](std::string& text) { text = from.text(); });
+  const std::size_t models = from.taken(2 * sizeof(std::uint64_t));
+  for (std::size_t i = 0; i < models; ++i) {
+    const std::string name = from.text();
+    info.models[name] =
+        std::make_shared<const std::vector<unsigned char>>(from.list<std::vector<unsigned char>>());
+  }
+  const auto slides = from.list<std::vector<unsigned char>>();
+  if (!slides.empty() && slides.size() != static_cast<std::size_t>(info.dof)) {
+    throw Broken("joints that the arm does not have");
+  }
+  for (const unsigned char slide : slides) info.slides.push_back(slide != 0);
+  take_run(from, session);
+  if (from.number<std::uint8_t>() == 0) return session;
+  Session twin;
+  twin.info = info;
+  twin.info.config = from.text();
+  info.twin = twin.info.config;
+  take_run(from, twin);
+  if (twin.size() != session.size()) throw Broken("two runs that are not as long as each other");
+  session.twin = std::make_shared<const Session>(std::move(twin));
+  return session;
+}
+
+void put_table(Writer& to, const Table& table) {
+  to.number<std::uint64_t>(table.texts.size());
+  for (const auto& [name, value] : table.texts) to.text(name), to.text(value);
+  to.number<std::uint64_t>(table.counts.size());
+  for (const auto& [name, value] : table.counts) to.text(name), to.number(value);
+  to.number<std::uint64_t>(table.columns.size());
+  for (const auto& [path, values] : table.columns) {
+    to.text(path);
+    to.list(std::span<const double>(values));
+  }
+}
+
+Table take_table(Reader& from) {
+  constexpr std::size_t kNumber = sizeof(std::uint64_t);
+  Table table;
+  const auto each = [&](std::size_t size, auto take) {
+    for (std::size_t left = from.taken(size); left > 0; --left) take(from.text());
+  };
+  each(2 * kNumber, [&](const std::string& name) { table.texts[name] = from.text(); });
+  each(2 * kNumber,
+       [&](const std::string& name) { table.counts[name] = from.number<std::uint64_t>(); });
+  each(2 * kNumber,
+       [&](const std::string& path) { table.columns[path] = from.list<std::vector<double>>(); });
+  return table;
+}
+
+}  // namespace limpid::wire
 namespace limpid {
+
 namespace {
 
 namespace fs = std::filesystem;

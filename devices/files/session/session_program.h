@@ -1,10 +1,103 @@
-// The program limpid-session, seen from the one that calls it.
+// What limpid-session says of a file, as bytes through a pipe: numbers as they are in memory, and
+// before each text and list how many there are. Both ends are of one build.
 #pragma once
 
-#include "devices/files/session/session_wire.h"
+#include <cstdint>
+#include <map>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
 
+#include "devices/files/session/session.h"
+
+namespace limpid::wire {
+
+// The other end is gone, or what it says is no session, story or table.
+struct Broken : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The first number of all: what follows.
+enum class Answer : std::uint64_t { refusal, contents };
+
+class Writer {
+ public:
+  explicit Writer(int to) : to_(to) {}
+
+  void bytes(std::span<const unsigned char> all);
+  template <class Number>
+  void number(Number value) {
+    static_assert(std::is_arithmetic_v<Number> || std::is_enum_v<Number>);
+    bytes({reinterpret_cast<const unsigned char*>(&value), sizeof value});
+  }
+  template <class Value>
+  void list(std::span<const Value> values) {
+    static_assert(std::is_arithmetic_v<Value>);
+    number<std::uint64_t>(values.size());
+    bytes({reinterpret_cast<const unsigned char*>(values.data()), values.size_bytes()});
+  }
+  void text(const std::string& value) { list(std::span<const char>(value)); }
+
+ private:
+  int to_;
+};
+
+// Trusts nothing: memory is taken as the bytes arrive.
+class Reader {
+ public:
+  // `most`: [bytes] in all.
+  Reader(int from, std::uint64_t most) : from_(from), left_(most) {}
+
+  void bytes(std::span<unsigned char> all);
+  template <class Number>
+  Number number() {
+    Number value{};
+    bytes({reinterpret_cast<unsigned char*>(&value), sizeof value});
+    return value;
+  }
+  template <class List>
+  List list() {
+    using Value = typename List::value_type;
+    static_assert(std::is_arithmetic_v<Value>);
+    constexpr std::size_t kPiece = (1 << 20) / sizeof(Value);
+    const std::size_t count = taken(sizeof(Value));
+    List values;
+    values.reserve(count);
+    while (values.size() < count) {
+      const std::size_t from = values.size(), more = std::min(kPiece, count - from);
+      values.resize(from + more);
+      bytes({reinterpret_cast<unsigned char*>(values.data() + from), more * sizeof(Value)});
+    }
+    return values;
+  }
+  std::string text() { return list<std::string>(); }
+  // How many follow, of at least `size` bytes each. Errors: Broken where those would be too many.
+  std::size_t taken(std::size_t size);
+
+ private:
+  int from_;
+  std::uint64_t left_;
+};
+
+// Errors: Broken.
+void put_session(Writer& to, const Session& session);
+Session take_session(Reader& from);
+
+// The attributes and columns of a file of numbers that is no session.
+struct Table {
+  std::map<std::string, std::string> texts;
+  std::map<std::string, std::uint64_t> counts;
+  std::map<std::string, std::vector<double>> columns;  // by path, as "/measure/energy"
+};
+void put_table(Writer& to, const Table& table);
+Table take_table(Reader& from);
+
+}  // namespace limpid::wire
 namespace limpid {
 
+// The program limpid-session, seen from the one that calls it.
 inline constexpr const char* kSessionProgram = "limpid-session";
 
 // The texts, whole numbers and columns of a sweep's table. Errors: FileError for what is no table,

@@ -1,4 +1,3 @@
-// Reads session files, trusting nothing in them.
 #include "devices/files/session/session_reader.h"
 
 #include <fmt/format.h>
@@ -12,15 +11,75 @@
 
 #include "core/tick/parameters.h"
 #include "devices/files/session/hdf5_reading.h"
-#include "devices/files/session/session_check.h"
-#include "devices/files/session/session_events.h"
-#include "devices/files/session/session_models.h"
-#include "devices/files/session/session_names.h"
-#include "devices/files/session/session_place.h"
+#include "devices/files/session/session.h"
+#include "devices/files/session/session_file.h"
 #include "devices/files/session/session_source.h"
 #include "devices/files/session/session_units.h"
+#include "devices/files/session/session_writer.h"
 
 namespace limpid {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::uint64_t> read_event_rows(const Source& source, const fs::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  std::vector<std::uint64_t> rows(source.rows);
+  if (H5Tget_class(type.get()) != H5T_INTEGER ||
+      (!rows.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL,
+                                H5P_DEFAULT, rows.data()) < 0)) {
+    refuse(file, fmt::format("{}: cannot be read as row numbers", source.path));
+  }
+  return rows;
+}
+
+std::vector<std::string> read_event_settings(const Source& source, const fs::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  const std::size_t length = H5Tget_size(type.get());
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 ||
+      length > kSettingLength) {
+    refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, kSettingLength));
+  }
+  std::string all(source.rows * length, '\0');
+  if (!all.empty() &&
+      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
+    refuse(file, fmt::format("{}: cannot be read", source.path));
+  }
+  std::vector<std::string> settings;
+  for (std::size_t at = 0; at < all.size(); at += length) {
+    const std::string setting = all.substr(at, length);
+    settings.emplace_back(setting.c_str(), std::min(setting.find('\0'), length));
+  }
+  return settings;
+}
+
+}  // namespace
+
+void read_changes(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
+  if (!hdf5::has(root, kEventRowPath, file) || !hdf5::has(root, kEventSettingPath, file)) return;
+  const Source row_source = open_source(root, kEventRowPath, 1, file);
+  const Source setting_source = open_source(root, kEventSettingPath, 1, file);
+  for (const Source* source : {&row_source, &setting_source}) claims.stored(source->dataset);
+  claims.take(row_source.rows, sizeof(std::uint64_t), row_source.path);
+  claims.take(setting_source.rows, sizeof(std::string) + 2 * kSettingLength, setting_source.path);
+  const auto rows = read_event_rows(row_source, file);
+  const auto settings = read_event_settings(setting_source, file);
+  if (rows.size() != settings.size() && !is_leftover(file)) {
+    refuse(file, "/events/row and /events/setting differ in length; needed: the same");
+  }
+  for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
+    if (is_leftover(file) && rows[i] >= session.size()) break;
+    if (rows[i] > session.size() || (i > 0 && rows[i] < rows[i - 1])) {
+      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
+                               rows[i], session.size()));
+    }
+    session.changes.push_back({rows[i], settings[i]});
+  }
+}
+
+// Reads session files, trusting nothing in them.
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -329,6 +388,84 @@ Session read_session_here(const fs::path& file) {
     refuse(file, "larger than this computer's memory");
   }
   return session;
+}
+
+// Tables of sweeps: numbers in columns, all of one length.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDone = "done";
+constexpr const char* kMeasures = "measure";
+
+std::vector<std::string> attributes_of(hid_t root) {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  H5Aiterate2(root, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
+  return names;
+}
+
+std::vector<std::string> links_of(hid_t group) {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
+  return names;
+}
+
+std::vector<double> column(hid_t root, const std::string& path, const fs::path& file,
+                           hdf5::Claims& claims) {
+  const hdf5::Dataset dataset = hdf5::open_dataset(root, path, file);
+  const hdf5::Dataspace space(H5Dget_space(dataset.get()));
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count < 0) refuse(file, fmt::format("damaged: {}: no list of numbers", path));
+  claims.stored(dataset);
+  claims.take(static_cast<std::uint64_t>(count), sizeof(double), path);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  const bool read = values.empty() || H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
+                                              H5P_DEFAULT, values.data()) >= 0;
+  hdf5::check(read, file, ("damaged: " + path).c_str());
+  return values;
+}
+
+}  // namespace
+
+wire::Table read_table_here(const fs::path& file) {
+  const hdf5::Quiet quiet;
+  hdf5::check_regular_file(file);
+  // Recordings may be large, and are told from tables without looking through all of them.
+  {
+    const hdf5::File looked_at(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    if (!looked_at || H5Lexists(looked_at.get(), kMeasures, H5P_DEFAULT) <= 0) {
+      refuse(file, "damaged, or no table of a sweep");
+    }
+  }
+  const hdf5::File opened = hdf5::open_to_read(file);
+  const hid_t root = opened.get();
+  wire::Table table;
+  for (const std::string& name : attributes_of(root)) {
+    const hdf5::Attribute attribute(H5Aopen(root, name.c_str(), H5P_DEFAULT));
+    const hdf5::Datatype type(H5Aget_type(attribute.get()));
+    const H5T_class_t kind = H5Tget_class(type.get());
+    if (kind == H5T_STRING) table.texts[name] = hdf5::read_text(root, name.c_str(), file);
+    if (kind == H5T_INTEGER) table.counts[name] = hdf5::read_count(root, name.c_str(), file);
+  }
+  hdf5::Claims claims(file);
+  const auto take = [&](const std::string& path) {
+    table.columns[path] = column(root, path, file, claims);
+  };
+  if (hdf5::has(root, kDone, file)) take(fmt::format("/{}", kDone));
+  const hdf5::Group measures = hdf5::open_group(root, kMeasures, file);
+  for (const std::string& name : links_of(measures.get())) {
+    take(fmt::format("/{}/{}", kMeasures, name));
+  }
+  return table;
 }
 
 }  // namespace limpid

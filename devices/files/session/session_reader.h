@@ -1,13 +1,21 @@
-// Reads HDF5 files in this process, as only limpid-session does: what a broken or hostile file does
-// to HDF5's library ends that program. The others have read_session(), attached_story() and
-// read_table(), which call it.
+// Which settings changed in a session, and when.
 #pragma once
 
+#include <filesystem>
+
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
-#include "devices/files/session/session_wire.h"
+#include "devices/files/session/session_program.h"
 
 namespace limpid {
 
+// Fills the session's changes; its rows are read already. Errors: FileError.
+void read_changes(hid_t group, Session& session, const std::filesystem::path& file,
+                  hdf5::Claims& claims);
+
+// Reads HDF5 files in this process, as only limpid-session does: what a broken or hostile file does
+// to HDF5's library ends that program. The others have read_session(), attached_story() and
+// read_table(), which call it.
 Session read_session_here(const std::filesystem::path& file);
 std::string attached_story_here(const std::filesystem::path& session);
 // All texts and whole numbers at the root, and the columns /done and /measure/... Errors: FileError

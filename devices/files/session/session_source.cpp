@@ -2,12 +2,112 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <optional>
 
-#include "devices/files/file_error.h"
 #include "devices/files/session/hdf5_reading.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
+
+namespace {
+
+constexpr hsize_t kMostColumns = 256;
+constexpr unsigned long long kMostBlockRead = 1 << 20;
+
+// Which columns the sums are over; none: one that this program does not know.
+std::vector<std::optional<Column>> columns_in(const std::string& paths) {
+  std::vector<std::optional<Column>> columns;
+  for (std::size_t at = 0; at < paths.size();) {
+    const std::size_t end = std::min(paths.find('\n', at), paths.size());
+    const std::string path = paths.substr(at, end - at);
+    const auto known =
+        std::ranges::find_if(kColumnInfo, [&](const auto& c) { return c.path == path; });
+    columns.push_back(known == kColumnInfo.end() ? std::nullopt : std::optional(known->column));
+    at = end + 1;
+  }
+  return columns;
+}
+
+// Takes a value into a sum.
+std::uint64_t stirred(std::uint64_t sum, double x) {
+  sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
+  return sum ^ sum >> 32;
+}
+
+}  // namespace
+
+AllColumns columns_of(const RowLayout& layout, std::span<const double> rows) {
+  AllColumns columns;
+  std::ranges::transform(kColumnInfo, columns.begin(), [&](const ColumnInfo& info) {
+    return ColumnValues{rows.data() + layout.offset(info.column), layout.width(info.column),
+                        layout.stride()};
+  });
+  return columns;
+}
+
+std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::uint64_t from,
+                                                std::uint64_t count) {
+  std::array<std::uint64_t, kColumns> sums;
+  sums.fill(count);
+  for (std::uint64_t k = from; k < from + count; ++k) {
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const double* values = columns[c].first + k * static_cast<std::size_t>(columns[c].step);
+      std::uint64_t sum = sums[c];
+      for (int i = 0; i < columns[c].width; ++i) sum = stirred(sum, values[i]);
+      sums[c] = sum;
+    }
+  }
+  return sums;
+}
+
+std::string check_columns() {
+  std::string paths;
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (summed(column)) paths += std::string(column.path) + "\n";
+  }
+  return paths;
+}
+
+CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file) {
+  if (!hdf5::has(root, kCheckPath, file)) return {session.size(), ""};
+  const hdf5::Dataset sums = hdf5::open_dataset(root, kCheckPath, file);
+  const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
+  const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));
+  if (block < 1 || block > kMostBlockRead || columns.empty() || columns.size() > kMostColumns) {
+    refuse(file,
+           fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns.size()));
+  }
+  const Source source = open_source(root, kCheckPath, columns.size(), file);
+  const hdf5::Datatype type(H5Dget_type(sums.get()));
+  if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 8) {
+    refuse(file, fmt::format("{}: of another type; needed: uint64", kCheckPath));
+  }
+
+  const AllColumns in_memory = columns_of(session.layout, session.rows);
+  std::vector<std::uint64_t> wanted(columns.size());
+  for (std::size_t from = 0; from < session.size(); from += block) {
+    const std::size_t count = std::min<std::size_t>(block, session.size() - from);
+    const std::string rows = fmt::format("rows {} to {}", from, from + count - 1);
+    if (from / block >= source.rows || !read_row(source, from / block, wanted.data())) {
+      return {from, fmt::format("{} were never written", rows)};
+    }
+    const auto found = column_sums(in_memory, from, count);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (!columns[i]) continue;
+      const auto column = static_cast<std::size_t>(*columns[i]);
+      if (found[column] == wanted[i]) continue;
+      const char* path = kColumnInfo[column].path;
+      if (!hdf5::has(root, path, file)) continue;  // a column that somebody left out
+      return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
+                                "another program (which then has to delete /check)",
+                                path, rows)};
+    }
+  }
+  return {session.size(), ""};
+}
 
 void refuse(const std::filesystem::path& file, const std::string& why) {
   throw FileError(fmt::format("{}: {}", file.string(), why));

@@ -1,14 +1,65 @@
-// The datasets of a session file, opened with distrust.
+// What tells rows that were recorded from rows that a killed program had only announced, or that
+// were damaged since: a sum over each column, for every block of rows that is written at once.
+//
+// /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
+// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all but
+// those of the timing, in which equal runs differ. The sums are over what the file holds. Sessions
+// of other programs, and of the first edition, have none.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "core/tick/row.h"
-#include "devices/files/session/hdf5_handles.h"
+#include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
+
+inline constexpr const char* kCheckPath = "/check/sums";
+inline constexpr const char* kCheckRows = "rows";
+inline constexpr const char* kCheckColumns = "columns";
+
+// The values of a column: `width` in each row, and from a row to the next `step`.
+struct ColumnValues {
+  const double* first;
+  int width, step;
+};
+using AllColumns = std::array<ColumnValues, kColumns>;
+// In rows as they are in memory.
+AllColumns columns_of(const RowLayout& layout, std::span<const double> rows);
+
+// Of all columns, in their order, over the values of `count` rows from row `from` on: h <- (h ^
+// bits) * odd, and a shift. Each step can be undone, so a single value that changes always changes
+// the sum. They go side by side: each sum waits for the step before, so that one column after the
+// other takes several times as long.
+std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::uint64_t from,
+                                                std::uint64_t count);
+
+// Whether a recording that is written now has sums of it.
+constexpr bool summed(const ColumnInfo& column) {
+  return !std::string_view(column.path).starts_with("/timing/");
+}
+inline constexpr auto kSummedColumns =
+    static_cast<std::size_t>(std::ranges::count_if(kColumnInfo, summed));
+// Their paths in the order of their sums, a line each.
+std::string check_columns();
+
+// How many rows from the first are as they were recorded, and why the next one is not. The rows are
+// still in the file's units.
+struct CheckedRows {
+  std::size_t rows = 0;
+  std::string why;  // empty if all are
+};
+// Errors: FileError for sums that are not laid out as above.
+CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file);
+
+// The datasets of a session file, opened with distrust.
 
 // One dataset with its shape checked: rows, or rows x width.
 struct Source {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "devices/files/file_error.h"
-#include "devices/files/place.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session_reader.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 

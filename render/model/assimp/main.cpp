@@ -19,8 +19,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "core/process/descriptor.h"
-#include "core/process/sandbox.h"
+#include "core/base/descriptor.h"
+#include "core/base/sandbox.h"
 #include "render/model/assimp/assimp_guard.h"
 #include "render/model/assimp/assimp_model.h"
 #include "render/model/assimp/glb_writer.h"

@@ -6,7 +6,7 @@
 
 #include "app/device/device_book.h"
 #include "core/dynamics/arm.h"
-#include "devices/files/arm/urdf_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/support/device_traits.h"
 #include "tests/support/fake_device.h"
 

@@ -10,8 +10,8 @@
 
 #include "app/device/device_hub.h"
 #include "app/run/urdf_writer.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/temp_dir.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devices/files/arm/urdf_file.h"
+#include "devices/files/urdf_file.h"
 #include "devices/identify/unlike_device.h"
 
 namespace limpid {

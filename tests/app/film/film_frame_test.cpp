@@ -1,12 +1,11 @@
 // What a video's pictures show, read back from their pixels. Skipped where EGL gives no context.
-#include "app/film/film_frame.h"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 
-#include "app/base/assets.h"
-#include "devices/files/arm/urdf_file.h"
+#include "app/base/folders.h"
+#include "app/film/session_film.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {

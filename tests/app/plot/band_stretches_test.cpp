@@ -1,5 +1,3 @@
-#include "app/plot/band_stretches.h"
-
 #include <gtest/gtest.h>
 
 #include "app/plot/trace.h"

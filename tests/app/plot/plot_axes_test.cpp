@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "app/plot/autoscale.h"
-#include "app/plot/plot_group.h"
+#include "app/plot/axis.h"
+#include "app/plot/plot.h"
 #include "app/plot/plot_menu.h"
 #include "render/gl/offscreen.h"
 

@@ -1,5 +1,3 @@
-#include "app/run/divergence.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -1,9 +1,8 @@
-#include "app/run/force_tally.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/tick/force_state.h"
+#include "app/run/summary.h"
+#include "core/tick/arming.h"
 
 namespace limpid {
 namespace {

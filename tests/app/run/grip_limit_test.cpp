@@ -1,8 +1,7 @@
-#include "app/run/grip_limit.h"
-
 #include <gtest/gtest.h>
 
-#include "core/passivity/eta_min.h"
+#include "app/run/analysis.h"
+#include "core/coupling/eta_min.h"
 
 namespace limpid {
 namespace {

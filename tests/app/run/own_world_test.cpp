@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "tests/support/built_in.h"

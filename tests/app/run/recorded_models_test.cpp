@@ -6,7 +6,6 @@
 
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "app/view/mesh_pictures.h"
 #include "app/view/row_view.h"
 #include "render/gl/offscreen.h"
 #include "tests/devices/files/test_files.h"

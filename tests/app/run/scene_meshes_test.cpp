@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {

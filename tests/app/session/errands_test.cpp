@@ -11,8 +11,8 @@
 #include <string>
 
 #include "devices/hid/hid_device.h"
-#include "devices/hid/hid_error.h"
-#include "devices/hid/protocols/raw_protocol.h"
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/raw_protocol.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/raw_reports.h"
 

@@ -1,7 +1,7 @@
 // The story that comes along: what its sentences say is in its rows.
 #include <gtest/gtest.h>
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/story/tell.h"
 #include "tests/support/test_session.h"
 

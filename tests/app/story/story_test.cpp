@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "app/story/tell.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {

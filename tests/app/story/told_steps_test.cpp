@@ -1,11 +1,9 @@
 // What a session keeps of its story, and shows again.
-#include "app/story/told_steps.h"
-
 #include <gmock/gmock.h>
 
 #include "app/story/tell.h"
-#include "devices/files/file_error.h"
 #include "devices/files/session/session_story.h"
+#include "devices/files/text_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -1,11 +1,10 @@
-#include "core/coupling/velocity_estimator.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "core/coupling/force_observer.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

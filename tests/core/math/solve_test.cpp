@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "core/math/moving_factor.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

@@ -1,5 +1,3 @@
-#include "core/realtime/memory_lock.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <link.h>
@@ -15,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/realtime/realtime.h"
 #include "tests/support/sanitized.h"
 
 namespace limpid {

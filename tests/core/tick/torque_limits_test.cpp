@@ -1,7 +1,5 @@
 // What leaves for the motors against both of its limits, the force at the tip by an independent
 // solution.
-#include "core/tick/torque_limits.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "core/dynamics/arm.h"
-#include "devices/files/arm/urdf_file.h"
-#include "devices/files/hand/hand_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/session/hand_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {

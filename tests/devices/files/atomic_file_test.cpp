@@ -8,8 +8,7 @@
 #include <array>
 #include <thread>
 
-#include "devices/files/file_error.h"
-#include "devices/files/place.h"
+#include "devices/files/text_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -1,11 +1,10 @@
-#include "devices/files/file_update.h"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "devices/files/file_error.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/text_file.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid::test {

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <functional>
 
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

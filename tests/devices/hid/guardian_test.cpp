@@ -13,7 +13,7 @@
 #include <memory>
 
 #include "devices/hid/device_claim.h"
-#include "devices/hid/hid_error.h"
+#include "devices/hid/hid_transport.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <thread>
 
-#include "devices/hid/hid_error.h"
-#include "devices/hid/protocols/raw_protocol.h"
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/raw_protocol.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/raw_reports.h"
 #include "tests/support/temp_dir.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "devices/hid/hid_exchange.h"
-#include "devices/hid/protocols/pid_joystick.h"
+#include "devices/hid/pid_joystick.h"
 #include "tests/support/fake_hid.h"
 #include "tests/support/hid_descriptors.h"
 

@@ -6,9 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "devices/hid/hid_error.h"
-#include "devices/hid/protocols/pid_usages.h"
-#include "devices/hid/report_fields.h"
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/pid_reports.h"
 #include "tests/support/hid_descriptors.h"
 
 namespace limpid {

@@ -1,6 +1,6 @@
-#include "devices/hid/report_fields.h"
-
 #include <gtest/gtest.h>
+
+#include "devices/hid/report_descriptor.h"
 
 namespace limpid {
 namespace {

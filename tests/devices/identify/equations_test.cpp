@@ -1,8 +1,7 @@
 // Which moments of a record are used.
-#include "devices/identify/equations.h"
-
 #include <gtest/gtest.h>
 
+#include "devices/identify/fit.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

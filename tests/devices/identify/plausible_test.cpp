@@ -1,9 +1,8 @@
-#include "devices/identify/plausible.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 
+#include "devices/identify/fit.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

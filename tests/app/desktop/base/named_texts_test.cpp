@@ -1,8 +1,8 @@
 #include "app/desktop/base/named_texts.h"
 
-#include "app/base/assets.h"
+#include "app/base/folders.h"
 #include "app/desktop/base/window_layout.h"
-#include "devices/files/file_error.h"
+#include "devices/files/text_file.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {

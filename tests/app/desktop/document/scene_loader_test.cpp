@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/arm/urdf_file.h"
+#include "devices/files/urdf_file.h"
 #include "render/model/model_file.h"
 #include "tests/devices/files/test_files.h"
 

@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "app/base/assets.h"
-#include "devices/files/arm/urdf_file.h"
+#include "app/base/folders.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

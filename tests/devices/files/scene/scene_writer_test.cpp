@@ -4,9 +4,9 @@
 #include <array>
 #include <numbers>
 
-#include "devices/files/arm/urdf_file.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/random_arm.h"
 

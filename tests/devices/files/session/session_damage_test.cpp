@@ -7,9 +7,9 @@
 #include <functional>
 #include <random>
 
-#include "devices/files/hand/hand_file.h"
+#include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
-#include "devices/files/session/session_check.h"
+#include "devices/files/session/session_source.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 

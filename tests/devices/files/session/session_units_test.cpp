@@ -11,7 +11,7 @@
 
 #include "core/dynamics/arm_description.h"
 #include "devices/files/session/derived_columns.h"
-#include "devices/files/session/session_check.h"
+#include "devices/files/session/session_source.h"
 #include "devices/files/session/session_story.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"

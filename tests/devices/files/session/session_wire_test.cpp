@@ -1,15 +1,14 @@
 // What goes from limpid-session to limpid: the same numbers arrive, and nothing that a program
 // could say that a hostile file has taken over gets further than an error.
-#include "devices/files/session/session_wire.h"
-
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <bit>
 #include <limits>
 
-#include "core/process/descriptor.h"
+#include "core/base/descriptor.h"
 #include "core/tick/parameters.h"
+#include "devices/files/session/session_program.h"
 #include "devices/files/session/session_reader.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"

@@ -1,0 +1,53 @@
+#include "app/base/folders.h"
+
+#include <cctype>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+fs::path data_dir() {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  for (fs::path folder = program; folder.has_relative_path();) {
+    folder = folder.parent_path();
+    const fs::path data = folder / "share/limpid";
+    if (fs::exists(data / "assets/devices/omni.urdf", none)) return fs::canonical(data);
+  }
+  throw std::runtime_error("limpid's assets are in no folder share/limpid above " +
+                           program.string() + "; install it again");
+}
+
+fs::path beside_or_own(const fs::path& folder, const std::string& kind, const std::string& name) {
+  fs::path beside = folder / name;
+  if (fs::exists(beside)) return beside;
+  fs::path own = data_dir() / "assets" / kind / name;
+  return fs::exists(own) ? own : beside;
+}
+
+namespace {
+
+std::filesystem::path home_dir(const char* variable, const char* below_home) {
+  if (const char* dir = std::getenv(variable); dir != nullptr && *dir != '\0') return dir;
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home != nullptr && *home != '\0' ? home : "/tmp") / below_home;
+}
+
+}  // namespace
+
+std::filesystem::path user_config_dir() {
+  return home_dir("XDG_CONFIG_HOME", ".config") / "limpid";
+}
+std::filesystem::path user_data_dir() {
+  return home_dir("XDG_DATA_HOME", ".local/share") / "limpid";
+}
+std::filesystem::path user_cache_dir() { return home_dir("XDG_CACHE_HOME", ".cache") / "limpid"; }
+
+std::string as_file_name(std::string name) {
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return name;
+}
+
+}  // namespace limpid

@@ -1,0 +1,48 @@
+// What a hand feels of one joint, or of the whole arm: impedance, measured.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "app/study/experiment.h"
+#include "app/study/signals.h"
+#include "devices/files/session/session.h"
+
+namespace limpid {
+
+// Torque over velocity [N m s/rad] at increasing frequencies.
+struct Impedance {
+  std::vector<double> f;  // [Hz]
+  std::vector<std::complex<double>> Z;
+};
+
+// Human torque over velocity of a joint at the lines of a shaking hand; the session's rows from
+// `from` on, but for the last, last whole periods of it.
+Impedance measured_impedance(const Session& session, std::size_t from, int joint,
+                             const Multisine& shaking);
+
+// What a hand feels of the whole arm along its own motion, at one frequency.
+struct FeltMotion {
+  double f = 0;        // [Hz]
+  double inertia = 0;  // by that of M [-]
+  double damping = 0;  // [N m s/rad]
+  double mass = 0;     // of M along the motion [kg m^2]
+};
+
+// The same as measured_impedance(), of all joints together: the force's part in and against the
+// motion. M is the inertia matrix where the arm is shaken [kg m^2].
+std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from,
+                                        const Eigen::MatrixXd& M, const Multisine& shaking);
+
+// Least-squares slope of Im Z on w through the origin over frequencies up to `highest` [Hz]: the
+// apparent inertia of a free joint [kg m^2].
+double apparent_inertia(const Impedance& felt, double highest);
+
+// An arm that roams in free space, and eta changing meanwhile.
+inline constexpr const char* kFreeSpace = "title = \"Free space\"\nabout = \"Nothing to touch.\"\n";
+inline const Vec3 kHome(0.2, 0, -0.02);  // middle of the motion [m]
+
+// Adds the panel of E_c and the promise that the predictive law's is none.
+void roam(Laboratory& lab, Outcome& outcome);
+
+}  // namespace limpid

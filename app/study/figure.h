@@ -1,0 +1,91 @@
+// A figure as data: what an experiment found, for the table, the picture and the report alike.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limpid {
+
+struct FigurePoint {
+  double x = 0, y = 0;
+  double low = 0, high = 0;  // of a band
+};
+
+// A rectangle in a map, coloured by its value.
+struct FigureCell {
+  double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
+  double value = 0;
+};
+
+struct Series {
+  enum class Style { line, dashed, points, band, cells };
+
+  std::string label;  // empty: not in the legend
+  std::string color;  // "#rrggbb"
+  Style style = Style::line;
+  std::vector<FigurePoint> points;
+  std::vector<FigureCell> cells = {};  // of a map, whose label stands at the bar of colours
+};
+
+// One pair of axes.
+struct FigurePanel {
+  std::string title = {};
+  std::string x_label = {}, y_label = {};  // with unit
+  bool log_x = false, log_y = false;
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};
+  std::vector<std::pair<double, std::string>> x_ticks = {};   // in place of numbers
+  std::optional<std::pair<double, double>> value_range = {};  // of a map's colours
+  std::vector<Series> series = {};
+};
+
+struct Figure {
+  std::string title;
+  std::string caption;  // the settings used
+  int columns = 1;
+  int panel_height = 420;  // [px], of 640 px width
+  std::vector<FigurePanel> panels;
+};
+
+// Okabe and Ito's colours for the things of the paper, as everywhere in the program.
+inline constexpr const char* kDeviceInk = "#E69F00";
+inline constexpr const char* kProxyInk = "#0072B2";
+inline constexpr const char* kHandInk = "#009E73";
+inline constexpr const char* kContactInk = "#D55E00";
+inline constexpr const char* kEnergyInk = "#CC79A7";
+inline constexpr const char* kNeutralInk = "#555555";
+// The three couplings have colours of their own; a variant of one is a tint of it.
+inline constexpr const char* kStandardInk = "#6B7280";
+inline constexpr const char* kProposedInk = "#6A3D9A";
+inline constexpr const char* kProposedTint = "#B79BD3";
+inline constexpr const char* kPredictiveInk = "#6F9600";
+inline constexpr const char* kPredictiveTint = "#B5CC6A";
+// For a family of curves, such as values of eta.
+inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
+                                             "#D55E00", "#CC79A7", "#56B4E9"};
+
+// Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
+void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
+// A file that gnuplot draws: `terminal` is its picture format, `scale` the pixels of the picture
+// per pixel of the layout.
+struct FigureFile {
+  std::string terminal;
+  double scale = 1;
+  std::filesystem::path out;
+};
+// What gnuplot is told to draw, the same into each of the files.
+std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> files);
+// Draws DIR/NAME.png and DIR/NAME.svg with gnuplot. Errors: std::runtime_error when gnuplot is
+// missing or fails.
+void draw_figure(const Figure& figure, const std::filesystem::path& dir, const std::string& name);
+
+// A report as a web page of its own, for the screen and for paper.
+
+// `body`: HTML, of <section>s with <header>, <figure>, <table>; classes: soft, number, verdict,
+// passed, failed. `summary`: a sentence, after version and time. Errors: FileError.
+void write_page(const std::filesystem::path& file, const std::string& title,
+                const std::string& summary, const std::string& body);
+
+}  // namespace limpid

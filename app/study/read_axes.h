@@ -1,0 +1,49 @@
+// Points spread over the unit cube.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "app/study/sweep_plan.h"
+#include "devices/files/toml_reader.h"
+
+namespace limpid {
+
+// `count` values in [0, 1) for each of `dimensions`: [dimension][sample]. The same seed gives the
+// same everywhere.
+using UnitSamples = std::vector<std::vector<double>>;
+
+UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+// Latin hypercube: in each dimension one value in every interval of 1 / count.
+UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+// Sobol's sequence from its second point on, shifted by the seed round the cube (Cranley and
+// Patterson).
+UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+
+// The axes of a sweep's plan.
+
+// Of [[axis]]; sampled ones are without values until all are known. Errors: FileError.
+struct AxisRange {
+  double from = 0, to = 0;
+};
+struct ReadAxis {
+  SweepAxis axis;
+  AxisRange range;  // of a sampled one
+};
+ReadAxis read_axis(const TomlTable& table, const Parameters& base);
+
+// Gives the sampled ones their values.
+void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t seed);
+
+// `count` values from one end to the other, both included.
+std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool logarithmic);
+
+// measure, above, below. Errors: FileError.
+SweepLimit read_limit(const TomlTable& table);
+
+// [refine] of a sweep's plan.
+
+// Last of all that is read: gives the axes the values that lie between. Errors: FileError.
+void read_refine(const TomlTable& refine, SweepPlan& plan);
+
+}  // namespace limpid

@@ -1,0 +1,90 @@
+// A hand that taps a table top and holds it there, and what it felt.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/study/experiment.h"
+#include "app/study/signals.h"
+#include "core/coupling/walls.h"
+
+namespace limpid {
+
+struct TapSetting {
+  CouplingKind kind = CouplingKind::predictive;
+  double eta = 1;
+  double tick = 0.001;         // [s]
+  double encoder_step = 0;     // [rad]
+  double hand_mass = 0;        // at the tip [kg]
+  bool expects_a_mass = true;  // a second predictor, for a hand with mass
+  double press = 4;            // of the hand while it holds, if the wall bears it [N]
+  double torque_limit = 100;   // of every motor [N m]: strong ones never meet it
+  bool own_motors = false;     // the arm's own limits instead
+  double delay = 0;            // of the device [ticks]
+  bool knows_delay = true;     // the law does
+
+  friend bool operator==(const TapSetting&, const TapSetting&) = default;
+};
+
+// What came of a trial; for one that diverged all are infinite but the stiffness, which is zero.
+struct Touch {
+  double energy = 0;   // highest E_c [J]
+  double port = 0;     // most that the human was given [J]
+  double chatter = 0;  // rms speed of the tip above 20 Hz while it is held [m/s]
+  double felt = 0;     // the wall's force over the device's depth, by the stiffness set [-]
+  double torque = 0;   // largest of the contact on any joint [N m]
+};
+
+class TapBench {
+ public:
+  static constexpr double kSpeed = 0.15;                    // [m/s]
+  static constexpr double kGripDamping = 2;                 // [N s/m]
+  static constexpr double kSurface = -0.04, kAbove = 0.02;  // the table's, and the hand's start [m]
+  static constexpr double kFast = 20;                       // what chatter is above [Hz]
+
+  // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m].
+  TapBench(const TapSetting& setting, double wall, double grip, int taps);
+
+  Parameters parameters() const;
+  Trial trial() const;
+  Touch touch(const TrialResult& result) const;
+
+ private:
+  double start_of_hold() const { return kRest + down_ / kSpeed; }
+  double period() const { return kRest + 2 * down_ / kSpeed + kHold + kRest; }
+  double height(double t) const;  // of the hand, below where it starts [m]
+
+  static constexpr double kRest = 0.1, kHold = 0.5;  // [s]
+  static constexpr double kSettle = 0.3;             // from the hold's beginning [s]
+
+  TapSetting setting_;
+  double wall_, grip_, down_;
+  int taps_;
+};
+
+// The tip where it meets the table, along the table's normal.
+TipAlong tip_at_table();
+// What `limpid analyze` names there: the stiffest wall that the setting's law renders well [N/m].
+double named_wall(const TapSetting& setting);
+
+// The stiffest wall that a coupling renders well, found by tapping.
+
+// What a wall that is rendered well does not exceed.
+struct WellRendered {
+  static constexpr double kPort = 5e-5;     // given to the human [J]
+  static constexpr double kEnergy = 5e-5;   // E_c, with exact encoders [J]
+  static constexpr double kChatter = 0.02;  // [m/s]
+  static constexpr double kFelt = 0.05;     // off the stiffness set, of it [-]
+};
+bool well_rendered(const Touch& touch, bool exact_encoder);
+
+inline constexpr double kSoftest = 100, kStiffest = 20000;  // walls that are tried [N/m]
+inline constexpr double kGrips[] = {300, 3000};             // hands that a wall has to stand [N/m]
+inline constexpr int kBisections = 6;
+
+// For each setting the stiffest wall [N/m] within kSoftest and kStiffest, by bisection of its
+// logarithm; kSoftest if not even that one is rendered well. All settings go on side by side.
+std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings);
+
+}  // namespace limpid

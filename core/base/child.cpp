@@ -1,0 +1,79 @@
+#include "core/base/child.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <deque>
+
+#include "core/base/descriptor.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+fs::path beside_this_program(const char* name) {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none).replace_filename(name);
+}
+
+Child::Child(std::vector<std::string> words, std::span<const Given> given) {
+  constexpr int kAboveAll = 10;  // copies first: the numbers there may be others' here
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  std::deque<Descriptor> copies;
+  bool complete = true;
+  int last = STDERR_FILENO;
+  for (const Given& one : given) {
+    const Descriptor& copy = copies.emplace_back(::fcntl(one.here, F_DUPFD_CLOEXEC, kAboveAll));
+    complete = complete && *copy >= 0;
+    posix_spawn_file_actions_adddup2(&actions, *copy, one.there);
+    last = std::max(last, one.there);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, last + 1);
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  if (!complete ||
+      ::posix_spawn(&id_, arguments[0], &actions, nullptr, arguments.data(), environ) != 0) {
+    id_ = -1;
+  }
+  posix_spawn_file_actions_destroy(&actions);
+}
+
+Child::~Child() {
+  if (id_ >= 0) end();
+}
+
+int Child::end() {
+  ::kill(id_, SIGKILL);
+  return wait();
+}
+
+int Child::wait() {
+  int status = 0;
+  while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+  }
+  id_ = -1;
+  return status;
+}
+
+std::string why_failed(int status, const std::string& program) {
+  if (status == 0) return {};
+  if (!WIFSIGNALED(status)) {
+    return "cannot be read: the program " + program + " ended with status " +
+           std::to_string(WEXITSTATUS(status));
+  }
+  const int signal = WTERMSIG(status);
+  const char* const name = ::sigabbrev_np(signal);
+  return "is damaged: the program that reads it crashed (SIG" +
+         std::string(name != nullptr ? name : std::to_string(signal)) + ")";
+}
+
+}  // namespace limpid

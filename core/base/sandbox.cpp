@@ -1,0 +1,191 @@
+// Landlock: man landlock(7). The filter of system calls: man seccomp(2), bpf's classic
+// instructions.
+#include "core/base/sandbox.h"
+
+#include <fcntl.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/landlock.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFirstToClose = 4;  // what comes in, what goes out, stderr and one more stay
+
+[[noreturn]] void refuse() {
+  throw std::runtime_error("cannot be read: the kernel refuses the reader's sandbox");
+}
+
+// Without effect where the kernel has no Landlock: the filter still lets nothing be written.
+void restrict_files(const fs::path& place) {
+  const long version =
+      ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  if (version < 1) return;
+  landlock_ruleset_attr rules{};
+  rules.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all of the first version
+  if (version >= 2) rules.handled_access_fs |= LANDLOCK_ACCESS_FS_REFER;
+  const int set = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0));
+  if (set < 0) refuse();
+  if (const int opened = place.empty() ? -1 : ::open(place.c_str(), O_PATH | O_CLOEXEC);
+      opened >= 0) {
+    std::error_code none;
+    landlock_path_beneath_attr rule{};
+    rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
+    if (fs::is_directory(place, none)) rule.allowed_access |= LANDLOCK_ACCESS_FS_READ_DIR;
+    rule.parent_fd = opened;
+    ::syscall(SYS_landlock_add_rule, set, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+    ::close(opened);
+  }
+  const bool done = ::syscall(SYS_landlock_restrict_self, set, 0) == 0;
+  ::close(set);
+  if (!done) refuse();
+}
+
+#if defined(__x86_64__) || defined(__aarch64__)
+
+#ifdef __x86_64__
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+#else
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+#endif
+
+// What reading a file, memory, and an orderly end take.
+constexpr int kAllowed[] = {
+    SYS_read,
+    SYS_pread64,
+    SYS_readv,
+    SYS_write,
+    SYS_writev,
+    SYS_close,
+    SYS_lseek,
+    SYS_fstat,
+    SYS_newfstatat,
+    SYS_statx,
+    SYS_readlinkat,
+    SYS_faccessat,
+    SYS_faccessat2,
+    SYS_getcwd,
+    SYS_fcntl,
+    SYS_munmap,
+    SYS_mremap,
+    SYS_madvise,
+    SYS_brk,
+    SYS_futex,
+    SYS_exit,
+    SYS_exit_group,
+    SYS_rt_sigreturn,
+    SYS_rt_sigaction,
+    SYS_rt_sigprocmask,
+    SYS_getpid,
+    SYS_gettid,
+    SYS_getrandom,
+    SYS_clock_gettime,
+    SYS_gettimeofday,
+    SYS_restart_syscall,
+    SYS_sched_yield,
+    SYS_clock_nanosleep,
+    SYS_flock,
+    SYS_sysinfo,
+#ifdef __x86_64__
+    SYS_stat,
+    SYS_lstat,
+    SYS_access,
+    SYS_readlink,
+    SYS_time,
+#endif
+};
+
+// Of an argument its lower half; no flag and no process has more.
+constexpr std::uint32_t argument(unsigned i) {
+  return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + i * sizeof(std::uint64_t));
+}
+
+class Filter {
+ public:
+  Filter() {
+    load(offsetof(seccomp_data, arch));
+    add(BPF_JMP | BPF_JEQ | BPF_K, kArchitecture, 1, 0);
+    answer(SECCOMP_RET_KILL_PROCESS);
+    load(offsetof(seccomp_data, nr));
+  }
+
+  void allow(int call) { when(call, 1), answer(SECCOMP_RET_ALLOW); }
+  void allow_without(int call, unsigned which, std::uint32_t flags) {
+    when(call, 4);
+    load(argument(which));
+    add(BPF_JMP | BPF_JSET | BPF_K, flags, 1, 0);
+    answer(SECCOMP_RET_ALLOW);
+    answer(SECCOMP_RET_ERRNO | EACCES);
+  }
+  void allow_with(int call, unsigned which, std::uint32_t value) {
+    when(call, 4);
+    load(argument(which));
+    add(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1);
+    answer(SECCOMP_RET_ALLOW);
+    answer(SECCOMP_RET_ERRNO | EPERM);
+  }
+  bool install() {
+    answer(SECCOMP_RET_ERRNO | EPERM);
+    const sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
+    return ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program) == 0;
+  }
+
+ private:
+  void add(int what, std::uint32_t k, std::uint8_t if_so = 0, std::uint8_t if_not = 0) {
+    code_.push_back({static_cast<std::uint16_t>(what), if_so, if_not, k});
+  }
+  void load(std::size_t at) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(at)); }
+  void answer(std::uint32_t what) { add(BPF_RET | BPF_K, what); }
+  // The number of the call is loaded; what follows for it takes so many instructions.
+  void when(int call, std::uint8_t length) {
+    add(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, length);
+  }
+
+  std::vector<sock_filter> code_;
+};
+
+void restrict_calls() {
+  Filter filter;
+  for (const int call : kAllowed) filter.allow(call);
+  constexpr std::uint32_t kWrites = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC;
+  filter.allow_without(SYS_openat, 2, kWrites);
+  filter.allow_without(SYS_mmap, 2, PROT_EXEC);
+  filter.allow_without(SYS_mprotect, 2, PROT_EXEC);
+#ifdef __x86_64__
+  filter.allow_without(SYS_open, 1, kWrites);
+#endif
+  filter.allow_with(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()));  // abort()
+  filter.allow_with(SYS_prlimit64, 0, 0);                                    // of itself
+  if (!filter.install()) refuse();
+}
+
+#else
+
+void restrict_calls() {}
+
+#endif
+
+}  // namespace
+
+void enter_sandbox(const fs::path& place) {
+  if (kSanitized) return;
+  ::closefrom(kFirstToClose);
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) refuse();
+  restrict_files(place);
+  restrict_calls();
+}
+
+}  // namespace limpid

@@ -1,0 +1,381 @@
+#include "devices/files/urdf_chain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/dynamics/arm.h"
+#include "devices/files/rpy.h"
+#include "devices/files/urdf_path.h"
+#include "devices/files/urdf_values.h"
+
+namespace limpid {
+
+namespace {
+
+constexpr double kLeastRange = 1e-3;   // of a joint [rad], of a slide 0.1 mm
+constexpr double kLeastMotion = 1e-6;  // of the tip, for 1 rad of a joint [m]
+constexpr int kPoses = 8;              // in which the tip is looked at
+
+void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
+  const double unit = slides(joint) ? kSlideUnit : 1;
+  if (joint.friction > 0 && joint.friction >= joint.effort) {
+    const char* const of_force = slides(joint) ? "N" : "N m";
+    places.warn_joint(joint.name,
+                      fmt::format("friction {:.3g} {}, effort {:.3g} {}: its motor cannot overcome "
+                                  "its friction, and no force of it is felt; lower the friction in "
+                                  "<dynamics> or raise the effort in <limit>",
+                                  joint.friction / unit, of_force, joint.effort / unit, of_force));
+  }
+  if (joint.upper - joint.lower < kLeastRange) {
+    places.warn_joint(
+        joint.name,
+        fmt::format("limits from {:.6g} to {:.6g} {}: it has hardly any room to move; "
+                    "widen its <limit>, or make it a fixed joint",
+                    unit * joint.lower, unit * joint.upper, slides(joint) ? "m" : "rad"));
+  }
+}
+
+// At the rest pose, and at others: by chance a tip may stand still in one.
+bool tip_moves(const ArmDescription& description) {
+  const Arm<kAnyDof> arm(description);
+  std::mt19937 random(1);
+  Vec<kAnyDof> x = rest_pose(description);
+  for (int pose = 0; pose < kPoses; ++pose) {
+    Arm<kAnyDof>::Frames f;
+    arm.frames(x, f);
+    Jacobian<kAnyDof> J;
+    arm.point_jacobian(f, arm.dof() - 1, arm.tip(f), J);
+    if (J.colwise().norm().maxCoeff() > kLeastMotion) return true;
+    for (int i = 0; i < arm.dof(); ++i) {
+      const Joint& joint = description.joints[static_cast<std::size_t>(i)];
+      const double to = static_cast<double>(random()) / 4294967295.0;
+      x[i] = std::clamp(6 * to - 3, joint.lower, joint.upper);
+    }
+  }
+  return false;
+}
+
+// Of the frames that the last joint moves the one farthest from its axis; null where all are on it.
+const NamedFrame* beside_axis(const ArmDescription& arm) {
+  const Vec3& axis = arm.joints.back().axis;
+  const NamedFrame* best = nullptr;
+  double most = kLeastMotion;
+  for (const NamedFrame& frame : arm.frames) {
+    if (frame.link != arm.dof() - 1) continue;
+    const double far = axis.cross(frame.origin.translation()).norm();
+    if (far > most) {
+      most = far;
+      best = &frame;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
+  for (const Joint& joint : arm.joints) warn_of_joint(joint, places);
+  if (tip_moves(arm)) return;
+  const NamedFrame* const other = beside_axis(arm);
+  places.warn_link(
+      arm.tip_link,
+      fmt::format("the tip lies on the axis of '{}', and no joint moves it: a hand at the tip "
+                  "cannot move the arm; name a link beside the axis with --tip LINK{}",
+                  arm.joints.back().name,
+                  other != nullptr ? fmt::format(" ('{}' is one)", other->name)
+                                   : ", or fix one there in the file"));
+}
+
+namespace {
+
+bool has_no_inertia(const Joint& joint, const Link& link) {
+  if (slides(joint)) return !(link.mass > 0);
+  return about_origin(link).isZero(0);
+}
+
+// The last joint stays where it is, and its link becomes a part of the one before.
+void fix_last(ArmDescription& arm) {
+  const Joint& joint = arm.joints.back();
+  const double at = std::clamp(0.0, joint.lower, joint.upper);
+  Pose there = joint.origin;
+  if (slides(joint)) {
+    there.translate(Vec3(kSlideUnit * at * joint.axis));
+  } else {
+    there.rotate(turn(at, joint.axis));
+  }
+  const int last = arm.dof() - 1;
+  const auto carry = [&](auto& parts) {
+    for (auto& part : parts) {
+      if (part.link != last) continue;
+      part.link = last - 1;
+      part.origin = there * part.origin;
+    }
+  };
+  carry(arm.frames);
+  carry(arm.visuals);
+  arm.tip = there * arm.tip;
+  merge(arm.links[arm.links.size() - 2], arm.links.back(), there);
+  arm.links.pop_back();
+  arm.joints.pop_back();
+}
+
+}  // namespace
+
+void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places) {
+  std::vector<std::string> links, joints;
+  while (arm.dof() > 1 && has_no_inertia(arm.joints.back(), arm.links.back())) {
+    links.push_back("'" + arm.links.back().name + "'");
+    joints.push_back("'" + arm.joints.back().name + "'");
+    fix_last(arm);
+  }
+  if (links.empty()) return;
+  std::ranges::reverse(links);
+  std::ranges::reverse(joints);
+  const bool one = links.size() == 1;
+  places.warn(fmt::format(
+      "{} {} at the end of the chain {} no inertia, and so {} held still; the last joint that "
+      "moves "
+      "is '{}'. An <inertial> with mass and inertia lets {} move",
+      one ? "link" : "links", fmt::join(links, ", "), one ? "has" : "have",
+      one ? "joint " + joints[0] + " is" : fmt::format("joints {} are", fmt::join(joints, ", ")),
+      arm.joints.back().name, one ? "it" : "them"));
+}
+
+namespace {
+
+Vec3 vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Pose pose(const urdf::Pose& p) {
+  Pose out = Pose::Identity();
+  out.translation() = vector(p.position);
+  const auto& q = p.rotation;
+  out.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  return out;
+}
+
+const char* kind_of(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::PRISMATIC: return "prismatic";
+    case urdf::Joint::FLOATING: return "floating";
+    case urdf::Joint::PLANAR: return "planar";
+    default: return "of unknown kind";
+  }
+}
+
+double limit_of(const urdf::Joint& joint, double urdf::JointLimits::*field, double otherwise) {
+  return joint.limits ? (*joint.limits).*field : otherwise;
+}
+
+class Chain {
+ public:
+  Chain(const urdf::ModelInterface& model, const std::vector<urdf::JointConstSharedPtr>& way,
+        const LinkShapes& visuals, UrdfPlaces& places)
+      : model_(model), way_(way), visuals_(visuals), places_(places) {}
+
+  ArmDescription build() {
+    arm_.name = model_.getName();
+    for (std::size_t i = 0; i < way_.size(); ++i) {
+      if (moves(*way_[i])) last_moving_ = i;
+    }
+    urdf::LinkConstSharedPtr link = model_.getRoot();
+    Pose here = Pose::Identity();
+    for (std::size_t i = 0; i <= way_.size(); ++i) {
+      const urdf::Joint* on = i < way_.size() ? way_[i].get() : nullptr;
+      add_tree(*link, here, on);
+      if (on == nullptr) break;
+      here = pass(*on, here, i);
+      link = model_.getLink(on->child_link_name);
+    }
+    if (arm_.joints.empty()) refuse_still();
+    arm_.tip = here;
+    arm_.tip_link = way_.back()->child_link_name;
+    say_held();
+    shorten_to_mass(arm_, places_);
+    complete_inertias(arm_, places_);
+    complete_efforts(arm_, places_);
+    warn_of_immobile(arm_, places_);
+    return std::move(arm_);
+  }
+
+ private:
+  int moving() const { return arm_.dof() - 1; }
+
+  // What moves may all be in grippers, which are no tips by themselves.
+  [[noreturn]] void refuse_still() const {
+    for (const auto& [name, joint] : model_.joints_) {
+      if (!moves(*joint)) continue;
+      places_.refuse(fmt::format(
+          "no joint that moves on the way to '{}'; others move: name the link that the hand holds "
+          "with --tip LINK, such as '{}'",
+          way_.empty() ? model_.getRoot()->name : way_.back()->child_link_name,
+          joint->child_link_name));
+    }
+    places_.refuse(fmt::format(
+        "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with limits that "
+        "leave room (lower below upper)",
+        kMaxDof));
+  }
+
+  // A link and what it carries besides joint `on`.
+  void add_tree(const urdf::Link& link, const Pose& here, const urdf::Joint* on) {
+    arm_.frames.push_back({link.name, moving(), here});
+    if (link.inertial) add_inertial(link, here);
+    const auto visuals = visuals_.find(link.name);
+    if (visuals != visuals_.end()) {
+      for (Visual visual : visuals->second) {
+        visual.link = moving();
+        visual.origin = here * visual.origin;
+        arm_.visuals.push_back(visual);
+      }
+    }
+    for (const auto& joint : link.child_joints) {
+      if (joint.get() == on) continue;
+      add_tree(*model_.getLink(joint->child_link_name), held(*joint, here), nullptr);
+    }
+  }
+
+  void add_inertial(const urdf::Link& link, const Pose& here) {
+    const urdf::Inertial& body = *link.inertial;
+    for (const double x :
+         {body.mass, body.ixx, body.ixy, body.ixz, body.iyy, body.iyz, body.izz,
+          body.origin.position.x, body.origin.position.y, body.origin.position.z}) {
+      if (!std::isfinite(x)) places_.refuse_link(link.name, "inertial: a number is not finite");
+    }
+    if (body.mass < 0) {
+      places_.refuse_link(link.name, fmt::format("mass {} kg; needed: 0 or more", body.mass));
+    }
+    if (moving() < 0) return;
+    Link own;
+    own.mass = body.mass;
+    own.inertia << body.ixx, body.ixy, body.ixz,  //
+        body.ixy, body.iyy, body.iyz,             //
+        body.ixz, body.iyz, body.izz;
+    merge(arm_.links.back(), own, here * pose(body.origin));
+  }
+
+  Pose origin_of(const urdf::Joint& joint, const Pose& here) const {
+    const Pose origin = here * pose(joint.parent_to_joint_origin_transform);
+    if (!origin.matrix().allFinite()) {
+      places_.refuse_joint(joint.name, "origin: a number is not finite");
+    }
+    return origin;
+  }
+
+  // Where the child of a joint that is not moved stands.
+  Pose held(const urdf::Joint& joint, const Pose& here) {
+    Pose there = origin_of(joint, here);
+    if (joint.type == urdf::Joint::FIXED) return there;
+    held_.push_back(joint.name);
+    const Vec3 axis = vector(joint.axis);
+    const double at = held_at(joint);
+    if (!axis.allFinite() || !(axis.norm() > 1e-9) || at == 0) return there;
+    if (joint.type == urdf::Joint::PRISMATIC) {
+      there.translate(Vec3(at * axis.normalized()));
+    } else {
+      there.rotate(turn(at, axis.normalized()));
+    }
+    return there;
+  }
+
+  // Over joint i of the way; returns the frame of its child in that of the link that moves.
+  Pose pass(const urdf::Joint& joint, const Pose& here, std::size_t i) {
+    if (joint.mimic && i < last_moving_) {
+      places_.refuse_joint(
+          joint.name,
+          "mimics another joint inside the chain; not supported: name a tip before "
+          "it (--tip LINK)");
+    }
+    if (!moves(joint)) return held(joint, here);
+    const Pose origin = origin_of(joint, here);
+    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
+        joint.type != urdf::Joint::PRISMATIC) {
+      places_.refuse_joint(
+          joint.name,
+          fmt::format("{}; allowed: revolute, continuous, prismatic, fixed", kind_of(joint)));
+    }
+    if (arm_.dof() == kMaxDof) {
+      places_.refuse_joint(joint.name, fmt::format("one too many; at most {}", kMaxDof));
+    }
+    arm_.joints.push_back(moving_joint(joint, origin));
+    Link link;
+    link.name = joint.child_link_name;
+    arm_.links.push_back(link);
+    return Pose::Identity();
+  }
+
+  Joint moving_joint(const urdf::Joint& joint, const Pose& origin) const {
+    Joint out;
+    out.name = joint.name;
+    out.origin = origin;
+    const Vec3 axis = vector(joint.axis);
+    if (!axis.allFinite() || !(axis.norm() > 1e-9)) {
+      places_.refuse_joint(joint.name, "axis is zero or not finite; needed: a direction");
+    }
+    out.axis = axis.normalized();
+    const bool slides = joint.type == urdf::Joint::PRISMATIC;
+    if (slides || joint.type == urdf::Joint::REVOLUTE) {
+      out.lower = limit_of(joint, &urdf::JointLimits::lower, 0);
+      out.upper = limit_of(joint, &urdf::JointLimits::upper, 0);
+      if (!(out.lower < out.upper) || !std::isfinite(out.upper - out.lower)) {
+        places_.refuse_joint(joint.name,
+                             fmt::format("limits from {} to {} {}; needed: finite, lower below "
+                                         "upper",
+                                         out.lower, out.upper, slides ? "m" : "rad"));
+      }
+    }
+    out.effort =
+        at_least_zero(joint.name, "effort", limit_of(joint, &urdf::JointLimits::effort, 0));
+    if (joint.dynamics) {
+      out.damping = at_least_zero(joint.name, "damping", joint.dynamics->damping);
+      out.friction = at_least_zero(joint.name, "friction", joint.dynamics->friction);
+    }
+    if (slides) in_units_of_travel(out);
+    return out;
+  }
+
+  // From m, N and N s/m.
+  static void in_units_of_travel(Joint& joint) {
+    joint.kind = Joint::Kind::prismatic;
+    joint.lower /= kSlideUnit;
+    joint.upper /= kSlideUnit;
+    joint.effort *= kSlideUnit;
+    joint.friction *= kSlideUnit;
+    joint.damping *= kSlideUnit * kSlideUnit;
+  }
+
+  double at_least_zero(const std::string& joint, const char* what, double x) const {
+    if (x >= 0 && std::isfinite(x)) return x;
+    places_.refuse_joint(joint, fmt::format("{} {}; needed: 0 or more", what, x));
+  }
+
+  void say_held() {
+    if (held_.empty()) return;
+    constexpr std::size_t kNamed = 6;
+    const std::size_t named = std::min(held_.size(), kNamed);
+    places_.warn(fmt::format(
+        "held still, beside the chain to '{}': {}{}", arm_.tip_link,
+        fmt::join(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+        held_.size() > named ? fmt::format(" and {} more joints", held_.size() - named) : ""));
+  }
+
+  const urdf::ModelInterface& model_;
+  const std::vector<urdf::JointConstSharedPtr>& way_;
+  const LinkShapes& visuals_;
+  UrdfPlaces& places_;
+  ArmDescription arm_;
+  std::size_t last_moving_ = 0;
+  std::vector<std::string> held_;
+};
+
+}  // namespace
+
+ArmDescription chain_of(const urdf::ModelInterface& model,
+                        const std::vector<urdf::JointConstSharedPtr>& way,
+                        const LinkShapes& visuals, UrdfPlaces& places) {
+  return Chain(model, way, visuals, places).build();
+}
+
+}  // namespace limpid

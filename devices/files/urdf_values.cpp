@@ -1,0 +1,364 @@
+#include "devices/files/urdf_values.h"
+
+#include <fmt/format.h>
+#include <tinyxml.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "devices/files/rpy.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_chain.h"
+
+namespace limpid {
+
+namespace {
+
+std::string at(const std::string& where, const std::map<std::string, int>& lines, const char* kind,
+               const std::string& name, const std::string& what) {
+  const auto line = lines.find(name);
+  return one_line(fmt::format("{}{}: {} '{}': {}", where,
+                              line == lines.end() ? "" : fmt::format(":{}", line->second), kind,
+                              name, what));
+}
+
+}  // namespace
+
+void UrdfPlaces::refuse(const std::string& why) const {
+  throw FileError(fmt::format("{}: {}", where, why));
+}
+
+void UrdfPlaces::refuse_joint(const std::string& name, const std::string& why) const {
+  throw FileError(at(where, joint_lines, "joint", name, why));
+}
+
+void UrdfPlaces::refuse_link(const std::string& name, const std::string& why) const {
+  throw FileError(at(where, link_lines, "link", name, why));
+}
+
+void UrdfPlaces::warn(const std::string& what) {
+  warnings.push_back(one_line(fmt::format("{}: {}", where, what)));
+}
+
+void UrdfPlaces::warn_joint(const std::string& name, const std::string& what) {
+  warnings.push_back(at(where, joint_lines, "joint", name, what));
+}
+
+void UrdfPlaces::warn_link(const std::string& name, const std::string& what) {
+  warnings.push_back(at(where, link_lines, "link", name, what));
+}
+
+namespace {
+
+TiXmlElement with_children(const TiXmlElement& from, std::initializer_list<std::string_view> kept) {
+  TiXmlElement out(from.ValueStr());
+  for (const auto* each = from.FirstAttribute(); each; each = each->Next()) {
+    out.SetAttribute(each->Name(), each->Value());
+  }
+  for (const auto* child = from.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    for (const std::string_view name : kept) {
+      if (child->ValueStr() == name) out.InsertEndChild(*child);
+    }
+  }
+  return out;
+}
+
+void fill_in(TiXmlElement& element, const char* attribute) {
+  if (element.Attribute(attribute) == nullptr) element.SetAttribute(attribute, "0");
+}
+
+// As exporters write them where nobody filled in the form.
+bool says_nothing(const TiXmlElement& limit) {
+  for (const char* name : {"lower", "upper", "effort", "velocity"}) {
+    const char* text = limit.Attribute(name);
+    if (text != nullptr && std::string_view(text).find_first_not_of("0.+- ") != std::string::npos) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// What had to be guessed, by the names of the joints.
+struct Guessed {
+  std::vector<std::string> unlimited;  // limits of zeros: none
+  std::vector<std::string> fixed;      // slides without limits: held still
+};
+
+TiXmlElement joint_of(const TiXmlElement& from, Guessed& guessed) {
+  TiXmlElement joint =
+      with_children(from, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
+  TiXmlElement* const limit = joint.FirstChildElement("limit");
+  const char* type = joint.Attribute("type");
+  const char* name = joint.Attribute("name");
+  const bool turns = type != nullptr && std::string_view(type) == "revolute";
+  if (limit != nullptr && turns && name != nullptr && says_nothing(*limit)) {
+    joint.SetAttribute("type", "continuous");
+    guessed.unlimited.push_back(name);
+  }
+  if (limit == nullptr && name != nullptr && type != nullptr &&
+      std::string_view(type) == "prismatic") {
+    joint.SetAttribute("type", "fixed");
+    guessed.fixed.push_back(name);
+  }
+  if (limit != nullptr) {
+    fill_in(*limit, "effort");
+    fill_in(*limit, "velocity");
+  }
+  if (TiXmlElement* dynamics = joint.FirstChildElement("dynamics")) {
+    fill_in(*dynamics, "damping");
+    fill_in(*dynamics, "friction");
+  }
+  return joint;
+}
+
+}  // namespace
+
+std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
+  TiXmlElement out("robot");
+  const char* name = robot.Attribute("name");
+  out.SetAttribute("name", name != nullptr ? name : "arm");
+  Guessed guessed;
+  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
+    if (each->ValueStr() == "link") out.InsertEndChild(with_children(*each, {"inertial"}));
+    if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
+  }
+  if (!guessed.unlimited.empty()) {
+    places.warn(
+        fmt::format("limits of zeros: {}; taken as none", fmt::join(guessed.unlimited, ", ")));
+  }
+  if (!guessed.fixed.empty()) {
+    places.warn(fmt::format("slides without a <limit>: {}; held still; a <limit> lets them move",
+                            fmt::join(guessed.fixed, ", ")));
+  }
+  TiXmlDocument document;
+  document.InsertEndChild(out);
+  TiXmlPrinter printer;
+  printer.SetStreamPrinting();
+  document.Accept(&printer);
+  return printer.Str();
+}
+
+namespace {
+
+void set_turn(const TiXmlElement& of, urdf::Rotation& rotation) {
+  const TiXmlElement* origin = of.FirstChildElement("origin");
+  const char* rpy = origin != nullptr ? origin->Attribute("rpy") : nullptr;
+  if (rpy == nullptr) return;
+  const auto angles = numbers_in<3>(rpy);
+  if (!angles) return;
+  const Eigen::Quaterniond q = turn(*angles);
+  rotation.setFromQuaternion(q.x(), q.y(), q.z(), q.w());
+}
+
+}  // namespace
+
+void set_turns(const TiXmlElement& robot, urdf::ModelInterface& model) {
+  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
+    const char* name = each->Attribute("name");
+    if (name == nullptr) continue;
+    if (each->ValueStr() == "joint") {
+      const auto joint = model.joints_.find(name);
+      if (joint == model.joints_.end()) continue;
+      set_turn(*each, joint->second->parent_to_joint_origin_transform.rotation);
+    } else if (const TiXmlElement* body = each->FirstChildElement("inertial")) {
+      const auto link = model.links_.find(name);
+      if (link == model.links_.end() || !link->second->inertial) continue;
+      set_turn(*body, link->second->inertial->origin.rotation);
+    }
+  }
+}
+
+namespace {
+
+constexpr double kLeastShare = 1e-6;   // of what hangs on a link, its own inertia
+constexpr double kGuess = 1e-3;        // where it is less
+constexpr double kGravity = 9.81;      // [m/s^2]
+constexpr double kLeastEffort = 0.01;  // [N m]
+
+// What resists a joint: inertia about it, or of a slide mass along it [kg m^2].
+double resistance(const Joint& joint, const Link& link) {
+  if (slides(joint)) return link.mass * kSlideUnit * kSlideUnit;
+  return joint.axis.dot(about_origin(link) * joint.axis);
+}
+
+// The most that such a joint could be resisted with by a body, whichever way it turned.
+double most_resistance(const Joint& joint, const Link& body) {
+  if (slides(joint)) return resistance(joint, body);
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(about_origin(body), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().maxCoeff();
+}
+
+void check_body(const Link& link, const UrdfPlaces& places) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
+  const double largest = link.inertia.cwiseAbs().maxCoeff();
+  if (solver.eigenvalues().minCoeff() < -1e-9 * largest) {
+    places.refuse_link(link.name, "inertia is not that of any body (a negative moment)");
+  }
+}
+
+// Link i with all that hangs on it, at zero, in its frame.
+Link outer(const ArmDescription& arm, std::size_t i) {
+  Link all;
+  Pose at = Pose::Identity();
+  for (std::size_t j = i; j < arm.links.size(); ++j) {
+    if (j > i) at = at * arm.joints[j].origin;
+    merge(all, arm.links[j], at);
+  }
+  return all;
+}
+
+std::string list(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
+void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
+  for (const Link& link : arm.links) check_body(link, places);
+  if (const Link all = outer(arm, 0); !(all.mass > 0) && !(all.inertia.norm() > 0)) {
+    places.refuse(
+        "no link that moves has an <inertial>; needed: mass and inertia of each, as from CAD or a "
+        "data sheet");
+  }
+  std::vector<std::string> guessed;
+  for (std::size_t i = arm.links.size(); i-- > 0;) {
+    Link& link = arm.links[i];
+    const Joint& joint = arm.joints[i];
+    const Link all = outer(arm, i);
+    const double most = most_resistance(joint, all);
+    if (resistance(joint, link) > kLeastShare * most) continue;
+    if (!(most > 0 && std::isfinite(most))) {
+      places.refuse_link(
+          link.name,
+          fmt::format("inertia {:.3g} kg m^2 about joint '{}', and nothing beyond it; needed: more "
+                      "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
+                      "(--tip LINK)",
+                      resistance(joint, link), joint.name));
+    }
+    const double least = kGuess * most;
+    if (slides(joint)) {
+      link.mass += kGuess * all.mass;
+    } else {
+      link.inertia += least * Mat3::Identity();
+    }
+    guessed.push_back(fmt::format("'{}' ({:.2g})", link.name, least));
+  }
+  if (guessed.empty()) return;
+  std::ranges::reverse(guessed);
+  places.warn(
+      fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
+                  "[kg m^2]; an <inertial> says better",
+                  list(guessed)));
+}
+
+void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
+  std::vector<std::string> guessed;
+  double weight = 0, moment = 0;  // of what is beyond, stretched out [N, N m]
+  for (std::size_t i = arm.joints.size(); i-- > 0;) {
+    Joint& joint = arm.joints[i];
+    const Link& link = arm.links[i];
+    if (i + 1 < arm.joints.size()) {
+      moment += weight * arm.joints[i + 1].origin.translation().norm();
+    }
+    moment += kGravity * link.mass * link.com.norm();
+    weight += kGravity * link.mass;
+    if (joint.effort != 0) continue;
+    joint.effort = std::max(kLeastEffort, 2 * (slides(joint) ? weight * kSlideUnit : moment));
+    guessed.push_back(slides(joint)
+                          ? fmt::format("'{}' ({:.2g} N)", joint.name, joint.effort / kSlideUnit)
+                          : fmt::format("'{}' ({:.2g} N m)", joint.name, joint.effort));
+  }
+  if (guessed.empty()) return;
+  std::ranges::reverse(guessed);
+  places.warn(
+      fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
+                  "out",
+                  list(guessed)));
+}
+
+namespace {
+
+constexpr double kMostGravity = 30;     // [m/s^2]
+constexpr double kStiffest = 1e4;       // [N m/rad]
+constexpr double kLongestDelay = 1;     // [s]
+constexpr double kLargestOffset = 1e3;  // [N m]
+
+class Own {
+ public:
+  Own(const TiXmlElement& element, const UrdfPlaces& places) : element_(element), places_(places) {}
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw FileError(one_line(
+        fmt::format("{}:{}: <{}> {}", places_.where, element_.Row(), element_.ValueStr(), why)));
+  }
+  // From `least` to `most`; nothing where it is not said.
+  std::optional<double> number(const char* name, double least, double most,
+                               const char* unit) const {
+    const char* text = element_.Attribute(name);
+    if (text == nullptr) return std::nullopt;
+    const auto found = numbers_in<1>(text);
+    if (!found || !((*found)[0] >= least && (*found)[0] <= most)) {
+      refuse(fmt::format("{} \"{}\"; allowed: {} to {} {}", name, text, least, most, unit));
+    }
+    return (*found)[0];
+  }
+  std::optional<Vec3> gravity() const {
+    const char* text = element_.Attribute("gravity");
+    if (text == nullptr) return std::nullopt;
+    const auto found = numbers_in<3>(text);
+    if (!found || found->norm() > kMostGravity) {
+      refuse(fmt::format("gravity \"{}\"; needed: X Y Z in m/s^2, {} at most", text, kMostGravity));
+    }
+    return Vec3(*found);
+  }
+
+ private:
+  const TiXmlElement& element_;
+  const UrdfPlaces& places_;
+};
+
+void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
+  const Own own(element, places);
+  const char* name = element.Attribute("joint");
+  if (name == nullptr || !places.joint_lines.contains(name)) {
+    own.refuse(
+        fmt::format("joint \"{}\"; needed: a joint of this robot", name == nullptr ? "" : name));
+  }
+  const double stiffness = own.number("stiffness", -kStiffest, kStiffest, "N m/rad").value_or(0);
+  const double offset = own.number("offset", -kLargestOffset, kLargestOffset, "N m").value_or(0);
+  const auto joint = std::ranges::find(arm.joints, name, &Joint::name);
+  if (joint == arm.joints.end()) return;
+  const double unit = joint->kind == Joint::Kind::prismatic ? kSlideUnit : 1;
+  joint->spring = stiffness * unit * unit;
+  joint->offset = offset * unit;
+}
+
+}  // namespace
+
+std::string own_tip(const TiXmlElement& robot) {
+  std::string tip;
+  for (auto* own = robot.FirstChildElement("limpid"); own;
+       own = own->NextSiblingElement("limpid")) {
+    if (const char* link = own->Attribute("tip")) tip = link;
+  }
+  return tip;
+}
+
+void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescription& arm) {
+  for (auto* own = robot.FirstChildElement("limpid"); own;
+       own = own->NextSiblingElement("limpid")) {
+    const Own element(*own, places);
+    if (const auto gravity = element.gravity()) arm.gravity = *gravity;
+    if (const auto delay = element.number("delay", 0, kLongestDelay, "s")) arm.delay = delay;
+    for (auto* spring = own->FirstChildElement("spring"); spring;
+         spring = spring->NextSiblingElement("spring")) {
+      read_spring(*spring, places, arm);
+    }
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,88 @@
+// Force-feedback joysticks and wheels that speak USB PID (USB Device Class Definition for PID 1.0).
+//
+// Each axis has a constant force of its own. Forces are short effects which are started again and
+// again: a device that hears no more from us drops its force by itself. All reports are laid out by
+// the device's descriptor; nothing here knows a product.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "devices/hid/hid_protocol.h"
+#include "devices/hid/pid_reports.h"
+
+namespace limpid {
+
+// What PID does not say and only the owner of the device knows.
+struct PidSettings {
+  double range = 0.349;           // an axis goes from -range to range: +-20 degrees [rad]
+  double effort = 0.5;            // torque at full force [N m]
+  double duration = 0.010;        // of an effect that is not started again, at most 0.1 [s]
+  double restart = 0.004;         // after so long it is started again, less than the duration [s]
+  std::array<bool, 2> reverse{};  // of each joint: the device pushes the wrong way; products
+                                  // differ, axis_check.h finds it
+};
+
+// Joints: X (positive to the right) and Y (positive towards the user), or X alone.
+class PidJoystick final : public HidProtocol {
+ public:
+  static bool describes(const ReportDescriptor& descriptor);
+  // Why a device that it describes cannot be an arm all the same, for people; empty if it may be
+  // one. Whether its motors move it only trying shows (axis_check.h).
+  static std::string objection(const ReportDescriptor& descriptor);
+
+  // Throws HidError naming what the device lacks, why it is no arm, or which setting is out of
+  // range.
+  explicit PidJoystick(const ReportDescriptor& descriptor, const PidSettings& settings = {});
+
+  // Resets it, makes its effects and switches its motors on, all forces 0.
+  void open(HidTransport& transport) override;
+
+  const DeviceTraits& traits() const override { return traits_; }
+  // Joysticks that send more seldom, or only what changes, are asked meanwhile.
+  nanoseconds stale_after() const override { return std::chrono::milliseconds(5); }
+  std::span<const std::uint8_t> silent_report() const override { return silent_report_; }
+  Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept override;
+  void encode(std::span<const double> torque, nanoseconds now,
+              const SendReport& send) noexcept override;
+  const std::vector<Report>& stop_reports() const override { return stop_reports_; }
+
+ private:
+  struct Axis {
+    int number = 0;  // 0 for X, 1 for Y
+    ReportField position;
+    double sign = 1;  // of the force
+    int block = 0;    // index of its effect
+    std::int64_t level = 0;
+    Report force;
+    Report start;
+  };
+
+  // What a device says of itself by one bit.
+  struct StateBit {
+    ReportField field;
+    Usage usage = 0;
+    bool well = false;
+    bool was_well = false;  // ever, on this connection
+  };
+
+  int create_effect(HidTransport& transport) const;
+  void make_stop_reports();
+  Decoded decode_positions(std::span<const std::uint8_t> report,
+                           DeviceReading& reading) const noexcept;
+  bool decode_state(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept;
+
+  PidSettings settings_;
+  PidReports reports_;
+  DeviceTraits traits_;
+  std::vector<Axis> axes_;
+  std::vector<ReportField> buttons_;
+  std::vector<StateBit> state_;
+  Report silent_report_;
+  std::vector<Report> stop_reports_;
+  nanoseconds started_{};
+  bool playing_ = false;
+};
+
+}  // namespace limpid

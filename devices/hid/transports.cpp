@@ -1,0 +1,270 @@
+#include "devices/hid/transports.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "devices/hid/hid_transport.h"
+#include "devices/hid/report_descriptor.h"
+
+namespace limpid {
+
+namespace {
+
+constexpr int kFirstPacket = 500;  // longest wait for it [ms]
+
+int connect_to(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof(address.sun_path)) {
+    throw HidError(fmt::format("{}: a socket's path has at most {} characters", path,
+                               sizeof(address.sun_path) - 1));
+  }
+  path.copy(address.sun_path, path.size());
+  const int file = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (file >= 0 &&
+      connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
+    return file;
+  }
+  const int error = errno;
+  if (file >= 0) close(file);
+  const bool busy = error == EAGAIN;
+  throw HidError(fmt::format("{}: {}", path,
+                             busy ? "another program uses this device" : std::strerror(error)));
+}
+
+class SocketTransport final : public HidTransport {
+ public:
+  explicit SocketTransport(const std::string& path) : file_(connect_to(path)) {
+    std::array<std::uint8_t, kMaxReport> first{};
+    const int size = read(first, kFirstPacket);
+    if (size < 0) {
+      close(file_);
+      throw HidError(path + ": it hangs up; another program may use it");
+    }
+    feature_.assign(first.begin(), first.begin() + size);
+  }
+  SocketTransport(const SocketTransport&) = delete;
+  SocketTransport& operator=(const SocketTransport&) = delete;
+  ~SocketTransport() override { close(file_); }
+
+  int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
+    if (report.size() < 2) return 0;
+    ssize_t size = receive(report);
+    if (size < 0 && errno == EAGAIN && timeout_ms > 0) {
+      pollfd ready{file_, POLLIN, 0};
+      poll(&ready, 1, timeout_ms);
+      size = receive(report);
+    }
+    if (size > 0) return static_cast<int>(size) + 1;
+    // An empty packet is no report; none can be told from the end.
+    return size < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
+  }
+
+  bool write(std::span<const std::uint8_t> report) noexcept override {
+    const auto packet = report.subspan(1);
+    return send(file_, packet.data(), packet.size(), MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(packet.size());
+  }
+
+  int get_feature(std::span<std::uint8_t> report) noexcept override {
+    if (feature_.empty() || feature_.size() > report.size()) return -1;
+    std::copy(feature_.begin(), feature_.end(), report.begin());
+    return static_cast<int>(feature_.size());
+  }
+
+  bool set_feature(std::span<const std::uint8_t>) noexcept override { return false; }
+  void ask(std::span<const std::uint8_t>) noexcept override {}
+  const std::vector<std::uint8_t>& report_descriptor() const override { return no_descriptor_; }
+
+ private:
+  // Behind the id, which is 0: nobody numbers packets.
+  ssize_t receive(std::span<std::uint8_t> report) const noexcept {
+    report[0] = 0;
+    return recv(file_, report.data() + 1, report.size() - 1, 0);
+  }
+
+  int file_;
+  std::vector<std::uint8_t> feature_, no_descriptor_;
+};
+
+}  // namespace
+
+std::unique_ptr<HidTransport> open_socket(const std::string& path) {
+  return std::make_unique<SocketTransport>(path);
+}
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path) {
+  throw HidError(fmt::format("{}: {}", path, std::strerror(errno)));
+}
+
+// hidapi 0.13 has no call for it.
+std::vector<std::uint8_t> read_descriptor(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) refuse(path);
+  int size = 0;
+  hidraw_report_descriptor descriptor{};
+  bool got = ioctl(file, HIDIOCGRDESCSIZE, &size) >= 0;
+  if (got) {
+    descriptor.size = static_cast<std::uint32_t>(std::clamp(size, 0, HID_MAX_DESCRIPTOR_SIZE));
+    got = ioctl(file, HIDIOCGRDESC, &descriptor) >= 0;
+  }
+  const int error = errno;
+  close(file);
+  errno = error;
+  if (!got) refuse(path);
+  return {descriptor.value, descriptor.value + descriptor.size};
+}
+
+struct CloseHid {
+  void operator()(hid_device* device) const { hid_close(device); }
+};
+using Handle = std::unique_ptr<hid_device, CloseHid>;
+
+// Asks for input reports. A device that hangs lets a question wait for seconds, so a thread of its
+// own asks, through a handle of its own. Nobody waits for that thread either: it shares what it
+// needs and ends when the kernel has given up.
+class Questions {
+ public:
+  explicit Questions(std::string path) : path_(std::move(path)) {}
+  Questions(const Questions&) = delete;
+  Questions& operator=(const Questions&) = delete;
+  ~Questions() {
+    if (!shared_) return;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->quit = true;
+    shared_->changed.notify_one();
+  }
+
+  void ask(std::span<const std::uint8_t> question) noexcept {
+    if (!shared_ && !start()) return;
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->busy) return;
+    shared_->busy = true;
+    shared_->report.assign(question.begin(), question.end());
+    shared_->changed.notify_one();
+  }
+
+  // The size of the answer if it has come, else 0.
+  int take(std::span<std::uint8_t> report) noexcept {
+    if (!shared_) return 0;
+    const std::lock_guard lock(shared_->mutex);
+    if (!shared_->answered) return 0;
+    const std::size_t size = std::min(shared_->report.size(), report.size());
+    std::copy_n(shared_->report.begin(), size, report.begin());
+    shared_->busy = shared_->answered = false;
+    return static_cast<int>(size);
+  }
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<std::uint8_t> report;  // the question, then its answer
+    bool busy = false, answered = false, quit = false;
+  };
+
+  // In the thread that asks first, whose priority the new one takes over.
+  bool start() noexcept {
+    try {
+      const auto shared = std::make_shared<Shared>();
+      std::thread([shared, path = path_] { answer(*shared, path); }).detach();
+      shared_ = shared;
+    } catch (const std::exception&) {
+      return false;
+    }
+    return true;
+  }
+
+  static void answer(Shared& shared, const std::string& path) {
+    const Handle device(hid_open_path(path.c_str()));
+    std::unique_lock lock(shared.mutex);
+    while (device) {
+      shared.changed.wait(lock, [&] { return shared.quit || (shared.busy && !shared.answered); });
+      if (shared.quit) return;
+      std::vector<std::uint8_t> report = shared.report;
+      lock.unlock();
+      const int size = hid_get_input_report(device.get(), report.data(), report.size());
+      lock.lock();
+      shared.busy = shared.answered = size > 0;
+      report.resize(std::min(static_cast<std::size_t>(std::max(size, 0)), report.size()));
+      shared.report = std::move(report);
+    }
+  }
+
+  std::string path_;
+  std::shared_ptr<Shared> shared_;
+};
+
+class HidapiTransport final : public HidTransport {
+ public:
+  explicit HidapiTransport(const std::string& path)
+      : descriptor_(read_descriptor(path)),
+        numbered_(parse_report_descriptor(descriptor_).numbered),
+        device_(hid_open_path(path.c_str())),
+        questions_(path) {
+    if (!device_) refuse(path);
+  }
+
+  int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
+    // The kernel gives no id where there are none.
+    const std::size_t skipped = numbered_ ? 0 : 1;
+    if (report.size() <= skipped) return 0;
+    if (const int answer = questions_.take(report)) return answer;
+    if (!numbered_) report[0] = 0;
+    const int size = hid_read_timeout(device_.get(), report.data() + skipped,
+                                      report.size() - skipped, timeout_ms);
+    return size > 0 ? size + static_cast<int>(skipped) : size;
+  }
+
+  bool write(std::span<const std::uint8_t> report) noexcept override {
+    return hid_write(device_.get(), report.data(), report.size()) >= 0;
+  }
+
+  int get_feature(std::span<std::uint8_t> report) noexcept override {
+    return hid_get_feature_report(device_.get(), report.data(), report.size());
+  }
+
+  void ask(std::span<const std::uint8_t> question) noexcept override { questions_.ask(question); }
+
+  bool set_feature(std::span<const std::uint8_t> report) noexcept override {
+    return hid_send_feature_report(device_.get(), report.data(), report.size()) >= 0;
+  }
+
+  const std::vector<std::uint8_t>& report_descriptor() const override { return descriptor_; }
+
+  std::uint16_t vendor() const override {
+    const hid_device_info* info = hid_get_device_info(device_.get());
+    return info != nullptr ? info->vendor_id : std::uint16_t{0};
+  }
+
+ private:
+  std::vector<std::uint8_t> descriptor_;
+  bool numbered_;
+  Handle device_;
+  Questions questions_;
+};
+
+}  // namespace
+
+std::unique_ptr<HidTransport> open_hidraw(const std::string& path) {
+  return std::make_unique<HidapiTransport>(path);
+}
+
+}  // namespace limpid

@@ -1,0 +1,400 @@
+#include "devices/simulated/virtual_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/subnormals.h"
+#include "core/math/triangular.h"
+
+namespace limpid {
+
+namespace {
+
+// The hand's force at an arm that moves so, to the change of what it is where the arm was looked
+// at.
+template <int M>
+[[gnu::always_inline]] inline void hold(const WideSubsteps& s, Four& force) {
+  const Eigen::Index p = wide::rows<M>(s.n);
+  Four part[4] = {};
+  for (Eigen::Index i = 0; i < p; i += 4) {
+    const Four along = four(s.u + i) * s.stiffness + four(s.v + i) * s.along_rate;
+    for (int a = 0; a < 3; ++a) part[a] += four(s.J_T + a * p + i) * along;
+  }
+  wide::sums_of(part, force);
+}
+
+template <int M>
+[[gnu::always_inline]] inline void take(const WideSubsteps& s) {
+  for (Eigen::Index i = 0; i < wide::rows<M>(s.n); i += 4) {
+    four(s.sum_u + i) += four(s.u + i);
+    four(s.u + i) += (four(s.v + i) + four(s.dv + i) * 0.5) * s.h;
+    four(s.v + i) += four(s.dv + i);
+  }
+}
+
+template <int M>
+[[gnu::always_inline]] inline void go_wide(const WideSubsteps& s) {
+  using namespace wide;
+  const Eigen::Index p = rows<M>(s.n);
+  Vec3 force = s.force;
+  for (int k = 0; k < s.count; ++k, force += s.force_step) {
+    Four moved;
+    hold<M>(s, moved);
+    const double x = force.x() - moved[0], y = force.y() - moved[1], z = force.z() - moved[2];
+    for (Eigen::Index i = 0; i < p; i += 4) {
+      const double* const J = s.J_T + i;
+      four(s.dv + i) = (four(s.steady + i) - four(s.damping + i) * four(s.v + i)) +
+                       (four(J) * x + four(J + p) * y + four(J + 2 * p) * z);
+    }
+    columns_by_fours(columns<M>(s.n), SolveLower<M>{s.n, s.lower, s.corners, s.dv});
+    columns_by_fours_back(columns<M>(s.n), SolveTransposed<M>{s.n, s.lower, s.corners, s.dv});
+    take<M>(s);
+  }
+}
+
+// The same by dv = r - E v + K f, of what A^-1 makes of the rest: of few joints that costs as much
+// as the solves of five substeps, and what each of them waits for is less.
+template <int M>
+[[gnu::always_inline]] inline void go_prepared(const WideSubsteps& s) {
+  using namespace wide;
+  constexpr Eigen::Index p = rows<M>(M);
+  double E[M * p] = {}, K[3 * p] = {}, r[p] = {};
+  for (Eigen::Index c = 0; c < M; ++c) E[c * p + c] = 1;
+  const double* const over = s.corners - p;
+  columns_by_fours(M, Divide<M, true>{M, straight<M>(s.lower, M), over, E});
+  columns_by_fours_back(M, Divide<M, false>{M, turned<M>(s.lower, M), over, E});
+  for (Eigen::Index i = 0; i < p; i += 4) {
+    for (Eigen::Index c = 0; c < M; ++c) {
+      four(r + i) += four(E + c * p + i) * s.steady[c];
+      for (int a = 0; a < 3; ++a) four(K + a * p + i) += four(E + c * p + i) * s.J_T[a * p + c];
+      four(E + c * p + i) *= s.damping[c];
+    }
+  }
+  Vec3 force = s.force;
+  for (int k = 0; k < s.count; ++k, force += s.force_step) {
+    Four moved;
+    hold<M>(s, moved);
+    const double x = force.x() - moved[0], y = force.y() - moved[1], z = force.z() - moved[2];
+    for (Eigen::Index i = 0; i < p; i += 4) {
+      Four damped = four(E + i) * s.v[0];
+      for (Eigen::Index c = 1; c < M; ++c) damped += four(E + c * p + i) * s.v[c];
+      four(s.dv + i) = (four(r + i) - damped) +
+                       (four(K + i) * x + four(K + p + i) * y + four(K + 2 * p + i) * z);
+    }
+    take<M>(s);
+  }
+}
+
+template <int M>
+[[gnu::always_inline]] inline void stiffen_wide(Eigen::Index n, double by, double answer,
+                                                const double* J_T, double* A) {
+  const Eigen::Index p = wide::rows<M>(n);
+  for (Eigen::Index c = 0; c < wide::columns<M>(n); ++c, A += p) {
+    const double x = answer * J_T[c], y = answer * J_T[p + c], z = answer * J_T[2 * p + c];
+    for (Eigen::Index i = 0; i < p; i += 4) {
+      const double* const J = J_T + i;
+      four(A + i) = four(A + i) * by + (four(J) * x + four(J + p) * y + four(J + 2 * p) * z);
+    }
+  }
+}
+
+}  // namespace
+
+template <>
+LIMPID_WIDE void stiffen<kAnyDof>(Eigen::Index n, double by, double answer, const double* J_T,
+                                  double* A) {
+  stiffen_wide<kByFours>(n, by, answer, J_T, A);
+}
+
+template <>
+LIMPID_WIDE void stiffen<7>(Eigen::Index n, double by, double answer, const double* J_T,
+                            double* A) {
+  stiffen_wide<7>(n, by, answer, J_T, A);
+}
+
+template <>
+LIMPID_WIDE void go<kAnyDof>(const WideSubsteps& steps) {
+  go_wide<kByFours>(steps);
+}
+
+template <>
+LIMPID_WIDE void go<7>(const WideSubsteps& steps) {
+  if (steps.count > 2) {
+    go_prepared<7>(steps);
+  } else {
+    go_wide<7>(steps);
+  }
+}
+
+namespace {
+
+constexpr int kShare = 5;                // substeps that share a look
+constexpr double kFar = 0.05;            // looks this far apart say nothing of what comes [rad]
+constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
+constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
+
+template <int N>
+Going<N, Pair> side_by_side(const std::array<Going<N, double>, 2>& goings) {
+  const auto& [one, two] = goings;
+  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
+}
+
+}  // namespace
+
+template <int N>
+VirtualArm<N>::VirtualArm(const ArmDescription& arm)
+    : arm_(arm),
+      damping_(of_joints<N>(arm, &Joint::damping)),
+      friction_(of_joints<N>(arm, &Joint::friction)),
+      effort_(of_joints<N>(arm, &Joint::effort)),
+      lower_(of_joints<N>(arm, &Joint::lower)),
+      upper_(of_joints<N>(arm, &Joint::upper)),
+      spring_(of_joints<N>(arm, &Joint::spring)),
+      offset_(of_joints<N>(arm, &Joint::offset)),
+      gravity_(arm.gravity) {
+  const int n = arm.dof();
+  place(Vec<N>::Zero(n), Vec<N>::Zero(n), Vec3::Zero());
+}
+
+template <int N>
+void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) {
+  x_ = x;
+  v_ = v;
+  target_ = target;
+  hand_torque_ = Vec<N>::Zero(x.size());
+  renewed_ = 0;
+  looks_.x = x.template cast<Pair>();
+  looks_.v = v.template cast<Pair>();
+  const auto angles = arm_.angles(x);
+  looks_.angles = {angles.sin.template cast<Pair>(), angles.cos.template cast<Pair>()};
+  look(true, std::nullopt);
+}
+
+template <int N>
+Reading<N> VirtualArm<N>::read(double encoder_step) const {
+  Reading<N> reading{x_, x_, v_};
+  if (encoder_step > 0) {
+    reading.measured = (x_ / encoder_step).array().round().matrix() * encoder_step;
+  }
+  return reading;
+}
+
+template <int N>
+Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
+                              const HandInput& hand) const {
+  Drive<N> d{p.tick / p.substeps,
+             hand.grip * p.hand_stiffness,
+             hand.grip * p.hand_damping,
+             hand.grip * p.hand_mass_at_tip,
+             target_,
+             (hand.target - target_) / p.tick,
+             torque,
+             resolve<N>(p.damping, damping_),
+             resolve<N>(p.friction, friction_),
+             false,
+             p.springy,
+             p.weighs ? std::optional(gravity_of(p.down, gravity_)) : std::nullopt};
+  d.rubs = d.friction.maxCoeff() > 0;
+  if (!hand.torque.empty()) d.torque += Eigen::Map<const Vec<N>>(hand.torque.data(), torque.size());
+  return d;
+}
+
+// What the arm is like at both places.
+template <int N>
+void VirtualArm<N>::look(bool drift, const std::optional<Vec3>& gravity) {
+  const int last = arm_.dof() - 1;
+  typename Arm<N>::template FramesOf<Pair> frames;
+  typename Arm<N>::template Bodies<Pair> bodies;
+  arm_.frames(looks_.angles, frames);
+  arm_.inertia(frames, bodies, looks_.M);
+  arm_.bias(frames, bodies, looks_.v, looks_.Cv);
+  looks_.tip = arm_.tip(frames);
+  arm_.point_jacobian(frames, last, looks_.tip, looks_.J);
+  looks_.drift = Vec3Of<Pair>::Zero();
+  if (drift) looks_.drift = arm_.point_drift(frames, last, looks_.tip, looks_.v);
+  if (gravity) {
+    typename Arm<N>::Frames own[2];
+    for (int i = 0; i < 2; ++i) arm_.take(frames, i, own[i]);
+    looks_.Cv += paired<N>(arm_.weight(own[0], *gravity), arm_.weight(own[1], *gravity));
+  }
+}
+
+template <int N>
+bool VirtualArm<N>::within_stops(const Vec<N>& x) const {
+  bool within = true;
+  for (Eigen::Index i = 0; i < x.size(); ++i) within &= x[i] >= lower_[i] && x[i] <= upper_[i];
+  return within;
+}
+
+// A substep with what friction, springs and stops add to A and b around its middle.
+template <int N>
+template <class Under>
+void VirtualArm<N>::go_resisted(const Drive<N>& d, const Under& stride, double t,
+                                Going<N, double>& at) const {
+  Mat<N> A = stride.A();
+  const double h = stride.h();
+  Vec<N> b = stride.b(t + h / 2, at.u, at.v);
+  for (Eigen::Index i = 0; i < b.size(); ++i) {
+    const double middle = stride.x()[i] + at.u[i] + h / 2 * at.v[i];
+    const double beyond = std::max(middle - upper_[i], 0.0) + std::min(middle - lower_[i], 0.0);
+    double damping = 0, stiffness = 0;
+    if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(at.v[i]), kStictionSpeed);
+    if (d.springy) {
+      b[i] -= spring_[i] * middle + offset_[i];
+      A(i, i) += h / 4 * spring_[i];
+    }
+    if (beyond != 0) {
+      stiffness = effort_[i] / kStopDepth;
+      damping += std::sqrt(stiffness * stride.M(i));
+    }
+    b[i] -= stiffness * beyond + damping * at.v[i];
+    A(i, i) += damping / 2 + h / 4 * stiffness;
+  }
+  at.take(h, solve_symmetric<N>(A, b));
+}
+
+// Where so many substeps lead from t on; one by one where something resists. `within`: the stops,
+// at the start and then at the end.
+template <int N>
+template <class Under>
+[[gnu::always_inline]] inline Going<N, double> VirtualArm<N>::gone(const Drive<N>& d,
+                                                                   const Under& stride,
+                                                                   const Going<N, double>& from,
+                                                                   double t, int substeps,
+                                                                   bool& within) const {
+  if (within && !d.rubs && !d.springy) {
+    Going<N, double> to = stride.gone(from, t, substeps);
+    within = within_stops(stride.x() + to.u);
+    if (within) return to;
+  }
+  Going<N, double> at = from;
+  for (int s = 0; s < substeps; ++s) go_resisted(d, stride, t + s * stride.h(), at);
+  within = within_stops(stride.x() + at.u);
+  return at;
+}
+
+// Looks at where the arm will be on average over so many substeps from s on, and over as many after
+// them. It gets there in two big steps, by what the last two looks would have become.
+template <int N>
+void VirtualArm<N>::look_ahead(const Drive<N>& d, int s, int share, bool within) {
+  // From the middle of the last share to that of the next two, in shares.
+  bool near = true;
+  for (const Pair& x : looks_.x) near &= std::abs(x[1] - x[0]) < kFar;
+  const Look<N, double> last = beyond(looks_, near ? 1.5 : 0);
+  const double h = share * d.h;
+  const Stride<N> stride(d, h, last);
+  Going<N, double> at{x_ - last.x, v_, Vec<N>::Zero(x_.size())};
+  std::array<Vec<N>, 2> u, v;  // on average
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Going<N, double> from = at;
+    at = gone(d, stride, from, s * d.h + static_cast<double>(i) * h, 1, within);
+    const Vec<N> dv = at.v - from.v;
+    u[i] = from.u + h / 2 * (from.v + 1. / 3 * dv);
+    v[i] = from.v + 0.5 * dv;
+  }
+  const VecOf<N, Pair> dx = paired<N>(u[0], u[1]);
+  looks_.v = paired<N>(v[0], v[1]);
+  looks_.x = last.x.template cast<Pair>() + dx;
+  looks_.angles = arm_.turned(last.angles, dx);
+  look(d.mass > 0, d.gravity);
+}
+
+template <int N>
+void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
+  const NoSubnormals fast_at_rest;
+  const Drive<N> d = drive(p, torque, hand);
+  renewed_ = renewed_ + 1 < x_.size() ? renewed_ + 1 : 0;  // turned angles drift
+  arm_.renew(renewed_, looks_.x[renewed_][1], looks_.angles);
+  hand_torque_.setZero();
+  bool within = within_stops(x_);
+  for (int s = 0; s < p.substeps;) {
+    const int share = std::min(kShare, (p.substeps - s + 1) / 2);
+    look_ahead(d, s, share, within);
+    const Strides<N> strides(d, looks_);
+    const std::array<int, 2> substeps{share, std::min(share, p.substeps - s - share)};
+    std::array<Going<N, double>, 2> from, to;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& stride = strides[static_cast<int>(i)];
+      from[i] = {x_ - stride.x(), v_, Vec<N>::Zero(x_.size())};
+      to[i] =
+          gone(d, stride, from[i], (s + static_cast<int>(i) * share) * d.h, substeps[i], within);
+      x_ = stride.x() + to[i].u;
+      v_ = to[i].v;
+    }
+    const Pair started(s * d.h, (s + share) * d.h), steps(substeps[0], substeps[1]);
+    const VecOf<N, Pair> of_hand =
+        looks_.J.transpose() *
+        hand_force<N, Pair>(d, looks_, started, steps, side_by_side<N>(from), side_by_side<N>(to));
+    for (Eigen::Index i = 0; i < x_.size(); ++i) hand_torque_[i] += of_hand[i][0] + of_hand[i][1];
+    s += substeps[0] + substeps[1];
+  }
+  hand_torque_ /= p.substeps;
+  if (!hand.torque.empty()) {
+    hand_torque_ += Eigen::Map<const Vec<N>>(hand.torque.data(), x_.size());
+  }
+  target_ = hand.target;
+}
+
+template <int N>
+VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(description) {
+  traits_.name = description.name;
+  traits_.id = "virtual";
+  traits_.dof = description.dof();
+  traits_.pushes = true;
+  traits_.guarded = false;
+  traits_.rate = 1 / p_.tick;
+  for (const Joint& joint : description.joints) {
+    traits_.lower.push_back(joint.lower);
+    traits_.upper.push_back(joint.upper);
+    traits_.resolution.push_back(0);
+    traits_.effort.push_back(joint.effort);
+  }
+  sent_.fill(Vec<N>::Zero(traits_.dof));
+  acted_ = sent_[0];
+}
+
+template <int N>
+void VirtualDevice<N>::place(std::span<const double> x, std::span<const double> v,
+                             const Vec3& target) noexcept {
+  const Eigen::Index n = traits_.dof;
+  arm.place(Eigen::Map<const Vec<N>>(x.data(), n), Eigen::Map<const Vec<N>>(v.data(), n), target);
+  sent_.fill(Vec<N>::Zero(n));
+  acted_ = sent_[0];
+}
+
+template <int N>
+std::optional<DeviceTruth> VirtualDevice<N>::truth() const noexcept {
+  const auto joints = [](const Vec<N>& values) {
+    return std::span(values.data(), static_cast<std::size_t>(values.size()));
+  };
+  return DeviceTruth{joints(arm.x()), joints(arm.v()), joints(arm.hand_torque()), joints(acted_)};
+}
+
+template <int N>
+bool VirtualDevice<N>::read(DeviceReading& newest) noexcept {
+  const Reading<N> reading = arm.read(p_.encoder_step);
+  std::copy_n(reading.measured.data(), reading.measured.size(), newest.x.begin());
+  newest.count = ++count_;
+  newest.age = 0;
+  return true;
+}
+
+template <int N>
+void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
+  Vec<N> tau = Vec<N>::Zero(traits_.dof);
+  if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
+  newest_ = (newest_ + 1) % sent_.size();
+  sent_[newest_] = tau;
+  acted_ =
+      sent_[(newest_ + sent_.size() - static_cast<std::size_t>(p_.device_delay)) % sent_.size()];
+  arm.live(p_, acted_, hand_);
+}
+
+template class VirtualDevice<3>;
+template class VirtualDevice<7>;
+template class VirtualDevice<kAnyDof>;
+template class VirtualArm<3>;
+template class VirtualArm<7>;
+template class VirtualArm<kAnyDof>;
+
+}  // namespace limpid

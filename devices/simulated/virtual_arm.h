@@ -1,0 +1,384 @@
+// Several substeps of the virtual arm under one look at where it is and how heavy.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/dynamics/arm.h"
+#include "core/math/solve.h"
+#include "core/tick/parameters.h"
+#include "core/tick/tick.h"
+#include "devices/device.h"
+
+namespace limpid {
+
+// Where the arm was looked at, and what it was like. S: double, or Pair for two places.
+template <int N, class S>
+struct Look {
+  VecOf<N, S> x, v;
+  typename Arm<N>::template AnglesOf<S> angles;
+  MatOf<N, S> M;
+  VecOf<N, S> Cv;
+  Vec3Of<S> tip, drift;  // drift: Jdot v
+  JacobianOf<N, S> J;    // of the tip
+};
+
+// One of two, as far as strides ask for it.
+template <int N>
+Look<N, double> one(const Look<N, Pair>& looks, int which) {
+  Look<N, double> look;
+  take(looks.x, which, look.x);
+  take(looks.M, which, look.M);
+  take(looks.Cv, which, look.Cv);
+  take(looks.tip, which, look.tip);
+  take(looks.drift, which, look.drift);
+  take(looks.J, which, look.J);
+  return look;
+}
+
+// The second of two, with a model that is as far beyond its own as that is from the first's, times
+// `on`.
+template <class Both, class One>
+void take_beyond(const Both& both, double on, One& one) {
+  one.resize(both.rows(), both.cols());
+  for (Eigen::Index i = 0; i < both.size(); ++i) {
+    const Pair& pair = both.data()[i];
+    one.data()[i] = pair[1] + on * (pair[1] - pair[0]);
+  }
+}
+template <int N>
+Look<N, double> beyond(const Look<N, Pair>& looks, double on) {
+  Look<N, double> look;
+  take(looks.x, 1, look.x);
+  take(looks.angles.sin, 1, look.angles.sin);
+  take(looks.angles.cos, 1, look.angles.cos);
+  take(looks.tip, 1, look.tip);
+  take(looks.drift, 1, look.drift);
+  take_beyond(looks.M, on, look.M);
+  take_beyond(looks.Cv, on, look.Cv);
+  take_beyond(looks.J, on, look.J);
+  return look;
+}
+
+// What acts on the arm over a tick, and the substep that the tick is taken in.
+template <int N>
+struct Drive {
+  double h;                      // [s]
+  double stiffness, grip, mass;  // of the hand at the tip [N/m, N s/m, kg]
+  Vec3 target, target_rate;      // of the hand, at the tick's start [m, m/s]
+  Vec<N> torque;                 // of motors and hand [N m]
+  Vec<N> damping, friction;      // of the joints [N m s/rad, N m]
+  bool rubs, springy;            // some joint has friction; springs pull
+  std::optional<Vec3> gravity;   // of links that weigh something [m/s^2]
+
+  // What the hand makes of the tip's velocity, and of its change, over a substep of dt [N s/m].
+  double along_rate(double dt) const { return grip + dt / 2 * stiffness; }
+  double answer(double dt) const { return grip / 2 + dt / 4 * stiffness + mass / dt; }
+  // Its force at t on an arm that stays where it was looked at [N].
+  template <class S>
+  Vec3Of<S> force_there(const Look<N, S>& look, const S& t) const {
+    const Vec3 at_start = stiffness * target + grip * target_rate, rate = stiffness * target_rate;
+    return at_start.cast<S>() + t * rate.cast<S>() - S(stiffness) * look.tip - S(mass) * look.drift;
+  }
+};
+
+// Where substeps have got to under a look.
+template <int N, class S>
+struct Going {
+  VecOf<N, S> u, v;   // x less the look's; v
+  VecOf<N, S> sum_u;  // of u over the substeps that were taken, each where it began
+
+  void take(double h, const VecOf<N, S>& dv) {
+    sum_u += u;
+    u += h * (v + 0.5 * dv);
+    v += dv;
+  }
+};
+
+// The hand's force at the tip, summed over so many substeps that led from one to the other [N].
+template <int N, class S>
+Vec3Of<S> hand_force(const Drive<N>& d, const Look<N, S>& look, const S& t, const S& substeps,
+                     const Going<N, S>& from, const Going<N, S>& to) {
+  const VecOf<N, S> dv = to.v - from.v;
+  const VecOf<N, S> sum_v = S(1 / d.h) * (to.u - from.u) - S(0.5) * dv;
+  const VecOf<N, S> moved =
+      S(d.stiffness) * to.sum_u + S(d.along_rate(d.h)) * sum_v + S(d.answer(d.h)) * dv;
+  return substeps * d.force_there(look, t + S(0.5 * d.h) * substeps) - look.J * moved;
+}
+
+// Substeps of more than three joints, in columns as wide as they are made up to whole fours: n and
+// where the numbers are. `lower`, `corners`: of A, see SymmetricFactor.
+struct WideSubsteps {
+  Eigen::Index n;
+  const double *lower, *corners;
+  const double *J_T, *steady, *damping;  // 3 columns; what does not change [N m]; of the joints
+  double h, stiffness, along_rate;       // see Drive
+  Vec3 force, force_step;                // of the hand where the arm was looked at; its change [N]
+  double *u, *v, *sum_u, *dv;
+  int count;
+};
+template <int N>
+void go(const WideSubsteps& steps);
+// A times `by` and J^T J times `answer` more.
+template <int N>
+void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
+
+// A substep from u and v on, its middle at t from the tick's start, has all taken as v would have
+// it there, and the change that it makes of v then corrects:
+//     A dv = b(t, u, v), x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
+template <int N>
+class Stride {
+ public:
+  // Both are to live on.
+  Stride(const Drive<N>& drive, double h, const Look<N, double>& look)
+      : d_(drive), h_(h), look_(look), A_(widened<N>(look.M)) {
+    if constexpr (N == 3) {
+      A_ *= 1 / h;
+      for (Eigen::Index j = 0; j < A_.cols(); ++j) {
+        const Vec3 held = d_.answer(h) * look_.J.col(j);
+        for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
+        A_(j, j) += d_.damping[j] / 2;
+      }
+    } else {
+      const Eigen::Index n = A_.cols();
+      J_T_.resize(A_.rows(), Eigen::NoChange);
+      J_T_.topRows(n) = look_.J.transpose();
+      J_T_.bottomRows(A_.rows() - n).setZero();
+      stiffen<N>(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
+      A_.diagonal() += 0.5 * d_.damping;
+    }
+    factor_.compute_wide(A_);
+  }
+
+  double h() const { return h_; }
+  const Vec<N>& x() const { return look_.x; }  // of the look
+  double M(Eigen::Index joint) const { return look_.M(joint, joint); }
+  Mat<N> A() const { return narrowed<N>(A_); }  // its lower triangle
+  [[gnu::always_inline]] Vec<N> b(double t, const Vec<N>& u, const Vec<N>& v) const {
+    const Vec3 force =
+        d_.force_there(look_, t) - look_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
+    Vec<N> b = d_.torque - look_.Cv - d_.damping.cwiseProduct(v);
+    b.noalias() += look_.J.transpose() * force;
+    return b;
+  }
+
+  // Where so many substeps lead from t on.
+  Going<N, double> gone(Going<N, double> at, double t, int substeps) const {
+    if constexpr (N == 3) {
+      for (int s = 0; s < substeps; ++s) {
+        at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
+      }
+      return at;
+    } else {
+      const Eigen::Index n = at.u.size(), p = whole_fours(static_cast<int>(n));
+      const WideVec<N> steady = widened_vector<N>(d_.torque - look_.Cv);
+      const WideVec<N> damping = widened_vector<N>(d_.damping);
+      WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
+      WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
+      go<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(), damping.data(), h_,
+             d_.stiffness, d_.along_rate(h_), d_.force_there(look_, t + 0.5 * h_),
+             h_ * d_.stiffness * d_.target_rate, u.data(), v.data(), sum_u.data(), dv.data(),
+             substeps});
+      return {u.head(n), v.head(n), sum_u.head(n)};
+    }
+  }
+
+ private:
+  const Drive<N>& d_;
+  double h_;
+  const Look<N, double>& look_;
+  Wide<N> A_;
+  Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T_;
+  SymmetricFactor<N> factor_;
+};
+
+// Strides under both looks.
+template <int N>
+class Strides {
+ public:
+  Strides(const Drive<N>& drive, const Look<N, Pair>& looks)
+      : looks_{one(looks, 0), one(looks, 1)},
+        strides_{Stride<N>(drive, drive.h, looks_[0]), Stride<N>(drive, drive.h, looks_[1])} {}
+  Strides(const Strides&) = delete;
+  Strides& operator=(const Strides&) = delete;
+  const Stride<N>& operator[](int look) const { return strides_[static_cast<std::size_t>(look)]; }
+
+ private:
+  std::array<Look<N, double>, 2> looks_;
+  std::array<Stride<N>, 2> strides_;
+};
+
+// Of three joints both are prepared side by side as dv = P u + Q v + r + t s.
+template <>
+class Strides<3> {
+ public:
+  Strides(const Drive<3>& drive, const Look<3, Pair>& looks) : d_(drive), looks_(looks) {
+    Mat3Of<Pair> G;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      for (Eigen::Index i = j; i < 3; ++i) {
+        G(i, j) = G(j, i) = looks.J.col(i).dot(looks.J.col(j));
+        A_(i, j) = Pair(1 / d_.h) * looks.M(i, j) + Pair(d_.answer(d_.h)) * G(i, j);
+      }
+      A_(j, j) += d_.damping[j] / 2;
+    }
+    const Mat3Of<Pair> inverse = inverse_symmetric(A_);
+    const Mat3Of<Pair> of_grip = inverse * G;
+    P_ = Pair(-d_.stiffness) * of_grip;
+    Q_ = Pair(-d_.along_rate(d_.h)) * of_grip - inverse * d_.damping.cast<Pair>().asDiagonal();
+    r_ = inverse *
+         (d_.torque.cast<Pair>() - looks.Cv + looks.J.transpose() * d_.force_there(looks, Pair(0)));
+    const Vec3 rate = d_.stiffness * d_.target_rate;
+    s_ = inverse * (looks.J.transpose() * rate.cast<Pair>());
+  }
+
+  // One of them.
+  class Under {
+   public:
+    Under(const Strides& both, int look) : both_(both), look_(look) {
+      take(both.looks_.x, look, x_);
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        P_.col(j) = packed(both.P_.col(j), look);
+        Q_.col(j) = packed(both.Q_.col(j), look);
+      }
+      r_ = packed(both.r_, look);
+      s_ = packed(both.s_, look);
+    }
+    double h() const { return both_.d_.h; }
+    const Vec3& x() const { return x_; }
+    double M(Eigen::Index joint) const { return both_.looks_.M(joint, joint)[look_]; }
+    Mat3 A() const {
+      Mat3 A;
+      take(both_.A_, look_, A);
+      return A;
+    }
+    Vec3 b(double t, const Vec3& u, const Vec3& v) const {
+      const Column dv = product(P_, packed(u)) + product(Q_, packed(v)) + r_ + Pair(t) * s_;
+      return A().selfadjointView<Eigen::Lower>() * single(dv);
+    }
+    Going<3, double> gone(const Going<3, double>& at, double t, int substeps) const {
+      const double h = both_.d_.h;
+      Column u = packed(at.u), v = packed(at.v), sum_u = packed(at.sum_u);
+      Column now = r_ + Pair(t + h / 2) * s_;
+      const Column step = Pair(h) * s_;
+      for (int s = 0; s < substeps; ++s) {
+        const Column dv = product(P_, u) + product(Q_, v) + now;
+        now += step;
+        sum_u += u;
+        u += Pair(h) * (v + Pair(0.5) * dv);
+        v += dv;
+      }
+      return {single(u), single(v), single(sum_u)};
+    }
+
+   private:
+    // Three numbers and a 0, two beside each other in a register.
+    using Column = Eigen::Matrix<Pair, 2, 1>;
+    using Columns = Eigen::Matrix<Pair, 2, 3>;
+    template <class V>
+    static Column packed(const V& v, int look = 0) {
+      return {Pair(of(v[0], look), of(v[1], look)), Pair(of(v[2], look), 0)};
+    }
+    static Vec3 single(const Column& c) { return {c[0][0], c[0][1], c[1][0]}; }
+    static Column product(const Columns& M, const Column& c) {
+      return M.col(0) * Pair(c[0][0]) + M.col(1) * Pair(c[0][1]) + M.col(2) * Pair(c[1][0]);
+    }
+
+    const Strides& both_;
+    int look_;
+    Vec3 x_;
+    Columns P_, Q_;
+    Column r_, s_;
+  };
+  Under operator[](int look) const { return {*this, look}; }
+
+ private:
+  const Drive<3>& d_;
+  const Look<3, Pair>& looks_;
+  Mat3Of<Pair> A_, P_, Q_;  // of A the lower triangle
+  Vec3Of<Pair> r_, s_;
+};
+
+// The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
+
+// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
+// at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated
+// in substeps of the tick with the motor torque held: linearly implicit midpoint rule, second order
+// and without numerical damping, stable for every grip. Several substeps share one look at where
+// the arm is and how heavy, taken where it is on average over them, x + S v/2 + S dv/6, v + dv/2 if
+// v changes by dv in S seconds: what changes evenly then makes no error, and what is left is of
+// second order in the arm's way in S.
+template <int N>
+class VirtualArm {
+ public:
+  explicit VirtualArm(const ArmDescription& arm);
+
+  // Puts it somewhere, the hand's target on the tip [rad, rad/s].
+  void place(const Vec<N>& x, const Vec<N>& v, const Vec3& target);
+  // As the encoders and as a god see it.
+  Reading<N> read(double encoder_step) const;
+  // Lives through one tick under this motor torque [N m].
+  void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
+  Vec3 tip() const { return arm_.tip_at(x_); }
+  const Vec<N>& x() const { return x_; }  // [rad]
+  const Vec<N>& v() const { return v_; }  // [rad/s]
+  // f1, the mean over the tick [N m].
+  const Vec<N>& hand_torque() const { return hand_torque_; }
+
+ private:
+  Drive<N> drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
+  void look(bool drift, const std::optional<Vec3>& gravity);
+  void look_ahead(const Drive<N>& d, int s, int share, bool within);
+  bool within_stops(const Vec<N>& x) const;
+  template <class Under>
+  Going<N, double> gone(const Drive<N>& d, const Under& stride, const Going<N, double>& from,
+                        double t, int substeps, bool& within) const;
+  template <class Under>
+  void go_resisted(const Drive<N>& d, const Under& stride, double t, Going<N, double>& at) const;
+
+  Arm<N> arm_;
+  Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
+  Vec3 gravity_;
+  Vec<N> x_, v_, hand_torque_;
+  Vec3 target_ = Vec3::Zero();
+  Look<N, Pair> looks_;       // the newest two
+  Eigen::Index renewed_ = 0;  // joint whose sine was asked for last
+};
+
+// The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.
+template <int N>
+class VirtualDevice final : public Device {
+ public:
+  explicit VirtualDevice(const ArmDescription& arm);
+
+  void expect(const Parameters& p, const HandInput& hand) noexcept override {
+    p_ = p;
+    hand_ = hand;
+  }
+  void place(std::span<const double> x, std::span<const double> v,
+             const Vec3& target) noexcept override;
+  std::optional<DeviceTruth> truth() const noexcept override;
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override;
+  void write(std::span<const double> torque) noexcept override;
+  void stop() noexcept override { write({}); }
+
+  VirtualArm<N> arm;
+
+ private:
+  DeviceTraits traits_;
+  Parameters p_;
+  HandInput hand_;
+  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques, one place a tick in turn [N m]
+  std::size_t newest_ = 0;                   // of them
+  Vec<N> acted_;                             // the one that the motors gave over the last tick
+  std::uint64_t count_ = 0;
+};
+
+extern template class VirtualDevice<3>;
+extern template class VirtualDevice<7>;
+extern template class VirtualDevice<kAnyDof>;
+extern template class VirtualArm<3>;
+extern template class VirtualArm<7>;
+extern template class VirtualArm<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,69 @@
+// Limits of walls at the tip, against a bar and a sliding mass whose numbers are plain.
+#include "core/coupling/walls.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+// A bar of length l that turns about one joint: the tip moves along y.
+TipAlong bar(double l, double inertia, double b_d) {
+  const Eigen::MatrixXd J = Vec3(0, l, 0);
+  return tip_along(J, Eigen::MatrixXd::Constant(1, 1, inertia), Eigen::VectorXd::Constant(1, b_d),
+                   Vec3::UnitY());
+}
+
+TEST(TipAlong, OfABarHasItsInertiaAndDampingOverTheLeverSquared) {
+  const TipAlong tip = bar(0.2, 4e-4, 0.012);
+  EXPECT_NEAR(tip.mass, 4e-4 / 0.04, 1e-15);
+  EXPECT_NEAR(tip.damping, 0.012 / 0.04, 1e-14);
+  EXPECT_NEAR(tip.lever2, 0.04, 1e-16);
+  EXPECT_NEAR(spring_at_tip(tip, 10), 250, 1e-11);
+}
+
+TEST(TipAlong, LeastDampedIsWhereTheLongLeverOrTheWeakDamperIs) {
+  Eigen::MatrixXd J(3, 2);
+  J << 0.1, 0, 0, 0.3, 0, 0;
+  EXPECT_NEAR(std::abs(least_damped(J, Eigen::Vector2d(0.01, 0.01)).y()), 1, 1e-12);
+  EXPECT_NEAR(std::abs(least_damped(J, Eigen::Vector2d(0.001, 0.1)).x()), 1, 1e-12);
+}
+
+TEST(Walls, OfThePapersLawAreDampingOverLag) {
+  const TipAlong tip = bar(0.225, 5e-4, 0.012);
+  const double r2 = 0.225 * 0.225;
+  const WallSetting s{.T = 0.001, .k_vc = 10, .b_v = 0.012, .eta = 0.6, .hand_damping = 2};
+  EXPECT_NEAR(proposed_wall(tip, s), 0.6 * ((0.012 + 0.012 + 0.005) / r2 + 2) / (0.0005 + 0.0012),
+              1e-9);
+}
+
+TEST(Walls, ThatAreInfinitelyFastAndHeavyHandedEndWhereTheDesignSaysSo) {
+  // (2 b m_p / (T^3 (1 - m_p/m)))^1/2 with the hand's mass far above the device's.
+  const TipAlong tip = bar(0.225, 5e-4, 0.012);
+  WallSetting s{.T = 0.001, .k_vc = 10, .b_v = 0.012, .hand_damping = 2, .hand_mass = 1e6};
+  const double b = (0.012 + 0.012) / 0.225 / 0.225 + 2 + 0.2 * tip.mass / 0.001;
+  EXPECT_NEAR(mistaken_wall(tip, s), std::sqrt(2 * b * tip.mass / 1e-9), 1e-3);
+  const double heavy = mistaken_wall(tip, s);
+  s.hand_mass = tip.mass;  // half of what moves: 2^1/2 as stiff
+  EXPECT_NEAR(mistaken_wall(tip, s), std::sqrt(2.0) * heavy, 1e-2);
+  s.hand_mass = 0;
+  EXPECT_TRUE(std::isinf(mistaken_wall(tip, s)));
+}
+
+TEST(Walls, AreSofterWhereTheTorqueIsLate) {
+  const TipAlong tip = bar(0.225, 5e-4, 0.012);
+  WallSetting s{.T = 0.001, .k_vc = 10, .b_v = 0.012, .hand_damping = 2};
+  const double prompt = proposed_wall(tip, s);
+  s.delay = 0.0017;  // as long as half a tick and b_v/k_vc together
+  EXPECT_NEAR(proposed_wall(tip, s), prompt / 2, 1e-9);
+  EXPECT_NEAR(every_hands_wall(tip, 0.001, 0.002), every_hands_wall(tip, 0.001) / 5, 1e-9);
+}
+
+TEST(Walls, OfEveryHandAreTwiceTheDampingOverATick) {
+  EXPECT_NEAR(every_hands_wall(bar(0.225, 5e-4, 0.012), 0.001), 2 * 0.012 / 0.225 / 0.225 / 0.001,
+              1e-9);
+}
+
+}  // namespace
+}  // namespace limpid

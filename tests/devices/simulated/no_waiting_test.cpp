@@ -1,0 +1,213 @@
+// Nothing in a tick allocates or takes a lock: malloc and its family, and the mutexes, are watched
+// in the whole program while a flag of the thread is up.
+#include <dlfcn.h>
+#include <errno.h>
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "core/realtime/trace_ring.h"
+#include "core/realtime/triple_buffer.h"
+#include "devices/hid/axis_check.h"
+#include "devices/simulated/hands.h"
+#include "devices/simulated/rig.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random_arm.h"
+#include "tests/support/wisher.h"
+
+namespace {
+
+thread_local bool watching = false;
+thread_local int allocations = 0;
+thread_local int locks = 0;
+
+void count_allocation() { allocations += watching ? 1 : 0; }
+
+}  // namespace
+
+extern "C" {
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void* __libc_memalign(size_t, size_t);
+void __libc_free(void*);
+
+void* malloc(size_t size) {
+  count_allocation();
+  return __libc_malloc(size);
+}
+void* calloc(size_t count, size_t size) {
+  count_allocation();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, size_t size) {
+  count_allocation();
+  return __libc_realloc(old, size);
+}
+void* memalign(size_t alignment, size_t size) {
+  count_allocation();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  count_allocation();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** result, size_t alignment, size_t size) {
+  count_allocation();
+  *result = __libc_memalign(alignment, size);
+  return *result != nullptr ? 0 : ENOMEM;
+}
+void free(void* memory) {
+  if (memory != nullptr) count_allocation();
+  __libc_free(memory);
+}
+
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+  using Lock = int (*)(pthread_mutex_t*);
+  static const Lock lock = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
+  locks += watching ? 1 : 0;
+  return lock(mutex);
+}
+}
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using test::random_arm;
+
+class Watch {
+ public:
+  Watch() {
+    allocations = locks = 0;
+    watching = true;
+  }
+  ~Watch() { watching = false; }
+};
+
+TEST(Watch, SeesAllocationsAndLocks) {
+  std::mutex mutex;
+  int seen = 0, locked = 0;
+  {
+    const Watch watch;
+    const std::vector<double> vector(1000, 1.0);
+    const std::lock_guard lock(mutex);
+    seen = allocations + (vector[7] > 2 ? 1 : 0);
+    locked = locks;
+  }
+  EXPECT_GE(seen, 1);
+  EXPECT_GE(locked, 1);
+}
+
+// A plane, balls, boxes and meshes around the tip, a capsule on the arm, a stop: all at once.
+Scene crowd(const ArmDescription& description, const Vec3& tip) {
+  Random random(150);
+  Scene scene;
+  scene.tip_radius = 0.003;
+  scene.planes.push_back({"", tip - Vec3(0, 0, 0.005), Vec3::UnitZ(), 600});
+  for (int i = 0; i < 8; ++i) {
+    scene.spheres.push_back({"", tip + 0.03 * random.direction(), 0.02, 600});
+    Box box;
+    box.pose.linear() = random.rotation();
+    box.pose.translation() = tip + 0.08 * random.direction();
+    scene.boxes.push_back(box);
+  }
+  scene.meshes.push_back(test::obstacle(test::bumpy_body(4, 0.3)));
+  scene.meshes.back().scale = 0.02;
+  scene.meshes.back().pose.translation() = tip + Vec3(0.01, 0.03, -0.01);
+  scene.meshes.push_back(test::obstacle(test::sheet(20, 0.3)));
+  scene.meshes.back().pose.linear() = random.rotation();
+  scene.meshes.back().pose.translation() = tip + 0.01 * random.direction();
+  scene.joint_contacts.push_back({"", 0, 0.02, 1, 20});
+  scene.probes.push_back(
+      {"", description.dof() - 1, Vec3::Zero(), description.tip.translation(), 0.01});
+  return scene;
+}
+
+class NoWaiting : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Arms, NoWaiting, testing::Values(1, 3, 7, 32));
+
+TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
+  const int n = GetParam();
+  const ArmDescription arm = random_arm(n, 151);
+  Rig rig(arm, Scene{});
+  RigStart start;
+  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(n);
+  rig.start(Parameters{}, start);
+  const Vec3 home = rig.tip();
+  Rig crowded(arm, crowd(arm, home));
+  start.target = home;
+  crowded.start(Parameters{}, start);
+
+  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+  TraceRing ring(1 << 10, row.size());
+  TripleBuffer<std::array<double, kMaxStride>> snapshots;
+  MouseHand hand;
+  hand.reset(home);
+  RigStart present = start;
+  std::size_t touched = 0;
+  test::Wisher wisher(true);
+  {
+    const Watch watch;
+    for (int k = 0; k < 1200; ++k) {
+      Parameters p;
+      p.kind = static_cast<CouplingKind>(k / 100 % kLaws);
+      p.hand_mass_at_tip = k / 150 % 2 ? 0.1 : 0;
+      p.device_delay = p.delay = k / 170 % 3;
+      p.velocity = static_cast<VelocitySource>(k / 200 % 3);
+      p.encoder_step = k % 300 < 150 ? 4e-4 : 0;
+      p.inertia_ratio = k / 250 % 2 ? 1e-4 : 1e-2;
+      p.anti_windup = k % 2 == 0;
+      p.eta = k / 70 % 2 ? 0.8 : 2;
+      p.weighs = p.holds_weight = k / 90 % 2 == 0;
+      p.springy = p.holds_springs = k / 80 % 2 == 0;
+      p.friction_share = k / 60 % 2 ? 0.7 : 0;
+      p.friction = 0.01;
+      const double t = 1e-3 * k;
+      const Vec3 goal = home + 0.03 * Vec3(std::sin(9 * t), std::sin(7 * t), -std::sin(5 * t));
+      const HandInput input =
+          hand.step(k % 500 < 400, goal, crowded.tip(), p.hand_stiffness, p.tick);
+      crowded.step(p, {input, wisher.at(k % 600 < 500)}, row);
+      touched +=
+          std::ranges::count(rig.layout().in(std::span(row), Column::contact_force), 0.0) < 12;
+      ring.push(row);
+      std::copy(row.begin(), row.end(), snapshots.back().begin());
+      snapshots.publish();
+      if (k % 333 == 332) {  // as a recording begins
+        crowded.rebase(p, present, goal);
+      }
+    }
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  EXPECT_GT(touched, 100u);
+  EXPECT_FALSE(crowded.diverged());
+}
+
+TEST(NoWaiting, NeitherAllocatesNorLocksWhileAxesAreChecked) {
+  DeviceTraits traits;
+  traits.dof = 2;
+  traits.pushes = true;
+  traits.lower = {-0.5, -0.5};
+  traits.upper = traits.effort = {0.5, 0.5};
+  AxisCheck check(traits);
+  std::array<double, 2> x{};
+  {
+    const Watch watch;
+    for (int k = 0; k < 6000 && !check.done(); ++k) {
+      const auto torque = check.step({x, 1e-3, true});
+      x = {0.6 * torque[0], -0.6 * torque[1]};
+    }
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  EXPECT_TRUE(check.passed());
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,556 @@
+// The loop around a guarded device, here one that the test plays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/dynamics/arm.h"
+#include "core/dynamics/inverse_kinematics.h"
+#include "devices/simulated/rig.h"
+#include "tests/support/built_in.h"
+#include "tests/support/fake_device.h"
+#include "tests/support/random_arm.h"
+#include "tests/support/rows.h"
+#include "tests/support/wisher.h"
+
+namespace limpid {
+namespace {
+
+// Held 0.05 rad inside a stop of its first joint: it is pushed back.
+struct RealRig : testing::Test {
+  RealRig() : rig(arm, stop_at(x0[0]), nullptr), rows(rig.layout()) {
+    for (Eigen::Index i = 0; i < 3; ++i) device.reading.x[static_cast<std::size_t>(i)] = x0[i];
+    RigStart start{x0,
+                   Eigen::Vector3d::Zero(),
+                   x0,
+                   Eigen::Vector3d::Zero(),
+                   Eigen::Vector3d::Zero(),
+                   Vec3::Zero(),
+                   false};
+    rig.start({}, start);
+    rig.plug(&device);
+  }
+  static Scene stop_at(double x) {
+    Scene scene;
+    scene.joint_contacts.push_back({"stop", 0, x - 0.05, 1, 20});
+    return scene;
+  }
+  ForceState step(int ticks = 1) {
+    for (int i = 0; i < ticks; ++i) {
+      if (alive) ++device.reading.count;
+      // As the last bit of any encoder that is well does now and then.
+      if (trembles) device.reading.x[2] = x0[2] + (device.reading.count % 2 == 0 ? 1e-9 : 0);
+      input.hand = {rig.tip(), 1};
+      input.force = wisher.at(armed);
+      rig.step({}, input, rows.add());
+    }
+    return rig.force_state();
+  }
+  void push() {
+    armed = true;
+    ASSERT_EQ(step(1000), ForceState::on);
+    ASSERT_LT(device.told[0], -0.1);
+  }
+  bool pushes() const { return device.told != std::array<double, kMaxDof>{}; }
+  // After what made it so is over.
+  void expect_stays_off(ForceState reason) {
+    EXPECT_EQ(step(2000), reason);
+    EXPECT_FALSE(pushes());
+    armed = false;
+    EXPECT_EQ(step(), ForceState::off);
+    push();
+  }
+
+  const ArmDescription arm = test::omni();
+  const Eigen::Vector3d x0 = rest_pose(arm);
+  test::FakeDevice device{3};
+  bool armed = false, alive = true, trembles = true;
+  test::Wisher wisher;
+  RigInput input;  // what else a tick is told
+  Rig rig;
+  test::Rows rows;
+};
+
+TEST_F(RealRig, PushesNothingUntilItIsArmed) {
+  EXPECT_EQ(step(500), ForceState::off);
+  EXPECT_FALSE(pushes());
+  push();
+}
+
+TEST_F(RealRig, PushesAtOnceWhereNoHandHasToBeGuarded) {
+  device.own_traits().guarded = false;
+  RigStart start{x0, x0 * 0, x0, x0 * 0, x0 * 0, Vec3::Zero(), true};
+  rig.start({}, start);
+  EXPECT_EQ(step(2), ForceState::on);
+  device.reading.hand = false;
+  device.reading.fault = true;
+  EXPECT_EQ(step(200), ForceState::on);
+  EXPECT_LT(device.told[0], -0.1);
+}
+
+TEST_F(RealRig, FadesInAndJumpsNowhere) {
+  armed = true;
+  step(1000);
+  const double limit = arm.joints[0].effort;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const double before = rows.vec(k - 1, Column::motor_torque)[0];
+    const double now = rows.vec(k, Column::motor_torque)[0];
+    ASSERT_LE(std::abs(now - before), limit * 1e-3 / 0.02 + 1e-12);
+    if (k < 100) {
+      ASSERT_LE(std::abs(now), 0.2 * std::abs(rows.vec(k, Column::commanded_torque)[0]) + 1e-9);
+    }
+  }
+}
+
+TEST_F(RealRig, IsLostWithoutADevice) {
+  push();
+  rig.plug(nullptr);
+  EXPECT_EQ(step(), ForceState::lost);
+  rig.plug(&device);
+  device.told.fill(0);
+  expect_stays_off(ForceState::lost);
+}
+
+TEST_F(RealRig, StopsAtOnceWhenTheDeviceIsLost) {
+  push();
+  device.here = false;
+  EXPECT_EQ(step(), ForceState::lost);
+  EXPECT_FALSE(pushes());
+  DeviceReading reading;
+  EXPECT_FALSE(rig.device_reading(reading));
+  device.here = true;
+  step();
+  EXPECT_TRUE(rig.device_reading(reading)) << "it is there again, though without force";
+  expect_stays_off(ForceState::lost);
+}
+
+TEST_F(RealRig, StopsAtOnceWhenReadingsAreStale) {
+  push();
+  device.reading.age = 0.006;
+  EXPECT_EQ(step(), ForceState::stale);
+  EXPECT_FALSE(pushes());
+  device.reading.age = 0;
+  expect_stays_off(ForceState::stale);
+}
+
+TEST_F(RealRig, StopsAtOnceAtAFault) {
+  push();
+  device.reading.fault = true;
+  EXPECT_EQ(step(), ForceState::fault);
+  EXPECT_FALSE(pushes());
+  device.reading.fault = false;
+  expect_stays_off(ForceState::fault);
+}
+
+TEST_F(RealRig, StopsWhileThereIsNoHandAndFadesInAgain) {
+  push();
+  const double before = device.told[0];
+  device.reading.hand = false;
+  EXPECT_EQ(step(), ForceState::no_hand);
+  EXPECT_FALSE(pushes());
+  device.reading.hand = true;
+  EXPECT_EQ(step(), ForceState::on);
+  EXPECT_LT(std::abs(device.told[0]), 0.1 * std::abs(before));
+  step(1000);
+  EXPECT_NEAR(device.told[0], before, 0.01);
+}
+
+TEST_F(RealRig, TakesNoAngleThatIsNotANumber) {
+  push();
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const double good = device.reading.x[1];
+    device.reading.x[1] = bad;
+    EXPECT_EQ(step(), ForceState::fault);
+    EXPECT_FALSE(pushes());
+    device.reading.x[1] = good;
+    for (const double value : rows.vec(rows.size() - 1, Column::measured_position)) {
+      EXPECT_TRUE(std::isfinite(value));
+    }
+    expect_stays_off(ForceState::fault);
+  }
+}
+
+TEST_F(RealRig, WaitsForTheFirstReading) {
+  device.reading.count = 0;
+  alive = false;
+  armed = true;
+  EXPECT_EQ(step(10), ForceState::stale);
+  EXPECT_FALSE(pushes());
+}
+
+TEST_F(RealRig, IsWithoutForceAtAJumpOfItsAngle) {
+  push();
+  device.reading.x[1] += 0.5;
+  EXPECT_EQ(step(), ForceState::too_fast);
+  EXPECT_FALSE(pushes());
+}
+
+// Steps as late as the stall made them, and the next ones after it.
+TEST_F(RealRig, StartsFromNothingAfterAStallAndFadesIn) {
+  const double limit = arm.joints[0].effort;
+  for (const int stall : {6, 9, 20, 100, 1000}) {
+    push();
+    const double full = std::abs(device.told[0]);
+    input.dt = 1e-3 * stall;
+    input.periods = stall;
+    EXPECT_EQ(step(), ForceState::stalled) << stall;
+    input = {};
+    for (int k = 1; k <= 600; ++k) {
+      ASSERT_LE(std::abs(device.told[0]), 1.3 * full * k / 500 + 1e-9) << stall << " ms, " << k;
+      ASSERT_LE(std::abs(device.told[0]), limit * k / 20 + 1e-12);
+      step();
+    }
+    EXPECT_NEAR(std::abs(device.told[0]), full, 0.02) << "and then it is there again";
+    armed = false;
+    step();
+  }
+}
+
+TEST_F(RealRig, StartsFromNothingWhenTheDeviceWasWithoutTorque) {
+  push();
+  const double full = std::abs(device.told[0]);
+  ++device.reading.lapses;
+  EXPECT_EQ(step(), ForceState::stalled);
+  EXPECT_LE(std::abs(device.told[0]), 0.003 * full);
+  EXPECT_EQ(step(100), ForceState::on);
+  EXPECT_LE(std::abs(device.told[0]), 0.25 * full);
+}
+
+// Whatever it counted before: what the new one heard nobody knows.
+TEST_F(RealRig, StartsFromNothingWithAnotherDevice) {
+  push();
+  const double full = std::abs(device.told[0]);
+  test::FakeDevice another = device;
+  rig.plug(&another);
+  EXPECT_EQ(step(), ForceState::stalled);
+  EXPECT_LE(std::abs(another.told[0]), 0.003 * full);
+}
+
+TEST_F(RealRig, StaysWhereItWasWhenTheDeviceIsLost) {
+  push();
+  device.here = false;
+  device.reading.x[0] += 0.3;
+  step();
+  EXPECT_EQ(rows.vec(rows.size() - 1, Column::device_position)[0], x0[0]);
+}
+
+TEST_F(RealRig, GoesOnAfterAGapOfFourMilliseconds) {
+  push();
+  const double full = std::abs(device.told[0]);
+  input.dt = 0.0049;
+  input.periods = 4;
+  EXPECT_EQ(step(), ForceState::on);
+  EXPECT_GT(std::abs(device.told[0]), 0.9 * full);
+}
+
+TEST_F(RealRig, MeasuresVelocitiesInTheTimeThatPassed) {
+  step(5);
+  device.reading.x[1] += 0.003;
+  input.dt = 0.003;
+  input.periods = 3;
+  step();
+  const std::size_t last = rows.size() - 1;
+  EXPECT_NEAR(rows.vec(last, Column::measured_velocity)[1], 1, 1e-9);
+  EXPECT_NEAR(rows.vec(last, Column::device_velocity)[1], 1, 1e-9);
+  EXPECT_NEAR(rows.at(last, Column::time) - rows.at(last - 1, Column::time), 0.003, 1e-12);
+}
+
+TEST_F(RealRig, SaysAfterAStallThatItIsAtRest) {
+  step(5);
+  device.reading.x[1] += 0.3;
+  input.dt = 0.02;
+  input.periods = 20;
+  step();
+  const std::size_t last = rows.size() - 1;
+  EXPECT_EQ(rows.vec(last, Column::measured_velocity).norm(), 0);
+  EXPECT_EQ(rows.vec(last, Column::device_velocity).norm(), 0);
+  EXPECT_EQ(rows.vec(last, Column::hand_torque_estimate).norm(), 0);
+  EXPECT_NEAR(rows.at(last, Column::time) - rows.at(last - 1, Column::time), 0.02, 1e-12);
+}
+
+// The way through a stall is nobody's work.
+TEST_F(RealRig, BooksNoEnergyForTheTimeOfAStall) {
+  Parameters p;
+  p.damping = 0.1;
+  const auto tick = [&] {
+    ++device.reading.count;
+    input.hand = {rig.tip(), 1};
+    rig.step(p, input, rows.add());
+  };
+  for (int i = 0; i < 5; ++i) tick();
+  device.reading.x[1] += 0.3;
+  input.dt = 0.02;
+  input.periods = 20;
+  tick();
+  const std::size_t last = rows.size() - 1;
+  EXPECT_NEAR(rows.at(last, Column::energy_total), rows.at(last - 1, Column::energy_total), 1e-6);
+}
+
+// What the proxy did meanwhile did not happen: it goes on as if there had been one tick.
+TEST_F(RealRig, MovesItsProxyByOneTickHoweverLongAStallWas) {
+  const auto moved_after = [&](int periods) {
+    for (int i = 0; i < 200; ++i) {
+      device.reading.x[1] += 1e-3;  // 1 rad/s
+      step();
+    }
+    input.dt = 0.02;
+    input.periods = periods;
+    step();
+    input.dt = 0;
+    input.periods = 1;
+    step();
+    const std::size_t last = rows.size() - 1;
+    return rows.vec(last, Column::proxy_position)[1] -
+           rows.vec(last - 1, Column::proxy_position)[1];
+  };
+  const double one = moved_after(1);
+  EXPECT_GT(one, 1e-5);
+  EXPECT_NEAR(moved_after(20), one, 0.05 * one);
+}
+
+// Two ticks that come right after one another move it no further than the time between them does.
+TEST_F(RealRig, MovesItsTorqueAtABoundedRateInWallTime) {
+  test::Random random(50);
+  const double limit = arm.joints[0].effort;
+  armed = true;
+  double before = device.told[0];
+  for (int k = 0; k < 5000; ++k) {
+    device.reading.x[0] = x0[0] + random.between(-0.03, 0.03);
+    input.dt = random.between(1e-5, 2e-3);
+    step();
+    const double allowed = limit * std::min(input.dt, 1e-3) / 0.02;
+    ASSERT_LE(std::abs(device.told[0] - before), allowed + 1e-12) << k;
+    before = device.told[0];
+  }
+}
+
+TEST_F(RealRig, IsOffAfterItWasStartedOver) {
+  push();
+  RigStart start;
+  start.x1 = start.x2 = x0;
+  start.v1 = start.v2 = start.f1_hat = Eigen::Vector3d::Zero();
+  start.armed = true;  // whoever asks
+  rig.start({}, start);
+  EXPECT_EQ(step(1000), ForceState::off);
+  EXPECT_FALSE(pushes());
+}
+
+TEST_F(RealRig, KeepsItsForceWhenARecordingBegins) {
+  push();
+  const double before = device.told[0];
+  RigStart scratch;
+  scratch.x1 = scratch.v1 = scratch.x2 = scratch.v2 = scratch.f1_hat = Eigen::Vector3d::Zero();
+  rig.rebase({}, scratch, rig.tip());
+  EXPECT_EQ(step(), ForceState::on);
+  EXPECT_NEAR(device.told[0], before, 0.05 * std::abs(before));
+  EXPECT_EQ(rows.at(rows.size() - 1, Column::time), 0);
+}
+
+TEST_F(RealRig, FadesAndTripsWhenTheWindowIsSilent) {
+  push();
+  const double full = std::abs(device.told[0]);
+  input.silence = 0.3;
+  EXPECT_EQ(step(30), ForceState::unwatched);
+  EXPECT_NEAR(std::abs(device.told[0]), 0.5 * full, 0.1 * full);
+  input.silence = 0.4;
+  EXPECT_EQ(step(), ForceState::unwatched);
+  EXPECT_FALSE(pushes());
+  input.silence = 0;
+  expect_stays_off(ForceState::unwatched);
+}
+
+// New readings keep coming, and all say the same.
+TEST_F(RealRig, FadesAndStaysOffWhereItsReadingsStandStill) {
+  push();
+  const double full = std::abs(device.told[0]);
+  trembles = false;
+  EXPECT_EQ(step(295), ForceState::on);
+  EXPECT_NEAR(std::abs(device.told[0]), full, 1e-3 * full);
+  EXPECT_EQ(step(155), ForceState::frozen);
+  EXPECT_NEAR(std::abs(device.told[0]), 0.5 * full, 0.02 * full);
+  EXPECT_EQ(step(155), ForceState::frozen);
+  EXPECT_FALSE(pushes());
+  EXPECT_EQ(rows.at(rows.size() - 1, Column::force_state), 12);
+  armed = false;
+  step();
+  armed = true;
+  EXPECT_EQ(step(1000), ForceState::frozen) << "arming helps no sooner than it has moved";
+  EXPECT_FALSE(pushes());
+  trembles = true;
+  expect_stays_off(ForceState::frozen);
+}
+
+// It is the torque that left that counts, and not what the law asks for.
+TEST_F(RealRig, MayStandStillForEverWithoutForce) {
+  trembles = false;
+  EXPECT_EQ(step(2000), ForceState::off);
+  armed = true;
+  EXPECT_EQ(step(100), ForceState::on);
+  EXPECT_TRUE(pushes());
+}
+
+// A hand that holds still against a wall, and an encoder of so coarse steps that it says the same
+// for seconds: 300 N/m at 0.13 m, a stick of 2e-3 kg m^2 without and with dry friction.
+TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
+  constexpr double kStep = 5e-4, kInertia = 2e-3, kHand = 5, kHandDamping = 0.1, kDry = 0.004;
+  for (const double dry : {0.0, kDry}) {
+    double x = x0[0], v = 0, least = 1e9, most = 0;
+    int still = 0, longest = 0;
+    const auto live = [&](int ticks, bool watch) {
+      for (int k = 0; k < ticks; ++k) {
+        for (int i = 0; i < 10; ++i) {
+          const double f = device.told[0] + kHand * (x0[0] + 0.02 - x) - kHandDamping * v;
+          const double after = v + 1e-4 / kInertia * f, brake = 1e-4 / kInertia * dry;
+          v = std::abs(after) <= brake ? 0 : after - std::copysign(brake, after);
+          x += 1e-4 * v;
+        }
+        const double read = kStep * std::round(x / kStep);
+        still = read == device.reading.x[0] ? still + 1 : 0;
+        longest = std::max(longest, still);
+        device.reading.x[0] = read;
+        step();
+        if (!watch) continue;
+        least = std::min(least, std::abs(device.told[0]));
+        most = std::max(most, std::abs(device.told[0]));
+      }
+    };
+    trembles = false;
+    armed = true;
+    live(2000, false);
+    live(10000, true);
+    EXPECT_GT(longest, 250) << "it stood still for a while";
+    EXPECT_EQ(rig.force().armed(), true);
+    EXPECT_GT(least, 0.85 * most) << "dry friction " << dry;
+    armed = false;
+    step(10);
+  }
+}
+
+TEST_F(RealRig, ObeysLowerLimits) {
+  push();
+  rig.limit({.tip_force = 0.2});
+  step(100);
+  const Arm<3> model(arm);
+  Arm<3>::Frames frames;
+  model.frames(x0, frames);
+  Jacobian<3> J;
+  model.point_jacobian(frames, 2, model.tip(frames), J);
+  const Eigen::Vector3d tau(device.told[0], device.told[1], device.told[2]);
+  // Of all forces at the tip that would make this torque the smallest: J is square here.
+  const Eigen::Matrix3d square = J;
+  EXPECT_NEAR((square.transpose().inverse() * tau).norm(), 0.2, 1e-3);
+}
+
+// One joint with a stop at zero, pressed in by a radian: the spring and the limit of 10 N at the
+// tip store some joules.
+TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackAtOnce) {
+  ArmDescription arm = test::random_arm(1, 52);
+  arm.joints[0].lower = -4;
+  arm.joints[0].upper = 4;
+  arm.joints[0].effort = 20;
+  arm.tip.translation() *= 4;
+  const double lever = reach(arm);
+  ASSERT_GT(lever, 0.3);
+  Scene scene;
+  scene.joint_contacts.push_back({"stop", 0, 0, 1, 100});
+  Rig rig(arm, scene, nullptr);
+  Parameters p;
+  p.k_vc = 100;
+  RigStart start;
+  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Constant(1, 0);
+  rig.start(p, start);
+  test::FakeDevice device(1);
+  rig.plug(&device);
+  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+  const auto go = [&](double to, double rate) {
+    double& x = device.reading.x[0];
+    double work = 0;
+    while (std::abs(to - x) > 1e-9 && rig.force_state() != ForceState::energy) {
+      const double step = std::clamp(to - x, -1e-3 * rate, 1e-3 * rate);
+      work += device.told[0] * step;
+      x += step;
+      ++device.reading.count;
+      rig.step(p, {.hand = {rig.tip(), 1}}, row);
+    }
+    return work;
+  };
+  rig.step(p, {.hand = {rig.tip(), 1}, .force = ForceWish::arm}, row);
+  go(-0.3, 0.3);  // fades in meanwhile
+  go(0, 1);
+  ASSERT_EQ(rig.force_state(), ForceState::on);
+  const double rate = 1.5 / lever;  // the tip at 1.5 m/s
+  EXPECT_LT(go(2.4, rate), -4) << "the hand puts in so many joules";
+  EXPECT_EQ(rig.force_state(), ForceState::on);
+  const double given = go(0, rate);
+  EXPECT_EQ(rig.force_state(), ForceState::energy);
+  EXPECT_GT(given, 1.4);
+  EXPECT_LT(given, 1.8);
+}
+
+// Whatever comes: the motors of a device that nobody armed are off, and no torque grows faster than
+// it may.
+TEST_F(RealRig, NeverPushesUnarmedNorJumpsInAMillionTicks) {
+  test::Random random(51);
+  const auto chance = [&](double p) { return random.between(0, 1) < p; };
+  std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+  RigStart scratch;
+  scratch.x1 = scratch.v1 = scratch.x2 = scratch.v2 = scratch.f1_hat = Eigen::Vector3d::Zero();
+  Parameters p;
+  bool asked = false;
+  double before[3] = {};
+  int pushed = 0;
+  for (int k = 0; k < 1'000'000; ++k) {
+    ++device.reading.count;
+    for (std::size_t i = 0; i < 3; ++i) {
+      device.reading.x[i] = x0[static_cast<Eigen::Index>(i)] +
+                            0.002 * std::sin(1e-3 * k + 2.0 * static_cast<double>(i));
+    }
+    device.here = !chance(2e-5);
+    device.reading.hand = !chance(5e-5);
+    device.reading.fault = chance(2e-5);
+    device.reading.age = chance(2e-5) ? 0.01 : 0.001;
+    if (chance(2e-5)) device.reading.x[1] = std::nan("");
+    if (chance(2e-5)) ++device.reading.lapses;
+    input.dt = chance(1e-4) ? random.between(0, 0.02) : 1e-3;
+    input.periods = input.dt > 1e-3 ? static_cast<int>(input.dt * 1e3) : 1;
+    input.silence = chance(1e-4) ? random.between(0, 0.5) : 0;
+    input.force = chance(1e-3)   ? ForceWish::arm
+                  : chance(1e-4) ? ForceWish::cut
+                                 : ForceWish::as_it_is;
+    input.hand = {rig.tip(), 1};
+    if (chance(2e-5)) rig.plug(chance(0.5) ? nullptr : &device);
+    if (chance(1e-4)) rig.plug(&device);
+    if (chance(1e-4)) p.kind = static_cast<CouplingKind>(random.between(0, kLaws - 1e-9));
+    if (chance(2e-5)) {
+      scratch.x1 = scratch.x2 = x0;
+      scratch.armed = chance(0.5);
+      rig.start(p, scratch);
+      asked = false;
+      std::fill_n(before, 3, 0);
+    }
+    if (chance(2e-5)) rig.rebase(p, scratch, rig.tip());
+    if (input.force == ForceWish::arm) asked = true;
+    if (input.force == ForceWish::cut) asked = false;
+    rig.step(p, input, row);
+    if (rig.force().state() == Arming::tripped || rig.force().state() == Arming::off) asked = false;
+    const auto motor = rig.layout().in(std::span<const double>(row), Column::motor_torque);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_TRUE(asked || motor[i] == 0) << k;
+      const double grown = std::abs(motor[i]) - std::abs(before[i]);
+      ASSERT_LE(grown, arm.joints[i].effort * std::min(input.dt, 1e-3) / 0.02 + 1e-12) << k;
+      before[i] = motor[i];
+    }
+    pushed += pushes() ? 1 : 0;
+  }
+  EXPECT_GT(pushed, 100'000);
+}
+
+TEST_F(RealRig, SaysThatNobodyMeasuresTheHand) {
+  step();
+  for (const double value : rows.vec(0, Column::hand_torque)) EXPECT_TRUE(std::isnan(value));
+  const Eigen::VectorXd target = rows.vec(0, Column::hand_target);
+  EXPECT_LT((Vec3(target) - rig.tip()).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace limpid
