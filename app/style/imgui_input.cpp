@@ -2,6 +2,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <imgui_internal.h>
 
 #include <array>
 
@@ -60,8 +61,13 @@ ImGuiKey imgui_key(int key) {
 
 }  // namespace
 
-// ImGui would spread what happened over several frames. Limpid has done that already.
-void begin_imgui_input() { ImGui::GetIO().ConfigInputTrickleEventQueue = false; }
+void begin_imgui_input() {
+  // ImGui would spread what happened over several frames. Limpid has done that already.
+  ImGui::GetIO().ConfigInputTrickleEventQueue = false;
+  // Nor does Ctrl+Tab go through ImGui's windows.
+  ImGuiContext& ui = *ImGui::GetCurrentContext();
+  ui.ConfigNavWindowingKeyNext = ui.ConfigNavWindowingKeyPrev = ImGuiKey_None;
+}
 
 void show_key(int key, bool down) {
   if (const ImGuiKey known = imgui_key(key); known != ImGuiKey_None) {

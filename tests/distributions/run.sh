@@ -2,6 +2,7 @@
 # Builds Limpid on a Debian of its own, runs all tests there but those in a virtual machine, and
 # tries the package on a Debian that has nothing else:
 #   tests/distributions/run.sh 12|13 [WHAT CTEST IS TO BE TOLD]
+#   tests/distributions/run.sh aarch64    for 64-bit ARM: the tests of core and the shipped sessions
 # Needs root, mmdebstrap and the network. What is made stays under LIMPID_DISTRIBUTIONS
 # (build/distributions): the next run goes on from it. Packages come from LIMPID_MIRROR.
 # Exits with 77 where no root folder can be made.
@@ -12,7 +13,8 @@ shift || true
 case $release in
   12) suite=bookworm more=() ;;
   13) suite=trixie more=(weston) ;;  # windows open on Wayland, too
-  *) sed -n '2,7s/^# //p' "$0"; exit 2 ;;
+  aarch64) suite=trixie more=() ;;
+  *) sed -n '2,8s/^# //p' "$0"; exit 2 ;;
 esac
 cannot() { echo "run.sh: $*" >&2; exit 77; }
 [ "$(id -u)" = 0 ] || cannot "only root can make a root folder"
@@ -50,6 +52,30 @@ inside() {
     exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb \
       chroot "$ROOT" bash -euo pipefail -c "cd /limpid; $COMMAND"'
 }
+
+if [ "$release" = aarch64 ]; then
+  say "packages"
+  # The libraries that .ci/install names, for the other processor where they depend on it.
+  inside 'dpkg --add-architecture arm64
+    apt-get update -qq
+    libraries=()
+    for each in $(sed -n "/^needed=(/,/^)/p" .ci/install | grep -oE "\b(lib[a-z0-9+-]+|nlohmann-json3-dev)\b"); do
+      [ "$(apt-cache show "$each" | sed -n "s/^Architecture: //p;T;q")" = all ] || each+=:arm64
+      libraries+=("$each")
+    done
+    DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends crossbuild-essential-arm64 \
+      qemu-user cmake ninja-build pkgconf ccache git python3-h5py "${libraries[@]}" >/dev/null
+    git config --global --replace-all safe.directory "*"'
+  say "build"
+  inside 'cmake --preset release --toolchain tests/distributions/aarch64.cmake >/dev/null
+    .ci/build core_tests limpid'
+  say "tests of core"
+  inside 'qemu-aarch64 build/release/tests/core_tests --gtest_brief=1'
+  say "shipped sessions"
+  inside 'PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 tests/distributions/sessions_again.py \
+    qemu-aarch64 build/release/app/limpid'
+  exit
+fi
 
 say "packages"
 inside ".ci/install --tests
