@@ -1,5 +1,3 @@
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -11,6 +9,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "app/base/window_system.h"
 #include "app/doctor/doctor.h"
 #include "render/gl/offscreen.h"
 #include "render/quality.h"
@@ -42,15 +41,12 @@ std::string window_renderer() {
     throw std::runtime_error(why != nullptr ? why : otherwise);
   };
   if (glfwInit() == GLFW_FALSE) refuse("glfwInit failed");
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  hint_window();
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   GLFWwindow* window = glfwCreateWindow(16, 16, "Limpid", nullptr, nullptr);
   if (window == nullptr) refuse("OpenGL 3.3 is not there");
   glfwMakeContextCurrent(window);
-  std::string name = renderer_name();
+  std::string name = renderer_name() + (on_wayland() ? ", on Wayland" : ", on X11");
   glfwTerminate();
   return name;
 }
@@ -111,8 +107,8 @@ bool set(const char* variable) {
 }
 
 Finding window() {
-  if (!set("DISPLAY")) {
-    const bool wayland = set("WAYLAND_DISPLAY");
+  const bool wayland = set("WAYLAND_DISPLAY");
+  if (!set("DISPLAY") && !(wayland && kKnowsWayland)) {
     return {kPictureArea,
             "window",
             State::better,

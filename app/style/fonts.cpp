@@ -35,19 +35,28 @@ std::string find_font(const char* name) {
   return "";
 }
 
+// Windows with more than one pixel for a unit are Wayland's, which come with a newer ImGui.
+void set_density([[maybe_unused]] ImFontConfig& config, [[maybe_unused]] float density) {
+#if IMGUI_VERSION_NUM >= 19010
+  config.RasterizerDensity = density;
+#endif
+}
+
 // Digits come first and all equally wide, so that changing numbers do not jump about.
-void add_face(ImFontAtlas& atlas, const std::string& file, float size) {
+void add_face(ImFontAtlas& atlas, const std::string& file, float size, float density) {
   ImFontConfig config;
+  set_density(config, density);
   config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = std::round(kDigitWidth * size);
   atlas.AddFontFromFileTTF(file.c_str(), size, &config, kDigits.data());
   ImFontConfig rest;
+  set_density(rest, density);
   rest.MergeMode = true;
   atlas.AddFontFromFileTTF(file.c_str(), size, &rest, kGlyphs.data());
 }
 
 }  // namespace
 
-bool load_fonts(float scale) {
+bool load_fonts(float scale, float density) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
@@ -60,9 +69,9 @@ bool load_fonts(float scale) {
     return false;
   }
   // In the order of Face.
-  add_face(atlas, regular, std::round(kRegularSize * scale));
-  add_face(atlas, semibold, std::round(kRegularSize * scale));
-  add_face(atlas, regular, std::round(kSmallSize * scale));
+  add_face(atlas, regular, std::round(kRegularSize * scale), density);
+  add_face(atlas, semibold, std::round(kRegularSize * scale), density);
+  add_face(atlas, regular, std::round(kSmallSize * scale), density);
   return true;
 }
 

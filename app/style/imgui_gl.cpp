@@ -17,8 +17,8 @@ ImGuiGl::~ImGuiGl() {
   ImGui::DestroyContext();
 }
 
-void ImGuiGl::set_up(Theme theme, float scale) {
-  load_fonts(scale);
+void ImGuiGl::set_up(Theme theme, float scale, float density) {
+  load_fonts(scale, density);
   apply_theme(theme, scale);
 }
 

@@ -14,8 +14,8 @@ class ImGuiGl {
   ImGuiGl(const ImGuiGl&) = delete;
   ImGuiGl& operator=(const ImGuiGl&) = delete;
 
-  // `scale` 1 for ordinary screens.
-  static void set_up(Theme theme, float scale);
+  // `scale` 1 for ordinary screens; `density` pixels for each of ImGui's units.
+  static void set_up(Theme theme, float scale, float density = 1);
   static void begin_frame();  // before ImGui::NewFrame()
   static void render();       // ends ImGui's frame and draws it over what is there
 };

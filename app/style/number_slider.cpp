@@ -194,7 +194,7 @@ bool number_slider(const ParameterInfo& info, double& value, double usual, bool 
   ImGui::ItemSize(size);
   if (!ImGui::ItemAdd(box, id, nullptr, ImGuiItemFlags_Inputable)) return false;
 
-  const bool hovered = ImGui::ItemHoverable(box, id);
+  const bool hovered = ImGui::IsItemHovered();
   const ImGuiIO& io = ImGui::GetIO();
   const bool type = hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]);
   const float r = 6 * scale;

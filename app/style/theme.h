@@ -23,10 +23,10 @@ ImVec4 colour_vector(Rgb rgb, float alpha = 1);
 
 enum class Face : std::uint8_t { regular, semibold, small };
 
-// Loads Inter at `scale`, or ImGui's own font where Inter is not installed, in place of all fonts
-// loaded before. Call it before the first frame, or between frames followed by a new font texture.
-// Returns whether Inter was found.
-bool load_fonts(float scale);
+// Loads Inter at `scale`, drawn with `density` pixels for each of ImGui's units, or ImGui's own
+// font where Inter is not installed, in place of all fonts loaded before. Call it before the first
+// frame, or between frames followed by a new font texture. Returns whether Inter was found.
+bool load_fonts(float scale, float density = 1);
 
 // The regular face where load_fonts() was never called.
 ImFont* font(Face face);

@@ -84,15 +84,21 @@ def attach_scales(source, into):
     source.visititems(attach)
 
 
-def make(program, scene, folder, draws):
+def options(scene):
+    """What a session is run with from the start."""
     hand, seconds = SCENES[scene]
-    print(f"-- {scene}", flush=True)
     world = ["--scene", f"assets/scenes/{scene}.toml", "--hand", f"assets/hands/{hand}.csv",
              "--eta", "0.6"]
     if scene in STIFF:
         world += ["--coupling", "predictive"]
     if scene == "gears":  # a light hand: the teeth are of brass, and the motors of an Omni
         world += ["--set", "hand.stiffness=50"]
+    return world, seconds
+
+
+def make(program, scene, folder, draws):
+    world, seconds = options(scene)
+    print(f"-- {scene}", flush=True)
     if draws:
         picture = folder / f"{scene}.png"
         limpid(program, *world, "--picture", picture)

@@ -1,13 +1,12 @@
 #include "core/touch/triangle_mesh.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "core/touch/embree.h"
 #include "core/touch/mesh_edges.h"
 
 namespace limpid {

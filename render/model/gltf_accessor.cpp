@@ -132,14 +132,14 @@ void GltfAccessor::fill_in(const tinygltf::Accessor& accessor, Elements& e) {
   e.own = all;
   const auto& sparse = accessor.sparse;
   if (!sparse.isSparse) return;
-  const auto list = [&](int buffer_view, int offset, std::size_t size) {
+  // tinygltf has had numbers of either sign for offsets: a negative one is beyond all buffers.
+  const auto list = [&](int buffer_view, auto offset, std::size_t size) {
     const auto bytes = view(buffer_view);
-    const bool inside = sparse.count >= 0 && offset >= 0 &&
-                        static_cast<std::size_t>(offset) <= bytes.size() && size > 0 &&
-                        static_cast<std::size_t>(sparse.count) <=
-                            (bytes.size() - static_cast<std::size_t>(offset)) / size;
+    const auto from = static_cast<std::size_t>(offset);
+    const bool inside = sparse.count >= 0 && from <= bytes.size() && size > 0 &&
+                        static_cast<std::size_t>(sparse.count) <= (bytes.size() - from) / size;
     if (!inside) refuse("a sparse accessor reaches outside of its buffer");
-    return bytes.data() + offset;
+    return bytes.data() + from;
   };
   const std::size_t index_size = bytes_of(sparse.indices.componentType);
   Elements indices;

@@ -87,6 +87,26 @@ bool read_other(std::vector<unsigned char>* out, std::string* error, const std::
   return false;
 }
 
+// In the place of the file system. A template, for not every tinygltf asks for a file's size.
+template <class Callbacks>
+Callbacks only_companions(Companions& around) {
+  Callbacks out{};
+  out.FileExists = [](const std::string&, void*) { return true; };
+  out.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  out.ReadWholeFile = read_other;
+  out.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                          void*) { return false; };
+  out.user_data = &around;
+  if constexpr (requires { out.GetFileSizeInBytes; }) {
+    // Only asked of files that are read whole afterwards, which has its own limits.
+    out.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string&, void*) {
+      *size = 1;
+      return true;
+    };
+  }
+  return out;
+}
+
 // Pictures stay encoded: which of them are needed is not known yet. Those in buffer views stay
 // there; tinygltf has not compared the views with their buffers, so their bytes are not touched.
 bool keep_encoded(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
@@ -210,11 +230,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
   Companions around(name, folder, bytes.size());
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, &out.pictures);
-  loader.SetFsCallbacks({[](const std::string&, void*) { return true; },
-                         [](const std::string& path, void*) { return path; }, read_other,
-                         [](std::string*, const std::string&, const std::vector<unsigned char>&,
-                            void*) { return false; },
-                         &around});
+  loader.SetFsCallbacks(only_companions<tinygltf::FsCallbacks>(around));
   std::string error, warning;
   bool good = false;
   try {

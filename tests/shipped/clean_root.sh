@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs a package into a Debian 12 of its own, starts it as the menu does, and removes it:
 #   tests/shipped/clean_root.sh limpid_VERSION_amd64.deb
+# Into another Debian with CLEAN_ROOT_TAR, the archive of a root that has apt.
 # Needs root, mmdebstrap, Xvfb, xdotool and the network; takes some minutes.
 set -euo pipefail
 deb=$(realpath "$1")
@@ -24,7 +25,7 @@ quiet_apt() { DEBIAN_FRONTEND=noninteractive inside apt-get -qq -o Dpkg::Use-Pty
 # What there is, but for what any package leaves behind.
 files() { (cd "$root" && find . -path ./proc -prune -o -path ./tmp -prune -o -path ./var/cache -prune -o -path ./var/log -prune -o -path ./var/lib/apt -prune -o -path ./var/lib/dpkg -prune -o -print | sort); }
 
-say "a minimal Debian 12"
+say "a minimal Debian"
 if [ -n "${CLEAN_ROOT_TAR:-}" ]; then
   mkdir "$root" && tar -C "$root" -xf "$CLEAN_ROOT_TAR"
 else

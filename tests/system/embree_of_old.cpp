@@ -1,8 +1,9 @@
 // Loaded before the program (LD_PRELOAD): Embree as it is on a processor that has SSE2 and no more.
 #include <dlfcn.h>
-#include <embree3/rtcore.h>
 
 #include <string>
+
+#include "core/touch/embree.h"
 
 extern "C" RTCDevice rtcNewDevice(const char* config) {
   using Make = RTCDevice (*)(const char*);

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "app/desktop/widgets/modal.h"
+#include "app/style/imgui_input.h"
 
 namespace limpid {
 
@@ -27,8 +28,8 @@ std::string TipQuestion::draw(bool& open, const TipsToChoose& choice) {
       "are held still.",
       std::filesystem::path(choice.file).filename().c_str());
   const std::size_t before = chosen_;
-  if (ImGui::IsKeyPressed(GLFW_KEY_DOWN) && chosen_ + 1 < choice.tips.size()) ++chosen_;
-  if (ImGui::IsKeyPressed(GLFW_KEY_UP) && chosen_ > 0) --chosen_;
+  if (key_pressed(GLFW_KEY_DOWN) && chosen_ + 1 < choice.tips.size()) ++chosen_;
+  if (key_pressed(GLFW_KEY_UP) && chosen_ > 0) --chosen_;
   bool taken = accepted();
   ImGui::BeginChild("tips", {0, std::min(12 * em, 0.45f * room.y)}, true);
   for (std::size_t i = 0; i < choice.tips.size(); ++i) {

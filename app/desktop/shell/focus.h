@@ -55,6 +55,8 @@ bool is_modifier(int key);
 // neither its repetitions nor its characters reach the new owner. Modifiers never are.
 class HeldKeys {
  public:
+  static constexpr int kKeys = 512;  // more than GLFW has
+
   // By GLFW's numbers; what has none is not followed.
   void press(int key);
   void release(int key);
@@ -62,8 +64,6 @@ class HeldKeys {
   bool stale(int key) const;
 
  private:
-  static constexpr int kKeys = 512;
-
   std::bitset<kKeys> held_, stale_;
   Focus focus_;
 };

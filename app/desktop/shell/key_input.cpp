@@ -6,22 +6,14 @@
 
 #include <algorithm>
 
+#include "app/style/imgui_input.h"
+
 namespace limpid {
 namespace {
 
 using Kind = KeyInput::Event::Kind;
 
 bool is_control(int key) { return key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL; }
-
-void show(int key, bool down) {
-  if (key >= 0 && key <= GLFW_KEY_LAST) ImGui::GetIO().KeysDown[key] = down;
-}
-
-// ImGui has yet to see that it was let go.
-bool just_released(int key) {
-  const ImGuiIO& io = ImGui::GetIO();
-  return key >= 0 && key <= GLFW_KEY_LAST && !io.KeysDown[key] && io.KeysDownDuration[key] >= 0;
-}
 
 }  // namespace
 
@@ -37,7 +29,6 @@ void KeyInput::character(unsigned character) {
 }
 
 void KeyInput::deal(const Focus& focus) {
-  ImGuiIO& io = ImGui::GetIO();
   held_.set_focus(focus);
   Taken taken = Taken::nothing;
   int last = GLFW_KEY_UNKNOWN;  // that a character comes from
@@ -55,15 +46,32 @@ void KeyInput::deal(const Focus& focus) {
       taken = Taken::text;
     }
   }
+  show(modifiers);
+}
+
+// To ImGui: what is down, but for what somebody else had the focus for.
+void KeyInput::show(int modifiers) {
   for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
-    if (held_.stale(key)) io.KeysDown[key] = false;
+    if (held_.stale(key)) set_down(key, false);
+    const auto at = static_cast<std::size_t>(key);
+    if (down_[at] != shown_[at]) show_key(key, down_[at]);
   }
+  shown_ = down_;
   const auto held_down = [&](int modifier, int left, int right) {
-    return (modifiers & modifier) != 0 || io.KeysDown[left] || io.KeysDown[right];
+    return (modifiers & modifier) != 0 || down(left) || down(right);
   };
-  io.KeyCtrl = held_down(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
-  io.KeyShift = held_down(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-  io.KeyAlt = held_down(GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  show_modifiers(held_down(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
+                 held_down(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT),
+                 held_down(GLFW_MOD_ALT, GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT));
+}
+
+void KeyInput::set_down(int key, bool down) {
+  if (key >= 0 && key <= GLFW_KEY_LAST) down_[static_cast<std::size_t>(key)] = down;
+}
+
+// ImGui has yet to see that it was let go.
+bool KeyInput::just_released(int key) const {
+  return key >= 0 && key <= GLFW_KEY_LAST && !down(key) && shown_[static_cast<std::size_t>(key)];
 }
 
 // The next key leaves a character, which comes right behind it.
@@ -95,14 +103,14 @@ void KeyInput::take(const Event& event, int last) {
     case Kind::press:
       held_.press(event.key);
       pressed_.push_back({event.key, event.modifiers});
-      show(event.key, true);
+      set_down(event.key, true);
       break;
     case Kind::repeat:
       if (!held_.stale(event.key)) pressed_.push_back({event.key, event.modifiers, true});
       break;
     case Kind::release:
       held_.release(event.key);
-      show(event.key, false);
+      set_down(event.key, false);
       break;
     case Kind::character:
       if (!held_.stale(last)) ImGui::GetIO().AddInputCharacter(event.character);

@@ -1,6 +1,7 @@
 // Keys on their way from the window to who has the focus.
 #pragma once
 
+#include <bitset>
 #include <deque>
 #include <vector>
 
@@ -42,12 +43,17 @@ class KeyInput {
  private:
   enum class Taken { nothing, text, key };  // by a frame
   bool types() const;
+  bool just_released(int key) const;
   bool ends_frame(Taken taken) const;
   bool urgent(const Focus& focus) const;
   void take(const Event& event, int last);
+  void set_down(int key, bool down);
+  bool down(int key) const { return down_[static_cast<std::size_t>(key)]; }
+  void show(int modifiers);
 
   std::deque<Event> events_;
   HeldKeys held_;
+  std::bitset<HeldKeys::kKeys> down_, shown_;  // now; as ImGui was told last
   std::vector<KeyPress> pressed_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "app/style/imgui_input.h"
+
 namespace limpid {
 namespace {
 
@@ -25,22 +27,23 @@ void MouseInput::button(int button, bool down) {
   events_.push_back({button, down, again, at_});
 }
 
-void MouseInput::deal() {
-  ImGuiIO& io = ImGui::GetIO();
+void MouseInput::deal(const ImVec2& now) {
+  ImVec2 at = now;
   float second = kWaits;
   if (!events_.empty()) {
     const Event event = events_.front();
     events_.pop_front();
     down_[static_cast<std::size_t>(event.button)] = event.down;
-    io.MousePos = event.at;
+    at = event.at;
     if (event.down) {
       second = event.again ? kAnyTime : kNoTime;
     } else if (waiting()) {
       second = kAnyTime;
     }
   }
-  io.MouseDoubleClickTime = second;
-  for (std::size_t i = 0; i < down_.size(); ++i) io.MouseDown[i] = down_[i];
+  ImGui::GetIO().MouseDoubleClickTime = second;
+  show_mouse(at);
+  for (std::size_t i = 0; i < down_.size(); ++i) show_mouse_button(static_cast<int>(i), down_[i]);
 }
 
 }  // namespace limpid

@@ -1,10 +1,9 @@
 #include "app/desktop/shell/pacing.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
 #include <algorithm>
 #include <array>
+
+#include "app/base/window_system.h"
 
 namespace limpid {
 namespace {
@@ -21,6 +20,11 @@ bool display_paces(std::span<const double> exchanges, double refresh) {
 }
 
 double pacing_refresh(GLFWwindow* window) {
+  if (on_wayland()) {
+    // Nothing is torn there, and an exchange would wait for as long as others hide the window.
+    glfwSwapInterval(0);
+    return 0;
+  }
   glfwSwapInterval(1);
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;

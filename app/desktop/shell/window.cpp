@@ -1,23 +1,24 @@
 #include "app/desktop/shell/window.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "app/base/window_system.h"
 #include "app/desktop/shell/icon.h"
 #include "app/desktop/shell/mouse_input.h"
 #include "app/desktop/shell/pacing.h"
 #include "app/desktop/shell/work_area.h"
 #include "app/style/imgui_gl.h"
+#include "app/style/imgui_input.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 
@@ -60,6 +61,10 @@ struct Window::Impl {
       Window::touched(w);
       Impl::of(w).mouse.move(static_cast<float>(right), static_cast<float>(down));
     });
+    glfwSetCursorEnterCallback(glfw, [](GLFWwindow* w, int over) {
+      Window::touched(w);
+      Impl::of(w).mouse.enter(over == GLFW_TRUE);
+    });
     glfwSetMouseButtonCallback(glfw, [](GLFWwindow* w, int button, int action, int) {
       Window::touched(w);
       Impl::of(w).mouse.button(button, action == GLFW_PRESS);
@@ -72,6 +77,16 @@ struct Window::Impl {
       Window::touched(w);
       Impl::of(w).keys.character(character);
     });
+  }
+
+  // Where the mouse is; nowhere while it is not over the window and the window not in front.
+  ImVec2 mouse_place() const {
+    constexpr float kNowhere = -std::numeric_limits<float>::max();
+    if (!mouse.over() && glfwGetWindowAttrib(glfw, GLFW_FOCUSED) == GLFW_FALSE)
+      return {kNowhere, kNowhere};
+    double right = 0, down = 0;
+    glfwGetCursorPos(glfw, &right, &down);
+    return {static_cast<float>(right), static_cast<float>(down)};
   }
 
   void save(const Picture& wanted) const {
@@ -102,10 +117,7 @@ namespace {
 
 // Throws std::runtime_error where there is none to be had.
 GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  hint_window();
   const auto fitting = [&](int asked, int least, int most) {
     const double scaled = static_cast<double>(area.scale) * asked;
     return static_cast<int>(std::clamp<double>(scaled, std::min(least, most), most));
@@ -121,13 +133,12 @@ GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) 
   glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
                           std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
   move_into(area, window);
-  set_icon(window);
+  if (!on_wayland()) set_icon(window);
   return window;
 }
 
 // ImGui calls what is there before it.
 void watch_touches(GLFWwindow* window) {
-  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Window::touched(w); });
@@ -158,11 +169,12 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
 
   impl_->imgui.emplace();
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
+  begin_imgui_input();
   impl_->listen();
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
-  const double scale = options.ui_scale > 0 ? options.ui_scale : scale_x;
-  ImGuiGl::set_up(options.theme, static_cast<float>(scale));
+  const double scale = options.ui_scale > 0 ? options.ui_scale : on_wayland() ? 1 : scale_x;
+  ImGuiGl::set_up(options.theme, static_cast<float>(scale), area.density);
 }
 
 Window::~Window() {
@@ -197,7 +209,7 @@ void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
   ImGuiGl::begin_frame();
   ImGui_ImplGlfw_NewFrame();
-  impl_->mouse.deal();
+  impl_->mouse.deal(impl_->mouse_place());
   ImGui::NewFrame();
 }
 
@@ -234,7 +246,7 @@ void Window::toggle_full_screen() {
   }
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   if (monitor == nullptr) return;
-  glfwGetWindowPos(w.glfw, &w.x, &w.y);
+  if (!on_wayland()) glfwGetWindowPos(w.glfw, &w.x, &w.y);
   glfwGetWindowSize(w.glfw, &w.width, &w.height);
   const GLFWvidmode* mode = glfwGetVideoMode(monitor);
   glfwSetWindowMonitor(w.glfw, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);

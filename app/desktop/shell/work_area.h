@@ -10,7 +10,8 @@ inline constexpr int kLeastWidth = 900, kLeastHeight = 560;  // of a window
 // The screen without the desktop's bars.
 struct WorkArea {
   int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
-  float scale = 1;  // of the screen
+  float scale = 1;    // of the screen
+  float density = 1;  // pixels for each of the window's units
 };
 
 // Of the first screen.

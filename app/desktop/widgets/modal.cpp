@@ -6,6 +6,8 @@
 
 #include <string>
 
+#include "app/style/imgui_input.h"
+
 namespace limpid {
 namespace {
 
@@ -67,8 +69,7 @@ bool accepted() {
   // The Enter that opened the dialog is not its own.
   if (ImGui::IsWindowAppearing() || ImGui::GetIO().WantTextInput) return false;
   return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
-         (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) ||
-          ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
+         (key_pressed(GLFW_KEY_ENTER, false) || key_pressed(GLFW_KEY_KP_ENTER, false));
 }
 
 void note_place(const char* label) {

@@ -31,11 +31,11 @@ class SliderMouse : public ImGuiFrames {
         seconds);
   }
   void move(float x) {
-    ImGui::GetIO().MousePos = {x, kTrack};
+    show_mouse({x, kTrack});
     draw();
   }
   void button(bool down) {
-    ImGui::GetIO().MouseDown[0] = down;
+    show_mouse_button(0, down);
     draw();
   }
   void click(float x) {
@@ -56,7 +56,7 @@ class SliderMouse : public ImGuiFrames {
   }
   void key(int which) {
     for (const bool down : {true, false}) {
-      ImGui::GetIO().KeysDown[which] = down;
+      show_key(which, down);
       draw();
     }
   }

@@ -14,7 +14,7 @@ class ATooltip : public ImGuiFrames {
   ImRect of_item(const ImRect& panel, const ImRect& item) {
     const ImGuiWindow* shown = nullptr;
     for (int i = 0; i < 4; ++i) {
-      ImGui::GetIO().MousePos = item.GetCenter();
+      show_mouse(item.GetCenter());
       frame([&] {
         ImGui::SetNextWindowPos(panel.Min);
         ImGui::SetNextWindowSize(panel.GetSize());

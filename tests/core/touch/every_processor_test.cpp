@@ -1,6 +1,5 @@
 // Embree takes the widest vectors that a processor has. What a mesh answers must not show it.
 #include <dlfcn.h>
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/touch/embree.h"
 #include "core/touch/triangle_mesh.h"
 #include "tests/support/meshes.h"
 

@@ -11,8 +11,6 @@ constexpr Focus kText{.text = true};
 
 class KeyInputTest : public ImGuiFrames {
  protected:
-  KeyInputTest() { ImGui::GetIO().KeyMap[ImGuiKey_Backspace] = GLFW_KEY_BACKSPACE; }
-
   void tap(int key, int modifiers = 0, const std::string& writes = "") {
     keys_.key(key, GLFW_PRESS, modifiers);
     for (const char c : writes) keys_.character(static_cast<unsigned char>(c));
@@ -31,9 +29,12 @@ class KeyInputTest : public ImGuiFrames {
     keys_.forget_pressed();
     keys_.deal(focus);
     written_.clear();
-    for (const ImWchar c : ImGui::GetIO().InputQueueCharacters) written_ += static_cast<char>(c);
-    control_ = ImGui::GetIO().KeyCtrl;
-    frame([this] { backspace_ = ImGui::IsKeyPressed(GLFW_KEY_BACKSPACE, false); });
+    frame([this] {
+      const ImGuiIO& io = ImGui::GetIO();
+      for (const ImWchar c : io.InputQueueCharacters) written_ += static_cast<char>(c);
+      control_ = io.KeyCtrl;
+      backspace_ = key_pressed(GLFW_KEY_BACKSPACE, false);
+    });
     std::vector<int> pressed;
     for (const KeyPress& press : keys_.pressed()) pressed.push_back(press.key);
     return pressed;

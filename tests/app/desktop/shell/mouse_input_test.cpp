@@ -9,13 +9,17 @@ class MouseInputTest : public ImGuiFrames {
  protected:
   // GLFW is asked at this time [ms].
   void ask(int at) { mouse_.ask(SteadyClock::time_point(std::chrono::milliseconds(1000 + at))); }
-  void click(float x, float y) {
+  void move(float x, float y) {
     mouse_.move(x, y);
+    now_ = {x, y};
+  }
+  void click(float x, float y) {
+    move(x, y);
     mouse_.button(0, true);
     mouse_.button(0, false);
   }
   void look() {
-    mouse_.deal();
+    mouse_.deal(now_);
     frame([] {}, 0.5f);
   }
   // So many clicks ImGui has seen as the next press comes to it, 0 without any.
@@ -28,13 +32,14 @@ class MouseInputTest : public ImGuiFrames {
   }
 
   MouseInput mouse_;
+  ImVec2 now_{0, 0};
 };
 
 TEST_F(MouseInputTest, ClicksBetweenTwoFramesAreAllSeenAndWhereTheyWere) {
   ask(0);
   click(100, 50);
   click(300, 200);
-  mouse_.move(700, 500);
+  move(700, 500);
   for (const ImVec2 at : {ImVec2(100, 50), ImVec2(300, 200)}) {
     look();
     EXPECT_TRUE(ImGui::IsMouseClicked(0));

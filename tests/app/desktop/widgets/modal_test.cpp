@@ -29,11 +29,11 @@ class ADialog : public ImGuiFrames {
     for (int i = 0; i < count; ++i) draw(modal);
   }
   void click(ImVec2 at, bool modal) {
-    ImGui::GetIO().MousePos = at;
+    show_mouse(at);
     frames(modal);
-    ImGui::GetIO().MouseDown[0] = true;
+    show_mouse_button(0, true);
     frames(modal);
-    ImGui::GetIO().MouseDown[0] = false;
+    show_mouse_button(0, false);
     frames(modal);
   }
 
@@ -89,9 +89,9 @@ TEST_F(ADialog, NotesWhereAButtonIsWhileItIsThere) {
   draw_it(true);
   const auto at = noted_place("strip", "Press me");
   ASSERT_TRUE(at);
-  ImGui::GetIO().MousePos = *at;
+  show_mouse(*at);
   for (const bool down : {false, true, false}) {
-    ImGui::GetIO().MouseDown[0] = down;
+    show_mouse_button(0, down);
     draw_it(true);
     draw_it(true);
   }

@@ -1,0 +1,30 @@
+// Windows of GLFW, on X11 or on Wayland: GLFW has both since 3.4, and X11 alone before.
+#pragma once
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace limpid {
+
+#ifdef GLFW_PLATFORM_WAYLAND
+constexpr bool kKnowsWayland = true;
+// Of the windows there are, after glfwInit(). On Wayland a program does not know where its windows
+// are and cannot give them an icon: the desktop finds it by the app id.
+inline bool on_wayland() { return glfwGetPlatform() == GLFW_PLATFORM_WAYLAND; }
+#else
+constexpr bool kKnowsWayland = false;
+inline bool on_wayland() { return false; }
+#endif
+
+// For the next window that is created.
+inline void hint_window() {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+#ifdef GLFW_WAYLAND_APP_ID
+  glfwWindowHintString(GLFW_WAYLAND_APP_ID, "limpid");  // limpid.desktop
+#endif
+}
+
+}  // namespace limpid

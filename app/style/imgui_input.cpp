@@ -1,0 +1,119 @@
+#include "app/style/imgui_input.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui_internal.h>
+
+#include <array>
+
+namespace limpid {
+namespace {
+
+#if IMGUI_VERSION_NUM >= 18900
+constexpr ImGuiKey kKeypadEnter = ImGuiKey_KeypadEnter;
+#else
+constexpr ImGuiKey_ kKeypadEnter = ImGuiKey_KeyPadEnter;
+#endif
+
+struct Key {
+  int glfw;
+  decltype(kKeypadEnter) imgui;
+};
+
+// Those that ImGui does something for.
+constexpr std::array kKeys{
+    Key{GLFW_KEY_TAB, ImGuiKey_Tab},
+    Key{GLFW_KEY_LEFT, ImGuiKey_LeftArrow},
+    Key{GLFW_KEY_RIGHT, ImGuiKey_RightArrow},
+    Key{GLFW_KEY_UP, ImGuiKey_UpArrow},
+    Key{GLFW_KEY_DOWN, ImGuiKey_DownArrow},
+    Key{GLFW_KEY_PAGE_UP, ImGuiKey_PageUp},
+    Key{GLFW_KEY_PAGE_DOWN, ImGuiKey_PageDown},
+    Key{GLFW_KEY_HOME, ImGuiKey_Home},
+    Key{GLFW_KEY_END, ImGuiKey_End},
+    Key{GLFW_KEY_INSERT, ImGuiKey_Insert},
+    Key{GLFW_KEY_DELETE, ImGuiKey_Delete},
+    Key{GLFW_KEY_BACKSPACE, ImGuiKey_Backspace},
+    Key{GLFW_KEY_SPACE, ImGuiKey_Space},
+    Key{GLFW_KEY_ENTER, ImGuiKey_Enter},
+    Key{GLFW_KEY_ESCAPE, ImGuiKey_Escape},
+    Key{GLFW_KEY_KP_ENTER, kKeypadEnter},
+    Key{GLFW_KEY_A, ImGuiKey_A},
+    Key{GLFW_KEY_C, ImGuiKey_C},
+    Key{GLFW_KEY_V, ImGuiKey_V},
+    Key{GLFW_KEY_X, ImGuiKey_X},
+    Key{GLFW_KEY_Y, ImGuiKey_Y},
+    Key{GLFW_KEY_Z, ImGuiKey_Z},
+};
+
+}  // namespace
+
+#if IMGUI_VERSION_NUM >= 18900
+
+namespace {
+
+ImGuiKey imgui_key(int key) {
+  for (const Key& each : kKeys) {
+    if (each.glfw == key) return each.imgui;
+  }
+  return ImGuiKey_None;
+}
+
+}  // namespace
+
+void begin_imgui_input() {
+  // ImGui would spread what happened over several frames. Limpid has done that already.
+  ImGui::GetIO().ConfigInputTrickleEventQueue = false;
+  // Nor does Ctrl+Tab go through ImGui's windows.
+  ImGuiContext& ui = *ImGui::GetCurrentContext();
+  ui.ConfigNavWindowingKeyNext = ui.ConfigNavWindowingKeyPrev = ImGuiKey_None;
+}
+
+void show_key(int key, bool down) {
+  if (const ImGuiKey known = imgui_key(key); known != ImGuiKey_None) {
+    ImGui::GetIO().AddKeyEvent(known, down);
+  }
+}
+
+void show_modifiers(bool control, bool shift, bool alt) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.AddKeyEvent(ImGuiMod_Ctrl, control);
+  io.AddKeyEvent(ImGuiMod_Shift, shift);
+  io.AddKeyEvent(ImGuiMod_Alt, alt);
+}
+
+void show_mouse(const ImVec2& at) { ImGui::GetIO().AddMousePosEvent(at.x, at.y); }
+
+void show_mouse_button(int button, bool down) { ImGui::GetIO().AddMouseButtonEvent(button, down); }
+
+bool key_pressed(int key, bool repeat) {
+  const ImGuiKey known = imgui_key(key);
+  return known != ImGuiKey_None && ImGui::IsKeyPressed(known, repeat);
+}
+
+#else
+
+void begin_imgui_input() {
+  for (const Key& key : kKeys) ImGui::GetIO().KeyMap[key.imgui] = key.glfw;
+}
+
+void show_key(int key, bool down) {
+  if (key >= 0 && key <= GLFW_KEY_LAST) ImGui::GetIO().KeysDown[key] = down;
+}
+
+void show_modifiers(bool control, bool shift, bool alt) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyCtrl = control;
+  io.KeyShift = shift;
+  io.KeyAlt = alt;
+}
+
+void show_mouse(const ImVec2& at) { ImGui::GetIO().MousePos = at; }
+
+void show_mouse_button(int button, bool down) { ImGui::GetIO().MouseDown[button] = down; }
+
+bool key_pressed(int key, bool repeat) { return ImGui::IsKeyPressed(key, repeat); }
+
+#endif
+
+}  // namespace limpid

@@ -1,0 +1,20 @@
+// How ImGui is told what keys and mouse do, which its version 1.89 changed: into fields before, as
+// events since. Keys have GLFW's names, and what is told is what the next frame sees.
+#pragma once
+
+#include <imgui.h>
+
+namespace limpid {
+
+// Once for every context, after ImGui's own part for GLFW where a window has one.
+void begin_imgui_input();
+
+void show_key(int key, bool down);
+void show_modifiers(bool control, bool shift, bool alt);
+void show_mouse(const ImVec2& at);
+void show_mouse_button(int button, bool down);
+
+// ImGui::IsKeyPressed().
+bool key_pressed(int key, bool repeat = true);
+
+}  // namespace limpid

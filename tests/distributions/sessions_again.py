@@ -1,0 +1,54 @@
+#!/usr/bin/python3
+"""Makes the shipped sessions again that have a hand of their own as a path, and compares the rows:
+    sessions_again.py COMMAND...    such as `qemu-aarch64 build/release/app/limpid`
+Sessions themselves are not read by it: a sandbox lets nothing through that is not its own processor."""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "assets/sessions"))
+import make_sessions  # noqa: E402
+
+
+def differences(first: h5py.File, second: h5py.File) -> list[str]:
+    names: list[str] = []
+    first.visititems(lambda name, item: names.append(name) if hasattr(item, "shape") else None)
+    found = []
+    for name in names:
+        if name.startswith(("timing/", "check/")):  # the latter are sums of all others
+            continue
+        x, y = first[name][()], second[name][()]
+        if x.shape != y.shape:
+            found.append(f"{name}: {x.shape} and {y.shape}")
+        elif x.tobytes() != y.tobytes():
+            rows = np.flatnonzero((x != y).reshape(len(x), -1).any(axis=1))
+            most = np.nanmax(np.abs(x - y)) if x.dtype.kind == "f" else "other"
+            found.append(f"{name}: {len(rows)} of {len(x)} rows, by {most} at most")
+    return found
+
+
+def main() -> int:
+    good = True
+    for scene, (_, seconds) in make_sessions.SCENES.items():
+        if not seconds:
+            continue
+        world, _ = make_sessions.options(scene)
+        with tempfile.TemporaryDirectory() as folder:
+            again = Path(folder) / "again.h5"
+            subprocess.run([*sys.argv[1:], "run", *world, "--duration", str(seconds), "--record", again],
+                           cwd=ROOT, check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+            with h5py.File(ROOT / f"assets/sessions/{scene}.h5") as a, h5py.File(again) as b:
+                found = differences(a, b)
+        print(f"{scene}:", "the same bits" if not found else "\n  ".join(["differs", *found]), flush=True)
+        good = good and not found
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
