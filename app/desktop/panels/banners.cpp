@@ -41,7 +41,7 @@ void draw_contents(const Banner& banner, float room, const Act& act) {
   bool first = !one_line;
   for (const Banner::Button& button : banner.buttons) {
     if (!std::exchange(first, false)) ImGui::SameLine();
-    if (noted_button(button.label)) act(button.action);
+    if (noted_button(button.label)) act(button.command);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/base/action.h"
+#include "app/desktop/base/act.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {
@@ -13,7 +13,7 @@ namespace limpid {
 struct Banner {
   struct Button {
     const char* label;
-    Action action;
+    const char* command;  // its id
   };
   const char* id;  // of its window
   std::string text;

@@ -192,12 +192,13 @@ void draw_ledger(const CouplingReading& now) {
   share("Damping cancelled", now.damping_governor,
         "The reserve runs low: less of the device's damping is cancelled.",
         "Of what the damping slider asks for");
-  share("Torque let through", now.torque_governor,
-        "The hand was given nearly all that it may be given: the ledger holds all torque back until "
-        "the hand has put some in again. Force that is armed anew, and a loop that starts anew, "
-        "begin with a full ledger. A known delay (model.delay) or a lower stiffness keep it from "
-        "acting.",
-        "100 % unless the hand was given nearly 5 mJ more than it put in");
+  share(
+      "Torque let through", now.torque_governor,
+      "The hand was given nearly all that it may be given: the ledger holds all torque back until "
+      "the hand has put some in again. Force that is armed anew, and a loop that starts anew, "
+      "begin with a full ledger. A known delay (model.delay) or a lower stiffness keep it from "
+      "acting.",
+      "100 % unless the hand was given nearly 5 mJ more than it put in");
   if (now.unsettled > 0) {
     const char* why =
         "Motors at their limit and contacts had no common solution in these ticks: the proxy stood "
@@ -249,7 +250,7 @@ void draw_limited(const std::vector<int>& joints) {
 void draw_break(bool broken, const Act& act) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
   if (ImGui::Button(broken ? "Repair" : "Break passivity", size)) {
-    act(broken ? Action::end_passivity_break : Action::break_passivity);
+    act(broken ? "coupling.end_break" : "coupling.break_passivity");
   }
   tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
                    "law, scene, arm or recording."

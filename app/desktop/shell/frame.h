@@ -8,19 +8,13 @@
 #include "app/desktop/panels/device_timing.h"
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/view_panel.h"
+#include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/shell/recent_menu.h"
 #include "app/desktop/shell/window.h"
-#include "app/desktop/widgets/guard.h"
 
 namespace limpid {
-
-// What throws becomes a notice, but not the same one in every frame.
-template <class Work>
-void guard(Notices& notices, Work&& work) {
-  guarded([&](const char* what) { notices.say_once(what, true); }, std::forward<Work>(work));
-}
 
 class Frame {
  public:

@@ -1,4 +1,4 @@
-#include "app/desktop/panels/tip_question.h"
+#include "app/desktop/panels/questions.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -6,11 +6,46 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "app/desktop/widgets/modal.h"
 
 namespace limpid {
+
+void draw_unsaved_question(bool& open, bool has_file, const Act& act) {
+  if (!begin_modal("Save changes?", open, {0, 0})) return;
+  const char* answer = nullptr;
+  ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
+  ImGui::TextUnformatted("The scene has changes that are not saved.");
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  if (ImGui::Button(has_file ? "Save (Enter)" : "Save as... (Enter)")) {
+    answer = "scene.save_and_leave";
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Discard (D)")) answer = "scene.discard_and_leave";
+  ImGui::SameLine();
+  close_button("Cancel (Esc)", open);
+  ImGui::EndPopup();
+  if (answer != nullptr) act(answer);  // which may throw
+}
+
+// Enter does not answer it: what it asks is to be read.
+bool draw_xacro_question(bool& open, const std::filesystem::path& file) {
+  if (!begin_modal("Expand xacro?", open, {0, 0})) return false;
+  ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
+  ImGui::TextWrapped(
+      "%s is a xacro file: expanding it runs program xacro, which can run code in "
+      "the file.",
+      file.filename().c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  const bool expand = ImGui::Button("Expand");
+  if (expand) open = false;
+  ImGui::SameLine();
+  close_button("Cancel (Esc)", open);
+  ImGui::EndPopup();
+  return expand;
+}
 
 std::string TipQuestion::draw(bool& open, const TipsToChoose& choice) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
