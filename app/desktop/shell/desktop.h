@@ -50,7 +50,9 @@ class Desktop {
   KeptScenes kept;
   World world;
   WindowRequests asked;
-  bool full_screen = false;  // as the system's window is
+  // Of the system's window: how it is, and the work of its last frame, without waiting [s].
+  bool full_screen = false;
+  double frame_time = 0;
 
   // Once a frame, before anything is drawn.
   void update(double dt);

@@ -1,27 +1,22 @@
 #include "app/desktop/shell/frame.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/panels/banners.h"
-#include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/loading_bar.h"
 #include "app/desktop/panels/notice_list.h"
-#include "app/desktop/panels/parameter_rows.h"
+#include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/recorded_panel.h"
 #include "app/desktop/panels/story_bar.h"
-#include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/panels/twin_panel.h"
 #include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
@@ -33,7 +28,13 @@ void Frame::draw() {
   const Layout at = lay_out();
   part([&] { draw_view(at.view); });
   if (at.show_left) part([&] { draw_coupling(at.left); });
-  if (at.show_right) part([&] { draw_side(at.right); });
+  if (at.show_right) {
+    part([&] {
+      begin_panel(kSidePanel, at.right);
+      sections_.draw(act_);
+      ImGui::End();
+    });
+  }
   if (at.show_plots) part([&] { draw_plot_row(at.plots); });
   part([&] {
     draw_transport(desktop_.playback, desktop_.live, settings.parameters.tick, settings.plot_length,
@@ -177,76 +178,23 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
   if (section("For the re-run (E)", true)) draw_coupling_of_rerun(desktop_.tuning.edited(), now);
 }
 
-void Frame::say_for_rerun() const {
-  if (!desktop_.playback.on()) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
-  ImGui::TextWrapped("For the re-run; what was recorded is on the left.");
-  ImGui::PopStyleColor();
-}
-
-// Scene, hand, device, analysis and timing.
-void Frame::draw_side(ScreenRect rect) {
-  Settings& settings = desktop_.settings;
-  Parameters& parameters = settings.parameters;
-  Desk& desk = desktop_.live;
-  const Stage& shown = desktop_.shown.stage();
-  begin_panel(kSidePanel, rect);
-  if (section("Scene", true)) {
-    if (const PlayedSession* session = desktop_.playback.shown()) {
-      ScenePanel::draw_recorded(session->document());
-    } else {
-      scene_.draw(desktop_.document, desk.stage().arm(), desk.recording(), act_,
-                  [this](SceneObject object) { desktop_.world.add_object(std::move(object)); });
-    }
-  }
-  if (section("Hand", true)) {
-    say_for_rerun();
-    draw_parameters(parameters, shown.arm(), {"hand.stiffness", "hand.damping", "hand.mass"});
-    ImGui::Checkbox("hold where released", &settings.hold_on_release);
-    tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
-  }
-  if (section("Device", !desktop_.devices.hub().in_use().empty())) {
-    if (draw_device_panel(desktop_.devices, desk, {desktop_.pads.all(), settings.gamepad},
-                          parameters)) {
-      desktop_.dialog.open("identify");
-    }
-    say_for_rerun();
-    if (!desk.loop().device_in_place()) {
-      draw_parameters(
-          parameters, shown.arm(),
-          {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
-    }
-    draw_parameters(
-        parameters, shown.arm(),
-        {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
-         "device.encoder_step", "device.delay", "model.delay", "predictor.preset",
-         "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
-  }
-  if (section("Analysis", false)) {
-    const auto pose = shown.channels().layout().in(desktop_.shown.row(), Column::device_position);
-    PlayedSession* session = desktop_.playback.shown();
-    const Scene& scene = session ? session->document().scene : desktop_.document.scene();
-    analysis_.draw(session ? session->settings() : desktop_.tuning.edited(), shown.arm(), scene,
-                   pose, settings.band);
-  }
-  if (section("Timing", true)) {
-    draw_timing(desk.loop(), quality_text(), window_.frame_time());
-    if (desk.loop().device_in_place()) {
-      device_timing_.draw(desk.loop().device_pace(), desk.stage().arm(), parameters,
-                          desktop_.document.scene(),
-                          desk.loop().layout().in(desk.row(), Column::device_position));
-    }
-  }
-  ImGui::End();
-}
-
-std::string Frame::quality_text() const {
-  const std::string& wanted = desktop_.settings.picture_quality;
-  if (wanted != "automatic") return wanted;
-  const int level = desktop_.shown.quality_level();
-  if (level == 0) return "automatic: best";
-  if (level == Quality::kLowest) return "automatic: lowest";
-  return fmt::format("automatic: {} below best", level);
+// The row of plots, and what is asked for there.
+void Frame::draw_plot_row(ScreenRect rect) {
+  const PlotSaving saving{
+      .folder = sessions_dir(),
+      .save_png =
+          [this](const ScreenRect& box, const std::filesystem::path& file) {
+            window_.save_picture(file, box.min.x, box.min.y, box.max.x, box.max.y);
+          },
+      .beside =
+          [this](std::function<PlotNotice()> work) { desktop_.live.save_beside(std::move(work)); },
+      .arranged = true};
+  PlayedSession* session = desktop_.playback.shown();
+  const PlotsWish asked = draw_plots(
+      desktop_.shown.stage(), session != nullptr ? &session->player() : nullptr, saving, rect);
+  if (asked.wish == PlotWish::add) desktop_.plots.add();
+  if (asked.wish == PlotWish::choose) desktop_.plots.choose(asked.plot);
+  if (asked.wish == PlotWish::remove) desktop_.plots.remove(asked.plot);
 }
 
 void Frame::draw_fold_tabs(const Layout& at) {

@@ -210,6 +210,7 @@ void Application::turn() {
 void Application::carry_out(const WindowRequests& asked) {
   if (asked.toggle_full_screen) window_.toggle_full_screen();
   desktop_.full_screen = window_.full_screen();
+  desktop_.frame_time = window_.frame_time();
   if (!asked.picture.empty()) window_.save_picture(asked.picture);
   if (asked.close) window_.close();
 }
