@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "app/desktop/sweep/sweep_desk.h"
+#include "app/desktop/sweep/sweep_controller.h"
 
 namespace limpid {
 

@@ -234,24 +234,24 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   ImGui::PopClipRect();
 }
 
-MapWish draw_contents(SweepDesk& desk, Playback& playback, bool& open) {
-  const OpenedSweep& sweep = *desk.sweep();
-  MapChoice choice = desk.choice();
+MapWish draw_contents(SweepController& controller, Playback& playback, bool& open) {
+  const OpenedSweep& sweep = *controller.sweep();
+  MapChoice choice = controller.choice();
   draw_choosers(sweep, choice);
   draw_places(*sweep.plan, choice);
-  desk.choose(choice);
-  const SweepMap* map = desk.map();
+  controller.choose(choice);
+  const SweepMap* map = controller.map();
   if (map == nullptr) return {};
   const float below = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing() +
                       ImGui::GetStyle().ItemSpacing.y;
   ImVec2 size = ImGui::GetContentRegionAvail();
   size.y = std::max(size.y - below, kLeastMap * current_scale());
   const MapMouse mouse = draw_sweep_map(*map, sweep, size);
-  desk.on_screen = {mouse.inside, {}};
+  controller.on_screen = {mouse.inside, {}};
   draw_legend(*map, sweep);
   draw_state(sweep, playback, open);
   if (mouse.spot == nullptr) return {};
-  desk.on_screen->pointed_at = mouse.spot->point;
+  controller.on_screen->pointed_at = mouse.spot->point;
   draw_values(sweep, *map, mouse);
   if (!mouse.clicked || playback.loading()) return {};
   if (!sweep.plan->boundary) return {mouse.spot->point, {}};
@@ -264,21 +264,22 @@ MapWish draw_contents(SweepDesk& desk, Playback& playback, bool& open) {
 
 }  // namespace
 
-MapWish draw_sweep_panel(SweepDesk& desk, Playback& playback, bool& open) {
-  desk.on_screen.reset();
+MapWish draw_sweep_panel(SweepController& controller, Playback& playback, bool& open) {
+  controller.on_screen.reset();
   if (!open) return {};
   MapWish wish;
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetWorkCenter(), ImGuiCond_Always,
                           {0.5f, 0.5f});
   ImGui::SetNextWindowSize({0.94f * room.x, 0.94f * room.y}, ImGuiCond_Always);
-  const std::string title =
-      desk.sweep() ? fmt::format("Sweep: {}###sweep", desk.sweep()->plan->title) : "Sweep###sweep";
+  const std::string title = controller.sweep()
+                                ? fmt::format("Sweep: {}###sweep", controller.sweep()->plan->title)
+                                : "Sweep###sweep";
   if (begin_dialog(title.c_str(), open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
-    if (desk.sweep()) {
-      wish = draw_contents(desk, playback, open);
+    if (controller.sweep()) {
+      wish = draw_contents(controller, playback, open);
     } else {
-      ImGui::TextUnformatted(desk.loading() ? "loading the table ..." : "No sweep is open.");
+      ImGui::TextUnformatted(controller.loading() ? "loading the table ..." : "No sweep is open.");
       close_button(kClose, open);
     }
   }

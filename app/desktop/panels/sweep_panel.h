@@ -11,6 +11,6 @@ struct MapWish {
   std::optional<std::uint64_t> point;
   std::optional<double> at;  // of a boundary's axis
 };
-MapWish draw_sweep_panel(SweepDesk& desk, Playback& playback, bool& open);
+MapWish draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
 
 }  // namespace limpid

@@ -130,8 +130,8 @@ void playback_controls(Playback& playback, const Act& act) {
   }
 }
 
-void recording_controls(const Desk& desk, double tick, const Act& act) {
-  const LiveLoop& loop = desk.loop();
+void recording_controls(const LiveSession& live, double tick, const Act& act) {
+  const LiveLoop& loop = live.loop();
   const bool recording = loop.recording();
   if (button(recording ? "Stop" : "Record", "R starts and stops recording every tick.", recording,
              true)) {
@@ -148,13 +148,13 @@ void recording_controls(const Desk& desk, double tick, const Act& act) {
   }
 }
 
-void live_controls(Desk& desk, double tick, double& plot_length, const Act& act) {
-  recording_controls(desk, tick, act);
+void live_controls(LiveSession& live, double tick, double& plot_length, const Act& act) {
+  recording_controls(live, tick, act);
   if (button("Open...", "Choose a recorded session (Ctrl+O).")) act("session.open");
   if (button("A/B", "To the next coupling law, without a jump (C).")) {
     act("coupling.next");
   }
-  PlotGroup& group = desk.stage().group;
+  PlotGroup& group = live.stage().group;
   if (button(group.following() ? "Freeze plots" : "Follow", "Holds the plots or lets them run (X).",
              !group.following())) {
     act("plots.freeze");
@@ -176,7 +176,7 @@ void live_controls(Desk& desk, double tick, double& plot_length, const Act& act)
 
 }  // namespace
 
-void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_length,
+void draw_transport(Playback& playback, LiveSession& live, double tick, double& plot_length,
                     const Act& act, ScreenRect rect) {
   begin_panel("transport", rect);
   if (playback.loading()) {
@@ -191,7 +191,7 @@ void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_le
   } else if (playback.on()) {
     playback_controls(playback, act);
   } else {
-    live_controls(desk, tick, plot_length, act);
+    live_controls(live, tick, plot_length, act);
   }
   ImGui::End();
 }

@@ -30,14 +30,14 @@ std::optional<Banner> recorded_force(const PlayedSession& session) {
   return force_banner("In this recording", text, false);
 }
 
-std::optional<Banner> live_force(const Desk& desk) {
-  const Snapshot& now = desk.loop().snapshot();
+std::optional<Banner> live_force(const LiveSession& live) {
+  const Snapshot& now = live.loop().snapshot();
   const std::string why = explain(now.force_state);
   if (now.arming == Arming::waiting) {
     return force_banner("Force waits, and fades in with the hand", why, false);
   }
   if (now.arming != Arming::off && now.arming != Arming::tripped) return std::nullopt;
-  const bool recording = desk.loop().recording();
+  const bool recording = live.loop().recording();
   Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
                                recording || now.arming == Arming::tripped);
   banner.text += " F arms it.";

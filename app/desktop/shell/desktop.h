@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/desk/identify_desk.h"
 #include "app/desktop/document/document.h"
 #include "app/desktop/document/unsaved.h"
+#include "app/desktop/live/identify_controller.h"
 #include "app/desktop/panels/banners.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
@@ -18,7 +18,7 @@
 #include "app/desktop/shell/shown.h"
 #include "app/desktop/shell/tuning.h"
 #include "app/desktop/shell/world.h"
-#include "app/desktop/sweep/sweep_desk.h"
+#include "app/desktop/sweep/sweep_controller.h"
 
 namespace limpid {
 
@@ -38,11 +38,11 @@ class Desktop {
   Notices notices;
   OpenDialog dialog;
   Document document;
-  Desk live;
-  DeviceDesk devices;
-  IdentifyDesk identify;
+  LiveSession live;
+  DeviceController devices;
+  IdentifyController identify;
   Playback playback;
-  SweepDesk sweep;
+  SweepController sweep;
   Shown shown;
   Tuning tuning;
   PlotLayout plots;

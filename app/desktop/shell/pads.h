@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/desktop/base/settings.h"
-#include "app/desktop/desk/desk.h"
-#include "app/desktop/desk/pad_hand.h"
+#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/pad_hand.h"
 #include "render/camera.h"
 
 namespace limpid {
@@ -17,7 +17,7 @@ std::vector<Pad> plugged_pads();
 
 class Pads {
  public:
-  Pads(const Settings& settings, Notices& notices, Desk& live)
+  Pads(const Settings& settings, Notices& notices, LiveSession& live)
       : settings_(settings), notices_(notices), live_(live) {}
 
   // Those that are there now, `dt` [s] after the last call: the chosen one leads the hand as it is
@@ -33,7 +33,7 @@ class Pads {
  private:
   const Settings& settings_;
   Notices& notices_;
-  Desk& live_;
+  LiveSession& live_;
   std::vector<Pad> pads_;
   PadHand hand_;
   std::string leading_;

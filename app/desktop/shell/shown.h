@@ -4,7 +4,7 @@
 #include <span>
 
 #include "app/desktop/base/settings.h"
-#include "app/desktop/desk/desk.h"
+#include "app/desktop/live/live_session.h"
 #include "app/desktop/playback/playback.h"
 #include "render/camera.h"
 #include "render/quality.h"
@@ -13,7 +13,7 @@ namespace limpid {
 
 class Shown {
  public:
-  Shown(const Settings& settings, Playback& playback, Desk& live)
+  Shown(const Settings& settings, Playback& playback, LiveSession& live)
       : settings_(settings), playback_(playback), live_(live) {}
 
   Stage& stage() { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
@@ -38,7 +38,7 @@ class Shown {
  private:
   const Settings& settings_;
   Playback& playback_;
-  Desk& live_;
+  LiveSession& live_;
   bool automatic_ = true;
   const StoryStep* step_ = nullptr;  // that the camera knows
 };

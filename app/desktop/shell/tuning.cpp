@@ -15,7 +15,7 @@
 
 namespace limpid {
 
-Tuning::Tuning(Settings& settings, Notices& notices, Desk& live, DeviceDesk& devices,
+Tuning::Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
                Playback& playback)
     : presets(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
       settings_(settings),

@@ -8,7 +8,7 @@
 
 #include "app/desktop/base/named_texts.h"
 #include "app/desktop/base/settings.h"
-#include "app/desktop/desk/device_desk.h"
+#include "app/desktop/live/device_controller.h"
 #include "app/desktop/playback/playback.h"
 #include "app/run/analysis.h"
 
@@ -16,7 +16,8 @@ namespace limpid {
 
 class Tuning {
  public:
-  Tuning(Settings& settings, Notices& notices, Desk& live, DeviceDesk& devices, Playback& playback);
+  Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
+         Playback& playback);
 
   // What sliders and keys act on: the settings of one of two runs.
   Parameters& edited();
@@ -26,7 +27,7 @@ class Tuning {
   const Analysis& recorded_analysis() const { return recorded_analysis_; }
 
   void next_law();     // where passivity is broken, it ends that
-  void toggle_twin();  // precondition: Desk::why_twin_is_fixed() is empty
+  void toggle_twin();  // precondition: LiveSession::why_twin_is_fixed() is empty
   // Settings under which the loop gives energy without end, to be looked at. All that changes the
   // coupling, the world or what is shown ends it, and everything is as it was before.
   void break_passivity();
@@ -55,8 +56,8 @@ class Tuning {
 
   Settings& settings_;
   Notices& notices_;
-  Desk& live_;
-  DeviceDesk& devices_;
+  LiveSession& live_;
+  DeviceController& devices_;
   Playback& playback_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   // While a device in the arm's place has its own compensation: its id, and the virtual arm's.

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/desktop/desk/desk.h"
 #include "app/desktop/document/document.h"
+#include "app/desktop/live/live_session.h"
 #include "devices/files/arm/arm_tip.h"
 #include "devices/files/arm/xacro_consent.h"
 

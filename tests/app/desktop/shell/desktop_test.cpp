@@ -119,7 +119,8 @@ struct ADesktop : testing::Test {
   bool armed() {
     return until_on([&] { loop().arm(); });
   }
-  // However late the loop's first tick with it is: a desk that did not connect it gives it no time.
+  // However late the loop's first tick with it is: a controller that did not connect it gives it no
+  // time.
   void await_device() {
     while (!loop().snapshot().connected) {
       std::this_thread::sleep_for(1ms);

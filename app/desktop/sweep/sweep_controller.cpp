@@ -1,4 +1,4 @@
-#include "app/desktop/sweep/sweep_desk.h"
+#include "app/desktop/sweep/sweep_controller.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -91,12 +91,12 @@ void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double
 
 }  // namespace
 
-void SweepDesk::open(const fs::path& table) {
+void SweepController::open(const fs::path& table) {
   asked_ = table;
   look(table, true);
 }
 
-void SweepDesk::look(const fs::path& file, bool anew) {
+void SweepController::look(const fs::path& file, bool anew) {
   next_look_ = std::chrono::steady_clock::now() + kBetweenLooks;
   const std::shared_ptr<const OpenedSweep> before = anew ? nullptr : sweep_;
   looking_.start(fmt::format("loading {}", file.filename().string()),
@@ -109,7 +109,7 @@ void SweepDesk::look(const fs::path& file, bool anew) {
                  });
 }
 
-bool SweepDesk::take_look() {
+bool SweepController::take_look() {
   auto found = looking_.take();
   if (!found) return false;
   changed_ = found->changed;
@@ -130,7 +130,7 @@ bool SweepDesk::take_look() {
   return fresh;
 }
 
-void SweepDesk::follow_map() {
+void SweepController::follow_map() {
   if (auto made = mapping_.take()) {
     map_ = std::move(made->map);
     mapped_ = std::move(made->of);
@@ -143,7 +143,7 @@ void SweepDesk::follow_map() {
                  });
 }
 
-bool SweepDesk::update() {
+bool SweepController::update() {
   bool fresh = false;
   try {
     if (looking_.busy()) {
@@ -159,9 +159,9 @@ bool SweepDesk::update() {
   return fresh;
 }
 
-void SweepDesk::choose(const MapChoice& choice) { choice_ = mended(*sweep_->plan, choice); }
+void SweepController::choose(const MapChoice& choice) { choice_ = mended(*sweep_->plan, choice); }
 
-void SweepDesk::play(std::uint64_t point, std::optional<double> at, Playback& playback) {
+void SweepController::play(std::uint64_t point, std::optional<double> at, Playback& playback) {
   if (!sweep_->why_no_run.empty()) {
     return notices_.say(fmt::format("Point {} cannot be run again: {}.", point, sweep_->why_no_run),
                         true);

@@ -17,15 +17,15 @@
 
 namespace limpid {
 
-class Desk {
+class LiveSession {
  public:
-  Desk(Notices& notices, AskForPriority ask)
+  LiveSession(Notices& notices, AskForPriority ask)
       : notices_(notices), loop_(std::move(ask), [this](std::unique_ptr<Device> device) {
           let_go(std::move(device));
         }) {}
-  ~Desk();  // what is recorded is complete before the program ends
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
+  ~LiveSession();  // what is recorded is complete before the program ends
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
 
   // Another world and its loop, with a real device or the virtual arm. `shown` as Stage's. Errors:
   // as Stage and LiveLoop::open(); what there was before goes on then.

@@ -1,10 +1,10 @@
-#include "app/desktop/desk/pad_hand.h"
+#include "app/desktop/live/pad_hand.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "app/desktop/desk/hand_goal.h"
+#include "app/desktop/live/hand_goal.h"
 
 namespace limpid {
 namespace {

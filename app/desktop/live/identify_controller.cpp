@@ -1,4 +1,4 @@
-#include "app/desktop/desk/identify_desk.h"
+#include "app/desktop/live/identify_controller.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -22,12 +22,13 @@ fs::path folder_for(const std::string& name) {
 }
 
 // What moved is kept, whatever can be made of it.
-IdentifyDesk::Done conclude(const std::string& name, const IdentifyOrder& order, IdentifyRun bare,
-                            IdentifyRun with_load, const std::string& last) {
+IdentifyController::Done conclude(const std::string& name, const IdentifyOrder& order,
+                                  IdentifyRun bare, IdentifyRun with_load,
+                                  const std::string& last) {
   const fs::path folder = folder_for(name);
   write_motion(bare, folder / kMotionFile);
   if (order.load > 0) write_motion(with_load, folder / kLoadedMotionFile);
-  IdentifyDesk::Done done{
+  IdentifyController::Done done{
       .identification = identification(name, order, std::move(bare), std::move(with_load)),
       .drift = {},
       .report = folder,
@@ -40,20 +41,20 @@ IdentifyDesk::Done conclude(const std::string& name, const IdentifyOrder& order,
 
 }  // namespace
 
-std::string IdentifyDesk::why_not() const {
-  if (desk_.recording()) return "Stop the recording first.";
+std::string IdentifyController::why_not() const {
+  if (live_.recording()) return "Stop the recording first.";
   if (simulated()) return {};
-  if (desk_.loop().device_plugged() && !desk_.loop().device_in_place()) {
+  if (live_.loop().device_plugged() && !live_.loop().device_in_place()) {
     return "It has no motors that could move it.";
   }
-  if (!desk_.loop().device_plugged()) {
+  if (!live_.loop().device_plugged()) {
     return devices_.problem().empty() ? "The device is not in the loop." : devices_.problem();
   }
   return {};
 }
 
-double IdentifyDesk::duration(const ExcitationPlan& plan) const {
-  const ArmDescription& arm = desk_.stage().arm();
+double IdentifyController::duration(const ExcitationPlan& plan) const {
+  const ArmDescription& arm = live_.stage().arm();
   DeviceTraits traits;
   traits.dof = arm.dof();
   for (const Joint& joint : arm.joints) traits.effort.push_back(joint.effort);
@@ -61,10 +62,10 @@ double IdentifyDesk::duration(const ExcitationPlan& plan) const {
   return Excitation(arm, traits, plan).duration();
 }
 
-void IdentifyDesk::begin(IdentifyOrder order) {
+void IdentifyController::begin(IdentifyOrder order) {
   if (phase_ != Phase::asking || !why_not().empty()) return;
   order_ = std::move(order);
-  order_.guess = desk_.stage().arm();
+  order_.guess = live_.stage().arm();
   id_ = devices_.hub().in_use();
   if (simulated()) {
     bench_ = simulated_bench(order_, kSeed);
@@ -82,7 +83,7 @@ void IdentifyDesk::begin(IdentifyOrder order) {
 }
 
 // Once the loop has given the device back: nobody else may drive it.
-void IdentifyDesk::move() {
+void IdentifyController::move() {
   talk_ = std::make_shared<IdentifyTalk>();
   const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_, bench = bench_,
                     open = simulated() ? nullptr : devices_.hub().opening(),
@@ -92,14 +93,14 @@ void IdentifyDesk::move() {
     talk->see();
     return run_identification(*device, order.guess, order.plan, *talk, ask);
   };
-  moving_ = desk_.device_errands().run(run);
+  moving_ = live_.device_errands().run(run);
 }
 
-void IdentifyDesk::go_on() {
+void IdentifyController::go_on() {
   if (phase_ == Phase::load) phase_ = Phase::moving;
 }
 
-void IdentifyDesk::update() {
+void IdentifyController::update() {
   talk_->see();
   if (phase_ != Phase::asking && devices_.hub().in_use() != id_) stop();
   try {
@@ -110,10 +111,10 @@ void IdentifyDesk::update() {
   }
 }
 
-void IdentifyDesk::follow_motion() {
+void IdentifyController::follow_motion() {
   if (phase_ != Phase::moving) return;
   if (!moving_.valid()) {
-    if (simulated() || !desk_.loop().holds_device()) move();
+    if (simulated() || !live_.loop().holds_device()) move();
     return;
   }
   std::optional<IdentifyRun> run = take_ready(moving_);
@@ -127,14 +128,14 @@ void IdentifyDesk::follow_motion() {
   IdentifyRun with_load;
   if (bare_) with_load = std::move(*run);
   phase_ = Phase::working;
-  working_ = desk_.device_errands().run(
+  working_ = live_.device_errands().run(
       [name = name_, order = order_, bare = bare_ ? std::move(*bare_) : std::move(*run),
        with_load = std::move(with_load), last = devices_.hub().remembered_report()]() mutable {
         return conclude(name, order, std::move(bare), std::move(with_load), last);
       });
 }
 
-void IdentifyDesk::follow_work() {
+void IdentifyController::follow_work() {
   if (phase_ != Phase::working) return;
   if (auto done = take_ready(working_)) {
     done_ = std::move(*done);
@@ -145,12 +146,12 @@ void IdentifyDesk::follow_work() {
   }
 }
 
-void IdentifyDesk::fail(const std::string& why) {
+void IdentifyController::fail(const std::string& why) {
   stop();
   wrong_ = why;
 }
 
-void IdentifyDesk::stop() {
+void IdentifyController::stop() {
   talk_->cancel = true;
   if (phase_ == Phase::asking) return;
   wrong_ = busy() ? "stopped" : "";
@@ -162,13 +163,13 @@ void IdentifyDesk::stop() {
   devices_.take_back();
 }
 
-void IdentifyDesk::leave() {
+void IdentifyController::leave() {
   if (moving()) return stop();
   left_ = phase_ == Phase::working;
   devices_.take_back();
 }
 
-void IdentifyDesk::keep() {
+void IdentifyController::keep() {
   if (phase_ != Phase::found || simulated()) return;
   const std::string wrong = devices_.hub().remember(nature_of(done_->identification));
   if (!wrong.empty()) return fail(wrong);

@@ -1,5 +1,5 @@
 // A gamepad as a hand: what sticks, triggers and buttons ask for.
-#include "app/desktop/desk/pad_hand.h"
+#include "app/desktop/live/pad_hand.h"
 
 #include <gtest/gtest.h>
 

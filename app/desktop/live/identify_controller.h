@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
-#include "app/desktop/desk/device_desk.h"
+#include "app/desktop/live/device_controller.h"
 #include "app/identify/findings.h"
 #include "app/identify/simulated_bench.h"
 
 namespace limpid {
 
-class IdentifyDesk {
+class IdentifyController {
  public:
   enum class Phase { asking, moving, load, working, found };
   struct Done {
@@ -24,9 +24,9 @@ class IdentifyDesk {
     std::string no_pictures;       // why there are none
   };
 
-  IdentifyDesk(Desk& desk, DeviceDesk& devices, Notices& notices)
-      : desk_(desk), devices_(devices), notices_(notices) {}
-  ~IdentifyDesk() { stop(); }
+  IdentifyController(LiveSession& live, DeviceController& devices, Notices& notices)
+      : live_(live), devices_(devices), notices_(notices) {}
+  ~IdentifyController() { stop(); }
 
   // Once a frame.
   void update();
@@ -62,8 +62,8 @@ class IdentifyDesk {
   void follow_work();
   void fail(const std::string& why);
 
-  Desk& desk_;
-  DeviceDesk& devices_;
+  LiveSession& live_;
+  DeviceController& devices_;
   Notices& notices_;
   Phase phase_ = Phase::asking;
   IdentifyOrder order_;

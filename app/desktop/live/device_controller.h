@@ -10,23 +10,23 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/desk/desk.h"
+#include "app/desktop/live/live_session.h"
 #include "app/device/device_hub.h"
 #include "devices/buttons.h"
 
 namespace limpid {
 
-// What the desk asks for that changes more than the loop.
+// What it asks for that changes more than the loop.
 struct DeviceRequests {
   std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
   std::function<void()> close;                        // the virtual arm by the mouse
   std::function<void()> toggle_coupling;
 };
 
-class DeviceDesk {
+class DeviceController {
  public:
-  DeviceDesk(Desk& desk, Notices& notices, AskForPriority ask, DeviceRequests requests)
-      : desk_(desk),
+  DeviceController(LiveSession& live, Notices& notices, AskForPriority ask, DeviceRequests requests)
+      : live_(live),
         notices_(notices),
         hub_(device_book_file(), std::move(ask)),
         requests_(std::move(requests)) {}
@@ -80,7 +80,7 @@ class DeviceDesk {
   // A recording goes on with the device that it began with only.
   bool must_wait() const;
 
-  Desk& desk_;
+  LiveSession& live_;
   Notices& notices_;
   DeviceHub hub_;
   DeviceRequests requests_;

@@ -1,4 +1,4 @@
-#include "app/desktop/desk/device_desk.h"
+#include "app/desktop/live/device_controller.h"
 
 #include <fmt/format.h>
 
@@ -14,14 +14,14 @@ constexpr milliseconds kSettle{500};     // until the loop shows whether a new d
 
 }  // namespace
 
-void DeviceDesk::update() {
+void DeviceController::update() {
   look();
   take_connected();
   follow_check();
-  if (desk_.loop().device_in_place()) desk_.controls().limits = hub_.notes(hub_.in_use()).limits;
-  if (desk_.loop().device_plugged()) return watch();
+  if (live_.loop().device_in_place()) live_.controls().limits = hub_.notes(hub_.in_use()).limits;
+  if (live_.loop().device_plugged()) return watch();
   if (hub_.in_use().empty() || lent_ || connecting_.valid() || check_.valid() ||
-      desk_.loop().holds_device() || Clock::now() < retry_at_) {
+      live_.loop().holds_device() || Clock::now() < retry_at_) {
     return;
   }
   decide_who_chooses();
@@ -39,7 +39,7 @@ void DeviceDesk::update() {
   if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
 }
 
-std::string DeviceDesk::obstacle() const {
+std::string DeviceController::obstacle() const {
   const FoundDevice* found = hub_.present();
   if (found == nullptr) return "not connected";
   if (!found->missing.empty()) return found->missing;
@@ -52,7 +52,7 @@ std::string DeviceDesk::obstacle() const {
   return must_wait() ? "waits for the end of the recording" : "";
 }
 
-void DeviceDesk::decide_who_chooses() {
+void DeviceController::decide_who_chooses() {
   if (std::exchange(decided_, true) || !waits_.empty()) return;
   if (const std::string other = hub_.go_first(); !other.empty()) {
     wait_for_choice(
@@ -63,46 +63,46 @@ void DeviceDesk::decide_who_chooses() {
 }
 
 // If another window is the first, it stays that.
-void DeviceDesk::choose() {
+void DeviceController::choose() {
   decided_ = true;
   waits_.clear();
   retry_at_ = {};
   hub_.go_first();
 }
 
-bool DeviceDesk::waits_for_choice() const {
+bool DeviceController::waits_for_choice() const {
   const FoundDevice* found = hub_.present();
   return !waits_.empty() && found != nullptr && found->missing.empty();
 }
 
-bool DeviceDesk::awaits_check() const {
+bool DeviceController::awaits_check() const {
   const bool unchecked = hub_.needs_check() || unchecked_ == hub_.in_use();
   return unchecked && !hub_.in_use().empty() && !check_.valid() && hub_.refusal().empty();
 }
 
-bool DeviceDesk::must_wait() const {
+bool DeviceController::must_wait() const {
   const FoundDevice* found = hub_.present();
-  return desk_.recording() && !desk_.loop().device_in_place() && found != nullptr &&
+  return live_.recording() && !live_.loop().device_in_place() && found != nullptr &&
          !found->kind->leads_hand;
 }
 
-void DeviceDesk::look() {
+void DeviceController::look() {
   if (auto found = take_ready(looking_)) hub_.take(std::move(*found), asking_services_);
   const auto now = Clock::now();
   if (looking_.valid() || now < look_at_) return;
   asking_services_ = now >= services_at_;
   if (asking_services_) services_at_ = now + kServices;
-  looking_ = desk_.device_errands().run([wanted = hub_.in_use(), services = asking_services_] {
+  looking_ = live_.device_errands().run([wanted = hub_.in_use(), services = asking_services_] {
     return DeviceHub::look(wanted, services);
   });
   look_at_ = now + kLook;
 }
 
-void DeviceDesk::watch() {
-  const Snapshot& snapshot = desk_.loop().snapshot();
+void DeviceController::watch() {
+  const Snapshot& snapshot = live_.loop().snapshot();
   if (Clock::now() < plugged_at_ + kSettle) return;
   const Arming before = std::exchange(arming_, snapshot.arming);
-  if (desk_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
+  if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
     notices_.say(fmt::format("Force is off: {}. F arms it again.", explain(snapshot.force_state)),
                  true);
   }
@@ -110,26 +110,26 @@ void DeviceDesk::watch() {
     problem_ = "not connected";
     notices_.say("The device is gone. It is taken up again when it comes back, without force.",
                  true);
-    desk_.loop().plug(nullptr);
+    live_.loop().plug(nullptr);
     return;
   }
   const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
   if ((pressed & 1) != 0) requests_.toggle_coupling();
-  if ((pressed & 2) != 0) desk_.toggle_force();
+  if ((pressed & 2) != 0) live_.toggle_force();
 }
 
-void DeviceDesk::connect() {
+void DeviceController::connect() {
   problem_ = "connecting";
   connecting_id_ = hub_.in_use();
-  connecting_ = desk_.device_errands().run(hub_.opening());
+  connecting_ = live_.device_errands().run(hub_.opening());
 }
 
-void DeviceDesk::take_connected() {
+void DeviceController::take_connected() {
   try {
     auto ready = take_ready(connecting_);
     if (!ready) return;
     if (connecting_id_ != hub_.in_use() || must_wait()) {  // meanwhile it is not wanted
-      return desk_.let_go(std::move(*ready));
+      return live_.let_go(std::move(*ready));
     }
     const DeviceTraits traits = (*ready)->traits();
     requests_.open(std::move(*ready));
@@ -148,25 +148,25 @@ void DeviceDesk::take_connected() {
   }
 }
 
-void DeviceDesk::save() {
+void DeviceController::save() {
   if (const std::string error = hub_.save(); !error.empty()) notices_.say(error, true);
 }
 
-void DeviceDesk::plugged() {
+void DeviceController::plugged() {
   buttons_.forget();
   arming_ = Arming::off;
   plugged_at_ = Clock::now();
 }
 
-void DeviceDesk::start_check() {
+void DeviceController::start_check() {
   choose();
   talk_ = std::make_shared<AxisCheckTalk>();
   problem_.clear();
   connecting_id_ = hub_.in_use();
-  check_ = desk_.device_errands().run(hub_.checking(talk_, desk_.stage().arm()));
+  check_ = live_.device_errands().run(hub_.checking(talk_, live_.stage().arm()));
 }
 
-void DeviceDesk::follow_check() {
+void DeviceController::follow_check() {
   if (!check_.valid()) return;
   talk_->see_window();
   try {
@@ -186,8 +186,8 @@ void DeviceDesk::follow_check() {
   }
 }
 
-void DeviceDesk::use(const std::string& id) {
-  if (desk_.recording()) {
+void DeviceController::use(const std::string& id) {
+  if (live_.recording()) {
     notices_.say("Stop the recording before changing the device.", true);
     return;
   }
@@ -206,17 +206,17 @@ void DeviceDesk::use(const std::string& id) {
   save();
 }
 
-void DeviceDesk::connect_anew() {
+void DeviceController::connect_anew() {
   save();
-  if (desk_.loop().device_plugged()) lend();
+  if (live_.loop().device_plugged()) lend();
   take_back();
 }
 
-void DeviceDesk::lend() {
+void DeviceController::lend() {
   lent_ = true;
-  desk_.loop().cut();
+  live_.loop().cut();
   cancel_check();
-  desk_.loop().plug(nullptr);
+  live_.loop().plug(nullptr);
 }
 
 }  // namespace limpid

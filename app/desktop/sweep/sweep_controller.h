@@ -10,9 +10,9 @@
 
 namespace limpid {
 
-class SweepDesk {
+class SweepController {
  public:
-  explicit SweepDesk(Notices& notices) : notices_(notices) {}
+  explicit SweepController(Notices& notices) : notices_(notices) {}
 
   // The table comes in beside the window.
   void open(const std::filesystem::path& table);

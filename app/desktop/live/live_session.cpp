@@ -1,4 +1,4 @@
-#include "app/desktop/desk/desk.h"
+#include "app/desktop/live/live_session.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ Vec3 home(const ArmDescription& arm) {
 
 }  // namespace
 
-Desk::~Desk() {
+LiveSession::~LiveSession() {
   loop_.close();
   try {
     complete_recording();
@@ -38,7 +38,7 @@ Desk::~Desk() {
   }
 }
 
-void Desk::complete_recording() {
+void LiveSession::complete_recording() {
   if (opening_.valid()) {  // it never began
     const std::unique_ptr<Recorder> empty = opening_.get();
     empty->finish();
@@ -48,8 +48,8 @@ void Desk::complete_recording() {
   if (closing_.valid()) closing_.get();
 }
 
-void Desk::open(ArmDescription arm, SceneDocument document, const MeshModels& models,
-                const Parameters& p, double shown, std::unique_ptr<Device> device) {
+void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshModels& models,
+                       const Parameters& p, double shown, std::unique_ptr<Device> device) {
   auto fresh = make_stage(std::move(arm), std::move(document), models, p, shown);
   const Vec3 rest = home(fresh->arm());
   if (device) {
@@ -62,45 +62,45 @@ void Desk::open(ArmDescription arm, SceneDocument document, const MeshModels& mo
   take_stage(std::move(fresh));
 }
 
-void Desk::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
-                       double shown) {
+void LiveSession::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
+                              double shown) {
   auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
   touch(fresh->document().scene);
   take_stage(std::move(fresh));
 }
 
-void Desk::touch(const Scene& scene) {
+void LiveSession::touch(const Scene& scene) {
   loop_.exchange(std::make_unique<TouchWorlds>(stage_->arm(), scene));
 }
 
-std::unique_ptr<Stage> Desk::make_stage(ArmDescription arm, SceneDocument document,
-                                        const MeshModels& models, const Parameters& p,
-                                        double shown) const {
+std::unique_ptr<Stage> LiveSession::make_stage(ArmDescription arm, SceneDocument document,
+                                               const MeshModels& models, const Parameters& p,
+                                               double shown) const {
   const int channels = TraceChannels(RowLayout(arm.dof())).count();
   return std::make_unique<Stage>(std::move(arm), std::move(document), models,
                                  History({.channels = 2 * channels, .tick = p.tick}), shown);
 }
 
-void Desk::take_stage(std::unique_ptr<Stage> fresh) {
+void LiveSession::take_stage(std::unique_ptr<Stage> fresh) {
   stage_ = std::move(fresh);
   rows_.assign(2 * kDrainRows * static_cast<std::size_t>(loop_.layout().stride()), 0.0);
 }
 
-void Desk::drop_pictures() {
+void LiveSession::drop_pictures() {
   loop_.close();
   stage_.reset();
 }
 
-std::span<const double> Desk::row() const {
+std::span<const double> LiveSession::row() const {
   return std::span(loop_.snapshot().row).first(static_cast<std::size_t>(loop_.layout().stride()));
 }
 
-bool Desk::force_armed() const {
+bool LiveSession::force_armed() const {
   const Arming now = loop_.snapshot().arming;
   return now != Arming::off && now != Arming::tripped;
 }
 
-void Desk::start_over() {
+void LiveSession::start_over() {
   if (recording()) {
     notices_.say("Stop the recording before starting over.", true);
     return;
@@ -112,19 +112,19 @@ void Desk::start_over() {
                    : "Started over, at rest.");
 }
 
-void Desk::let_go(std::unique_ptr<Device> device) {
+void LiveSession::let_go(std::unique_ptr<Device> device) {
   device_errands_.run(
       [done = std::shared_ptr<Device>(std::move(device))]() mutable { done.reset(); });
 }
 
-std::span<const double> Desk::twin_row() const {
+std::span<const double> LiveSession::twin_row() const {
   if (!controls_.twin || loop_.device_in_place()) return {};
   const auto row =
       std::span(loop_.snapshot().twin).first(static_cast<std::size_t>(loop_.layout().stride()));
   return std::isnan(row[0]) ? std::span<const double>() : row;
 }
 
-std::string Desk::why_twin_is_fixed() const {
+std::string LiveSession::why_twin_is_fixed() const {
   if (recording()) return "Stop the recording before the twin comes or goes.";
   if (loop_.device_in_place()) {
     return "A twin needs the virtual arm: one hand cannot hold two real devices.";
@@ -132,7 +132,7 @@ std::string Desk::why_twin_is_fixed() const {
   return {};
 }
 
-void Desk::update(const Parameters& p, const Parameters* twin) {
+void LiveSession::update(const Parameters& p, const Parameters* twin) {
   controls_.parameters = p;
   controls_.twin = twin != nullptr;
   if (twin != nullptr) controls_.twin_parameters = *twin;
@@ -147,12 +147,12 @@ void Desk::update(const Parameters& p, const Parameters* twin) {
   watch_loop();
 }
 
-void Desk::mark(const std::string& label, const std::string& key) {
+void LiveSession::mark(const std::string& label, const std::string& key) {
   changes_.push_back({0, key, label});
 }
 
 // The rows up to here are those of before: however long a frame takes, a mark stands at its change.
-void Desk::set_marks() {
+void LiveSession::set_marks() {
   History& history = stage_->history;
   for (Mark& change : changes_) {
     history.mark(history.end_time() - history.offset(), std::move(change.label),
@@ -161,7 +161,7 @@ void Desk::set_marks() {
   changes_.clear();
 }
 
-void Desk::take_rows() {
+void LiveSession::take_rows() {
   const auto stride = static_cast<std::size_t>(loop_.layout().stride());
   while (const std::size_t count = loop_.drain(rows_)) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -171,7 +171,7 @@ void Desk::take_rows() {
   }
 }
 
-void Desk::watch_loop() {
+void LiveSession::watch_loop() {
   const LoopStatus loop = loop_.status();
   if (was_running_ && !loop.running) {
     notices_.say(
@@ -181,18 +181,18 @@ void Desk::watch_loop() {
   was_running_ = loop.running;
 }
 
-bool Desk::became_unstable() {
+bool LiveSession::became_unstable() {
   const bool diverged = loop_.snapshot().diverged;
   return !std::exchange(was_diverged_, diverged) && diverged;
 }
 
-bool Desk::may_record() {
+bool LiveSession::may_record() {
   if (opening_.valid()) return false;
   if (closing_.valid()) notices_.say("The last recording is still being closed.");
   return !closing_.valid();
 }
 
-void Desk::record(const RunPlan& plan, const fs::path& folder) {
+void LiveSession::record(const RunPlan& plan, const fs::path& folder) {
   const std::string name =
       fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
   SessionInfo about = session_info(plan);
@@ -204,7 +204,7 @@ void Desk::record(const RunPlan& plan, const fs::path& folder) {
       });
 }
 
-void Desk::follow_recording() {
+void LiveSession::follow_recording() {
   try {
     if (auto recorder = take_ready(opening_)) {
       loop_.record(std::move(*recorder));
@@ -228,11 +228,11 @@ void Desk::follow_recording() {
   }
 }
 
-void Desk::save_beside(std::function<PlotNotice()> work) {
+void LiveSession::save_beside(std::function<PlotNotice()> work) {
   saving_.push_back(file_errands_.run(std::move(work)));
 }
 
-void Desk::follow_saving() {
+void LiveSession::follow_saving() {
   for (std::future<PlotNotice>& saving : saving_) {
     if (auto notice = take_ready(saving)) notices_.say(notice->text, notice->bad);
   }
