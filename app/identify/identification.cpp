@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-Identification identification(std::string device, const IdentifyOrder& order, IdentifyRun bare,
+Identification identification(std::string device, const IdentifyRequest& order, IdentifyRun bare,
                               IdentifyRun with_load) {
   Identification out{.device = std::move(device),
                      .order = order,
@@ -77,7 +77,7 @@ std::string with_plus_minus(std::string text) {
   return text;
 }
 
-std::string explain(const IdentifyRun& run, const IdentifyOrder& order) {
+std::string explain(const IdentifyRun& run, const IdentifyRequest& order) {
   std::string text = explain(run.end);
   if (run.end == ExcitationEnd::held) {
     text += fmt::format(" ({})", order.guess.joints[static_cast<std::size_t>(run.joint)].name);

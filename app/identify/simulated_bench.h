@@ -11,10 +11,10 @@ struct SimulatedBench {
   ArmDescription truth;
   Unlikeness unlikeness;  // the torque's scale only where the order has a load that finds it
 };
-SimulatedBench simulated_bench(const IdentifyOrder& order, unsigned seed);
+SimulatedBench simulated_bench(const IdentifyRequest& order, unsigned seed);
 
 // Moves it, with the order's load at the tip or without.
-IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyOrder& order, bool with_load,
-                           IdentifyTalk& talk);
+IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyRequest& order,
+                           bool with_load, IdentifyProgress& progress);
 
 }  // namespace limpid

@@ -92,7 +92,7 @@ void DeviceController::look() {
   if (looking_.valid() || now < look_at_) return;
   asking_services_ = now >= services_at_;
   if (asking_services_) services_at_ = now + kServices;
-  looking_ = live_.device_errands().run([wanted = hub_.in_use(), services = asking_services_] {
+  looking_ = live_.device_tasks().run([wanted = hub_.in_use(), services = asking_services_] {
     return DeviceHub::look(wanted, services);
   });
   look_at_ = now + kLook;
@@ -121,7 +121,7 @@ void DeviceController::watch() {
 void DeviceController::connect() {
   problem_ = "connecting";
   connecting_id_ = hub_.in_use();
-  connecting_ = live_.device_errands().run(hub_.opening());
+  connecting_ = live_.device_tasks().run(hub_.opening());
 }
 
 void DeviceController::take_connected() {
@@ -160,15 +160,15 @@ void DeviceController::plugged() {
 
 void DeviceController::start_check() {
   choose();
-  talk_ = std::make_shared<AxisCheckTalk>();
+  progress_ = std::make_shared<AxisCheckProgress>();
   problem_.clear();
   connecting_id_ = hub_.in_use();
-  check_ = live_.device_errands().run(hub_.checking(talk_, live_.stage().arm()));
+  check_ = live_.device_tasks().run(hub_.checking(progress_, live_.stage().arm()));
 }
 
 void DeviceController::follow_check() {
   if (!check_.valid()) return;
-  talk_->see_window();
+  progress_->see_window();
   try {
     const auto check = take_ready(check_);
     if (!check || connecting_id_ != hub_.in_use()) return;

@@ -28,7 +28,7 @@ class DeviceController {
   DeviceController(LiveSession& live, Notices& notices, AskForPriority ask, DeviceRequests requests)
       : live_(live),
         notices_(notices),
-        hub_(device_book_file(), std::move(ask)),
+        hub_(device_store_file(), std::move(ask)),
         requests_(std::move(requests)) {}
 
   // Once a frame.
@@ -52,10 +52,10 @@ class DeviceController {
   bool awaits_check() const;
   void start_check();
   void cancel_check() {
-    if (talk_) talk_->cancel = true;
+    if (progress_) progress_->cancel = true;
   }
   // What goes on in it; null: none does.
-  const AxisCheckTalk* check() const { return check_.valid() ? talk_.get() : nullptr; }
+  const AxisCheckProgress* check() const { return check_.valid() ? progress_.get() : nullptr; }
 
   // The device in use leaves the loop, without force, and stays away until it is taken back.
   void lend();
@@ -97,7 +97,7 @@ class DeviceController {
   bool decided_ = false;   // whether the user has to
   bool blocked_ = false;   // the problem is an obstacle
   std::future<AxisCheck> check_;
-  std::shared_ptr<AxisCheckTalk> talk_;
+  std::shared_ptr<AxisCheckProgress> progress_;
 };
 
 }  // namespace limpid

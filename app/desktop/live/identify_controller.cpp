@@ -22,7 +22,7 @@ fs::path folder_for(const std::string& name) {
 }
 
 // What moved is kept, whatever can be made of it.
-IdentifyController::Done conclude(const std::string& name, const IdentifyOrder& order,
+IdentifyController::Done conclude(const std::string& name, const IdentifyRequest& order,
                                   IdentifyRun bare, IdentifyRun with_load,
                                   const std::string& last) {
   const fs::path folder = folder_for(name);
@@ -62,18 +62,18 @@ double IdentifyController::duration(const ExcitationPlan& plan) const {
   return Excitation(arm, traits, plan).duration();
 }
 
-void IdentifyController::begin(IdentifyOrder order) {
+void IdentifyController::begin(IdentifyRequest order) {
   if (phase_ != Phase::asking || !why_not().empty()) return;
-  order_ = std::move(order);
-  order_.guess = live_.stage().arm();
+  request_ = std::move(order);
+  request_.guess = live_.stage().arm();
   id_ = devices_.hub().in_use();
   if (simulated()) {
-    bench_ = simulated_bench(order_, kSeed);
+    bench_ = simulated_bench(request_, kSeed);
     name_ = bench_.name;
   } else {
     const FoundDevice* found = devices_.hub().present();
     name_ = found != nullptr ? found->place.name : id_;
-    order_.plan = within(order_.plan, devices_.hub().notes(id_).limits);
+    request_.plan = within(request_.plan, devices_.hub().notes(id_).limits);
     devices_.lend();
   }
   bare_.reset();
@@ -84,16 +84,16 @@ void IdentifyController::begin(IdentifyOrder order) {
 
 // Once the loop has given the device back: nobody else may drive it.
 void IdentifyController::move() {
-  talk_ = std::make_shared<IdentifyTalk>();
-  const auto run = [order = order_, with_load = bare_.has_value(), talk = talk_, bench = bench_,
-                    open = simulated() ? nullptr : devices_.hub().opening(),
+  progress_ = std::make_shared<IdentifyProgress>();
+  const auto run = [order = request_, with_load = bare_.has_value(), progress = progress_,
+                    bench = bench_, open = simulated() ? nullptr : devices_.hub().opening(),
                     ask = devices_.hub().ask()] {
-    if (!open) return move_simulated(bench, order, with_load, *talk);
+    if (!open) return move_simulated(bench, order, with_load, *progress);
     const std::unique_ptr<Device> device = open();
-    talk->see();
-    return run_identification(*device, order.guess, order.plan, *talk, ask);
+    progress->see();
+    return run_identification(*device, order.guess, order.plan, *progress, ask);
   };
-  moving_ = live_.device_errands().run(run);
+  moving_ = live_.device_tasks().run(run);
 }
 
 void IdentifyController::go_on() {
@@ -101,7 +101,7 @@ void IdentifyController::go_on() {
 }
 
 void IdentifyController::update() {
-  talk_->see();
+  progress_->see();
   if (phase_ != Phase::asking && devices_.hub().in_use() != id_) stop();
   try {
     follow_motion();
@@ -119,8 +119,8 @@ void IdentifyController::follow_motion() {
   }
   std::optional<IdentifyRun> run = take_ready(moving_);
   if (!run) return;
-  if (run->end != ExcitationEnd::complete) return fail(explain(*run, order_));
-  if (order_.load > 0 && !bare_) {
+  if (run->end != ExcitationEnd::complete) return fail(explain(*run, request_));
+  if (request_.load > 0 && !bare_) {
     bare_ = std::move(run);
     phase_ = Phase::load;
     return;
@@ -128,8 +128,8 @@ void IdentifyController::follow_motion() {
   IdentifyRun with_load;
   if (bare_) with_load = std::move(*run);
   phase_ = Phase::working;
-  working_ = live_.device_errands().run(
-      [name = name_, order = order_, bare = bare_ ? std::move(*bare_) : std::move(*run),
+  working_ = live_.device_tasks().run(
+      [name = name_, order = request_, bare = bare_ ? std::move(*bare_) : std::move(*run),
        with_load = std::move(with_load), last = devices_.hub().remembered_report()]() mutable {
         return conclude(name, order, std::move(bare), std::move(with_load), last);
       });
@@ -152,7 +152,7 @@ void IdentifyController::fail(const std::string& why) {
 }
 
 void IdentifyController::stop() {
-  talk_->cancel = true;
+  progress_->cancel = true;
   if (phase_ == Phase::asking) return;
   wrong_ = busy() ? "stopped" : "";
   left_ = false;
@@ -171,7 +171,7 @@ void IdentifyController::leave() {
 
 void IdentifyController::keep() {
   if (phase_ != Phase::found || simulated()) return;
-  const std::string wrong = devices_.hub().remember(nature_of(done_->identification));
+  const std::string wrong = devices_.hub().remember(profile_of(done_->identification));
   if (!wrong.empty()) return fail(wrong);
   stop();
   devices_.connect_anew();  // it may be in the loop already, as what it was

@@ -42,7 +42,7 @@ class IdentifyController {
   double duration(const ExcitationPlan& plan) const;
   // Moves the device, which leaves the loop for it, without its force; of the order the arm and the
   // limits are the device's.
-  void begin(IdentifyOrder order);
+  void begin(IdentifyRequest order);
   void go_on();  // the load is fixed to the tip
   // No motion; what was found is forgotten, and the device comes back into the loop.
   void stop();
@@ -52,7 +52,7 @@ class IdentifyController {
   // What was found is the device's from now on.
   void keep();
 
-  const IdentifyTalk& talk() const { return *talk_; }  // while it moves
+  const IdentifyProgress& progress() const { return *progress_; }  // while it moves
   const Done* done() const { return done_ ? &*done_ : nullptr; }
   const std::string& wrong() const { return wrong_; }  // why the last one came to nothing
 
@@ -66,11 +66,11 @@ class IdentifyController {
   DeviceController& devices_;
   Notices& notices_;
   Phase phase_ = Phase::asking;
-  IdentifyOrder order_;
+  IdentifyRequest request_;
   SimulatedBench bench_;  // in place of the virtual arm
   bool left_ = false;     // before it was found
   std::string name_, id_, wrong_;
-  std::shared_ptr<IdentifyTalk> talk_ = std::make_shared<IdentifyTalk>();
+  std::shared_ptr<IdentifyProgress> progress_ = std::make_shared<IdentifyProgress>();
   std::future<IdentifyRun> moving_;
   std::optional<IdentifyRun> bare_;
   std::future<Done> working_;

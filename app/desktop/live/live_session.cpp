@@ -6,7 +6,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "app/device/device_book.h"
+#include "app/device/device_store.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
 
@@ -113,7 +113,7 @@ void LiveSession::start_over() {
 }
 
 void LiveSession::let_go(std::unique_ptr<Device> device) {
-  device_errands_.run(
+  device_tasks_.run(
       [done = std::shared_ptr<Device>(std::move(device))]() mutable { done.reset(); });
 }
 
@@ -197,7 +197,7 @@ void LiveSession::record(const RunPlan& plan, const fs::path& folder) {
       fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
-  opening_ = file_errands_.run(
+  opening_ = file_tasks_.run(
       [file = folder / name, info = std::move(about), initial = plan.parameters, twin = plan.twin] {
         return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
                                           twin ? &twin->parameters : nullptr);
@@ -213,7 +213,7 @@ void LiveSession::follow_recording() {
     if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
     if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
       recorded_ = done->out();
-      closing_ = file_errands_.run([done] {
+      closing_ = file_tasks_.run([done] {
         done->finish();
         const std::uint64_t dropped = done->dropped();
         const std::string missing = dropped > 0 ? fmt::format(", {} ticks missing", dropped) : "";
@@ -229,7 +229,7 @@ void LiveSession::follow_recording() {
 }
 
 void LiveSession::save_beside(std::function<PlotNotice()> work) {
-  saving_.push_back(file_errands_.run(std::move(work)));
+  saving_.push_back(file_tasks_.run(std::move(work)));
 }
 
 void LiveSession::follow_saving() {

@@ -13,7 +13,7 @@
 #include "app/live/live_loop.h"
 #include "app/plot/plot_menu.h"
 #include "app/run/simulate.h"
-#include "app/session/errands.h"
+#include "app/session/tasks.h"
 
 namespace limpid {
 
@@ -66,7 +66,7 @@ class LiveSession {
   std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
 
   // Work on devices, which may hang; of their own, so that files never wait for it.
-  Errands& device_errands() { return device_errands_; }
+  TaskQueue& device_tasks() { return device_tasks_; }
   // Closes a device beside the window.
   void let_go(std::unique_ptr<Device> device);
   // Writes something beside the window, and says what became of it.
@@ -95,7 +95,7 @@ class LiveSession {
 
   Notices& notices_;
   Controls controls_;
-  Errands device_errands_, file_errands_;
+  TaskQueue device_tasks_, file_tasks_;
   LiveLoop loop_;
   std::unique_ptr<Stage> stage_;
   std::vector<double> rows_;

@@ -70,7 +70,7 @@ void choices(DeviceController& devices, const PadChoice& pads) {
 
 // The guided check of a device that has not been used before; true while there is one to show.
 bool axis_check(DeviceController& devices) {
-  if (const AxisCheckTalk* check = devices.check()) {
+  if (const AxisCheckProgress* check = devices.check()) {
     ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
     if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
     return true;

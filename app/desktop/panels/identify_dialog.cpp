@@ -40,12 +40,12 @@ void part_slider(const char* label, double& part, float least, float most, const
   tooltip(help);
 }
 
-std::string going_on(const IdentifyTalk& talk, const ArmDescription& arm) {
-  switch (talk.stage) {
+std::string going_on(const IdentifyProgress& progress, const ArmDescription& arm) {
+  switch (progress.stage) {
     case ExcitationStage::approach: return "goes to the middle of its range";
     case ExcitationStage::sweep:
       return fmt::format("{} slowly, for its friction",
-                         arm.joints[static_cast<std::size_t>(talk.joint)].name);
+                         arm.joints[static_cast<std::size_t>(progress.joint)].name);
     case ExcitationStage::shake: return "all joints at once, for inertia, weight and delay";
     case ExcitationStage::fade: return "comes to rest";
   }
@@ -53,9 +53,10 @@ std::string going_on(const IdentifyTalk& talk, const ArmDescription& arm) {
 }
 
 void draw_motion(IdentifyController& controller, const ArmDescription& arm) {
-  const IdentifyTalk& talk = controller.talk();
-  ImGui::TextWrapped("It moves by itself: %s.", going_on(talk, arm).c_str());
-  progress_bar(std::clamp(talk.time / talk.duration, 0.0, 1.0), ImGui::GetContentRegionAvail().x);
+  const IdentifyProgress& progress = controller.progress();
+  ImGui::TextWrapped("It moves by itself: %s.", going_on(progress, arm).c_str());
+  progress_bar(std::clamp(progress.time / progress.duration, 0.0, 1.0),
+               ImGui::GetContentRegionAvail().x);
   muted("Holding on to it ends it, too.");
   if (ImGui::Button("Stop (Esc)")) controller.stop();
 }
@@ -149,9 +150,9 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
       "The device moves by itself, each joint slowly and then all at once, and shows its inertia, "
       "friction, weight, springs and delay. Couplings, margins and compensation rest on them.");
   ImGui::Spacing();
-  part_slider("of each joint's range", order_.plan.range, 0.05f, 0.9f,
+  part_slider("of each joint's range", request_.plan.range, 0.05f, 0.9f,
               "How far it moves, about the middle of its range.");
-  part_slider("of the motors' limits", order_.plan.torque, 0.05f, 1,
+  part_slider("of the motors' limits", request_.plan.torque, 0.05f, 1,
               "The most that its motors may give meanwhile.");
   int down = static_cast<int>(down_);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
@@ -175,7 +176,7 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
               "to try it on."
             : fmt::format("It takes about {:.0f} s. Clear the space around it and "
                           "let go of it; nobody holds it meanwhile.",
-                          controller.duration(order_.plan)));
+                          controller.duration(request_.plan)));
   if (!controller.wrong().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
     ImGui::TextWrapped("Ended: %s", controller.wrong().c_str());
@@ -183,9 +184,9 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
   }
   ImGui::BeginDisabled(!why_not.empty());
   if (ImGui::Button("Begin (Enter)") || (accepted() && why_not.empty())) {
-    order_.load = with_load_ ? 1e-3 * static_cast<double>(load_) : 0;
-    order_.fit.gravity = gravity_of(down_, arm.gravity);
-    controller.begin(order_);
+    request_.load = with_load_ ? 1e-3 * static_cast<double>(load_) : 0;
+    request_.fit.gravity = gravity_of(down_, arm.gravity);
+    controller.begin(request_);
   }
   ImGui::EndDisabled();
 }
@@ -203,7 +204,7 @@ void IdentifyDialog::draw(bool& open, IdentifyController& controller, Down down,
   switch (controller.phase()) {
     case Phase::asking: draw_question(controller, arm); break;
     case Phase::moving: draw_motion(controller, arm); break;
-    case Phase::load: draw_load(controller, order_.load); break;
+    case Phase::load: draw_load(controller, request_.load); break;
     case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
     case Phase::found: open = !draw_found(controller); break;
   }

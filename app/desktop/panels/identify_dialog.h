@@ -23,7 +23,7 @@ class IdentifyDialog {
  private:
   void draw_question(IdentifyController& controller, const ArmDescription& arm);
 
-  IdentifyOrder order_;  // as it was the last time
+  IdentifyRequest request_;  // as it was the last time
   Down down_ = Down::as_file;
   bool with_load_ = false, was_open_ = false;
   float load_ = 50;  // [g]

@@ -234,7 +234,7 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   ImGui::PopClipRect();
 }
 
-MapWish draw_contents(SweepController& controller, Playback& playback, bool& open) {
+MapRequest draw_contents(SweepController& controller, Playback& playback, bool& open) {
   const OpenedSweep& sweep = *controller.sweep();
   MapChoice choice = controller.choice();
   draw_choosers(sweep, choice);
@@ -264,10 +264,10 @@ MapWish draw_contents(SweepController& controller, Playback& playback, bool& ope
 
 }  // namespace
 
-MapWish draw_sweep_panel(SweepController& controller, Playback& playback, bool& open) {
+MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, bool& open) {
   controller.on_screen.reset();
   if (!open) return {};
-  MapWish wish;
+  MapRequest wish;
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetWorkCenter(), ImGuiCond_Always,
                           {0.5f, 0.5f});

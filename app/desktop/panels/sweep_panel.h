@@ -7,10 +7,10 @@
 namespace limpid {
 
 // While `open`, which closing it clears. What is to be played.
-struct MapWish {
+struct MapRequest {
   std::optional<std::uint64_t> point;
   std::optional<double> at;  // of a boundary's axis
 };
-MapWish draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
+MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
 
 }  // namespace limpid

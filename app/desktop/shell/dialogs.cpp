@@ -47,8 +47,8 @@ DrawDialog experiments(Desktop& d) {
 
 DrawDialog sweep_map(Desktop& d) {
   return [&d](bool& open, ScreenRect) {
-    const MapWish wish = draw_sweep_panel(d.sweep, d.playback, open);
-    if (wish.point) d.sweep.play(*wish.point, wish.at, d.playback);
+    const MapRequest request = draw_sweep_panel(d.sweep, d.playback, open);
+    if (request.point) d.sweep.play(*request.point, request.at, d.playback);
   };
 }
 
@@ -147,8 +147,9 @@ DrawDialog named(Desktop& d, NamedTexts& texts, NamedDialog::Options options,
   return [&d, &texts, use, now, dialog = std::make_shared<NamedDialog>(options)](bool& open,
                                                                                  ScreenRect) {
     const NamedDialog::Asked asked = dialog->draw(open, texts);
-    if (asked.wish == NamedDialog::Wish::use) use(d, asked.name);
-    if (asked.wish == NamedDialog::Wish::keep) dialog->complain(texts.keep(asked.name, now(d)));
+    if (asked.request == NamedDialog::Request::use) use(d, asked.name);
+    if (asked.request == NamedDialog::Request::keep)
+      dialog->complain(texts.keep(asked.name, now(d)));
   };
 }
 

@@ -190,7 +190,7 @@ void Frame::draw_plot_row(ScreenRect rect) {
           [this](std::function<PlotNotice()> work) { desktop_.live.save_beside(std::move(work)); },
       .arranged = true};
   PlayedSession* session = desktop_.playback.shown();
-  const PlotsWish asked = draw_plots(
+  const PlotsRequest asked = draw_plots(
       desktop_.shown.stage(), session != nullptr ? &session->player() : nullptr, saving, rect);
   if (asked.wish == PlotWish::add) desktop_.plots.add();
   if (asked.wish == PlotWish::choose) desktop_.plots.choose(asked.plot);

@@ -231,7 +231,7 @@ void World::open_device(std::unique_ptr<Device> device) {
   d_.devices.plugged();
   const DeviceTraits& traits = device->traits();
   const ArmDescription& present = d_.live.stage().arm();
-  if (Plug::guides(traits)) {
+  if (DeviceSlot::guides(traits)) {
     const SceneEditor& editor = d_.document.editor();
     if (d_.live.loop().device_in_place()) {
       open(present, editor.document(), editor.models(), nullptr, !editor.dirty());

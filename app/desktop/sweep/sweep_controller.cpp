@@ -100,7 +100,7 @@ void SweepController::look(const fs::path& file, bool anew) {
   next_look_ = std::chrono::steady_clock::now() + kBetweenLooks;
   const std::shared_ptr<const OpenedSweep> before = anew ? nullptr : sweep_;
   looking_.start(fmt::format("loading {}", file.filename().string()),
-                 [file, before, last = changed_](BackgroundProgress&) -> Look {
+                 [file, before, last = changed_](TaskProgress&) -> Look {
                    std::error_code gone;
                    const Time changed =
                        fs::last_write_time(file, gone);  // an older one looks again
@@ -137,10 +137,9 @@ void SweepController::follow_map() {
     ++revision_;
   }
   if (!sweep_ || mapping_.busy() || (mapped_ == sweep_ && map_ && map_->choice == choice_)) return;
-  mapping_.start("drawing the map",
-                 [sweep = sweep_, choice = choice_](BackgroundProgress&) -> Made {
-                   return {make_map(*sweep, choice), sweep};
-                 });
+  mapping_.start("drawing the map", [sweep = sweep_, choice = choice_](TaskProgress&) -> Made {
+    return {make_map(*sweep, choice), sweep};
+  });
 }
 
 bool SweepController::update() {
@@ -169,7 +168,7 @@ void SweepController::play(std::uint64_t point, std::optional<double> at, Playba
   last_point_ = place_for(sweep_->file, point, at);
   playback.load(fmt::format("running point {}", point),
                 [sweep = sweep_, point, at,
-                 out = last_point_](BackgroundProgress& progress) -> std::optional<LoadedSession> {
+                 out = last_point_](TaskProgress& progress) -> std::optional<LoadedSession> {
                   const auto recorded = record_point(*sweep->plan, point, at, out, progress.cancel,
                                                      [&](double part) { progress.part = part; });
                   if (!recorded) return std::nullopt;

@@ -66,8 +66,8 @@ class SweepController {
   std::chrono::steady_clock::time_point next_look_;
   Time changed_;
   std::uint64_t revision_ = 0;
-  Background<Look> looking_;
-  Background<Made> mapping_;
+  Task<Look> looking_;
+  Task<Made> mapping_;
 };
 
 }  // namespace limpid

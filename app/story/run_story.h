@@ -17,14 +17,15 @@ struct StepNumbers {
   double energy_given = 0;     // the most that E_c rose above where the step found it [J]
 };
 
-struct Told {
+struct StoryRun {
   Session session;  // both runs, in memory
   RunEnd end;
 };
 
 // The same story gives the same rows, bit for bit, but for how long each tick took. `at` is told
 // the seconds that have been told.
-Told tell(const Story& story, const std::atomic<bool>& stop, const std::function<void(double)>& at);
+StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
+                   const std::function<void(double)>& at);
 
 // Of both runs, for each step that was told. `session` has a twin.
 std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,

@@ -1,4 +1,4 @@
-#include "app/device/device_book.h"
+#include "app/device/device_store.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -19,9 +19,9 @@
 namespace limpid {
 namespace {
 
-DeviceBook written_and_read(const DeviceBook& book, const std::filesystem::path& file) {
-  EXPECT_EQ(save_device_book({}, book, file), "");
-  DeviceBook read = load_device_book(file);
+DeviceStore written_and_read(const DeviceStore& store, const std::filesystem::path& file) {
+  EXPECT_EQ(save_device_store({}, store, file), "");
+  DeviceStore read = load_device_store(file);
   EXPECT_EQ(read.complaint(), "");
   return read;
 }
@@ -31,20 +31,20 @@ std::string text_in(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
+TEST(DeviceStore, RemembersTheDeviceInUseAndItsAxes) {
   const test::TempDir dir;
-  DeviceBook book;
-  book.in_use = "1209:4c50:a \"serial\" number";
-  DeviceNotes& notes = book.notes[book.in_use];
+  DeviceStore store;
+  store.in_use = "1209:4c50:a \"serial\" number";
+  DeviceNotes& notes = store.notes[store.in_use];
   notes.axes = {{.zero = 0.25, .inverted = true},
                 {.zero = -1.5, .scale = 0.4, .reversed = true},
                 {.reversed = true}};
   notes.pid.effort = 1.75;
   notes.pid.range = 0.6;
-  const DeviceBook read = written_and_read(book, dir / "below/devices.toml");
-  EXPECT_EQ(read.in_use, book.in_use);
-  ASSERT_EQ(read.notes.count(book.in_use), 1U);
-  const DeviceNotes& again = read.notes.at(book.in_use);
+  const DeviceStore read = written_and_read(store, dir / "below/devices.toml");
+  EXPECT_EQ(read.in_use, store.in_use);
+  ASSERT_EQ(read.notes.count(store.in_use), 1U);
+  const DeviceNotes& again = read.notes.at(store.in_use);
   ASSERT_EQ(again.axes.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(again.axes[i].zero, notes.axes[i].zero);
@@ -56,11 +56,11 @@ TEST(DeviceBook, RemembersTheDeviceInUseAndItsAxes) {
   EXPECT_EQ(again.pid.range, 0.6);
 }
 
-TEST(DeviceBook, LowersLimits) {
+TEST(DeviceStore, LowersLimits) {
   const test::TempDir dir;
-  DeviceBook book;
-  book.notes["id"].limits = {.tip_speed = 0.5, .tip_force = 3, .range = 0.8};
-  const SafetyLimits read = written_and_read(book, dir / "devices.toml").notes["id"].limits;
+  DeviceStore store;
+  store.notes["id"].limits = {.tip_speed = 0.5, .tip_force = 3, .range = 0.8};
+  const SafetyLimits read = written_and_read(store, dir / "devices.toml").notes["id"].limits;
   EXPECT_EQ(read.tip_speed, 0.5);
   EXPECT_EQ(read.tip_force, 3);
   EXPECT_EQ(read.range, 0.8);
@@ -68,7 +68,7 @@ TEST(DeviceBook, LowersLimits) {
 }
 
 // Each of these once meant the widest limit, or an axis that is not inverted.
-TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
+TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   const struct {
@@ -99,67 +99,67 @@ TEST(DeviceBook, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"axis = [{invertd = true}]", "axis[0].invertd", "true", "the key \"inverted\""}};
   for (const auto& [line, key, found, allowed] : kWrong) {
     std::ofstream(file) << "[device.good]\nchecked = true\n[device.\"1:2\"]\n" << line << "\n";
-    const DeviceBook book = load_device_book(file);
-    const std::string said = book.notes.at("1:2").refusal;
+    const DeviceStore store = load_device_store(file);
+    const std::string said = store.notes.at("1:2").refusal;
     EXPECT_THAT(said, testing::StartsWith(file.string() + ":4: device.\"1:2\"." + key + ": "));
     EXPECT_THAT(said, testing::HasSubstr(found)) << line;
     EXPECT_THAT(said, testing::HasSubstr(std::string("allowed: "))) << line;
     EXPECT_THAT(said, testing::HasSubstr(allowed)) << line;
-    EXPECT_EQ(book.notes.at("good").refusal, "") << "it concerns one device only";
-    EXPECT_TRUE(book.notes.at("good").checked);
-    EXPECT_EQ(book.complaint(), said);
-    EXPECT_EQ(book.refusal, "");
+    EXPECT_EQ(store.notes.at("good").refusal, "") << "it concerns one device only";
+    EXPECT_TRUE(store.notes.at("good").checked);
+    EXPECT_EQ(store.complaint(), said);
+    EXPECT_EQ(store.refusal, "");
   }
 }
 
-TEST(DeviceBook, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
+TEST(DeviceStore, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   for (const char* text : {"in_use = \n", "in_use = 7\n", "device = 3\n",
                            "[device.a]\nchecked = true\n[device.a]\n", "\xff\xfe"}) {
     std::ofstream(file) << text;
-    const DeviceBook book = load_device_book(file);
-    EXPECT_THAT(book.refusal, testing::StartsWith(file.string() + ":")) << text;
-    EXPECT_EQ(book.complaint(), book.refusal);
+    const DeviceStore store = load_device_store(file);
+    EXPECT_THAT(store.refusal, testing::StartsWith(file.string() + ":")) << text;
+    EXPECT_EQ(store.complaint(), store.refusal);
   }
   std::filesystem::remove(file);
   std::filesystem::create_directory(file);
-  EXPECT_NE(load_device_book(file).refusal, "") << "a folder in its place";
-  EXPECT_EQ(load_device_book(dir / "none.toml").complaint(), "") << "a first start";
+  EXPECT_NE(load_device_store(file).refusal, "") << "a folder in its place";
+  EXPECT_EQ(load_device_store(dir / "none.toml").complaint(), "") << "a first start";
 }
 
-TEST(DeviceBook, IsNeverWrittenOverWhereItCannotBeUnderstood) {
+TEST(DeviceStore, IsNeverWrittenOverWhereItCannotBeUnderstood) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   for (const std::string text : {"in_use = \n[device.a.limits]\ntip_force = 1\n",
                                  "[device.a.limits]\ntip_force = \"1\"\n", "device = 3\n"}) {
     std::ofstream(file) << text;
-    const DeviceBook before = load_device_book(file);
-    DeviceBook now = before;
+    const DeviceStore before = load_device_store(file);
+    DeviceStore now = before;
     now.notes["a"].pid.effort = 2;
-    EXPECT_THAT(save_device_book(before, now, file), testing::HasSubstr(file.string()));
+    EXPECT_THAT(save_device_store(before, now, file), testing::HasSubstr(file.string()));
     EXPECT_EQ(text_in(file), text);
   }
 }
 
-TEST(DeviceBook, KeepsWhatOthersHaveWrittenMeanwhileAndKeysThatNobodyKnows) {
+TEST(DeviceStore, KeepsWhatOthersHaveWrittenMeanwhileAndKeysThatNobodyKnows) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   std::ofstream(file) << "future = 1\nin_use = \"a\"\n[device.a]\neffort = 1.0\nwarmth = 3\n"
                          "[device.a.limits]\ntip_force = 5.0\nsmell = 2\n[device.b]\nrange = 0.5\n";
-  const DeviceBook start = load_device_book(file);
+  const DeviceStore start = load_device_store(file);
   EXPECT_EQ(start.complaint(), "");
-  DeviceBook window = start, identify = start, other = start;
+  DeviceStore window = start, identify = start, other = start;
   identify.notes["a"].delay = 0.002;
   identify.notes["a"].arm = "/found.urdf";
   other.notes["a"].limits.tip_force = 1;
   other.in_use = "b";
   window.notes["a"].limits.tip_speed = 0.5;
   window.notes["c"].checked = true;
-  EXPECT_EQ(save_device_book(start, identify, file), "");
-  EXPECT_EQ(save_device_book(start, other, file), "");
-  EXPECT_EQ(save_device_book(start, window, file), "");
-  const DeviceBook all = load_device_book(file);
+  EXPECT_EQ(save_device_store(start, identify, file), "");
+  EXPECT_EQ(save_device_store(start, other, file), "");
+  EXPECT_EQ(save_device_store(start, window, file), "");
+  const DeviceStore all = load_device_store(file);
   EXPECT_EQ(all.complaint(), "");
   EXPECT_EQ(all.in_use, "b");
   EXPECT_EQ(all.notes.at("a").delay, 0.002);
@@ -174,19 +174,19 @@ TEST(DeviceBook, KeepsWhatOthersHaveWrittenMeanwhileAndKeysThatNobodyKnows) {
   }
 }
 
-TEST(DeviceBook, ForgetsADelayThatWasTakenBack) {
+TEST(DeviceStore, ForgetsADelayThatWasTakenBack) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   std::ofstream(file) << "[device.a]\ndelay = 0.002\n";
-  const DeviceBook before = load_device_book(file);
-  DeviceBook now = before;
+  const DeviceStore before = load_device_store(file);
+  DeviceStore now = before;
   now.notes["a"].delay = -1;
-  EXPECT_EQ(save_device_book(before, now, file), "");
-  EXPECT_LT(load_device_book(file).notes.at("a").delay, 0);
+  EXPECT_EQ(save_device_store(before, now, file), "");
+  EXPECT_LT(load_device_store(file).notes.at("a").delay, 0);
 }
 
 // Many programs at once, each with an entry of its own; without the lock some would be lost.
-TEST(DeviceBook, LosesNothingWhereManyWriteAtOnce) {
+TEST(DeviceStore, LosesNothingWhereManyWriteAtOnce) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   constexpr int kPrograms = 4, kEntries = 12;
@@ -195,10 +195,10 @@ TEST(DeviceBook, LosesNothingWhereManyWriteAtOnce) {
     programs.push_back(fork());
     if (programs.back() != 0) continue;
     for (int i = 0; i < kEntries; ++i) {
-      const DeviceBook before = load_device_book(file);
-      DeviceBook now = before;
+      const DeviceStore before = load_device_store(file);
+      DeviceStore now = before;
       now.notes[std::to_string(program * 100 + i)].checked = true;
-      if (!save_device_book(before, now, file).empty()) _exit(1);
+      if (!save_device_store(before, now, file).empty()) _exit(1);
     }
     _exit(0);
   }
@@ -207,7 +207,7 @@ TEST(DeviceBook, LosesNothingWhereManyWriteAtOnce) {
     waitpid(program, &status, 0);
     EXPECT_EQ(status, 0);
   }
-  EXPECT_EQ(load_device_book(file).notes.size(), std::size_t{kPrograms * kEntries});
+  EXPECT_EQ(load_device_store(file).notes.size(), std::size_t{kPrograms * kEntries});
 }
 
 // Joints that give way by so much a newton metre.
@@ -227,10 +227,10 @@ std::vector<bool> reversed(const DeviceNotes& notes) {
   return all;
 }
 
-TEST(DeviceBook, RemembersWhatACheckHasFoundOfAnyNumberOfJoints) {
+TEST(DeviceStore, RemembersWhatACheckHasFoundOfAnyNumberOfJoints) {
   const test::TempDir dir;
-  DeviceBook book;
-  DeviceNotes& notes = book.notes["a"];
+  DeviceStore store;
+  DeviceNotes& notes = store.notes["a"];
   notes.axes = {{.zero = 0.25}, {.reversed = true}};
   EXPECT_FALSE(notes.checked);
   EXPECT_TRUE(remember_check(checked({0.5, -0.5, -0.5}), notes));
@@ -239,12 +239,12 @@ TEST(DeviceBook, RemembersWhatACheckHasFoundOfAnyNumberOfJoints) {
   EXPECT_TRUE(remember_check(checked({-0.5, 0.5, 0.5}), notes));
   EXPECT_EQ(reversed(notes), (std::vector{true, false, true}));
   EXPECT_EQ(notes.axes[0].zero, 0.25);
-  const DeviceNotes again = written_and_read(book, dir / "devices.toml").notes.at("a");
+  const DeviceNotes again = written_and_read(store, dir / "devices.toml").notes.at("a");
   EXPECT_TRUE(again.checked);
   EXPECT_EQ(reversed(again), (std::vector{true, false, true}));
 }
 
-TEST(DeviceBook, RemembersNothingOfACheckThatFailed) {
+TEST(DeviceStore, RemembersNothingOfACheckThatFailed) {
   DeviceNotes notes;
   notes.axes = {{.reversed = true}, {}};
   EXPECT_FALSE(remember_check(checked({-0.5, 0}), notes));
@@ -253,14 +253,14 @@ TEST(DeviceBook, RemembersNothingOfACheckThatFailed) {
 }
 
 // Written before there were checks.
-TEST(DeviceBook, TakesTheJoysticksOfOldBooksForUnchecked) {
+TEST(DeviceStore, TakesTheJoysticksOfOldBooksForUnchecked) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   std::ofstream(file) << "in_use = \"a\"\n[device.a]\nrange = 0.6\neffort = 1.75\n"
                          "reverse = [true, false]\naxis = [{zero = 0.25, scale = 1.0, inverted = "
                          "true}]\n";
-  EXPECT_EQ(load_device_book(file).complaint(), "");
-  const DeviceNotes notes = load_device_book(file).notes.at("a");
+  EXPECT_EQ(load_device_store(file).complaint(), "");
+  const DeviceNotes notes = load_device_store(file).notes.at("a");
   EXPECT_FALSE(notes.checked);
   EXPECT_EQ(reversed(notes), (std::vector{true, false}));
   EXPECT_EQ(notes.pid.range, 0.6);
@@ -330,7 +330,7 @@ TEST_F(AHub, OpensNothingThatItsBookRefuses) {
   write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = \"1\"\n");
   EXPECT_THAT(hub(kPushes).refusal(), testing::HasSubstr("limits.tip_force"));
   EXPECT_EQ(refusal_to_open(), hub_->refusal());
-  EXPECT_THROW(hub_->checking(std::make_shared<AxisCheckTalk>(), test::omni())(), FileError);
+  EXPECT_THROW(hub_->checking(std::make_shared<AxisCheckProgress>(), test::omni())(), FileError);
   hub_->use("b");
   EXPECT_EQ(hub_->refusal(), "") << "another device";
   write("in_use = \n");
@@ -377,7 +377,7 @@ TEST_F(AHub, TakesInWhatOthersHaveWrittenWhenItSaves) {
   EXPECT_EQ(one.save(), "");
   EXPECT_EQ(notes.limits.tip_force, 2) << "through the reference that was had before";
   EXPECT_EQ(one.in_use(), "a") << "each window has a device of its own";
-  const DeviceBook read = load_device_book(file);
+  const DeviceStore read = load_device_store(file);
   EXPECT_EQ(read.notes.at("a").limits.tip_force, 2);
   EXPECT_EQ(read.notes.at("a").pid.effort, 1.5);
   EXPECT_EQ(read.in_use, "b");
@@ -424,7 +424,7 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   DeviceHub hub(dir / "devices.toml", {});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, 0.123);
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).delay, 0.0021)
-      << "its file lacks it, the book does not";
+      << "its file lacks it, the store does not";
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, taken_off);
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").delay, 0.0021);
   std::filesystem::remove_all(dir / "data");
@@ -446,7 +446,8 @@ TEST(DeviceHub, CorrectsATorqueScaleByWhatIsFoundAgain) {
   setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);
   DeviceHub hub(dir / "devices.toml", {});
   hub.use("a device");
-  const DeviceHub::Nature half{.urdf = "<robot/>", .report = "{}", .delay = 0, .torque_scale = 0.5};
+  const DeviceHub::Profile half{
+      .urdf = "<robot/>", .report = "{}", .delay = 0, .torque_scale = 0.5};
   EXPECT_EQ(hub.remember(half), "");
   EXPECT_EQ(hub.notes("a device").torque_scale, 0.5);
   EXPECT_EQ(hub.remember(half), "");

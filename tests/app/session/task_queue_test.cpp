@@ -1,5 +1,3 @@
-#include "app/session/errands.h"
-
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "app/session/tasks.h"
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hid_error.h"
 #include "devices/hid/protocols/raw_protocol.h"
@@ -21,35 +20,35 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Errands, AreDoneInTheirOrder) {
-  Errands errands;
+TEST(TasksOfAQueue, AreDoneInTheirOrder) {
+  TaskQueue tasks;
   std::string done;
   for (const char* step : {"a", "b", "c"}) {
-    errands.run([&done, step] { done += step; });
+    tasks.run([&done, step] { done += step; });
   }
-  errands.run([] {}).get();
+  tasks.run([] {}).get();
   EXPECT_EQ(done, "abc");
 }
 
-TEST(Errands, BringBackWhatCameOfThem) {
-  Errands errands;
-  std::future<int> number = errands.run([] { return 7; });
+TEST(TasksOfAQueue, BringBackWhatCameOfThem) {
+  TaskQueue tasks;
+  std::future<int> number = tasks.run([] { return 7; });
   std::optional<int> got;
   while (!got) got = take_ready(number);
   EXPECT_EQ(got, 7);
   EXPECT_FALSE(number.valid());
   EXPECT_FALSE(take_ready(number)) << "once";
-  std::future<int> failing = errands.run([]() -> int { throw std::runtime_error("no"); });
+  std::future<int> failing = tasks.run([]() -> int { throw std::runtime_error("no"); });
   failing.wait();
   EXPECT_THROW(take_ready(failing), std::runtime_error);
 }
 
-TEST(Errands, AreAllDoneBeforeTheEnd) {
+TEST(TasksOfAQueue, AreAllDoneBeforeTheEnd) {
   std::atomic<int> done = 0;
   {
-    Errands errands;
+    TaskQueue tasks;
     for (int i = 0; i < 20; ++i) {
-      errands.run([&done] {
+      tasks.run([&done] {
         std::this_thread::sleep_for(1ms);
         ++done;
       });
@@ -58,11 +57,11 @@ TEST(Errands, AreAllDoneBeforeTheEnd) {
   EXPECT_EQ(done, 20);
 }
 
-TEST(Errands, LetGoOfWhatTheyHeldWhenTheyAreDone) {
-  Errands errands;
+TEST(TasksOfAQueue, LetGoOfWhatTheyHeldWhenTheyAreDone) {
+  TaskQueue tasks;
   const auto thing = std::make_shared<int>(1);
-  errands.run([thing] {});
-  errands.run([] {}).get();
+  tasks.run([thing] {});
+  tasks.run([] {}).get();
   EXPECT_EQ(thing.use_count(), 1);
 }
 
@@ -112,12 +111,12 @@ std::unique_ptr<HidDevice> connect() {
 }
 
 // The window steps back before any device is opened.
-TEST(Errands, GiveDevicesAThreadThatIsNotBehindAllOthers) {
+TEST(TasksOfAQueue, GiveDevicesAThreadThatIsNotBehindAllOthers) {
   EXPECT_EQ(without_privileges([] {
-              Errands errands;
-              errands.run([] {}).get();
+              TaskQueue tasks;
+              tasks.run([] {}).get();
               if (!yield_to_haptics()) return 90;
-              auto opening = errands.run(connect);
+              auto opening = tasks.run(connect);
               const auto device = opening.get();
               while (WatchedTransport::policy < 0) std::this_thread::sleep_for(1ms);
               return WatchedTransport::policy.load();

@@ -1,4 +1,4 @@
-#include "app/session/video_order.h"
+#include "app/session/video_request.h"
 
 #include <gmock/gmock.h>
 
@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 
 TEST(VideoOrders, BecomeTheCommandLinesWords) {
-  VideoOrder order;
+  VideoRequest order;
   EXPECT_THAT(words_of(order), ElementsAre("--size", "1280x720", "--speed", "1", "--from", "0"));
   order = {.width = 640,
            .height = 360,
@@ -32,11 +32,11 @@ TEST(VideoOrders, NeverGetANameThatIsTaken) {
   const std::filesystem::path folder = temp / "sessions";
   std::filesystem::create_directory(folder);
   const auto session = folder / "a.h5";
-  EXPECT_EQ(video_of(session, VideoOrder::Kind::gif, "/other"), folder / "a.gif");
+  EXPECT_EQ(video_of(session, VideoRequest::Kind::gif, "/other"), folder / "a.gif");
   std::ofstream(folder / "a.mp4") << "x";
-  EXPECT_EQ(video_of(session, VideoOrder::Kind::mp4, "/other"), folder / "a-2.mp4");
-  EXPECT_EQ(video_of(session, VideoOrder::Kind::png, "/other").extension(), "");
-  EXPECT_EQ(video_of("/nowhere/a.h5", VideoOrder::Kind::mp4, folder), folder / "a-2.mp4")
+  EXPECT_EQ(video_of(session, VideoRequest::Kind::mp4, "/other"), folder / "a-2.mp4");
+  EXPECT_EQ(video_of(session, VideoRequest::Kind::png, "/other").extension(), "");
+  EXPECT_EQ(video_of("/nowhere/a.h5", VideoRequest::Kind::mp4, folder), folder / "a-2.mp4")
       << "where nothing can be written";
 }
 

@@ -38,7 +38,7 @@ bool remember_check(const AxisCheck& check, DeviceNotes& notes);
 // As a recording keeps them (TOML).
 std::string limits_text(const SafetyLimits& limits);
 
-struct DeviceBook {
+struct DeviceStore {
   std::string in_use;  // id of the device; empty: the virtual arm
   std::map<std::string, DeviceNotes> notes;
   std::string refusal;  // why nothing in the file can be understood; no device that can push is
@@ -48,14 +48,14 @@ struct DeviceBook {
 };
 
 // $XDG_CONFIG_HOME/limpid/devices.toml.
-std::filesystem::path device_book_file();
+std::filesystem::path device_store_file();
 
-// An absent file is an empty book.
-DeviceBook load_device_book(const std::filesystem::path& file);
+// An absent file is an empty store.
+DeviceStore load_device_store(const std::filesystem::path& file);
 // Writes what has changed since `before` into what the file says by now: what other programs have
 // written meanwhile stays, and so do keys that nobody knows. Nothing is written over that cannot be
 // understood. Returns what went wrong, empty if nothing did.
-std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
-                             const std::filesystem::path& file);
+std::string save_device_store(const DeviceStore& before, const DeviceStore& now,
+                              const std::filesystem::path& file);
 
 }  // namespace limpid

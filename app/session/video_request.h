@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-struct VideoOrder {
+struct VideoRequest {
   enum class Kind : std::uint8_t { mp4, gif, png };  // png: a folder of them
 
   Kind kind = Kind::mp4;
@@ -22,9 +22,9 @@ struct VideoOrder {
 };
 
 // The options of `limpid play` that say so.
-std::vector<std::string> words_of(const VideoOrder& order);
+std::vector<std::string> words_of(const VideoRequest& order);
 // A name that is free, beside the session's file or, where nothing can be written, in `otherwise`.
-std::filesystem::path video_of(const std::filesystem::path& session, VideoOrder::Kind kind,
+std::filesystem::path video_of(const std::filesystem::path& session, VideoRequest::Kind kind,
                                const std::filesystem::path& otherwise);
 
 }  // namespace limpid

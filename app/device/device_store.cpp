@@ -1,4 +1,4 @@
-#include "app/device/device_book.h"
+#include "app/device/device_store.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 1 << 20;  // of the book
+constexpr std::size_t kMostBytes = 1 << 20;  // of the store
 
 // What stands in the file, or what it is without it. Never a value in place of one that cannot be
 // understood: it might let the device push harder, or the wrong way.
@@ -203,17 +203,17 @@ void merge(const toml::table& before, const toml::table& now, toml::table& into)
 std::string entry_path(std::string_view id) { return fmt::format("device.\"{}\"", id); }
 
 // The file, as TOML. Errors: FileError.
-toml::table parse_book(const fs::path& file) {
+toml::table parse_store(const fs::path& file) {
   std::error_code none;
   if (fs::status(file, none).type() == fs::file_type::not_found) return {};
   return parse_toml(read_text(file, kMostBytes), file.string());
 }
 
 // Errors: FileError.
-const toml::table* devices_in(const toml::table& book, const fs::path& file) {
-  const toml::node* node = book.get("device");
+const toml::table* devices_in(const toml::table& store, const fs::path& file) {
+  const toml::node* node = store.get("device");
   if (node == nullptr) return nullptr;
-  if (!node->is_table()) TomlTable(book, file.string(), "").refuse("device", "a table");
+  if (!node->is_table()) TomlTable(store, file.string(), "").refuse("device", "a table");
   return node->as_table();
 }
 
@@ -243,9 +243,9 @@ std::string limits_text(const SafetyLimits& limits) {
   return text.str();
 }
 
-fs::path device_book_file() { return user_config_dir() / "devices.toml"; }
+fs::path device_store_file() { return user_config_dir() / "devices.toml"; }
 
-std::string DeviceBook::complaint() const {
+std::string DeviceStore::complaint() const {
   std::string all = refusal;
   for (const auto& [id, each] : notes) {
     if (!each.refusal.empty()) all += (all.empty() ? "" : "\n") + each.refusal;
@@ -253,30 +253,30 @@ std::string DeviceBook::complaint() const {
   return all;
 }
 
-DeviceBook load_device_book(const fs::path& file) {
-  DeviceBook book;
+DeviceStore load_device_store(const fs::path& file) {
+  DeviceStore store;
   try {
-    const toml::table table = parse_book(file);
-    book.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
+    const toml::table table = parse_store(file);
+    store.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
     const toml::table* devices = devices_in(table, file);
-    if (devices == nullptr) return book;
+    if (devices == nullptr) return store;
     for (const auto& [key, node] : *devices) {
       const std::string id(key.str());
       try {
-        book.notes[id] = notes_in(*devices, id, file);
+        store.notes[id] = notes_in(*devices, id, file);
       } catch (const FileError& error) {
-        book.notes[id].refusal = error.what();
+        store.notes[id].refusal = error.what();
       }
     }
   } catch (const std::exception& error) {
-    book.refusal = error.what();
+    store.refusal = error.what();
   }
-  return book;
+  return store;
 }
 
-std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
-                             const fs::path& file) {
-  const auto changed_book = [&](const std::string& text) {
+std::string save_device_store(const DeviceStore& before, const DeviceStore& now,
+                              const fs::path& file) {
+  const auto changed_store = [&](const std::string& text) {
     toml::table table = parse_toml(text, file.string());
     if (now.in_use != before.in_use) table.insert_or_assign("in_use", now.in_use);
     devices_in(table, file);
@@ -301,7 +301,7 @@ std::string save_device_book(const DeviceBook& before, const DeviceBook& now,
     return written.str();
   };
   try {
-    update_file_under_lock(file, changed_book);
+    update_file_under_lock(file, changed_store);
     return {};
   } catch (const std::exception& error) {
     return fmt::format("not saved: {}", error.what());

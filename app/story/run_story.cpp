@@ -1,4 +1,4 @@
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,11 +41,11 @@ StepNumbers numbers(const StoryStep& step, const Session& run) {
 
 }  // namespace
 
-Told tell(const Story& story, const std::atomic<bool>& stop,
-          const std::function<void(double)>& at) {
+StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
+                   const std::function<void(double)>& at) {
   const RunPlan& plan = story.plan;
-  Told told;
-  Session& first = told.session;
+  StoryRun run;
+  Session& first = run.session;
   first.info = session_info(plan);
   first.layout = RowLayout(plan.arm.dof());
   first.changes = plan.changes;
@@ -62,9 +62,9 @@ Told tell(const Story& story, const std::atomic<bool>& stop,
     at(static_cast<double>(first.size()) * plan.parameters.tick);
     return true;
   };
-  told.end = simulate_twin(plan, {.realtime = false, .stop = &stop}, take);
+  run.end = simulate_twin(plan, {.realtime = false, .stop = &stop}, take);
   first.twin = std::move(twin);
-  return told;
+  return run;
 }
 
 std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
