@@ -2,7 +2,10 @@
 // points, to be run again.
 #pragma once
 
-#include "app/desktop/panels/sweep_chart.h"
+#include <cstdint>
+#include <optional>
+
+#include "app/desktop/sweep/sweep_controller.h"
 
 namespace limpid {
 

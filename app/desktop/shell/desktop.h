@@ -9,7 +9,7 @@
 #include "app/desktop/document/document.h"
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/live/identify_controller.h"
-#include "app/desktop/panels/banners.h"
+#include "app/desktop/panels/over_view.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/focus.h"

@@ -5,15 +5,11 @@
 #include <cmath>
 
 #include "app/desktop/base/passivity_break.h"
-#include "app/desktop/panels/banners.h"
-#include "app/desktop/panels/loading_bar.h"
-#include "app/desktop/panels/notice_list.h"
+#include "app/desktop/panels/over_view.h"
 #include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/recorded_panel.h"
-#include "app/desktop/panels/story_bar.h"
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/panels/twin_panel.h"
-#include "app/desktop/panels/video_bar.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"

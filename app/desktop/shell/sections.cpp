@@ -8,7 +8,6 @@
 
 #include "app/desktop/panels/analysis_panel.h"
 #include "app/desktop/panels/device_panel.h"
-#include "app/desktop/panels/device_timing.h"
 #include "app/desktop/panels/parameter_rows.h"
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/timing_panel.h"
