@@ -8,7 +8,7 @@
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"
-#include "app/desktop/shell/recent_menu.h"
+#include "app/desktop/shell/menu.h"
 #include "app/desktop/shell/sections.h"
 #include "app/desktop/shell/window.h"
 

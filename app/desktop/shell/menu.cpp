@@ -7,13 +7,15 @@
 #include <string>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/thumbnails.h"
 #include "app/desktop/panels/status_line.h"
 #include "app/desktop/shell/commands.h"
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
 
 std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension) {
   std::vector<fs::path> files;
@@ -159,6 +161,36 @@ float menus_width() {
 }
 
 }  // namespace
+
+void RecentMenu::look(const std::vector<std::string>& recent) {
+  pictures_.clear();
+  entries_.clear();
+  for (const std::string& name : recent) {
+    std::error_code none;
+    entries_.push_back({name, picture_of(name), fs::is_regular_file(name, none)});
+  }
+}
+
+fs::path RecentMenu::draw(const std::vector<std::string>& recent) {
+  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return {};
+  if (ImGui::IsWindowAppearing()) look(recent);
+  std::vector<PictureItem> items;
+  float width = 0;
+  for (const Entry& entry : entries_) {
+    const std::string folder = entry.file.parent_path().string();
+    items.push_back({.picture = pictures_.get(entry.picture),
+                     .name = entry.file.filename().string(),
+                     .about = entry.there ? folder : "no longer there: " + folder,
+                     .there = entry.there});
+    width = std::max(width, picture_item_width(items.back()));
+  }
+  fs::path chosen;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (picture_item(items[i], width)) chosen = entries_[i].file;
+  }
+  ImGui::EndMenu();
+  return chosen;
+}
 
 void draw_menu_bar(Desktop& desktop, RecentMenu& recent) {
   if (!ImGui::BeginMainMenuBar()) return;
