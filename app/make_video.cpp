@@ -111,8 +111,8 @@ int make_story_video(const std::string& script, const VideoOptions& options, cha
     Progress progress({.title = "story", .whole = story.seconds(), .unit = "s", .rate = ""});
     run = run_story(story, interrupted, [&](double seconds) { progress.at(seconds); });
   }
-  if (told.end.stopped) return stopped(0, story.seconds(), options.out);
-  return make(order, told.session, script, options.print_progress);
+  if (run.end.stopped) return stopped(0, story.seconds(), options.out);
+  return make(order, run.session, script, options.print_progress);
 }
 
 }  // namespace limpid

@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "app/base/assets.h"
+#include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/style/number_slider.h"
 #include "app/style/theme.h"
@@ -152,6 +153,10 @@ std::string no_virtual_arm(const Desktop& d) {
              : "";
 }
 
+std::string not_broken(const Desktop& d) {
+  return passivity_broken(d.settings) ? "" : "Passivity is whole.";
+}
+
 std::string may_not_break(const Desktop& d) {
   const std::string why = no_virtual_arm(d);
   return why.empty() ? in_playback(d) : why;
@@ -206,7 +211,7 @@ constexpr std::array kCommands{
     row("coupling.break_passivity", "Break passivity", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.tuning.break_passivity(); }, {.why_not = may_not_break}),
     row("coupling.end_break", "End broken passivity", nullptr, nullptr, nullptr,
-        [](Desktop& d) { d.tuning.end_break(); }),
+        [](Desktop& d) { d.tuning.end_break(); }, {.why_not = not_broken}),
     row("session.open", "Open session or sweep...", "File", "Ctrl+O", "open a recording or a sweep",
         [](Desktop& d) { d.dialog.open("open session"); }),
     row("scene.add_model", "Add model...", "File", "Ctrl+M", "add a model, or drop one here",
