@@ -10,7 +10,7 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/film/session_film.h"
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 
 namespace limpid {
 namespace {
@@ -106,13 +106,13 @@ int make_story_video(const std::string& script, const VideoOptions& options, cha
   order.title = story.title;
   order.steps = story.steps;
   catch_interrupts();
-  Told told;
+  StoryRun run;
   {
     Progress progress({.title = "story", .whole = story.seconds(), .unit = "s", .rate = ""});
-    told = tell(story, interrupted, [&](double seconds) { progress.at(seconds); });
+    run = run_story(story, interrupted, [&](double seconds) { progress.at(seconds); });
   }
-  if (told.end.stopped) return stopped(0, story.seconds(), options.out);
-  return make(order, told.session, script, options.print_progress);
+  if (run.end.stopped) return stopped(0, story.seconds(), options.out);
+  return make(order, run.session, script, options.print_progress);
 }
 
 }  // namespace limpid

@@ -13,7 +13,7 @@ int devices() {
   fmt::print(
       "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
       "the mouse or a recorded hand\n");
-  DeviceHub hub(device_book_file(), {});
+  DeviceHub hub(device_store_file(), {});
   hub.take(DeviceHub::look(hub.in_use()));
   for (const FoundDevice& found : hub.found()) {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,

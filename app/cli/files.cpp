@@ -8,7 +8,7 @@
 
 #include "app/cli/commands.h"
 #include "app/run/summary.h"
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"

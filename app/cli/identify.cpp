@@ -35,7 +35,7 @@ struct IdentifyOptions {
   std::string gravity = "0,0,-9.81";
   unsigned seed = 1;
   bool yes = false, forget = false;
-  IdentifyOrder order;
+  IdentifyRequest order;
 };
 
 Vec3 gravity_of(const std::string& text) {
@@ -62,7 +62,7 @@ void ask() {
 }
 
 void ask_to_begin(const IdentifyOptions& options, const Device& device) {
-  const IdentifyOrder& order = options.order;
+  const IdentifyRequest& order = options.order;
   fmt::print(
       "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
       "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
@@ -72,15 +72,15 @@ void ask_to_begin(const IdentifyOptions& options, const Device& device) {
   if (!options.yes) ask();
 }
 
-IdentifyRun watched(const std::function<IdentifyRun(IdentifyTalk&)>& run) {
+IdentifyRun watched(const std::function<IdentifyRun(IdentifyProgress&)>& run) {
   catch_interrupts();
-  IdentifyTalk talk;
+  IdentifyProgress motion;
   Progress progress({.title = "identify", .whole = 100, .unit = "", .rate = "% a second"});
-  std::future<IdentifyRun> result = std::async(std::launch::async, [&] { return run(talk); });
+  std::future<IdentifyRun> result = std::async(std::launch::async, [&] { return run(motion); });
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-    talk.see();
-    if (interrupted) talk.cancel = true;
-    progress.at(100 * talk.time / talk.duration);
+    motion.see();
+    if (interrupted) motion.cancel = true;
+    progress.at(100 * motion.time / motion.duration);
   }
   return result.get();
 }
@@ -92,7 +92,7 @@ void save(DeviceHub& hub, const std::string& in_use) {
 }
 
 int forget(const IdentifyOptions& options) {
-  DeviceHub hub(device_book_file(), {});
+  DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();
   if (!options.device.empty()) hub.use(options.device);
   if (!hub.refusal().empty()) throw UsageError(hub.refusal());
@@ -113,7 +113,7 @@ int write_arm(const IdentifyOptions& options, const Identification& done,
 }
 
 // How the device is moved.
-using Move = std::function<IdentifyRun(bool with_load, IdentifyTalk&)>;
+using Move = std::function<IdentifyRun(bool with_load, IdentifyProgress&)>;
 
 void ask_for_load(const IdentifyOptions& options) {
   fmt::print("Now fix the {:g} kg to the tip, firmly and close to it, and let go.\n",
@@ -126,7 +126,7 @@ void ask_for_load(const IdentifyOptions& options) {
 bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
            IdentifyRun& with_load) {
   const auto move = [&](bool load, IdentifyRun& run, const char* file) {
-    run = watched([&](IdentifyTalk& talk) { return mover(load, talk); });
+    run = watched([&](IdentifyProgress& motion) { return mover(load, motion); });
     write_motion(run, fs::path(options.out) / file);
     if (run.end == ExcitationEnd::complete) return true;
     fmt::print(stderr, "limpid: ended: {}; {} holds the motion until then\n",
@@ -141,13 +141,13 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
 
 // On a device that is drawn at random, and what it is worth there.
 int identify_simulated(IdentifyOptions& options) {
-  IdentifyOrder& order = options.order;
+  IdentifyRequest& order = options.order;
   if (order.masses_right) {
     throw UsageError("--masses-right: the simulated device has other masses than its file");
   }
   SimulatedBench bench = simulated_bench(order, options.seed);
-  const auto move = [&](bool with_load, IdentifyTalk& talk) {
-    return move_simulated(bench, order, with_load, talk);
+  const auto move = [&](bool with_load, IdentifyProgress& motion) {
+    return move_simulated(bench, order, with_load, motion);
   };
   IdentifyRun bare, with_load;
   if (!moved(options, move, bare, with_load)) return 1;
@@ -165,7 +165,7 @@ int identify_device(IdentifyOptions options) {
   if (options.forget) return forget(options);
   if (options.out.empty()) throw UsageError("--out is required");
   prepare_out(options.out);
-  IdentifyOrder& order = options.order;
+  IdentifyRequest& order = options.order;
   order.fit.gravity = gravity_of(options.gravity);
   SceneDocument scene;
   read_world(options.input, order.guess, scene);
@@ -173,14 +173,14 @@ int identify_device(IdentifyOptions options) {
   if (options.yes && order.load > 0) {
     throw UsageError("--yes: with --load somebody has to be asked to fix it to the tip");
   }
-  DeviceHub hub(device_book_file(), {});
+  DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();
   const std::unique_ptr<Device> device = open_device(
       options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
   if (options.input.device.empty()) order.guess = hub.arm_for(device->traits(), order.guess);
-  const auto move = [&](bool, IdentifyTalk& talk) {
-    return run_identification(*device, order.guess, order.plan, talk, {});
+  const auto move = [&](bool, IdentifyProgress& motion) {
+    return run_identification(*device, order.guess, order.plan, motion, {});
   };
   ask_to_begin(options, *device);
   IdentifyRun bare, with_load;
@@ -191,7 +191,7 @@ int identify_device(IdentifyOptions options) {
   const std::optional<Findings> last = read_findings(hub.remembered_report());
   if (last) print_drift(*last, done);
   const int status = write_arm(options, done, last, {});
-  if (const std::string wrong = hub.remember(nature_of(done)); !wrong.empty()) {
+  if (const std::string wrong = hub.remember(profile_of(done)); !wrong.empty()) {
     throw std::runtime_error(wrong);
   }
   save(hub, in_use);

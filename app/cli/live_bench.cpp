@@ -68,7 +68,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   if (!yes_ && isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may push; needed: --yes, or a terminal");
   }
-  DeviceHub hub(device_book_file(), by_rtkit());
+  DeviceHub hub(device_store_file(), by_rtkit());
   std::unique_ptr<Device> device = open_device(*options.device, hub, "");
   const DeviceTraits& traits = device->traits();
   name_ = traits.name;

@@ -76,9 +76,9 @@ TwinPlan make_twin(const Parameters& chosen, const std::vector<std::string>& set
 }
 
 // Takes the ticks in while they come.
-class Witness {
+class RunLog {
  public:
-  Witness(const RunPlan& plan, Recorder* recorder, bool waits)
+  RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
       : stride_(static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride())),
         runs_(plan.twin ? 2 : 1, Summary(RowLayout(plan.arm.dof()), slides_of(plan.arm))),
         recorder_(recorder),
@@ -118,7 +118,7 @@ class Witness {
   bool waits_;
 };
 
-RunEnd carry_out(const RunOptions& options, const RunPlan& plan, Witness& witness) {
+RunEnd carry_out(const RunOptions& options, const RunPlan& plan, RunLog& log) {
   Progress progress({.title = "run",
                      .whole = static_cast<double>(plan.rows) * plan.parameters.tick,
                      .unit = "s",
@@ -126,8 +126,8 @@ RunEnd carry_out(const RunOptions& options, const RunPlan& plan, Witness& witnes
   return simulate_twin(
       plan, {options.realtime, &interrupted},
       [&](std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
-        const bool goes_on = witness.take(rows, changed);
-        progress.at(witness.time());
+        const bool goes_on = log.take(rows, changed);
+        progress.at(log.time());
         return goes_on;
       });
 }
@@ -188,18 +188,18 @@ int run(const RunOptions& options) {
                      options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom,
                      plan.twin ? &plan.twin->parameters : nullptr);
   }
-  Witness witness(plan, recorder ? &*recorder : nullptr, !options.realtime);
+  RunLog log(plan, recorder ? &*recorder : nullptr, !options.realtime);
   const auto began = std::chrono::steady_clock::now();
-  const RunEnd end = carry_out(options, plan, witness);
+  const RunEnd end = carry_out(options, plan, log);
   const double took = Seconds(std::chrono::steady_clock::now() - began).count();
   if (recorder) finish(*recorder);
   if (!options.picture.empty()) {
-    save_picture(options.picture, plan, witness.memorable(), witness.twin());
+    save_picture(options.picture, plan, log.memorable(), log.twin());
   }
-  fmt::print("{}", witness.text(plan));
+  fmt::print("{}", log.text(plan));
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
   fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
-  return report(options, end, recorder ? &*recorder : nullptr, witness.time());
+  return report(options, end, recorder ? &*recorder : nullptr, log.time());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 
 namespace limpid {
 namespace {
@@ -44,11 +44,11 @@ void print_numbers(const Story& story, const Session& session) {
   }
 }
 
-Told tell_with_progress(const Story& story) {
+StoryRun tell_with_progress(const Story& story) {
   catch_interrupts();
   Progress progress(
       {.title = "story", .whole = story.seconds(), .unit = "s", .rate = "times real time"});
-  return tell(story, interrupted, [&](double seconds) { progress.at(seconds); });
+  return run_story(story, interrupted, [&](double seconds) { progress.at(seconds); });
 }
 
 int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
@@ -59,20 +59,20 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
     print_steps(story);
     return 0;
   }
-  const Told told = tell_with_progress(story);
-  print_numbers(story, told.session);
+  const StoryRun run = tell_with_progress(story);
+  print_numbers(story, run.session);
   if (!options.record.empty()) {
-    write_session(told.session, {story.title, story.steps}, options.record, options.video.force);
-    fmt::print("recorded {} ticks of both runs in {}\n", told.session.size(), options.record);
+    write_session(run.session, {story.title, story.steps}, options.record, options.video.force);
+    fmt::print("recorded {} ticks of both runs in {}\n", run.session.size(), options.record);
   }
-  if (told.end.diverged) {
-    fmt::print(stderr, "limpid: unstable from t = {:.3f} s on: {}\n", told.end.diverged_at,
-               told.end.why);
+  if (run.end.diverged) {
+    fmt::print(stderr, "limpid: unstable from t = {:.3f} s on: {}\n", run.end.diverged_at,
+               run.end.why);
     return 1;
   }
-  if (told.end.stopped) {
+  if (run.end.stopped) {
     fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s\n",
-               static_cast<double>(told.session.size()) * told.session.info.tick, story.seconds());
+               static_cast<double>(run.session.size()) * run.session.info.tick, story.seconds());
   }
   return 0;
 }

@@ -71,7 +71,7 @@ class Limits {
 }  // namespace
 
 AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
-                         AxisCheckTalk& talk, const AskForPriority& ask) {
+                         AxisCheckProgress& progress, const AskForPriority& ask) {
   AxisCheck check(device.traits());
   if (arm.dof() != check.dof()) {
     throw std::invalid_argument("a device is checked as an arm of as many joints");
@@ -83,7 +83,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
     HapticThread thread(ask);
     const auto tick = [&](const TickTiming& timing) {
       if (done) return;
-      if (talk.cancel) check.cancel();
+      if (progress.cancel) check.cancel();
       DeviceReading reading;
       const bool here = device.read(reading);
       const bool well =
@@ -92,14 +92,15 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
       const double T = timing.periods * 1e-3;
       if (well && !set.allow(x, T)) check.exceed();
       device.write(set.within(check.step({x, T, well})));
-      talk.axis = check.axis();
-      talk.stage = check.stage();
+      progress.axis = check.axis();
+      progress.stage = check.stage();
       done = check.done();
     };
     thread.start(kCheckTick, tick, Overdue::given_up);
     while (!done && thread.status().running) {
       std::this_thread::sleep_for(milliseconds(10));
-      if (std::chrono::steady_clock::now() - talk.window_seen.load() > kSilence) talk.cancel = true;
+      if (std::chrono::steady_clock::now() - progress.window_seen.load() > kSilence)
+        progress.cancel = true;
     }
   }
   device.stop();

@@ -13,7 +13,7 @@
 namespace limpid {
 
 // What window and check tell one another; any thread's.
-struct AxisCheckTalk {
+struct AxisCheckProgress {
   std::atomic<int> axis{0};
   std::atomic<AxisStage> stage{AxisStage::resting};
   std::atomic<bool> cancel{false};
@@ -27,7 +27,7 @@ struct AxisCheckTalk {
 // its limit, and any other limit of `limits` ends the check. `arm`: that the device is taken for,
 // of as many joints. Not for the window's thread. `ask`: see become_realtime().
 AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
-                         AxisCheckTalk& talk, const AskForPriority& ask);
+                         AxisCheckProgress& progress, const AskForPriority& ask);
 
 // What came of it, for people.
 std::string report_of(const AxisCheck& check);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kFirstReading{200};
 
-// A book can hold anything.
+// A store can hold anything.
 std::optional<InverseName> inverse_name_in(const std::string& id) {
   try {
     return inverse_name(id);
@@ -82,8 +82,8 @@ ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescripti
 DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
     : file_(std::move(file)),
       ask_(std::move(ask)),
-      written_(load_device_book(file_)),
-      book_(written_) {}
+      written_(load_device_store(file_)),
+      store_(written_) {}
 
 std::string DeviceHub::go_first() {
   try {
@@ -95,8 +95,8 @@ std::string DeviceHub::go_first() {
 }
 
 std::string DeviceHub::save() {
-  if (std::string wrong = save_device_book(written_, book_, file_); !wrong.empty()) return wrong;
-  written_.in_use = book_.in_use;
+  if (std::string wrong = save_device_store(written_, store_, file_); !wrong.empty()) return wrong;
+  written_.in_use = store_.in_use;
   read_again();
   return {};
 }
@@ -104,14 +104,14 @@ std::string DeviceHub::save() {
 // In place: whoever refers to notes goes on doing so. What cannot be understood leaves them as they
 // were, as a device may be in the loop with their limits. This program's device in use stays.
 void DeviceHub::read_again() {
-  const DeviceBook now = load_device_book(file_);
-  book_.refusal = now.refusal;
+  const DeviceStore now = load_device_store(file_);
+  store_.refusal = now.refusal;
   if (!now.refusal.empty()) return;
-  for (auto& [id, notes] : book_.notes) {
-    if (!now.notes.contains(id) && id != book_.in_use) notes = {};
+  for (auto& [id, notes] : store_.notes) {
+    if (!now.notes.contains(id) && id != store_.in_use) notes = {};
   }
   for (const auto& [id, notes] : now.notes) {
-    DeviceNotes& known = book_.notes[id];
+    DeviceNotes& known = store_.notes[id];
     if (notes.refusal.empty()) known = notes;
     known.refusal = notes.refusal;
   }
@@ -130,7 +130,7 @@ void DeviceHub::take(std::vector<FoundDevice> found, bool services) {
   }
   found_ = std::move(found);
   // Whoever asked for the first that a service has means that one from now on.
-  const auto wanted = inverse_name_in(book_.in_use);
+  const auto wanted = inverse_name_in(store_.in_use);
   if (!wanted || !wanted->id.empty()) return;
   for (const FoundDevice& each : found_) {
     const auto name = inverse_name_in(each.place.id);
@@ -145,12 +145,12 @@ std::string DeviceHub::id_of(const std::string& words) {
 }
 
 const FoundDevice* DeviceHub::present() const {
-  const auto same = [&](const FoundDevice& each) { return each.place.id == book_.in_use; };
+  const auto same = [&](const FoundDevice& each) { return each.place.id == store_.in_use; };
   const auto device = std::ranges::find_if(found_, same);
   return device == found_.end() ? nullptr : &*device;
 }
 
-void DeviceHub::use(const std::string& id) { book_.in_use = id; }
+void DeviceHub::use(const std::string& id) { store_.in_use = id; }
 
 namespace {
 
@@ -165,8 +165,8 @@ const FoundDevice& usable(const std::optional<FoundDevice>& found, const std::st
 }  // namespace
 
 DeviceNotes DeviceHub::known() const {
-  const auto notes = book_.notes.find(book_.in_use);
-  return notes == book_.notes.end() ? DeviceNotes{} : notes->second;
+  const auto notes = store_.notes.find(store_.in_use);
+  return notes == store_.notes.end() ? DeviceNotes{} : notes->second;
 }
 
 std::optional<FoundDevice> DeviceHub::found_now() const {
@@ -177,7 +177,7 @@ std::optional<FoundDevice> DeviceHub::found_now() const {
 std::string DeviceHub::refusal() const {
   const FoundDevice* device = present();
   const bool pushes = device == nullptr || !device->kind->leads_hand;
-  return pushes && !book_.refusal.empty() ? book_.refusal : known().refusal;
+  return pushes && !store_.refusal.empty() ? store_.refusal : known().refusal;
 }
 
 // All that it takes, whatever the hub does meanwhile.
@@ -197,7 +197,7 @@ struct DeviceHub::Opening {
 };
 
 DeviceHub::Opening DeviceHub::opening_now() const {
-  return {book_.in_use, refusal(), found_now(), known(), ask_};
+  return {store_.in_use, refusal(), found_now(), known(), ask_};
 }
 
 std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
@@ -220,35 +220,36 @@ std::filesystem::path nature_file(const std::string& id, const char* extension) 
 
 }  // namespace
 
-std::string DeviceHub::remember(const Nature& nature) {
-  DeviceNotes& notes = DeviceHub::notes(book_.in_use);
-  const double scale = notes.torque_scale * nature.torque_scale;
+std::string DeviceHub::remember(const Profile& profile) {
+  DeviceNotes& notes = DeviceHub::notes(store_.in_use);
+  const double scale = notes.torque_scale * profile.torque_scale;
   if (scale < kLeastTorqueScale || scale > kMostTorqueScale) {
     return fmt::format("the motors would give {:.3g} times what they are told; believed: {} to {}",
                        scale, kLeastTorqueScale, kMostTorqueScale);
   }
-  const std::filesystem::path arm = nature_file(book_.in_use, ".urdf");
-  for (const auto& [file, text] : {std::pair(arm, &nature.urdf),
-                                   std::pair(nature_file(book_.in_use, ".json"), &nature.report)}) {
+  const std::filesystem::path arm = nature_file(store_.in_use, ".urdf");
+  for (const auto& [file, text] :
+       {std::pair(arm, &profile.urdf),
+        std::pair(nature_file(store_.in_use, ".json"), &profile.report)}) {
     if (std::string wrong = try_write_atomically(file, *text); !wrong.empty()) return wrong;
   }
   notes.arm = arm.string();
-  notes.delay = nature.delay;
+  notes.delay = profile.delay;
   notes.torque_scale = scale;
   return {};
 }
 
 std::string DeviceHub::remembered_report() const {
   if (known().arm.empty()) return {};
-  std::ifstream file(nature_file(book_.in_use, ".json"));
+  std::ifstream file(nature_file(store_.in_use, ".json"));
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void DeviceHub::forget_arm() {
-  notes(book_.in_use).arm.clear();
-  notes(book_.in_use).delay = DeviceNotes{}.delay;
-  notes(book_.in_use).torque_scale = 1;
-  notes(book_.in_use).compensation = {};
+  notes(store_.in_use).arm.clear();
+  notes(store_.in_use).delay = DeviceNotes{}.delay;
+  notes(store_.in_use).torque_scale = 1;
+  notes(store_.in_use).compensation = {};
 }
 
 bool DeviceHub::needs_check() const {
@@ -256,13 +257,13 @@ bool DeviceHub::needs_check() const {
   return device != nullptr && device->kind->pushes && !known().checked;
 }
 
-std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckTalk>& talk,
+std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckProgress>& progress,
                                                const ArmDescription& present) const {
-  return [opening = opening_now(), talk, present] {
+  return [opening = opening_now(), progress, present] {
     const std::unique_ptr<Device> device = opening.open();
     const FoundDevice* found = opening.found ? &*opening.found : nullptr;
     const ArmDescription arm = fitting_arm(opening.notes, found, device->traits(), present);
-    return run_axis_check(*device, arm, opening.notes.limits, *talk, opening.ask);
+    return run_axis_check(*device, arm, opening.notes.limits, *progress, opening.ask);
   };
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/device/axis_check_run.h"
-#include "app/device/device_book.h"
+#include "app/device/device_store.h"
 #include "core/dynamics/arm_description.h"
 #include "devices/hid/device_list.h"
 #include "devices/hid/hid_transport.h"
@@ -22,7 +22,7 @@ struct UncheckedError : HidError {
 
 class DeviceHub {
  public:
-  // `file`: of the book. `ask`: for the devices' own threads.
+  // `file`: of the store. `ask`: for the devices' own threads.
   DeviceHub(std::filesystem::path file, AskForPriority ask);
 
   // What is plugged in. Reads a few files of the kernel's: not for every frame. `wanted` and
@@ -36,13 +36,13 @@ class DeviceHub {
   // HidError, see inverse_name().
   static std::string id_of(const std::string& words);
 
-  const std::string& in_use() const { return book_.in_use; }  // id; empty: the virtual arm
+  const std::string& in_use() const { return store_.in_use; }  // id; empty: the virtual arm
   // What is plugged in of it; null: nothing.
   const FoundDevice* present() const;
   // From now on this one; empty: the virtual arm.
   void use(const std::string& id);
-  DeviceNotes& notes(const std::string& id) { return book_.notes[id]; }
-  // Why the device in use is not used for what its book says, or fails to say: an entry, or the
+  DeviceNotes& notes(const std::string& id) { return store_.notes[id]; }
+  // Why the device in use is not used for what its store says, or fails to say: an entry, or the
   // whole file, that cannot be understood. Empty: it may be.
   std::string refusal() const;
 
@@ -56,14 +56,14 @@ class DeviceHub {
 
   // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
   // be called from anywhere, later. Errors: HidError; UncheckedError where it has to be checked
-  // first; FileError where its book refuses it.
+  // first; FileError where its store refuses it.
   std::function<std::unique_ptr<Device>()> opening() const;
   // The arm for the device in use: what it was identified as, else `present` if it has as many
   // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
   // FileError if there is none with so many joints, or what it was identified as cannot be read.
   ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) const;
   // What a device was found to be.
-  struct Nature {
+  struct Profile {
     std::string urdf;         // the arm
     std::string report;       // the findings, as JSON
     double delay = 0;         // [s]
@@ -71,7 +71,7 @@ class DeviceHub {
   };
   // From now on the device in use is that, connected anew; once saved. Returns what went wrong,
   // empty if nothing did.
-  std::string remember(const Nature& nature);
+  std::string remember(const Profile& profile);
   // The report of what the device in use was found to be; empty: nobody knows.
   std::string remembered_report() const;
   // Takes it for its file's again, and nothing of its forces off the hand.
@@ -81,14 +81,14 @@ class DeviceHub {
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check(), within the limits that
   // are set for it; `present` as in arm_for().
-  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckTalk>& talk,
+  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckProgress>& progress,
                                       const ArmDescription& present) const;
   // Writes what was changed here and takes in what other programs have changed. Returns what went
   // wrong, empty if nothing did.
   std::string save();
   // Takes in what the file says by now.
   void read_again();
-  std::string complaint() const { return book_.complaint(); }  // about the book; empty: none
+  std::string complaint() const { return store_.complaint(); }  // about the store; empty: none
 
  private:
   DeviceNotes known() const;  // of the device in use
@@ -98,8 +98,8 @@ class DeviceHub {
 
   std::filesystem::path file_;
   AskForPriority ask_;
-  DeviceBook written_;  // as it was last read or written
-  DeviceBook book_;
+  DeviceStore written_;  // as it was last read or written
+  DeviceStore store_;
   std::vector<FoundDevice> found_;
   DeviceClaim first_;
 };

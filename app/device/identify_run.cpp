@@ -55,11 +55,11 @@ class Recording {
     ++rows_;
   }
 
-  void tell(IdentifyTalk& talk) const noexcept {
-    talk.time = motion_.time();
-    talk.duration = motion_.duration();
-    talk.stage = motion_.stage();
-    talk.joint = motion_.joint();
+  void tell(IdentifyProgress& progress) const noexcept {
+    progress.time = motion_.time();
+    progress.duration = motion_.duration();
+    progress.stage = motion_.stage();
+    progress.joint = motion_.joint();
   }
 
   IdentifyRun result() {
@@ -122,7 +122,7 @@ ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits) {
 }
 
 IdentifyRun run_identification(Device& device, const ArmDescription& arm,
-                               const ExcitationPlan& plan, IdentifyTalk& talk,
+                               const ExcitationPlan& plan, IdentifyProgress& progress,
                                const AskForPriority& ask) {
   Recording recording(arm, device.traits(), plan);
   std::atomic<bool> done = false;
@@ -130,13 +130,13 @@ IdentifyRun run_identification(Device& device, const ArmDescription& arm,
     HapticThread thread(ask);
     const auto tick = [&](const TickTiming& timing) {
       if (done) return;
-      if (talk.cancel) recording.cancel();
+      if (progress.cancel) recording.cancel();
       recording.tick(device, timing.periods, timing.dt,
-                     seconds(steady_clock::now() - talk.seen.load()));
-      recording.tell(talk);
+                     seconds(steady_clock::now() - progress.seen.load()));
+      recording.tell(progress);
       done = !recording.running();
     };
-    talk.see();
+    progress.see();
     thread.start(kIdentifyTick, tick, Overdue::given_up);
     while (!done && thread.status().running) std::this_thread::sleep_for(milliseconds(10));
   }
@@ -145,12 +145,12 @@ IdentifyRun run_identification(Device& device, const ArmDescription& arm,
 }
 
 IdentifyRun simulate_identification(Device& device, const ArmDescription& arm,
-                                    const ExcitationPlan& plan, IdentifyTalk& talk) {
+                                    const ExcitationPlan& plan, IdentifyProgress& progress) {
   Recording recording(arm, device.traits(), plan);
   while (recording.running()) {
-    if (talk.cancel) recording.cancel();
+    if (progress.cancel) recording.cancel();
     recording.tick(device, 1, kT, 0);
-    recording.tell(talk);
+    recording.tell(progress);
   }
   IdentifyRun run = recording.result();
   run.timing = {};

@@ -13,7 +13,7 @@
 namespace limpid {
 
 // What watcher and motion tell one another; any thread's.
-struct IdentifyTalk {
+struct IdentifyProgress {
   std::atomic<double> time{0}, duration{1};  // [s]
   std::atomic<ExcitationStage> stage{ExcitationStage::approach};
   std::atomic<int> joint{0};
@@ -45,10 +45,10 @@ ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits);
 // ended, or its watcher has been silent; it is without torque then. Not for the window's thread.
 // `ask`: see become_realtime().
 IdentifyRun run_identification(Device& device, const ArmDescription& arm,
-                               const ExcitationPlan& plan, IdentifyTalk& talk,
+                               const ExcitationPlan& plan, IdentifyProgress& progress,
                                const AskForPriority& ask);
 // The same with a simulated device, as fast as it goes.
 IdentifyRun simulate_identification(Device& device, const ArmDescription& arm,
-                                    const ExcitationPlan& plan, IdentifyTalk& talk);
+                                    const ExcitationPlan& plan, IdentifyProgress& progress);
 
 }  // namespace limpid

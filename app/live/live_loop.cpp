@@ -74,9 +74,9 @@ void LiveLoop::close() {
   recording_to_ = nullptr;  // the next loop's rows are not its
   has_let_go_.store(true, std::memory_order_relaxed);
   worlds_.clear();
-  plugs_.clear();
+  slots_.clear();
   if (rig_) rig_->plug(nullptr);
-  delete std::exchange(plug_, nullptr);
+  delete std::exchange(slot_, nullptr);
   plugged_ = false;
   rig_.reset();
   twin_.close();
@@ -87,7 +87,7 @@ LiveLoop::~LiveLoop() { close(); }
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
-  plugs_.offer(std::make_unique<Plug>(std::move(device), dispose_, held_));
+  slots_.offer(std::make_unique<DeviceSlot>(std::move(device), dispose_, held_));
 }
 
 // What the window has offered.
@@ -97,11 +97,11 @@ void LiveLoop::take_in() {
     if (!in_place_) twin_.exchange(worlds->twin);
     worlds_.give_back(worlds);
   }
-  if (Plug* plug = plugs_.take()) {
-    if (plug_ != nullptr && plug_->device) plug_->device->stop();
-    if (in_place_) rig_->plug(plug->device.get());
+  if (DeviceSlot* slot = slots_.take()) {
+    if (slot_ != nullptr && slot_->device) slot_->device->stop();
+    if (in_place_) rig_->plug(slot->device.get());
     pace_.start();
-    plugs_.give_back(std::exchange(plug_, plug));
+    slots_.give_back(std::exchange(slot_, slot));
   }
 }
 
@@ -109,18 +109,18 @@ void LiveLoop::take_in() {
 HandInput LiveLoop::hand_input(const Controls& controls) {
   const Vec3 tip = rig_->tip();
   const double T = parameters_.tick;
-  connected_ = plug_ != nullptr && plug_->device;
+  connected_ = slot_ != nullptr && slot_->device;
   if (in_place_) {
     connected_ = connected_ && rig_->device_reading(guide_);
     return {tip, 1};
   }
-  connected_ = connected_ && plug_->device->read(guide_);
+  connected_ = connected_ && slot_->device->read(guide_);
   Vec3 goal = controls.goal;
   bool grab = controls.grab;
   if (grab) {
     guided_.reset(goal);
     led_ = false;
-  } else if (connected_ && plug_->guides()) {
+  } else if (connected_ && slot_->guides()) {
     if (!led_) guided_.reset(tip);
     led_ = guided_.step(guide_, T) || led_;
     guided_.stay_near(tip, kGuideReach);

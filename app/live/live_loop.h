@@ -52,18 +52,18 @@ struct Snapshot {
 using Dispose = std::function<void(std::unique_ptr<Device>)>;
 
 // A device for the loop; without one: none is plugged in any more.
-struct Plug {
+struct DeviceSlot {
   std::unique_ptr<Device> device;
   const Dispose* dispose = nullptr;
   int* held = nullptr;  // how many of them have a device
 
-  Plug(std::unique_ptr<Device> d, const Dispose& by, int& all)
+  DeviceSlot(std::unique_ptr<Device> d, const Dispose& by, int& all)
       : device(std::move(d)), dispose(&by), held(&all) {
     if (device) ++*held;
   }
-  Plug(const Plug&) = delete;
-  Plug& operator=(const Plug&) = delete;
-  ~Plug() {
+  DeviceSlot(const DeviceSlot&) = delete;
+  DeviceSlot& operator=(const DeviceSlot&) = delete;
+  ~DeviceSlot() {
     if (!device) return;
     --*held;
     if (*dispose) (*dispose)(std::move(device));
@@ -117,7 +117,7 @@ class LiveLoop {
   // loop has given back: a device is free for others then.
   bool update() {
     worlds_.collect();
-    plugs_.collect();
+    slots_.collect();
     return snapshots_.update();
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
@@ -163,7 +163,7 @@ class LiveLoop {
   std::unique_ptr<TraceRing> trace_;
   HandOver<TouchWorlds> worlds_;
   int held_ = 0;  // devices in plugs; these go before it
-  HandOver<Plug> plugs_;
+  HandOver<DeviceSlot> slots_;
   bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
   bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
@@ -183,7 +183,7 @@ class LiveLoop {
   Recorder* recording_to_ = nullptr;
   std::unique_ptr<Rig> rig_;
   Twin twin_;
-  Plug* plug_ = nullptr;
+  DeviceSlot* slot_ = nullptr;
   DeviceReading guide_;
   bool connected_ = false;
   DevicePace pace_;

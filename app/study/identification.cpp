@@ -13,7 +13,7 @@
 
 namespace limpid {
 
-Identification identification(std::string device, const IdentifyOrder& order, IdentifyRun bare,
+Identification identification(std::string device, const IdentifyRequest& order, IdentifyRun bare,
                               IdentifyRun with_load) {
   Identification out{.device = std::move(device),
                      .order = order,
@@ -80,7 +80,7 @@ std::string with_plus_minus(std::string text) {
   return text;
 }
 
-std::string explain(const IdentifyRun& run, const IdentifyOrder& order) {
+std::string explain(const IdentifyRun& run, const IdentifyRequest& order) {
   std::string text = explain(run.end);
   if (run.end == ExcitationEnd::held) {
     text += fmt::format(" ({})", order.guess.joints[static_cast<std::size_t>(run.joint)].name);
@@ -189,17 +189,17 @@ constexpr double kMostFriction = 0.03;  // [N m]
 
 }  // namespace
 
-SimulatedBench simulated_bench(const IdentifyOrder& order, unsigned seed) {
+SimulatedBench simulated_bench(const IdentifyRequest& order, unsigned seed) {
   SimulatedBench bench{order.guess.name + ", simulated", unlike(order.guess, seed, kMostFriction),
                        drawn_bench(order.guess, seed, order.fit.gravity)};
   if (order.load > 0) bench.unlikeness.torque_scale = drawn_torque_scale(seed);
   return bench;
 }
 
-IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyOrder& order, bool with_load,
-                           IdentifyTalk& talk) {
+IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyRequest& order,
+                           bool with_load, IdentifyProgress& progress) {
   UnlikeDevice device(with_load ? loaded(bench.truth, order.load) : bench.truth, bench.unlikeness);
-  return simulate_identification(device, order.guess, order.plan, talk);
+  return simulate_identification(device, order.guess, order.plan, progress);
 }
 
 }  // namespace limpid

@@ -12,7 +12,7 @@
 
 namespace limpid {
 
-struct IdentifyOrder {
+struct IdentifyRequest {
   ArmDescription guess;  // whose axes and lengths are taken as they are
   FitSettings fit;
   ExcitationPlan plan;
@@ -24,7 +24,7 @@ inline constexpr double kLeastLoad = 0.001, kMostLoad = 1;  // [kg]
 
 struct Identification {
   std::string device;
-  IdentifyOrder order;
+  IdentifyRequest order;
   IdentifyRun bare, with_load;
   std::optional<Found> torque_scale;  // what the motors give of what they are told, where asked for
   Identified found;                   // in the torques that they give
@@ -33,7 +33,7 @@ struct Identification {
 
 // Of a run that is complete, and of one with the load where there is one. Errors:
 // std::invalid_argument, see identify() and torque_scale.h.
-Identification identification(std::string device, const IdentifyOrder& order, IdentifyRun bare,
+Identification identification(std::string device, const IdentifyRequest& order, IdentifyRun bare,
                               IdentifyRun with_load);
 
 // What is found of each joint, as it is written and shown.
@@ -60,7 +60,7 @@ std::string text_of(const Found& found, double per_unit);
 // The same with the sign, where it can be shown.
 std::string with_plus_minus(std::string text);
 // Why a run ended before its end, for people; `order`: its.
-std::string explain(const IdentifyRun& run, const IdentifyOrder& order);
+std::string explain(const IdentifyRun& run, const IdentifyRequest& order);
 
 // What was found of a device, as it is kept: to be read again, and compared with.
 
@@ -92,10 +92,10 @@ struct SimulatedBench {
   ArmDescription truth;
   Unlikeness unlikeness;  // the torque's scale only where the order has a load that finds it
 };
-SimulatedBench simulated_bench(const IdentifyOrder& order, unsigned seed);
+SimulatedBench simulated_bench(const IdentifyRequest& order, unsigned seed);
 
 // Moves it, with the order's load at the tip or without.
-IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyOrder& order, bool with_load,
-                           IdentifyTalk& talk);
+IdentifyRun move_simulated(const SimulatedBench& bench, const IdentifyRequest& order,
+                           bool with_load, IdentifyProgress& progress);
 
 }  // namespace limpid

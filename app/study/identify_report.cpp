@@ -89,7 +89,7 @@ std::string identified_urdf(const Identification& identification) {
                                identification.order.guess.name));
 }
 
-DeviceHub::Nature nature_of(const Identification& identification) {
+DeviceHub::Profile profile_of(const Identification& identification) {
   return {.urdf = identified_urdf(identification),
           .report = findings_text(identification),
           .delay = identification.found.delay.value,

@@ -14,7 +14,7 @@ namespace limpid {
 std::string identified_urdf(const Identification& identification);
 
 // What the hub remembers of it.
-DeviceHub::Nature nature_of(const Identification& identification);
+DeviceHub::Profile profile_of(const Identification& identification);
 
 // Where a folder has the motion, and the one with the load.
 inline constexpr const char* kMotionFile = "motion.csv";

@@ -11,14 +11,14 @@ from test_drop import drop, two_arms
 from test_window_keys import make_a_change
 from window import WindowTest
 
-FOCUS = ROOT / "app/desktop/shell/focus.cpp"
+TABLE = ROOT / "app/desktop/shell/dialogs.cpp"
 SESSION = sorted((ASSETS / "sessions").glob("*.h5"))[0]
 IN_MENUS_ONLY = {"about", "open arm"}  # no key opens them; their frames are those of the others
 
 
 def dialogs() -> set[str]:
     """All there are, by the program's own list."""
-    return set(re.findall(r'case Dialog::\w+: return "([^"]+)"', FOCUS.read_text()))
+    return set(re.findall(r'DialogKind{"([^"]+)"', TABLE.read_text()))
 
 
 @unittest.skipUnless(drop, "needs python3-xlib")

@@ -37,7 +37,7 @@ class Identification {
 
   std::unique_ptr<RawDeviceModel> model;
   UhidDevice device;
-  IdentifyTalk talk;
+  IdentifyProgress talk;
   IdentifyRun run;
   std::atomic<bool> watched = true, stalled = false, over = false;
 

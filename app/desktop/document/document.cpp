@@ -44,16 +44,18 @@ void Document::open(const ArmDescription& arm, SceneDocument document, MeshModel
                    });
 }
 
-bool Document::may_edit() {
-  const std::string why = why_fixed_();
-  if (!why.empty()) {
-    notices_.say(why, true);
-  } else if (loader_.opening_scene()) {
-    notices_.say("Wait until the scene is there, or cancel its loading.", true);
-  } else {
-    return true;
+std::string Document::why_fixed() const {
+  std::string why = why_fixed_();
+  if (why.empty() && loader_.opening_scene()) {
+    why = "Wait until the scene is there, or cancel its loading.";
   }
-  return false;
+  return why;
+}
+
+bool Document::may_edit() {
+  const std::string why = why_fixed();
+  if (!why.empty()) notices_.say(why, true);
+  return why.empty();
 }
 
 void Document::add_object(SceneObject object, const Workplace& at) {

@@ -44,7 +44,9 @@ class Document {
   SceneLoader& loader() { return loader_; }
   const SceneLoader& loader() const { return loader_; }
 
-  // False, and says why, while the scene has to stay as it is.
+  // Why the scene has to stay as it is, for people; empty: it may be changed.
+  std::string why_fixed() const;
+  // False, and says why, while that is so.
   bool may_edit();
   void add_object(SceneObject object, const Workplace& at);  // it gets a place in reach
   void add_model(LoadedModel loaded, const Workplace& at);

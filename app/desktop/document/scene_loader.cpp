@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 // thread's.
 void step_back() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10); }
 
-LoadProgress progress_of(BackgroundProgress& progress) {
+LoadProgress progress_of(TaskProgress& progress) {
   return {.part = &progress.part, .cancel = &progress.cancel};
 }
 
@@ -63,28 +63,26 @@ LoadedArm load_arm(const fs::path& file, const std::string& tip, Xacro xacro,
 
 void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {
   const std::string what = fmt::format("opening {}", file.filename().string());
-  waiting_.push_back(
-      {what, true, [file = std::move(file), arm](BackgroundProgress& progress) -> Loaded {
-         step_back();
-         return load_scene(file, arm, progress_of(progress));
-       }});
+  waiting_.push_back({what, true, [file = std::move(file), arm](TaskProgress& progress) -> Loaded {
+                        step_back();
+                        return load_scene(file, arm, progress_of(progress));
+                      }});
   start_next();
 }
 
 void SceneLoader::add_model(fs::path file) {
   const std::string what = fmt::format("loading {}", file.filename().string());
-  waiting_.push_back(
-      {what, false, [file = std::move(file)](BackgroundProgress& progress) -> Loaded {
-         step_back();
-         return load_model(file, progress_of(progress));
-       }});
+  waiting_.push_back({what, false, [file = std::move(file)](TaskProgress& progress) -> Loaded {
+                        step_back();
+                        return load_model(file, progress_of(progress));
+                      }});
   start_next();
 }
 
 void SceneLoader::open_arm(fs::path file, const std::string& tip, Xacro xacro) {
   const std::string what = fmt::format("opening {}", file.filename().string());
   waiting_.push_back(
-      {what, true, [file = std::move(file), tip, xacro](BackgroundProgress& progress) -> Loaded {
+      {what, true, [file = std::move(file), tip, xacro](TaskProgress& progress) -> Loaded {
          step_back();
          return load_arm(file, tip, xacro, progress_of(progress));
        }});

@@ -9,7 +9,7 @@
 
 #include "app/run/model_report.h"
 #include "app/run/scene_meshes.h"
-#include "app/session/background.h"
+#include "app/session/tasks.h"
 #include "core/dynamics/arm_description.h"
 #include "devices/files/urdf_file.h"
 
@@ -67,12 +67,12 @@ class SceneLoader {
   struct Request {
     std::string what;
     bool scene;
-    Background<Loaded>::Work work;
+    Task<Loaded>::Work work;
   };
   void start_next();
 
   std::deque<Request> waiting_;
-  Background<Loaded> work_;
+  Task<Loaded> work_;
   bool scene_ = false;     // what is under way is one
   bool unwanted_ = false;  // what is under way
 };

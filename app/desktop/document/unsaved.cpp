@@ -50,4 +50,25 @@ std::vector<fs::path> take_unsaved(const fs::path& folder) {
   return kept;
 }
 
+std::filesystem::path KeptScenes::take() {
+  std::filesystem::path file = newest();
+  files_.pop_back();
+  return file;
+}
+
+void KeptScenes::leave() {
+  notices_.say(fmt::format("{} is in the gallery (Ctrl+G).", take().filename().string()));
+}
+
+void KeptScenes::discard() {
+  const std::filesystem::path file = take();
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) {
+    notices_.say(fmt::format("{}: {}", file.string(), error.message()), true);
+  } else {
+    notices_.say(fmt::format("{} is gone.", file.filename().string()));
+  }
+}
+
 }  // namespace limpid

@@ -250,7 +250,7 @@ void draw_limited(const std::vector<int>& joints) {
 void draw_break(bool broken, const Act& act) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
   if (ImGui::Button(broken ? "Repair" : "Break passivity", size)) {
-    act(broken ? Action::end_passivity_break : Action::break_passivity);
+    act(broken ? "coupling.end_break" : "coupling.break_passivity");
   }
   tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
                    "law, scene, arm or recording."

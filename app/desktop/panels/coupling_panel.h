@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "app/desktop/base/action.h"
+#include "app/desktop/base/act.h"
 #include "app/plot/plot_frame.h"
 #include "app/run/analysis.h"
 #include "app/session/energy_account.h"

@@ -19,13 +19,13 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
-void choice(DeviceDesk& devices, const char* label, const std::string& id, const char* help) {
+void choice(DeviceController& devices, const char* label, const std::string& id, const char* help) {
   if (ImGui::RadioButton(label, devices.hub().in_use() == id)) devices.use(id);
   tooltip(help);
 }
 
 // Who leads the hand on the virtual arm: the mouse can at any time.
-void hand_choice(DeviceDesk& devices, const PadChoice& pads, const std::string& label,
+void hand_choice(DeviceController& devices, const PadChoice& pads, const std::string& label,
                  const std::string& id, const char* help) {
   ImGui::PushID(id.c_str());
   if (ImGui::RadioButton(label.c_str(), devices.hub().in_use().empty() && pads.chosen == id)) {
@@ -36,7 +36,7 @@ void hand_choice(DeviceDesk& devices, const PadChoice& pads, const std::string& 
   ImGui::PopID();
 }
 
-void hand_choices(DeviceDesk& devices, const PadChoice& pads) {
+void hand_choices(DeviceController& devices, const PadChoice& pads) {
   hand_choice(devices, pads, "virtual arm, by the mouse", "",
               "A simulated arm; the mouse is the hand on it.");
   bool known = pads.chosen.empty();
@@ -52,7 +52,7 @@ void hand_choices(DeviceDesk& devices, const PadChoice& pads) {
               "Not plugged in; the mouse leads the hand until it is.");
 }
 
-void choices(DeviceDesk& devices, const PadChoice& pads) {
+void choices(DeviceController& devices, const PadChoice& pads) {
   hand_choices(devices, pads);
   bool known = devices.hub().in_use().empty();
   for (const FoundDevice& found : devices.hub().found()) {
@@ -69,8 +69,8 @@ void choices(DeviceDesk& devices, const PadChoice& pads) {
 }
 
 // The guided check of a device that has not been used before; true while there is one to show.
-bool axis_check(DeviceDesk& devices) {
-  if (const AxisCheckTalk* check = devices.check()) {
+bool axis_check(DeviceController& devices) {
+  if (const AxisCheckProgress* check = devices.check()) {
     ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
     if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
     return true;
@@ -84,7 +84,7 @@ bool axis_check(DeviceDesk& devices) {
   return true;
 }
 
-void status(DeviceDesk& devices, const LiveLoop& loop) {
+void status(DeviceController& devices, const LiveLoop& loop) {
   if (devices.hub().in_use().empty() || axis_check(devices)) return;
   if (!devices.problem().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
@@ -109,8 +109,8 @@ void status(DeviceDesk& devices, const LiveLoop& loop) {
 
 // What of the device was measured and what is assumed, and the delay that the law reckons with.
 // True once more of it shall be measured.
-bool knowledge(DeviceDesk& devices, const Desk& desk, Parameters& p) {
-  if (!desk.loop().device_in_place()) return false;
+bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p) {
+  if (!live.loop().device_in_place()) return false;
   const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
   const bool found = !notes.arm.empty();
   read_out("inertia, friction", found ? "measured" : "assumed", {},
@@ -254,13 +254,13 @@ bool limit_sliders(SafetyLimits& limits) {
   return changed;
 }
 
-void adjustments(DeviceDesk& devices, const Desk& desk) {
+void adjustments(DeviceController& devices, const LiveSession& live) {
   const FoundDevice* found = devices.hub().present();
-  if (found == nullptr || !desk.loop().device_plugged()) return;
+  if (found == nullptr || !live.loop().device_plugged()) return;
   DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
-  const DeviceReading& reading = desk.loop().snapshot().reading;
-  const std::vector<Joint>& of_arm = desk.stage().arm().joints;
-  const bool in_place = desk.loop().device_in_place();
+  const DeviceReading& reading = live.loop().snapshot().reading;
+  const std::vector<Joint>& of_arm = live.stage().arm().joints;
+  const bool in_place = live.loop().device_in_place();
   const std::size_t joints = in_place ? of_arm.size() : 6;
   notes.axes.resize(std::max(notes.axes.size(), joints));
   const std::vector<AxisAdjustment> before = notes.axes;
@@ -278,8 +278,8 @@ void adjustments(DeviceDesk& devices, const Desk& desk) {
     if (notes.pid.effort != effort) notes.torque_scale = 1;  // which was found with the other one
   }
   if (changed) devices.connect_anew();
-  if (!desk.loop().device_in_place()) return;
-  ImGui::BeginDisabled(desk.recording());
+  if (!live.loop().device_in_place()) return;
+  ImGui::BeginDisabled(live.recording());
   if (limit_sliders(notes.limits)) devices.save();
   ImGui::EndDisabled();
 }
@@ -291,15 +291,15 @@ Parameters reckoning_with(Parameters p, double delay) {
   return p;
 }
 
-bool draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads,
+bool draw_device_panel(DeviceController& devices, const LiveSession& live, const PadChoice& pads,
                        Parameters& p) {
   bool identify = false;
   choices(devices, pads);
-  status(devices, desk.loop());
+  status(devices, live.loop());
   if (!devices.hub().in_use().empty()) {
-    identify = knowledge(devices, desk, p);
-    if (desk.loop().device_in_place()) compensation(desk.stage().arm(), p);
-    adjustments(devices, desk);
+    identify = knowledge(devices, live, p);
+    if (live.loop().device_in_place()) compensation(live.stage().arm(), p);
+    adjustments(devices, live);
   }
   ImGui::Separator();
   return identify;

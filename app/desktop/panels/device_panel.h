@@ -1,8 +1,8 @@
 // The panel of the device: which one drives the loop, what it says, why force is off.
 #pragma once
 
-#include "app/desktop/desk/device_desk.h"
-#include "app/desktop/desk/pad_hand.h"
+#include "app/desktop/live/device_controller.h"
+#include "app/desktop/live/pad_hand.h"
 
 namespace limpid {
 
@@ -19,6 +19,7 @@ Parameters reckoning_with(Parameters p, double delay);
 inline constexpr const char* kCheckAxes = "Check the axes";
 
 // True once the device is to be identified.
-bool draw_device_panel(DeviceDesk& devices, const Desk& desk, const PadChoice& pads, Parameters& p);
+bool draw_device_panel(DeviceController& devices, const LiveSession& live, const PadChoice& pads,
+                       Parameters& p);
 
 }  // namespace limpid

@@ -34,7 +34,7 @@ void ExperimentsPanel::start(const Experiment& experiment) {
   current_ = &experiment;
   shown_ = &experiment;
   began_ = ImGui::GetTime();
-  running_.start(experiment.name, [&experiment](BackgroundProgress& progress) {
+  running_.start(experiment.name, [&experiment](TaskProgress& progress) {
     Laboratory::Options options;
     options.dir = experiments_dir();
     options.threads = 1;  // the loop and the picture need the rest

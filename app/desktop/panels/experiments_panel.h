@@ -9,7 +9,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/widgets/picture_texture.h"
-#include "app/session/background.h"
+#include "app/session/tasks.h"
 #include "app/study/experiment.h"
 
 namespace limpid {
@@ -40,7 +40,7 @@ class ExperimentsPanel {
   std::filesystem::path draw_verdict(Verdict& verdict);
 
   Notices& notices_;
-  Background<Outcome> running_;
+  Task<Outcome> running_;
   const Experiment* current_ = nullptr;  // that runs
   const Experiment* shown_ = nullptr;
   std::vector<const Experiment*> queue_;

@@ -14,7 +14,7 @@
 namespace limpid {
 namespace {
 
-using Phase = IdentifyDesk::Phase;
+using Phase = IdentifyController::Phase;
 
 constexpr const char* kTitle = "Identify the device";
 constexpr const char* kWithLoad = "a second time with a load at the tip";
@@ -40,33 +40,34 @@ void part_slider(const char* label, double& part, float least, float most, const
   tooltip(help);
 }
 
-std::string going_on(const IdentifyTalk& talk, const ArmDescription& arm) {
-  switch (talk.stage) {
+std::string going_on(const IdentifyProgress& progress, const ArmDescription& arm) {
+  switch (progress.stage) {
     case ExcitationStage::approach: return "goes to the middle of its range";
     case ExcitationStage::sweep:
       return fmt::format("{} slowly, for its friction",
-                         arm.joints[static_cast<std::size_t>(talk.joint)].name);
+                         arm.joints[static_cast<std::size_t>(progress.joint)].name);
     case ExcitationStage::shake: return "all joints at once, for inertia, weight and delay";
     case ExcitationStage::fade: return "comes to rest";
   }
   return {};
 }
 
-void draw_motion(IdentifyDesk& desk, const ArmDescription& arm) {
-  const IdentifyTalk& talk = desk.talk();
-  ImGui::TextWrapped("It moves by itself: %s.", going_on(talk, arm).c_str());
-  progress_bar(std::clamp(talk.time / talk.duration, 0.0, 1.0), ImGui::GetContentRegionAvail().x);
+void draw_motion(IdentifyController& controller, const ArmDescription& arm) {
+  const IdentifyProgress& progress = controller.progress();
+  ImGui::TextWrapped("It moves by itself: %s.", going_on(progress, arm).c_str());
+  progress_bar(std::clamp(progress.time / progress.duration, 0.0, 1.0),
+               ImGui::GetContentRegionAvail().x);
   muted("Holding on to it ends it, too.");
-  if (ImGui::Button("Stop (Esc)")) desk.stop();
+  if (ImGui::Button("Stop (Esc)")) controller.stop();
 }
 
-void draw_load(IdentifyDesk& desk, double load) {
+void draw_load(IdentifyController& controller, double load) {
   ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to it, and let go.",
                      1e3 * load);
-  if (desk.simulated()) muted("The simulated device has it once you go on.");
-  if (noted_button(kGoOn) || accepted()) desk.go_on();
+  if (controller.simulated()) muted("The simulated device has it once you go on.");
+  if (noted_button(kGoOn) || accepted()) controller.go_on();
   ImGui::SameLine();
-  if (ImGui::Button("Stop (Esc)")) desk.stop();
+  if (ImGui::Button("Stop (Esc)")) controller.stop();
 }
 
 void joints_table(const Identification& identification) {
@@ -112,25 +113,25 @@ void draw_drift(const std::vector<Drift>& all) {
 }
 
 // True once it is to be closed.
-bool draw_found(IdentifyDesk& desk) {
-  const IdentifyDesk::Done& done = *desk.done();
+bool draw_found(IdentifyController& controller) {
+  const IdentifyController::Done& done = *controller.done();
   joints_table(done.identification);
   ImGui::TextWrapped("%s", device_text(done.identification).c_str());
   draw_drift(done.drift);
   muted("Report: " + (done.report / "report.html").string());
   if (!done.no_pictures.empty()) muted("Without pictures: " + done.no_pictures);
   ImGui::Spacing();
-  if (desk.simulated()) {
+  if (controller.simulated()) {
     muted("This was a simulated device that is unlike its file; nothing is remembered of it.");
   } else {
     if (ImGui::Button("Use it (Enter)") || accepted()) {
-      desk.keep();
-      return desk.wrong().empty();
+      controller.keep();
+      return controller.wrong().empty();
     }
     tooltip("From now on the device is taken for what was found.");
     ImGui::SameLine();
   }
-  if (noted_button(desk.simulated() ? kAgain : "Leave it as it was")) desk.stop();
+  if (noted_button(controller.simulated() ? kAgain : "Leave it as it was")) controller.stop();
   return false;
 }
 
@@ -144,14 +145,14 @@ std::map<std::string, ImVec2> IdentifyDialog::places() {
   return all;
 }
 
-void IdentifyDialog::draw_question(IdentifyDesk& desk, const ArmDescription& arm) {
+void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDescription& arm) {
   ImGui::TextWrapped(
       "The device moves by itself, each joint slowly and then all at once, and shows its inertia, "
       "friction, weight, springs and delay. Couplings, margins and compensation rest on them.");
   ImGui::Spacing();
-  part_slider("of each joint's range", order_.plan.range, 0.05f, 0.9f,
+  part_slider("of each joint's range", request_.plan.range, 0.05f, 0.9f,
               "How far it moves, about the middle of its range.");
-  part_slider("of the motors' limits", order_.plan.torque, 0.05f, 1,
+  part_slider("of the motors' limits", request_.plan.torque, 0.05f, 1,
               "The most that its motors may give meanwhile.");
   int down = static_cast<int>(down_);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
@@ -168,46 +169,47 @@ void IdentifyDialog::draw_question(IdentifyDesk& desk, const ArmDescription& arm
     note_place(kLoad);
   }
   ImGui::Spacing();
-  const std::string why_not = desk.why_not();
+  const std::string why_not = controller.why_not();
   muted(!why_not.empty() ? why_not
-        : desk.simulated()
+        : controller.simulated()
             ? "No device is in use: a simulated one that is unlike its file is moved, "
               "to try it on."
             : fmt::format("It takes about {:.0f} s. Clear the space around it and "
                           "let go of it; nobody holds it meanwhile.",
-                          desk.duration(order_.plan)));
-  if (!desk.wrong().empty()) {
+                          controller.duration(request_.plan)));
+  if (!controller.wrong().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
-    ImGui::TextWrapped("Ended: %s", desk.wrong().c_str());
+    ImGui::TextWrapped("Ended: %s", controller.wrong().c_str());
     ImGui::PopStyleColor();
   }
   ImGui::BeginDisabled(!why_not.empty());
   if (ImGui::Button("Begin (Enter)") || (accepted() && why_not.empty())) {
-    order_.load = with_load_ ? 1e-3 * static_cast<double>(load_) : 0;
-    order_.fit.gravity = gravity_of(down_, arm.gravity);
-    desk.begin(order_);
+    request_.load = with_load_ ? 1e-3 * static_cast<double>(load_) : 0;
+    request_.fit.gravity = gravity_of(down_, arm.gravity);
+    controller.begin(request_);
   }
   ImGui::EndDisabled();
 }
 
-void IdentifyDialog::draw(bool& open, IdentifyDesk& desk, Down down, const ArmDescription& arm) {
+void IdentifyDialog::draw(bool& open, IdentifyController& controller, Down down,
+                          const ArmDescription& arm) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   const float em = ImGui::GetFontSize();
-  const float wide = desk.phase() == Phase::found ? 52 * em : 36 * em;
+  const float wide = controller.phase() == Phase::found ? 52 * em : 36 * em;
   if (!begin_modal(kTitle, open, {std::min(wide, 0.94f * room.x), 0})) {
-    if (std::exchange(was_open_, false)) desk.leave();
+    if (std::exchange(was_open_, false)) controller.leave();
     return;
   }
   if (!std::exchange(was_open_, true)) down_ = down;
-  switch (desk.phase()) {
-    case Phase::asking: draw_question(desk, arm); break;
-    case Phase::moving: draw_motion(desk, arm); break;
-    case Phase::load: draw_load(desk, order_.load); break;
+  switch (controller.phase()) {
+    case Phase::asking: draw_question(controller, arm); break;
+    case Phase::moving: draw_motion(controller, arm); break;
+    case Phase::load: draw_load(controller, request_.load); break;
     case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
-    case Phase::found: open = !draw_found(desk); break;
+    case Phase::found: open = !draw_found(controller); break;
   }
-  if (!desk.moving()) {  // what moves is stopped first
-    if (desk.phase() != Phase::working) ImGui::SameLine();
+  if (!controller.moving()) {  // what moves is stopped first
+    if (controller.phase() != Phase::working) ImGui::SameLine();
     close_button("Close (Esc)", open);
   }
   ImGui::EndPopup();

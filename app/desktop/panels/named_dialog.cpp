@@ -27,7 +27,7 @@ NamedDialog::Asked NamedDialog::draw(bool& open, NamedTexts& texts) {
   ImGui::BeginChild("names", {0, std::min(12 * em, 0.45f * room.y)}, true);
   Asked asked = draw_list(texts);
   ImGui::EndChild();
-  if (const Asked pressed = draw_buttons(texts); pressed.wish != Wish::none) asked = pressed;
+  if (const Asked pressed = draw_buttons(texts); pressed.request != Request::none) asked = pressed;
   ImGui::Separator();
   ImGui::SetNextItemWidth(-13 * em);
   if (appears) ImGui::SetKeyboardFocusHere();
@@ -41,14 +41,14 @@ NamedDialog::Asked NamedDialog::draw(bool& open, NamedTexts& texts) {
   }
   if (entered) ImGui::SetKeyboardFocusHere(-1);
   ImGui::SameLine();
-  if (const Asked kept = draw_name(texts, entered); kept.wish != Wish::none) asked = kept;
+  if (const Asked kept = draw_name(texts, entered); kept.request != Request::none) asked = kept;
   if (!complaint_.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
     ImGui::TextWrapped("%s", complaint_.c_str());
     ImGui::PopStyleColor();
   }
   close_button("Close (Esc)", open);
-  if (asked.wish == Wish::use) open = false;
+  if (asked.request == Request::use) open = false;
   ImGui::EndPopup();
   return asked;
 }
@@ -61,7 +61,7 @@ NamedDialog::Asked NamedDialog::draw_list(const NamedTexts& texts) {
     if (ImGui::Selectable(entry.name.c_str(), chosen == entry.name,
                           ImGuiSelectableFlags_AllowDoubleClick)) {
       choose(entry.name);
-      if (ImGui::IsMouseDoubleClicked(0)) asked = {Wish::use, entry.name};
+      if (ImGui::IsMouseDoubleClicked(0)) asked = {Request::use, entry.name};
     }
     if (entry.shipped) {
       const char* text = "comes with Limpid";
@@ -78,7 +78,7 @@ NamedDialog::Asked NamedDialog::draw_list(const NamedTexts& texts) {
 NamedDialog::Asked NamedDialog::draw_buttons(NamedTexts& texts) {
   Asked asked;
   ImGui::BeginDisabled(chosen_.empty());
-  if (ImGui::Button("Use")) asked = {Wish::use, chosen_};
+  if (ImGui::Button("Use")) asked = {Request::use, chosen_};
   ImGui::EndDisabled();
   ImGui::SameLine();
   ImGui::BeginDisabled(chosen_.empty() || !texts.may_change(chosen_));
@@ -112,14 +112,14 @@ NamedDialog::Asked NamedDialog::draw_name(const NamedTexts& texts, bool entered)
   const bool replaces = known && texts.may_change(name_);
   const bool pressed = ImGui::Button(replaces ? "Replace by what is now" : "Save what is now");
   if (!pressed && !entered) return {};
-  if (!pressed && known) return {Wish::use, name_};
+  if (!pressed && known) return {Request::use, name_};
   if (name_.empty()) {
     complaint_ = "It needs a name.";
   } else if (known && !replaces) {
     complaint_ = fmt::format("{} comes with Limpid; choose another name.", name_);
   } else {
     chosen_ = name_;
-    return {Wish::keep, name_};
+    return {Request::keep, name_};
   }
   return {};
 }

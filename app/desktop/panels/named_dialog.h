@@ -16,9 +16,9 @@ class NamedDialog {
   };
   explicit NamedDialog(Options options) : options_(options) {}
 
-  enum class Wish { none, use, keep };
+  enum class Request { none, use, keep };
   struct Asked {
-    Wish wish = Wish::none;
+    Request request = Request::none;
     std::string name;
   };
   // While `open`. Renames and removes; what is to be used, or to be kept of what is there now, is

@@ -8,19 +8,19 @@ namespace limpid {
 namespace {
 
 // Where the last plot was removed.
-PlotsWish draw_no_plots() {
+PlotsRequest draw_no_plots() {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const char* text = "Add a plot (N)";
   const ImVec2 size(ImGui::CalcTextSize(text).x + 3 * ImGui::GetFontSize(), 0);
   ImGui::SetCursorPos(
       {ImGui::GetCursorPosX() + 0.5f * (room.x - size.x), ImGui::GetCursorPosY() + 0.4f * room.y});
-  return ImGui::Button(text, size) ? PlotsWish{PlotWish::add} : PlotsWish{};
+  return ImGui::Button(text, size) ? PlotsRequest{PlotWish::add} : PlotsRequest{};
 }
 
 }  // namespace
 
-PlotsWish draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect) {
-  PlotsWish wish;
+PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect) {
+  PlotsRequest wish;
   begin_panel("plots", rect);
   stage.group.begin_frame(stage.history,
                           player != nullptr ? std::optional(player->time()) : std::nullopt);

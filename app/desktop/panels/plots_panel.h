@@ -10,12 +10,12 @@
 namespace limpid {
 
 // What was asked for in the panel, beyond what plots do themselves.
-struct PlotsWish {
+struct PlotsRequest {
   PlotWish wish = PlotWish::none;  // choose, add, remove
   std::size_t plot = 0;
 };
 
 // `player` of the recording that is shown; null: the loop is.
-PlotsWish draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
+PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
 
 }  // namespace limpid

@@ -67,7 +67,7 @@ void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& a
     if (clicked && editor != nullptr) {
       const bool twice = ImGui::IsMouseDoubleClicked(0);
       editor->select(chosen && !twice ? std::nullopt : std::optional(ref));
-      if (twice) act(Action::frame_selected);
+      if (twice) act("scene.look");
     }
     tooltip(
         fmt::format("{}, {}. Double click to look at it.", name_of(scene, ref), kind_name(ref.kind))
@@ -88,17 +88,17 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   tooltip("Something more to touch.");
   ImGui::BeginDisabled(!any_selected);
   ImGui::SameLine();
-  if (ImGui::Button("Copy", size)) act(Action::duplicate_selected);
+  if (ImGui::Button("Copy", size)) act("scene.copy");
   tooltip("Another one beside it (Ctrl+D).");
   ImGui::SameLine();
-  if (ImGui::Button("Remove", size)) act(Action::remove_selected);
+  if (ImGui::Button("Remove", size)) act("scene.remove");
   tooltip("Delete. Ctrl+Z brings it back.");
   ImGui::SameLine();
-  if (ImGui::Button("Look", size)) act(Action::frame_selected);
+  if (ImGui::Button("Look", size)) act("scene.look");
   tooltip("Turns the camera to it (double click).");
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
-    if (ImGui::MenuItem("Model...", "Ctrl+M")) act(Action::add_model);
+    if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
     if (ImGui::MenuItem("Ball")) add(Sphere{.name = "ball", .radius = 0.02});
     if (ImGui::MenuItem("Block")) {
       add(Box{.name = "block", .size = Vec3::Constant(0.04)});
@@ -146,10 +146,10 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
     editor.set_tip_radius(1e-3 * tip);
   }
   const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-  if (ImGui::Button("Save scene", {width, 0})) act(Action::save_scene);
+  if (ImGui::Button("Save scene", {width, 0})) act("scene.save");
   tooltip("Ctrl+S. A scene that came with Limpid is saved as your own.");
   ImGui::SameLine();
-  if (ImGui::Button("Gallery...", {width, 0})) act(Action::gallery);
+  if (ImGui::Button("Gallery...", {width, 0})) act("scene.gallery");
   tooltip("Ctrl+G: scenes to open, with pictures.");
   ImGui::EndDisabled();
 }

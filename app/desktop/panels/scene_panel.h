@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "app/desktop/base/action.h"
+#include "app/desktop/base/act.h"
 #include "app/desktop/panels/object_editor.h"
 
 namespace limpid {

@@ -2,15 +2,18 @@
 // points, to be run again.
 #pragma once
 
-#include "app/desktop/panels/sweep_chart.h"
+#include <cstdint>
+#include <optional>
+
+#include "app/desktop/sweep/sweep_controller.h"
 
 namespace limpid {
 
 // While `open`, which closing it clears. What is to be played.
-struct MapWish {
+struct MapRequest {
   std::optional<std::uint64_t> point;
   std::optional<double> at;  // of a boundary's axis
 };
-MapWish draw_sweep_panel(SweepDesk& desk, Playback& playback, bool& open);
+MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
 
 }  // namespace limpid

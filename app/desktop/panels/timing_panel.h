@@ -1,9 +1,13 @@
-// How well the loop keeps time, and what a picture costs.
+// How well the loop and its device keep time, what that costs in stiffness, and what a picture
+// costs.
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "app/live/device_pace.h"
 #include "app/live/live_loop.h"
+#include "app/run/tip_limits.h"
 
 namespace limpid {
 
@@ -22,5 +26,20 @@ void draw_time_histogram(const LatencyHistogram& histogram, double late, const c
 
 // `quality` of the picture in words; `frame_time`: work for one picture [s].
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time);
+
+// Of the device in the loop, and what its pace costs.
+class DeviceTiming {
+ public:
+  // Draws into the ImGui window that is open. `x`: the arm's pose [rad].
+  void draw(const DevicePace& pace, const ArmDescription& arm, const Parameters& p,
+            const Scene& scene, std::span<const double> x);
+
+ private:
+  void draw_cost(const DevicePace::Figures& pace, const ArmDescription& arm,
+                 const Parameters& p) const;
+
+  TipLimits now_, prompt_;  // as it is, and without its delay
+  double due_ = 0;          // when to reckon again [s of ImGui's time]
+};
 
 }  // namespace limpid

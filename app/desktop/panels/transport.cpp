@@ -72,7 +72,7 @@ void rerun_controls(Playback& playback, const Act& act) {
             "Re-run",
             "Let the recorded hand drive a new simulation under the present settings and show it "
             "beside the recording (E).")) {
-      act(Action::rerun);
+      act("session.rerun");
     }
     return;
   }
@@ -102,8 +102,7 @@ void playback_controls(Playback& playback, const Act& act) {
   const bool with_steps = fits(button_width("|<") + 2 * button_width("<") + 2 * gap);
   const bool with_loop = fits(button_width("Loop"));
 
-  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses."))
-    act(Action::toggle_playing);
+  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses.")) act("session.play");
   if (with_steps) {
     if (button("|<", "To the beginning (Home)")) player.seek(0);
     if (button("<", "One tick back (left arrow)")) player.step(-1);
@@ -127,16 +126,16 @@ void playback_controls(Playback& playback, const Act& act) {
     ImGui::SameLine();
   }
   if (button("Back to live", "Leave the recording; the device is yours again (Backspace).")) {
-    act(Action::back_to_live);
+    act("session.back_to_live");
   }
 }
 
-void recording_controls(const Desk& desk, double tick, const Act& act) {
-  const LiveLoop& loop = desk.loop();
+void recording_controls(const LiveSession& live, double tick, const Act& act) {
+  const LiveLoop& loop = live.loop();
   const bool recording = loop.recording();
   if (button(recording ? "Stop" : "Record", "R starts and stops recording every tick.", recording,
              true)) {
-    act(Action::toggle_recording);
+    act("session.record");
   }
   if (recording) {
     const double seconds = static_cast<double>(loop.recorder()->rows()) * tick;
@@ -145,20 +144,20 @@ void recording_controls(const Desk& desk, double tick, const Act& act) {
     tooltip(loop.recorder()->out().c_str());
     ImGui::SameLine();
   } else if (button("Play", "Plays the last recording, or opens one (P).")) {
-    act(Action::toggle_playing);
+    act("session.play");
   }
 }
 
-void live_controls(Desk& desk, double tick, double& plot_length, const Act& act) {
-  recording_controls(desk, tick, act);
-  if (button("Open...", "Choose a recorded session (Ctrl+O).")) act(Action::open_session);
+void live_controls(LiveSession& live, double tick, double& plot_length, const Act& act) {
+  recording_controls(live, tick, act);
+  if (button("Open...", "Choose a recorded session (Ctrl+O).")) act("session.open");
   if (button("A/B", "To the next coupling law, without a jump (C).")) {
-    act(Action::toggle_coupling);
+    act("coupling.next");
   }
-  PlotGroup& group = desk.stage().group;
+  PlotGroup& group = live.stage().group;
   if (button(group.following() ? "Freeze plots" : "Follow", "Holds the plots or lets them run (X).",
              !group.following())) {
-    act(Action::freeze_plots);
+    act("plots.freeze");
   }
   const double length = choose("##length", plot_length, {1, 2, 5, 10, 20, 30, 60}, " s");
   if (length != plot_length) {
@@ -171,13 +170,13 @@ void live_controls(Desk& desk, double tick, double& plot_length, const Act& act)
   if (button(
           "Start over",
           "Device and proxy at rest in the middle; a real device's force goes off (Backspace).")) {
-    act(Action::start_over);
+    act("device.start_over");
   }
 }
 
 }  // namespace
 
-void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_length,
+void draw_transport(Playback& playback, LiveSession& live, double tick, double& plot_length,
                     const Act& act, ScreenRect rect) {
   begin_panel("transport", rect);
   if (playback.loading()) {
@@ -192,7 +191,7 @@ void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_le
   } else if (playback.on()) {
     playback_controls(playback, act);
   } else {
-    live_controls(desk, tick, plot_length, act);
+    live_controls(live, tick, plot_length, act);
   }
   ImGui::End();
 }

@@ -1,14 +1,14 @@
 // The bar below: recording, playback, and what the plots show.
 #pragma once
 
-#include "app/desktop/base/action.h"
-#include "app/desktop/desk/desk.h"
+#include "app/desktop/base/act.h"
+#include "app/desktop/live/live_session.h"
 #include "app/desktop/playback/playback.h"
 
 namespace limpid {
 
 // `tick` of the loop [s]; `plot_length` of the live plots [s], which can be chosen here.
-void draw_transport(Playback& playback, Desk& desk, double tick, double& plot_length,
+void draw_transport(Playback& playback, LiveSession& live, double tick, double& plot_length,
                     const Act& act, ScreenRect rect);
 
 }  // namespace limpid

@@ -15,7 +15,7 @@
 namespace limpid {
 namespace {
 
-using Kind = VideoOrder::Kind;
+using Kind = VideoRequest::Kind;
 
 constexpr std::array kKinds{"MP4 video", "GIF, for a web page or slides",
                             "PNG pictures in a folder"};
@@ -44,26 +44,26 @@ T choose(const char* label, T value, const std::array<T, n>& among, const Text& 
 }  // namespace
 
 void VideoDialog::draw_choices(const PlayedSession& session) {
-  int kind = static_cast<int>(order_.kind);
+  int kind = static_cast<int>(request_.kind);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
   if (ImGui::Combo("format", &kind, kKinds.data(), static_cast<int>(kKinds.size()))) {
-    order_.kind = static_cast<Kind>(kind);
-    order_.fps.reset();
+    request_.kind = static_cast<Kind>(kind);
+    request_.fps.reset();
   }
-  std::tie(order_.width, order_.height) = choose(
-      "size", std::pair{order_.width, order_.height}, kSizes,
+  std::tie(request_.width, request_.height) = choose(
+      "size", std::pair{request_.width, request_.height}, kSizes,
       [](std::pair<int, int> size) { return fmt::format("{} x {}", size.first, size.second); });
-  order_.fps =
-      choose("pictures a second", order_.fps.value_or(order_.kind == Kind::gif ? kOfGif : kOfVideo),
-             kRates, [](int rate) { return fmt::format("{}", rate); });
-  if (order_.kind == Kind::gif) order_.fps = std::min(*order_.fps, kMostOfGif);
-  order_.speed = choose("speed", order_.speed, kSpeeds, [](double speed) {
+  request_.fps = choose("pictures a second",
+                        request_.fps.value_or(request_.kind == Kind::gif ? kOfGif : kOfVideo),
+                        kRates, [](int rate) { return fmt::format("{}", rate); });
+  if (request_.kind == Kind::gif) request_.fps = std::min(*request_.fps, kMostOfGif);
+  request_.speed = choose("speed", request_.speed, kSpeeds, [](double speed) {
     return speed == 1 ? std::string("as it was") : fmt::format("x{:g}", speed);
   });
-  ImGui::Checkbox("with the plots", &order_.plots);
+  ImGui::Checkbox("with the plots", &request_.plots);
   if (!session.player().session().twin) return;
   ImGui::SameLine();
-  ImGui::Checkbox("both runs in one picture", &order_.overlaid);
+  ImGui::Checkbox("both runs in one picture", &request_.overlaid);
 }
 
 void VideoDialog::draw_span(const PlayedSession& session) {
@@ -81,40 +81,40 @@ void VideoDialog::draw_span(const PlayedSession& session) {
     ImGui::TextUnformatted(label);
     ImGui::PopID();
   };
-  time("from", "here", "Where playback stands", order_.from);
+  time("from", "here", "Where playback stands", request_.from);
   time("to", "here", "Where playback stands", to_);
-  if (!std::isfinite(order_.from)) order_.from = 0;
+  if (!std::isfinite(request_.from)) request_.from = 0;
   if (!std::isfinite(to_)) to_ = whole;
-  order_.from = std::clamp(order_.from, 0.0, std::max(0.0, whole - kShortest));
-  to_ = std::clamp(to_, std::min(order_.from + kShortest, whole), whole);
+  request_.from = std::clamp(request_.from, 0.0, std::max(0.0, whole - kShortest));
+  to_ = std::clamp(to_, std::min(request_.from + kShortest, whole), whole);
 }
 
-std::optional<VideoOrder> VideoDialog::draw(bool& open, const Playback& playback, bool overlaid) {
+std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playback, bool overlaid) {
   const PlayedSession* session = playback.shown();
   if (session == nullptr) open = false;
   const float em = ImGui::GetFontSize();
   const bool shown = begin_modal(
       "Write a video", open, {std::min(34 * em, 0.94f * ImGui::GetMainViewport()->WorkSize.x), 0});
   if (shown && !was_shown_) {
-    order_.from = 0;
+    request_.from = 0;
     to_ = session->player().duration();
-    order_.overlaid = overlaid;
+    request_.overlaid = overlaid;
   }
   was_shown_ = shown;
   if (!shown) return std::nullopt;
   draw_choices(*session);
   draw_span(*session);
   ImGui::Spacing();
-  const std::filesystem::path out = video_of(session->file(), order_.kind, sessions_dir());
+  const std::filesystem::path out = video_of(session->file(), request_.kind, sessions_dir());
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   ImGui::TextWrapped("%.1f s, %.0f pictures, drawn at full quality beside the window: %s", length(),
-                     std::max(1.0, std::round(length() * *order_.fps)), out.c_str());
+                     std::max(1.0, std::round(length() * *request_.fps)), out.c_str());
   ImGui::PopStyleColor();
   ImGui::Spacing();
-  std::optional<VideoOrder> asked;
+  std::optional<VideoRequest> asked;
   if (ImGui::Button("Write (Enter)") || accepted()) {
-    asked = order_;
-    asked->overlaid = order_.overlaid && session->player().session().twin;
+    asked = request_;
+    asked->overlaid = request_.overlaid && session->player().session().twin;
     if (to_ < session->player().duration()) asked->to = to_;
   }
   ImGui::SameLine();

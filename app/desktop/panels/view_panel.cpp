@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "app/desktop/base/picture_signs.h"
-#include "app/desktop/desk/hand_goal.h"
+#include "app/desktop/live/hand_goal.h"
 #include "app/desktop/panels/selection_outline.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"

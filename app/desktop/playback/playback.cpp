@@ -15,21 +15,20 @@ namespace fs = std::filesystem;
 void Playback::open(const fs::path& file) {
   loading_.start(
       fmt::format("loading {}", file.filename().string()),
-      [file](BackgroundProgress&) -> std::optional<LoadedSession> { return load_session(file); });
+      [file](TaskProgress&) -> std::optional<LoadedSession> { return load_session(file); });
 }
 
 void Playback::open_story() {
   left_.clear();
-  loading_.start("running the story",
-                 [out = sessions_dir() / "story.h5"](BackgroundProgress& progress) {
-                   return load_story(out, progress);
-                 });
+  loading_.start("running the story", [out = sessions_dir() / "story.h5"](TaskProgress& progress) {
+    return load_story(out, progress);
+  });
 }
 
 void Playback::run_hand(const fs::path& file, RunPlan world) {
   const fs::path out = sessions_dir() / fmt::format("hand-{}.h5", file.stem().string());
   loading_.start(fmt::format("running {}", file.filename().string()),
-                 [file, out, world = std::move(world)](BackgroundProgress& progress) {
+                 [file, out, world = std::move(world)](TaskProgress& progress) {
                    return load_hand(file, world, out, progress);
                  });
 }
@@ -53,29 +52,28 @@ void Playback::toggle_playing() {
 
 void Playback::start_rerun(const Parameters& chosen) {
   if (!shown_) return;
-  rerunning_.start(
-      "re-running",
-      [session = shown_->player().shared(), where = shown_->file().string(), chosen](
-          BackgroundProgress& progress) { return run_again(*session, where, chosen, progress); });
+  rerunning_.start("re-running", [session = shown_->player().shared(),
+                                  where = shown_->file().string(), chosen](TaskProgress& progress) {
+    return run_again(*session, where, chosen, progress);
+  });
 }
 
 void Playback::export_csv() {
   if (!shown_ || exporting_.busy()) return;
   fs::path out = shown_->file();
   out.replace_extension(".csv");
-  exporting_.start("writing the table",
-                   [session = shown_->player().shared(), out](BackgroundProgress&) {
-                     write_csv(*session, out, false);
-                     return fmt::format("Wrote {}", out.string());
-                   });
+  exporting_.start("writing the table", [session = shown_->player().shared(), out](TaskProgress&) {
+    write_csv(*session, out, false);
+    return fmt::format("Wrote {}", out.string());
+  });
 }
 
-void Playback::export_video(const VideoOrder& order) {
+void Playback::export_video(const VideoRequest& order) {
   if (!shown_ || filming_.busy()) return;
   const fs::path session = shown_->file();
   const fs::path out = video_of(session, order.kind, sessions_dir());
   filming_.start(fmt::format("making {}", out.filename().string()),
-                 [session, out, order](BackgroundProgress& progress) {
+                 [session, out, order](TaskProgress& progress) {
                    return film_beside(session, out, words_of(order), progress.cancel, progress.part)
                               ? fmt::format("Wrote {}", out.string())
                               : fmt::format("{} was not written.", out.filename().string());
@@ -136,7 +134,7 @@ bool Playback::take_results() {
                    true);
     }
   }
-  for (Background<std::string>* work : {&exporting_, &filming_}) {
+  for (Task<std::string>* work : {&exporting_, &filming_}) {
     if (auto text = work->take()) notices_.say(*text);
   }
   return opened;

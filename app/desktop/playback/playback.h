@@ -5,7 +5,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/playback/played_session.h"
-#include "app/session/video_order.h"
+#include "app/session/video_request.h"
 
 namespace limpid {
 
@@ -20,7 +20,7 @@ class Playback {
   // A hand's path through this world (all of a plan but the hand), run beside the window.
   void run_hand(const std::filesystem::path& file, RunPlan world);
   // What some other work makes; nothing where that was cancelled.
-  using Load = Background<std::optional<LoadedSession>>::Work;
+  using Load = Task<std::optional<LoadedSession>>::Work;
   void load(std::string what, Load work) { loading_.start(std::move(what), std::move(work)); }
   bool loading() const { return loading_.busy(); }
   double loading_part() const { return loading_.part(); }  // 0 to 1; 0 of what does not tell
@@ -47,8 +47,8 @@ class Playback {
 
   // Made as `limpid play --video` does, beside the session's file, or, where nothing can be
   // written, among the user's own sessions.
-  void export_video(const VideoOrder& order);
-  const Background<std::string>& video() const { return filming_; }  // while it is made
+  void export_video(const VideoRequest& order);
+  const Task<std::string>& video() const { return filming_; }  // while it is made
   void cancel_video() { filming_.ask_to_stop(); }
 
   // What there was last to look at; empty: nothing yet.
@@ -70,9 +70,9 @@ class Playback {
   std::filesystem::path last_, left_;  // left_: a story, at
   double left_at_ = 0;                 // [s]
   bool told_of_build_ = false;         // that another build made the session that is shown
-  Background<std::optional<LoadedSession>> loading_;
-  Background<Rerun> rerunning_;
-  Background<std::string> exporting_, filming_;
+  Task<std::optional<LoadedSession>> loading_;
+  Task<Rerun> rerunning_;
+  Task<std::string> exporting_, filming_;
 };
 
 }  // namespace limpid

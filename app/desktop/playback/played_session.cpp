@@ -8,7 +8,7 @@
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 #include "app/style/words.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/files/text_file.h"
@@ -70,18 +70,18 @@ LoadedSession load_session(const fs::path& file) {
           .steps = std::move(steps)};
 }
 
-std::optional<LoadedSession> load_story(const fs::path& out, BackgroundProgress& progress) {
+std::optional<LoadedSession> load_story(const fs::path& out, TaskProgress& progress) {
   const Story story = read_story(default_story());
-  const Told told = tell(story, progress.cancel,
-                         [&](double seconds) { progress.part = seconds / story.seconds(); });
-  if (told.end.stopped) return std::nullopt;
+  const StoryRun run = run_story(
+      story, progress.cancel, [&](double seconds) { progress.part = seconds / story.seconds(); });
+  if (run.end.stopped) return std::nullopt;
   fs::create_directories(out.parent_path());
-  write_session(told.session, {story.title, story.steps}, out, true);
+  write_session(run.session, {story.title, story.steps}, out, true);
   return load_session(out);
 }
 
 std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, const fs::path& out,
-                                       BackgroundProgress& progress) {
+                                       TaskProgress& progress) {
   world.hand = read_hand(hand);
   world.rows =
       static_cast<std::uint64_t>(std::llround(world.hand.duration() / world.parameters.tick));
@@ -103,7 +103,7 @@ std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, cons
 }
 
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
-                BackgroundProgress& progress) {
+                TaskProgress& progress) {
   const RunPlan plan = replay(session, where, chosen);
   std::vector<double> rows;
   rows.reserve(session.rows.size());

@@ -9,8 +9,8 @@
 
 #include "app/desktop/base/stage.h"
 #include "app/run/simulate.h"
-#include "app/session/background.h"
 #include "app/session/player.h"
+#include "app/session/tasks.h"
 #include "app/story/story.h"
 
 namespace limpid {
@@ -60,16 +60,14 @@ struct Rerun {
 LoadedSession load_session(const std::filesystem::path& file);
 // Runs the story that comes along and leaves it in `out`, which is replaced; nothing if it was
 // cancelled.
-std::optional<LoadedSession> load_story(const std::filesystem::path& out,
-                                        BackgroundProgress& progress);
+std::optional<LoadedSession> load_story(const std::filesystem::path& out, TaskProgress& progress);
 // Runs the path of a hand in this world and leaves it in `out`, which is replaced; nothing if it
 // was cancelled.
 std::optional<LoadedSession> load_hand(const std::filesystem::path& hand, RunPlan world,
-                                       const std::filesystem::path& out,
-                                       BackgroundProgress& progress);
+                                       const std::filesystem::path& out, TaskProgress& progress);
 // Under `chosen`, where these may be changed; without rows if it was cancelled.
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
-                BackgroundProgress& progress);
+                TaskProgress& progress);
 
 class PlayedSession {
  public:

@@ -1,317 +1,213 @@
 #include "app/desktop/shell/desktop.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
-#include <tuple>
+#include <chrono>
+#include <utility>
 
-#include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
-#include "app/desktop/sweep/sweep_desk.h"
-#include "app/run/fitted_gains.h"
-#include "app/run/own_world.h"
-#include "app/run/twin_settings.h"
-#include "app/style/words.h"
-#include "core/dynamics/arm.h"
-#include "devices/files/config_file.h"
-#include "devices/files/scene/scene_file.h"
-#include "devices/files/urdf_file.h"
+#include "core/tick/arming.h"
 
 namespace limpid {
+namespace {
 
 namespace fs = std::filesystem;
 
-Desktop::Desktop(Settings settings, const AskForPriority& ask)
-    : settings_(std::move(settings)),
-      document_(settings_, notices_, [this] { return why_fixed(); }),
-      desk_(notices_, ask),
-      devices_(desk_, notices_, ask,
-               {.open = [this](std::unique_ptr<Device> device) { open_device(std::move(device)); },
-                .close = [this] { close_device(); },
-                .toggle_coupling = [this] { toggle_coupling(); }}),
-      identify_(desk_, devices_, notices_),
-      playback_(notices_),
-      sweep_(std::make_unique<SweepDesk>(notices_)),
-      layouts_(data_dir() / "assets/layouts.toml", user_config_dir() / "layouts.toml"),
-      presets_(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
-      analysed_(settings_.parameters),
-      analysed_twin_(settings_.twin.parameters) {
-  desk_.controls().parameters = settings_.parameters;
+Banner force_banner(const std::string& text, const std::string& why, bool bad) {
+  return {.id = "banner of the force", .text = text + ": " + why + ".", .bad = bad};
 }
 
-Desktop::~Desktop() = default;
+// Of a recording, where it is looked at.
+std::optional<Banner> recorded_force(const PlayedSession& session) {
+  const Player& player = session.player();
+  const double state = player.session().layout.in(player.row(), Column::force_state)[0];
+  const std::string text = force_text(static_cast<ForceState>(state));
+  if (text.empty()) return std::nullopt;
+  return force_banner("In this recording", text, false);
+}
 
-void Desktop::open_world(const std::string& device, const std::string& tip,
-                         const std::string& scene) {
-  device_file_ = device.empty() ? default_device().string() : device;
-  device_tip_ = tip;
-  ArmDescription arm = load_arm(device_file_, tip, consent(device_file_)).arm;
-  const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
-  SceneDocument whole = read_scene(file, arm);
-  if (whole.scene.meshes.empty()) {
-    document_.set_file(file.string());
-    return open(std::move(arm), std::move(whole), {});
+std::optional<Banner> live_force(const LiveSession& live) {
+  const Snapshot& now = live.loop().snapshot();
+  const std::string why = explain(now.force_state);
+  if (now.arming == Arming::waiting) {
+    return force_banner("Force waits, and fades in with the hand", why, false);
   }
-  // Models may be large: they come in while the window is there already. Saving what is there
-  // without them must not write over the scene's own file.
-  whole.scene.meshes.clear();
-  whole.models.clear();
-  whole.toml.clear();
-  document_.set_file(default_scene(arm).string());
-  open(std::move(arm), std::move(whole), {});
-  first_scene_ = file.string();
-  document_.loader().open_scene(file, desk_.stage().arm());
+  if (now.arming != Arming::off && now.arming != Arming::tripped) return std::nullopt;
+  const bool recording = live.loop().recording();
+  Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
+                               recording || now.arming == Arming::tripped);
+  banner.text += " F arms it.";
+  banner.buttons = {{"Arm (F)", "device.force"}};
+  return banner;
 }
 
-void Desktop::open_last_world(const std::string& device, const std::string& tip,
-                              const std::string& scene, bool fixed) {
-  std::string arm = device, end = tip, world = scene;
-  expanded_ = device;  // who names a file on the command line means it
-  if (device.empty()) std::tie(arm, end) = last_arm();
-  const ArmDescription first =
-      read_urdf(arm.empty() ? default_device().string() : arm, end, consent(arm));
-  if (fixed) fitted_for_ = first;
-  if (scene.empty() && (device.empty() || suits_default_world(first))) world = settings_.scene;
-  try {
-    open_world(arm, end, world);
-  } catch (const std::exception& e) {
-    if (!scene.empty() || world.empty()) throw;
-    open_world(arm, end, "");
-    notices_.say(e.what(), true);
-  }
-  if (!arm.empty()) say_about_arm();
+// "23 November, 14:32", when the file was written.
+std::string when(const fs::path& file) {
+  std::error_code none;
+  const auto written = fs::last_write_time(file, none);
+  const auto ago = std::chrono::duration_cast<std::chrono::system_clock::duration>(
+      fs::file_time_type::clock::now() - written);
+  const auto at = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now() - ago);
+  return fmt::format("{:%d %B, %H:%M}", fmt::localtime(at));
 }
 
-void Desktop::open(ArmDescription arm, SceneDocument document, MeshModels models,
-                   std::unique_ptr<Device> device, bool saved) {
-  end_break();
-  fit_to(arm);
-  take_compensation(device != nullptr);
-  desk_.open(std::move(arm), std::move(document), models, settings_.parameters,
-             settings_.plot_length, std::move(device));
-  take_stage(std::move(models), saved);
-}
+}  // namespace
 
-// The stage's scene is the one that is edited from now on.
-void Desktop::take_stage(MeshModels models, bool saved) {
-  const Stage& stage = desk_.stage();
-  if (!playback_.on()) {
-    reset_view();
-    camera_.finish();
-  }
-  analysis_ = analyze(stage.arm(), rest_pose(stage.arm()), settings_.parameters, std::nullopt);
-  document_.open(stage.arm(), stage.document(), std::move(models), saved);
-  shown_ = document_.editor().version();
-  touched_ = shown_.world;
-}
-
-void Desktop::look(Camera::View view) {
-  automatic_view_ = false;
-  camera_.look(view);
-}
-
-void Desktop::reset_view() {
-  automatic_view_ = true;
-  camera_.reset(shown().picture.bounds());
+Desktop::Desktop(Settings first, const AskForPriority& ask)
+    : settings(std::move(first)),
+      document(settings, notices, [this] { return world.why_fixed(); }),
+      live(notices, ask),
+      devices(
+          live, notices, ask,
+          {.open = [this](std::unique_ptr<Device> device) { world.open_device(std::move(device)); },
+           .close = [this] { world.close_device(); },
+           .toggle_coupling = [this] { tuning.next_law(); }}),
+      identify(live, devices, notices),
+      playback(notices),
+      sweep(notices),
+      shown(settings, playback, live),
+      tuning(settings, notices, live, devices, playback),
+      plots(settings, notices, dialog),
+      pads(settings, notices, live),
+      kept(notices),
+      world(*this) {
+  live.controls().parameters = settings.parameters;
 }
 
 void Desktop::drop_pictures() {
-  playback_.drop_pictures();
-  desk_.drop_pictures();
+  playback.drop_pictures();
+  live.drop_pictures();
 }
 
 void Desktop::update(double dt) {
-  if (end_break_by_law(settings_)) notices_.say(kBreakEnded);
-  document_.note_changes();
-  follow_twin();
-  follow_parameters();
-  shown().choose_plots(settings_.plot_choices);
-  show_scene();
-  hand_scene_over(false);
-  desk_.update(settings_.parameters, settings_.twin.on ? &settings_.twin.parameters : nullptr);
-  if (const auto recorded = desk_.take_recorded()) {
-    playback_.set_last(*recorded);
-    make_thumbnail(*recorded, desk_.stage(), desk_.row(), desk_.twin_row(), settings_.theme);
-    remember_recent(settings_, recorded->string());
+  if (end_break_by_law(settings)) notices.say(kBreakEnded);
+  document.note_changes();
+  tuning.update();
+  shown.stage().choose_plots(settings.plot_choices);
+  world.hand_over(false);
+  live.update(settings.parameters, settings.twin.on ? &settings.twin.parameters : nullptr);
+  if (const auto recorded = live.take_recorded()) {
+    playback.set_last(*recorded);
+    make_thumbnail(*recorded, live.stage(), live.row(), live.twin_row(), settings.theme);
+    remember_recent(settings, recorded->string());
   }
   follow_playback(dt);
-  follow_story();
-  take_loaded();
-  devices_.update();
-  identify_.update();
-  note_compensation();
-  camera_.advance(dt);
-  if (desk_.became_unstable()) {
+  shown.follow_story();
+  world.take_loaded();
+  devices.update();
+  identify.update();
+  tuning.note_compensation();
+  shown.camera.advance(dt);
+  if (live.became_unstable()) {
     cut_force();
-    notices_.say(
+    notices.say(
         "The loop became unstable; force is off. Choose a larger eta or a smaller alpha, start "
         "over (Backspace), then F.",
         true);
   }
-  notices_.forget_old();
+  notices.forget_old();
 }
 
-std::span<const double> Desktop::row() const {
-  return playback_.on() ? playback_.shown()->player().row() : desk_.row();
-}
-
-std::span<const double> Desktop::twin_row() const {
-  return playback_.on() ? playback_.shown()->twin_row() : desk_.twin_row();
-}
-
-Parameters& Desktop::edited() {
-  return edits_twin() ? settings_.twin.parameters : settings_.parameters;
-}
-
-// One hand, one device, one world for both; what the plots call them.
-void Desktop::follow_twin() {
-  TwinSettings& twin = settings_.twin;
-  if (desk_.loop().device_in_place()) twin.on = false;
-  share_world(settings_.parameters, twin.parameters);
-  if (!twin.on) return desk_.stage().name_runs({});
-  const auto names = twin_names(settings_.parameters, twin.parameters);
-  desk_.stage().name_runs({names[0], names[1], true});
-}
-
-// What a story's step wants to be looked at from, and what it calls the runs.
-void Desktop::follow_story() {
-  const StoryStep* step = playback_.on() ? playback_.shown()->step() : nullptr;
-  if (step == step_) return;
-  step_ = step;
-  if (step == nullptr) return reset_view();
-  playback_.shown()->stage().name_runs({step->names[0], step->names[1], true});
-  const StoryCamera aim = camera_in(playback_.shown()->steps(), *step);
-  reset_view();
-  if (!aim.of && aim.view == Camera::View::iso) return;
-  look(aim.view);
-  camera_.frame(aim.of.value_or(shown().picture.bounds()));
-}
-
-// In the plots. What both runs have in common is marked once.
-void Desktop::mark_changes(const Parameters& now, const Parameters& before,
-                           const std::string& whose) {
-  for (const ParameterInfo& info : parameter_table()) {
-    if (parameter_text(now, info) == parameter_text(before, info)) continue;
-    if (!whose.empty() && !own_of_twin(info)) continue;
-    desk_.mark(whose + mark_text(info, now), whose + info.key);
+// What has been asked for and is there now: a recording, a point of a sweep, a sweep.
+void Desktop::follow_playback(double dt) {
+  if (sweep.update()) remember_recent(settings, sweep.sweep()->file.string());
+  const bool another = playback.update(dt);
+  tuning.follow_recorded(another);
+  if (!another) return;
+  tuning.end_break();
+  const PlayedSession& opened = *playback.shown();
+  const std::size_t k = opened.row_to_show();
+  const Session& session = opened.player().session();
+  make_thumbnail(opened.file(), shown.stage(), session.row(k),
+                 session.twin ? session.twin->row(k) : std::span<const double>(), settings.theme);
+  shown.camera.frame(shown.stage().picture.bounds());
+  shown.leave_story();
+  if (playback.last() != sweep.last_point()) {
+    remember_recent(settings, playback.last().string());
+  } else if (dialog.name() == "sweep") {
+    dialog.close();  // over what has come of its point
   }
 }
 
-void Desktop::follow_parameters() {
-  const Parameters &first = settings_.parameters, &twin = settings_.twin.parameters;
-  const bool changed = !(first == analysed_) || !(twin == analysed_twin_);
-  if (!changed && analysed_of_twin_ == edits_twin()) return;
-  if (!playback_.on()) {
-    mark_changes(first, analysed_, "");
-    if (settings_.twin.on) mark_changes(twin, analysed_twin_, "twin: ");
-  }
-  analysed_ = first;
-  analysed_twin_ = twin;
-  analysed_of_twin_ = edits_twin();
-  const ArmDescription& arm = shown().arm();
-  analysis_ = analyze(arm, rest_pose(arm), edited(), std::nullopt);
-}
-
-int Desktop::quality_level() const {
-  if (settings_.picture_quality == "high") return 0;
-  if (settings_.picture_quality == "medium") return 2;
-  if (settings_.picture_quality == "low") return Quality::kLowest;
-  return automatic_quality_.level();
+void Desktop::follow_pads(std::vector<Pad> plugged, bool focused, double dt) {
+  const Focus who = focus();
+  const bool listens = focused && !playback.on() && !who.question && !who.modal;
+  const auto asked_for = pads.follow(
+      std::move(plugged), {.device = !devices.hub().in_use().empty(), .listens = listens},
+      shown.camera, dt);
+  if (asked_for.cut) cut_force();
+  if (asked_for.next_law) tuning.next_law();
 }
 
 Focus Desktop::focus() const {
   return {.text = typing(),
           .popup = popup_open(),
-          .question = document_.asking(),
-          .dialog = dialog_,
-          .playback = playback_.on()};
-}
-
-void Desktop::toggle_coupling() {
-  if (passivity_broken(settings_)) return end_break();
-  edited().kind = next(edited().kind);
-}
-
-void Desktop::break_passivity() {
-  if (desk_.loop().device_in_place() || playback_.on()) return;
-  limpid::break_passivity(settings_, desk_.stage().arm());
-}
-
-void Desktop::end_break() {
-  if (!passivity_broken(settings_)) return;
-  end_passivity_break(settings_);
-  notices_.say(kBreakEnded);
-}
-
-void Desktop::toggle_twin() {
-  if (const std::string why = desk_.why_twin_is_fixed(); !why.empty()) {
-    return notices_.say(why, true);
-  }
-  end_break();
-  playback_.close();
-  TwinSettings& twin = settings_.twin;
-  twin.on = !twin.on;
-  twin.edited = false;
-  if (!twin.on) return notices_.say("The twin is gone. B brings it back.");
-  if (twin.parameters.kind == settings_.parameters.kind &&
-      twin.parameters.eta == settings_.parameters.eta) {
-    using enum CouplingKind;
-    twin.parameters.kind = settings_.parameters.kind == standard ? predictive : standard;
-  }
-  notices_.say("Two couplings on one hand. The tabs choose which one the sliders set.");
+          .question = document.asking(),
+          .dialog = dialog.name(),
+          .modal = dialog.modal(),
+          .playback = playback.on()};
 }
 
 void Desktop::cut_force() {
-  desk_.loop().cut();
-  devices_.cancel_check();
-  if (identify_.moving()) identify_.stop();  // what was found stays
+  live.loop().cut();
+  devices.cancel_check();
+  if (identify.moving()) identify.stop();  // what was found stays
 }
 
-void Desktop::reset_parameters() {
-  end_break();
-  settings_.parameters = fitted(desk_.stage().arm());
-  const bool usual = settings_.parameters == Parameters{};
-  notices_.say(usual
-                   ? "All settings have their usual values again, the paper's where it gives them."
-                   : "All settings have their usual values again, with gains fitted to this arm.");
+void Desktop::escape() {
+  const bool closed = close_one();
+  const bool real = live.loop().device_in_place() || devices.check() != nullptr;
+  if (!closed || real) cut_force();
 }
 
-void Desktop::toggle_recording() {
-  if (desk_.loop().recording()) return desk_.stop_recording();
-  if (!desk_.may_record()) return;
-  try {
-    start_recording();
-  } catch (const std::exception& e) {
-    notices_.say(e.what(), true);
+// A device that moves by itself stops, and its dialog says so. Else a menu, then typing outside of
+// dialogs (which ImGui ends), the question, a run that goes on beside the window, the dialog.
+bool Desktop::close_one() {
+  const Focus now = focus();
+  if (identify.moving()) {
+    identify.stop();
+  } else if (now.popup) {
+    // Lists inside of a dialog go, the dialog stays.
+    const int level = ImGui::GetTopMostPopupModal() != nullptr ? 1 : 0;
+    ImGui::ClosePopupToLevel(level, true);
+  } else if (now.question) {
+    document.stay();
+  } else if (playback.loading_part() > 0 && playback.loading()) {
+    playback.cancel_loading();
+  } else if (dialog.kind() == nullptr) {
+    return now.text;
+  } else if (!now.text || dialog.kind()->keys != DialogKind::Keys::view) {
+    dialog.close();
   }
+  return true;
 }
 
-void Desktop::start_recording() {
-  playback_.close();
-  RunPlan plan;
-  plan.arm = desk_.stage().arm();
-  plan.document = document_.editor().document();
-  plan.document.toml = document_.toml();
-  plan.hand.source = desk_.loop().device_in_place() ? "device" : "mouse";
-  plan.parameters = settings_.parameters;
-  if (settings_.twin.on) plan.twin = TwinPlan{settings_.twin.parameters, {}, {}};
-  hand_scene_over(true);
-  desk_.record(plan, sessions_dir());
-}
-
-void Desktop::toggle_playing() {
-  if (playback_.on()) {
-    playback_.toggle_playing();
-  } else if (!playback_.last().empty()) {
-    playback_.open(playback_.last());
-  } else {
-    open_dialog(Dialog::open_session);
+std::vector<Banner> Desktop::banners() const {
+  if (dialog.name() == "sweep") return {};  // which they would cover
+  std::vector<Banner> all;
+  const auto force = playback.on() ? recorded_force(*playback.shown()) : live_force(live);
+  if (force) all.push_back(*force);
+  if (passivity_broken(settings)) {
+    all.push_back({.id = "banner of the break",
+                   .text = "Passivity is broken on purpose: hold the arm, and energy grows. All "
+                           "settings come back when it ends.",
+                   .bad = true,
+                   .buttons = {{"End it (C)", "coupling.end_break"}}});
   }
-}
-
-void Desktop::play_story() {
-  settings_.hint_seen = true;
-  playback_.open_story();
+  if (kept.any()) {
+    all.push_back({.id = "banner of what was kept",
+                   .text = fmt::format("Limpid was ended while a scene had unsaved changes. They "
+                                       "were kept on {} in {}.",
+                                       when(kept.newest()), kept.newest().filename().string()),
+                   .buttons = {{"Open", "scene.open_kept"},
+                               {"Later", "scene.leave_kept"},
+                               {"Discard", "scene.discard_kept"}}});
+  }
+  return all;
 }
 
 }  // namespace limpid

@@ -1,150 +1,255 @@
 #include "app/desktop/shell/dialogs.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <stdexcept>
+
 #include "app/base/folders.h"
 #include "app/desktop/base/window_layout.h"
+#include "app/desktop/panels/experiments_panel.h"
+#include "app/desktop/panels/gallery.h"
+#include "app/desktop/panels/identify_dialog.h"
+#include "app/desktop/panels/named_dialog.h"
+#include "app/desktop/panels/plot_chooser.h"
+#include "app/desktop/panels/questions.h"
+#include "app/desktop/panels/session_dialog.h"
 #include "app/desktop/panels/sweep_panel.h"
-#include "app/desktop/panels/unsaved_question.h"
-#include "app/desktop/panels/xacro_question.h"
+#include "app/desktop/panels/video_dialog.h"
+#include "app/desktop/shell/commands.h"
+#include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/reading.h"
+#include "app/desktop/widgets/path_dialog.h"
 
 namespace limpid {
+namespace {
 
 namespace fs = std::filesystem;
 
-template <class Draw>
-auto Dialogs::draw(Dialog which, Draw&& draw_it) {
-  const bool was_open = desktop_.dialog() == which;
-  bool open = was_open;
-  auto chosen = draw_it(open);
-  if (was_open && !open) desktop_.close_dialog();
-  return chosen;
+DrawDialog help(Desktop&) {
+  return [](bool& open, ScreenRect) { draw_help(open); };
 }
 
-void Dialogs::draw_reading() {
-  const auto read = [this](Dialog which, void (*draw_it)(bool&)) {
-    draw(which, [&](bool& open) {
-      draw_it(open);
-      return open;
-    });
+DrawDialog about(Desktop&) {
+  return [](bool& open, ScreenRect) { draw_about(open); };
+}
+
+DrawDialog experiments(Desktop& d) {
+  return [&d, panel = std::make_shared<ExperimentsPanel>(d.notices)](bool& open, ScreenRect) {
+    const fs::path trial = panel->draw(open);
+    if (trial.empty()) return;
+    open = false;
+    d.playback.open(trial);
   };
-  read(Dialog::help, draw_help);
-  read(Dialog::about, draw_about);
 }
 
-void Dialogs::draw_experiments() {
-  const fs::path trial =
-      draw(Dialog::experiments, [this](bool& open) { return experiments_.draw(open); });
-  if (trial.empty()) return;
-  desktop_.playback().open(trial);
-  desktop_.close_dialog();
-}
-
-void Dialogs::draw_sweep() {
-  SweepDesk& sweep = desktop_.sweep();
-  const MapWish wish = draw(Dialog::sweep, [&](bool& open) {
-    return draw_sweep_panel(sweep, desktop_.playback(), open);
-  });
-  if (wish.point) sweep.play(*wish.point, wish.at, desktop_.playback());
-}
-
-void Dialogs::draw_scenes(const Act& act) {
-  Document& document = desktop_.document();
-  if (document.asking() && modal(desktop_.dialog())) desktop_.close_dialog();
-  const fs::path chosen = draw(Dialog::gallery, [this](bool& open) { return gallery_.draw(open); });
-  if (!chosen.empty()) desktop_.open_files({chosen});
-  draw_paths();
-  bool asking = document.asking();
-  // An answer may throw; it is carried out once the dialog is drawn.
-  const Action answer = draw_unsaved_question(asking, !document.own_file().empty());
-  if (!asking) document.stay();
-  act(answer);
-}
-
-void Dialogs::draw_paths() {
-  if (last_folder_.empty()) last_folder_ = data_dir() / "assets/scenes";
-  const fs::path model =
-      draw(Dialog::add_model, [this](bool& open) { return add_.draw(open, last_folder_ / ""); });
-  if (!model.empty()) {
-    last_folder_ = model.parent_path();
-    desktop_.add_model(model);
-  }
-  const fs::path arm =
-      draw(Dialog::open_arm, [this](bool& open) { return arm_.draw(open, last_folder_ / ""); });
-  if (!arm.empty()) {
-    last_folder_ = arm.parent_path();
-    desktop_.open_arm(arm);
-  }
-  if (desktop_.tips()) {
-    const TipsToChoose& choice = *desktop_.tips();
-    const std::string tip =
-        draw(Dialog::arm_tip, [&](bool& open) { return tip_.draw(open, choice); });
-    if (!tip.empty()) desktop_.open_arm(choice.file, tip);
-  }
-  if (desktop_.xacro()) {
-    const fs::path file = desktop_.xacro()->file;
-    if (draw(Dialog::expand_xacro, [&](bool& open) { return draw_xacro_question(open, file); })) {
-      desktop_.expand_xacro();
-    }
-  }
-  Document& document = desktop_.document();
-  fs::path first = document.own_file();
-  if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();
-  const fs::path file =
-      draw(Dialog::save_scene, [&](bool& open) { return save_.draw(open, first); });
-  if (!file.empty()) document.save_as(file);
-}
-
-void Dialogs::draw_sessions() {
-  const fs::path session =
-      draw(Dialog::open_session, [this](bool& open) { return session_.draw(open); });
-  if (!session.empty()) desktop_.open_files({session});
-  Playback& playback = desktop_.playback();
-  const auto video = draw(Dialog::video, [&](bool& open) {
-    return video_.draw(open, playback, desktop_.settings().twin_overlaid);
-  });
-  if (video) playback.export_video(*video);
+DrawDialog sweep_map(Desktop& d) {
+  return [&d](bool& open, ScreenRect) {
+    const MapRequest request = draw_sweep_panel(d.sweep, d.playback, open);
+    if (request.point) d.sweep.play(*request.point, request.at, d.playback);
+  };
 }
 
 // A plot that shows nothing in the end is not kept.
-void Dialogs::draw_plot_chooser(ScreenRect room) {
-  std::vector<PlotChoice>& plots = desktop_.settings().plot_choices;
-  const std::size_t plot = desktop_.chosen_plot();
-  if (desktop_.dialog() == Dialog::plot && plot >= plots.size()) desktop_.close_dialog();
-  PlotChoice none;
-  PlotChoice& choice = plot < plots.size() ? plots[plot] : none;
-  const bool was_open = chooser_.is_open();
-  const bool remove = draw(Dialog::plot, [&](bool& open) {
-    return chooser_.draw(open, choice, desktop_.shown().channels(), room);
-  });
-  const bool closed = was_open && desktop_.dialog() != Dialog::plot;
-  if (remove || (closed && choice.channels.empty())) desktop_.remove_plot(plot);
+DrawDialog plot_chooser(Desktop& d) {
+  return [&d, chooser = std::make_shared<PlotChooser>()](bool& open, ScreenRect view) {
+    std::vector<PlotChoice>& plots = d.settings.plot_choices;
+    const std::size_t plot = d.plots.chosen();
+    if (plot >= plots.size()) open = false;
+    PlotChoice none;
+    PlotChoice& choice = plot < plots.size() ? plots[plot] : none;
+    const bool was_open = chooser->is_open();
+    const bool remove = chooser->draw(open, choice, d.shown.stage().channels(), view);
+    const bool closed = was_open && !open;
+    if (remove || (closed && choice.channels.empty())) d.plots.remove(plot);
+  };
 }
 
-void Dialogs::draw_list(Dialog which, NamedDialog& dialog, NamedTexts& texts) {
-  const NamedDialog::Asked asked =
-      draw(which, [&](bool& open) { return dialog.draw(open, texts); });
-  if (asked.wish == NamedDialog::Wish::none) return;
-  const bool layout = which == Dialog::layouts;
-  if (asked.wish == NamedDialog::Wish::use) {
-    layout ? desktop_.use_layout(asked.name) : desktop_.use_preset(asked.name);
-  } else {
-    const std::string now =
-        layout ? layout_text(desktop_.settings()) : preset_text(desktop_.edited());
-    dialog.complain(texts.keep(asked.name, now));
+DrawDialog sessions(Desktop& d) {
+  return [&d, dialog = std::make_shared<SessionDialog>()](bool& open, ScreenRect) {
+    if (const fs::path file = dialog->draw(open); !file.empty()) d.world.open_files({file});
+  };
+}
+
+DrawDialog gallery(Desktop& d) {
+  return [&d, dialog = std::make_shared<Gallery>()](bool& open, ScreenRect) {
+    if (const fs::path file = dialog->draw(open); !file.empty()) d.world.open_files({file});
+  };
+}
+
+// A model or an arm, from the folder that the last of them came from.
+DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
+                        void (*open_file)(Desktop&, const fs::path&)) {
+  return [&d, open_file, dialog = std::make_shared<PathDialog>(std::move(options))](bool& open,
+                                                                                    ScreenRect) {
+    fs::path& folder = d.dialog.last_folder;
+    if (folder.empty()) folder = data_dir() / "assets/scenes";
+    const fs::path file = dialog->draw(open, folder / "");
+    if (file.empty()) return;
+    folder = file.parent_path();
+    open_file(d, file);
+  };
+}
+
+DrawDialog add_model(Desktop& d) {
+  return ask_for_file(
+      d,
+      {.title = "Add model",
+       .action = "Add",
+       .extensions = {".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"}},
+      [](Desktop& desktop, const fs::path& file) { desktop.world.add_model(file); });
+}
+
+DrawDialog open_arm(Desktop& d) {
+  return ask_for_file(d, {.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}},
+                      [](Desktop& desktop, const fs::path& file) { desktop.world.open_arm(file); });
+}
+
+DrawDialog arm_tip(Desktop& d) {
+  return [&d, question = std::make_shared<TipQuestion>()](bool& open, ScreenRect) {
+    if (!d.world.tips()) return;
+    const TipsToChoose& choice = *d.world.tips();
+    if (const std::string tip = question->draw(open, choice); !tip.empty()) {
+      d.world.open_arm(choice.file, tip);
+    }
+  };
+}
+
+DrawDialog expand_xacro(Desktop& d) {
+  return [&d](bool& open, ScreenRect) {
+    if (d.world.xacro() && draw_xacro_question(open, d.world.xacro()->file)) d.world.expand_xacro();
+  };
+}
+
+DrawDialog save_scene_as(Desktop& d) {
+  const PathDialog::Options options{
+      .title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true};
+  return [&d, dialog = std::make_shared<PathDialog>(options)](bool& open, ScreenRect) {
+    Document& document = d.document;
+    fs::path first = document.own_file();
+    if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();
+    if (const fs::path file = dialog->draw(open, first); !file.empty()) document.save_as(file);
+  };
+}
+
+DrawDialog video(Desktop& d) {
+  return [&d, dialog = std::make_shared<VideoDialog>()](bool& open, ScreenRect) {
+    const auto order = dialog->draw(open, d.playback, d.settings.twin_overlaid);
+    if (order) d.playback.export_video(*order);
+  };
+}
+
+// `use` takes one by its name, `now` is the text of what there is to keep.
+DrawDialog named(Desktop& d, NamedTexts& texts, NamedDialog::Options options,
+                 void (*use)(Desktop&, const std::string&), std::string (*now)(Desktop&)) {
+  return [&d, &texts, use, now, dialog = std::make_shared<NamedDialog>(options)](bool& open,
+                                                                                 ScreenRect) {
+    const NamedDialog::Asked asked = dialog->draw(open, texts);
+    if (asked.request == NamedDialog::Request::use) use(d, asked.name);
+    if (asked.request == NamedDialog::Request::keep)
+      dialog->complain(texts.keep(asked.name, now(d)));
+  };
+}
+
+DrawDialog layout_list(Desktop& d) {
+  return named(
+      d, d.plots.layouts,
+      {.title = "Layouts",
+       .what = "layout",
+       .help = "Which plots and panels the window shows, by name."},
+      [](Desktop& desktop, const std::string& name) { desktop.plots.use(name); },
+      [](Desktop& desktop) { return layout_text(desktop.settings); });
+}
+
+DrawDialog preset_list(Desktop& d) {
+  return named(
+      d, d.tuning.presets,
+      {.title = "Presets",
+       .what = "preset",
+       .help = "Coupling and gains by name; of a twin those that the sliders set. Ctrl+Z "
+               "brings back what was before."},
+      [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
+      [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
+}
+
+DrawDialog identify(Desktop& d) {
+  return [&d, dialog = std::make_shared<IdentifyDialog>()](bool& open, ScreenRect) {
+    dialog->draw(open, d.identify, d.settings.parameters.down, d.live.stage().arm());
+  };
+}
+
+constexpr auto kViews = DialogKind::Keys::view;
+constexpr auto kModal = DialogKind::Keys::modal;
+
+constexpr std::array kDialogs{
+    DialogKind{"help", kViews, help},
+    DialogKind{"about", kViews, about},
+    DialogKind{"experiments", kViews, experiments},
+    DialogKind{"sweep", kViews, sweep_map},
+    DialogKind{"plot", DialogKind::Keys::typed, plot_chooser},
+    DialogKind{"open session", kModal, sessions},
+    DialogKind{"gallery", kModal, gallery},
+    DialogKind{"add model", kModal, add_model},
+    DialogKind{"open arm", kModal, open_arm},
+    DialogKind{"arm tip", kModal, arm_tip},
+    DialogKind{"expand xacro", kModal, expand_xacro},
+    DialogKind{"save scene", kModal, save_scene_as},
+    DialogKind{"video", kModal, video},
+    DialogKind{"layouts", kModal, layout_list},
+    DialogKind{"presets", kModal, preset_list},
+    DialogKind{"identify", kModal, identify},
+};
+
+}  // namespace
+
+std::span<const DialogKind> dialog_kinds() { return kDialogs; }
+
+const DialogKind* find_dialog(std::string_view name) {
+  const auto* found = std::ranges::find(kDialogs, name, &DialogKind::name);
+  return found == kDialogs.end() ? nullptr : found;
+}
+
+void OpenDialog::open(std::string_view name) {
+  kind_ = find_dialog(name);
+  if (kind_ == nullptr) throw std::logic_error(fmt::format("There is no dialog \"{}\".", name));
+}
+
+Dialogs::Dialogs(Desktop& desktop) : desktop_(desktop) {
+  for (const DialogKind& kind : kDialogs) drawn_.emplace_back(&kind, kind.make(desktop));
+}
+
+void Dialogs::draw(bool modal, ScreenRect view) {
+  if (modal && desktop_.document.asking() && desktop_.dialog.modal()) desktop_.dialog.close();
+  for (const auto& [kind, draw_it] : drawn_) {
+    if (kind->modal() != modal) continue;
+    guard(desktop_.notices, [&] { draw(*kind, draw_it, view); });
   }
+  if (modal) guard(desktop_.notices, [this] { draw_question(); });
 }
 
-void Dialogs::draw_identify() {
-  const Down down = desktop_.settings().parameters.down;
-  draw(Dialog::identify, [&](bool& open) {
-    identify_.draw(open, desktop_.identify(), down, desktop_.desk().stage().arm());
-    return open;
-  });
+// Closed even where what it leads to throws; not if that has opened another one.
+void Dialogs::draw(const DialogKind& kind, const DrawDialog& draw_it, ScreenRect view) {
+  struct Closing {
+    ~Closing() {
+      if (was_open && !open && desktop.dialog.kind() == &kind) desktop.dialog.close();
+    }
+    Desktop& desktop;
+    const DialogKind& kind;
+    bool was_open, open;
+  };
+  const bool is_open = desktop_.dialog.kind() == &kind;
+  Closing closing{desktop_, kind, is_open, is_open};
+  draw_it(closing.open, view);
 }
 
-void Dialogs::draw_named() {
-  draw_list(Dialog::layouts, layouts_, desktop_.layouts());
-  draw_list(Dialog::presets, presets_, desktop_.presets());
+void Dialogs::draw_question() {
+  Document& document = desktop_.document;
+  bool asking = document.asking();
+  draw_unsaved_question(asking, !document.own_file().empty(),
+                        [this](std::string_view id) { run_or_say(id, desktop_); });
+  if (!asking) document.stay();
 }
 
 }  // namespace limpid

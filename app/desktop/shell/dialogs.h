@@ -1,71 +1,79 @@
-// What opens over the window.
+// What opens over the window: one table of dialogs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "app/desktop/base/action.h"
-#include "app/desktop/panels/experiments_panel.h"
-#include "app/desktop/panels/gallery.h"
-#include "app/desktop/panels/identify_dialog.h"
-#include "app/desktop/panels/named_dialog.h"
-#include "app/desktop/panels/plot_chooser.h"
-#include "app/desktop/panels/session_dialog.h"
-#include "app/desktop/panels/tip_question.h"
-#include "app/desktop/panels/video_dialog.h"
-#include "app/desktop/shell/desktop.h"
-#include "app/desktop/widgets/path_dialog.h"
+#include "app/desktop/base/notices.h"
+#include "app/desktop/widgets/guard.h"
+#include "app/plot/plot_frame.h"
 
 namespace limpid {
 
-class Dialogs {
- public:
-  explicit Dialogs(Desktop& desktop) : desktop_(desktop), experiments_(desktop.notices()) {}
+class Desktop;
 
-  void draw_reading();  // help and the like
-  void draw_experiments();
-  void draw_sweep();
-  // Those about scenes and files, which are modal.
-  void draw_scenes(const Act& act);
-  void draw_sessions();
-  void draw_named();  // layouts and presets
-  void draw_identify();
-  // What a plot shows; `room`: of the view, above the plots.
-  void draw_plot_chooser(ScreenRect room);
-  void drop_pictures() {  // before the OpenGL context goes
-    gallery_.drop_pictures();
-    session_.drop_pictures();
-    experiments_.drop_pictures();
-  }
+// What throws becomes a notice, but not the same one in every frame.
+template <class Work>
+void guard(Notices& notices, Work&& work) {
+  guarded([&](const char* what) { notices.say_once(what, true); }, std::forward<Work>(work));
+}
+
+// Draws a dialog while `open`, and clears that where it was closed; called in every frame. `view`:
+// where the picture of the scene is.
+using DrawDialog = std::function<void(bool& open, ScreenRect view)>;
+
+// One is open at a time.
+struct DialogKind {
+  enum class Keys : std::uint8_t {
+    view,   // go on to what is behind it
+    typed,  // the same, but Esc closes it also while somebody types in it
+    modal   // are its own: it asks something, and nothing behind it acts meanwhile
+  };
+
+  const char* name;  // in the state of the window; commands open it by that
+  Keys keys;
+  DrawDialog (*make)(Desktop&);  // with what it remembers; once, after the window is there
+
+  bool modal() const { return keys == Keys::modal; }
+};
+std::span<const DialogKind> dialog_kinds();
+const DialogKind* find_dialog(std::string_view name);  // null: there is none
+
+// Which one is open.
+class OpenDialog {
+ public:
+  const DialogKind* kind() const { return kind_; }  // null: none
+  std::string_view name() const { return kind_ != nullptr ? kind_->name : std::string_view(); }
+  bool modal() const { return kind_ != nullptr && kind_->modal(); }
+  void open(std::string_view name);  // of the table
+  void close() { kind_ = nullptr; }
+
+  std::filesystem::path last_folder;  // that a model or an arm came from; empty: none yet
 
  private:
-  // Draws one, which closes itself by clearing what says that it is open.
-  template <class Draw>
-  auto draw(Dialog which, Draw&& draw_it);
-  void draw_paths();
-  void draw_list(Dialog which, NamedDialog& dialog, NamedTexts& texts);
+  const DialogKind* kind_ = nullptr;
+};
+
+class Dialogs {
+ public:
+  explicit Dialogs(Desktop& desktop);
+
+  // Those that are modal, or the others. The modal ones, with the question about unsaved changes
+  // above them, come last in a frame.
+  void draw(bool modal, ScreenRect view);
+  void drop_pictures() { drawn_.clear(); }  // before the OpenGL context goes
+
+ private:
+  void draw(const DialogKind& kind, const DrawDialog& draw_it, ScreenRect view);
+  void draw_question();
 
   Desktop& desktop_;
-  Gallery gallery_;
-  SessionDialog session_;
-  VideoDialog video_;
-  ExperimentsPanel experiments_;
-  PathDialog add_{{.title = "Add model",
-                   .action = "Add",
-                   .extensions = {".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"}}};
-  PathDialog arm_{{.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}}};
-  TipQuestion tip_;
-  IdentifyDialog identify_;
-  PathDialog save_{
-      {.title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true}};
-  PlotChooser chooser_;
-  NamedDialog layouts_{{.title = "Layouts",
-                        .what = "layout",
-                        .help = "Which plots and panels the window shows, by name."}};
-  NamedDialog presets_{{.title = "Presets",
-                        .what = "preset",
-                        .help = "Coupling and gains by name; of a twin those that the sliders "
-                                "set. Ctrl+Z brings back what was before."}};
-  std::filesystem::path last_folder_;  // that a model or an arm came from
+  std::vector<std::pair<const DialogKind*, DrawDialog>> drawn_;
 };
 
 }  // namespace limpid

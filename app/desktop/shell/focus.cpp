@@ -9,31 +9,6 @@ namespace limpid {
 
 bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-const char* name(Dialog dialog) {
-  switch (dialog) {
-    case Dialog::none: return "";
-    case Dialog::help: return "help";
-    case Dialog::about: return "about";
-    case Dialog::experiments: return "experiments";
-    case Dialog::sweep: return "sweep";
-    case Dialog::plot: return "plot";
-    case Dialog::open_session: return "open session";
-    case Dialog::gallery: return "gallery";
-    case Dialog::add_model: return "add model";
-    case Dialog::open_arm: return "open arm";
-    case Dialog::arm_tip: return "arm tip";
-    case Dialog::expand_xacro: return "expand xacro";
-    case Dialog::save_scene: return "save scene";
-    case Dialog::video: return "video";
-    case Dialog::layouts: return "layouts";
-    case Dialog::presets: return "presets";
-    case Dialog::identify: return "identify";
-  }
-  return "";
-}
-
-bool modal(Dialog dialog) { return dialog >= Dialog::open_session; }
-
 bool typing() {
   const ImGuiContext& ui = *ImGui::GetCurrentContext();
   const bool wanted =
@@ -52,7 +27,7 @@ KeyOwner owner_of(const Focus& focus) {
   if (focus.text) return KeyOwner::text;
   if (focus.popup) return KeyOwner::popup;
   if (focus.question) return KeyOwner::question;
-  if (modal(focus.dialog)) return KeyOwner::dialog;
+  if (focus.modal) return KeyOwner::dialog;
   return focus.playback ? KeyOwner::playback : KeyOwner::view;
 }
 

@@ -4,42 +4,20 @@
 
 #include <bitset>
 #include <cstdint>
+#include <string_view>
 
 namespace limpid {
-
-// One dialog is open at a time; the question about unsaved changes stands above it.
-enum class Dialog : std::uint8_t {
-  none,
-  help,
-  about,
-  experiments,
-  sweep,
-  plot,
-  open_session,
-  gallery,
-  add_model,
-  open_arm,
-  arm_tip,
-  expand_xacro,
-  save_scene,
-  video,
-  layouts,
-  presets,
-  identify,
-};
-const char* name(Dialog dialog);
-// One that asks something: nothing behind it acts meanwhile.
-bool modal(Dialog dialog);
 
 // Of ImGui: a text field is being typed in; a menu or a list is open.
 bool typing();
 bool popup_open();
 
 struct Focus {
-  bool text = false;   // a text field is being typed in
-  bool popup = false;  // a menu or a list is open
-  bool question = false;
-  Dialog dialog = Dialog::none;
+  bool text = false;          // a text field is being typed in
+  bool popup = false;         // a menu or a list is open
+  bool question = false;      // about unsaved changes, above any dialog
+  std::string_view dialog{};  // that is open; empty: none
+  bool modal = false;         // it asks something: nothing behind it acts meanwhile
   bool playback = false;
 
   friend bool operator==(const Focus&, const Focus&) = default;

@@ -3,30 +3,26 @@
 
 #include <utility>
 
-#include "app/desktop/panels/analysis_panel.h"
 #include "app/desktop/panels/coupling_panel.h"
-#include "app/desktop/panels/device_timing.h"
-#include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/panels/view_panel.h"
+#include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"
-#include "app/desktop/shell/recent_menu.h"
+#include "app/desktop/shell/menu.h"
+#include "app/desktop/shell/sections.h"
 #include "app/desktop/shell/window.h"
-#include "app/desktop/widgets/guard.h"
 
 namespace limpid {
-
-// What throws becomes a notice, but not the same one in every frame.
-template <class Work>
-void guard(Notices& notices, Work&& work) {
-  guarded([&](const char* what) { notices.say_once(what, true); }, std::forward<Work>(work));
-}
 
 class Frame {
  public:
   // `act` carries out what is asked for in the parts.
   Frame(Desktop& desktop, Window& window, Act act)
-      : desktop_(desktop), window_(window), act_(std::move(act)), dialogs_(desktop) {}
+      : desktop_(desktop),
+        window_(window),
+        act_(std::move(act)),
+        sections_(desktop),
+        dialogs_(desktop) {}
 
   void draw();
   // Whether the picture has changed since then, without anybody having touched the window.
@@ -44,12 +40,9 @@ class Frame {
   void draw_coupling(ScreenRect rect);
   void draw_played(PlayedSession& session, const CouplingReading& reading,
                    const CouplingSituation& now);
-  void say_for_rerun() const;
-  void draw_side(ScreenRect rect);
   void draw_plot_row(ScreenRect rect);
   void draw_splitters(const Layout& at);
   void draw_fold_tabs(const Layout& at);
-  std::string quality_text() const;
 
   // The parts of the window that remember something themselves.
   Desktop& desktop_;
@@ -58,9 +51,7 @@ class Frame {
   WindowLayout layout_;
   RecentMenu recent_;
   ViewPanel view_;
-  ScenePanel scene_;
-  AnalysisPanel analysis_;
-  DeviceTiming device_timing_;
+  Sections sections_;
   Dialogs dialogs_;
   std::uint64_t seen_of_sweep_ = 0;  // its revision
   ScreenRect below_banners_{};       // what notices leave free

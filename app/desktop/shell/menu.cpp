@@ -1,19 +1,21 @@
 #include "app/desktop/shell/menu.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 #include "app/base/folders.h"
+#include "app/desktop/base/thumbnails.h"
 #include "app/desktop/panels/status_line.h"
-#include "app/style/palette.h"
-#include "app/style/theme.h"
+#include "app/desktop/shell/commands.h"
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
 
 std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension) {
   std::vector<fs::path> files;
@@ -31,41 +33,45 @@ std::string named_items(const NamedTexts& texts) {
   for (const NamedTexts::Entry& entry : texts.all()) {
     if (ImGui::MenuItem(entry.name.c_str())) chosen = entry.name;
   }
-  if (!texts.all().empty()) ImGui::Separator();
   return chosen;
 }
 
-// An item that has an action carried out.
-void item(const char* label, const char* keys, Action action, const Act& act, bool enabled = true) {
-  if (ImGui::MenuItem(label, keys, false, enabled)) act(action);
+void presets(Desktop& d, RecentMenu&) {
+  if (const std::string name = named_items(d.tuning.presets); !name.empty())
+    d.tuning.use_preset(name);
 }
 
-void file_menu(Desktop& d, RecentMenu& recent, const Act& act) {
-  if (!ImGui::BeginMenu("File")) return;
-  item("Open session or sweep...", "Ctrl+O", Action::open_session, act);
-  const fs::path chosen = recent.draw(d.settings().recent);
-  item("Add model...", "Ctrl+M", Action::add_model, act);
-  item("Save scene", "Ctrl+S", Action::save_scene, act);
-  item("Save scene as...", "Ctrl+Shift+S", Action::save_scene_as, act);
-  item("Save picture", "F12", Action::save_picture, act);
-  ImGui::Separator();
-  item("Undo", "Ctrl+Z", Action::undo, act);
-  item("Redo", "Ctrl+Y", Action::redo, act);
-  if (ImGui::MenuItem("All settings to their usual values")) d.reset_parameters();
-  if (ImGui::BeginMenu("Presets of settings")) {
-    if (const std::string name = named_items(d.presets()); !name.empty()) d.use_preset(name);
-    item("Save, rename...", "Ctrl+P", Action::presets, act);
-    ImGui::EndMenu();
+void layouts(Desktop& d, RecentMenu&) {
+  if (const std::string name = named_items(d.plots.layouts); !name.empty()) d.plots.use(name);
+}
+
+void recent_files(Desktop& d, RecentMenu& recent) {
+  if (const fs::path chosen = recent.draw(d.settings.recent); !chosen.empty()) {
+    d.world.open_files({chosen});
   }
+}
+
+void shipped_scenes(Desktop& d, RecentMenu&) {
   ImGui::Separator();
-  item("Quit", "Ctrl+Q", Action::quit, act);
-  ImGui::EndMenu();
-  if (!chosen.empty()) d.open_files({chosen});
+  for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
+    const bool present = d.document.file() == file.string();
+    if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, present)) d.world.open_scene(file);
+  }
+}
+
+void about_drops(Desktop&, RecentMenu&) {
+  ImGui::Separator();
+  ImGui::TextDisabled("Drop models, scenes, recordings or sweeps on the window.");
+}
+
+void about_arm(Desktop& d, RecentMenu&) {
+  const ArmDescription& arm = d.live.stage().arm();
+  ImGui::TextDisabled("%s, virtual, %d joints", arm.name.c_str(), arm.dof());
 }
 
 // One of the plots, with all that can be done with it.
-void plot_menus(Desktop& d) {
-  std::vector<Plot>& plots = d.shown().plots;
+void plot_menus(Desktop& d, RecentMenu&) {
+  std::vector<Plot>& plots = d.shown.stage().plots;
   PlotWish wish = PlotWish::none;
   std::size_t of = 0;
   for (std::size_t i = 0; i < plots.size(); ++i) {
@@ -78,134 +84,77 @@ void plot_menus(Desktop& d) {
     ImGui::PopID();
   }
   if (wish == PlotWish::none) return;
-  d.settings().show_plots = true;
+  d.settings.show_plots = true;
   plots[of].ask(wish);
 }
 
-void plots_menu(Desktop& d, const Act& act) {
-  if (ImGui::BeginMenu("Plots of")) {
-    plot_menus(d);
-    ImGui::Separator();
-    item("Add a plot...", "N", Action::add_plot, act);
-    ImGui::EndMenu();
-  }
-  if (ImGui::BeginMenu("Layouts")) {
-    if (const std::string name = named_items(d.layouts()); !name.empty()) d.use_layout(name);
-    item("Save, rename...", "Ctrl+L", Action::layouts, act);
-    ImGui::EndMenu();
+// What is in a menu beside commands.
+struct MenuPart {
+  const char* menu;
+  std::string_view behind;  // the id of a command; empty: at the top
+  void (*draw)(Desktop&, RecentMenu&);
+};
+
+constexpr std::array kParts{
+    MenuPart{"File", "session.open", recent_files},
+    MenuPart{"File/Presets of settings", "", presets},
+    MenuPart{"View/Plots of", "", plot_menus},
+    MenuPart{"View/Layouts", "", layouts},
+    MenuPart{"Scene", "scene.gallery", shipped_scenes},
+    MenuPart{"Scene", "scene.remove", about_drops},
+    MenuPart{"Device", "", about_arm},
+};
+constexpr std::array kMenus{"File", "View", "Session", "Scene", "Device", "Help"};
+
+void draw_item(const Command& command, Desktop& d) {
+  const std::string why = why_not(command, d);
+  const Command::Label label =
+      command.how.now != nullptr ? command.how.now(d) : Command::Label{command.text, nullptr};
+  const std::string keys = label.keys != nullptr ? label.keys : key_text(command);
+  const bool checked = command.how.checked != nullptr && command.how.checked(d);
+  if (ImGui::MenuItem(label.text, keys.c_str(), checked, why.empty())) run_or_say(command.id, d);
+  if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+    ImGui::SetTooltip("%s", why.c_str());
   }
 }
 
-void view_menu(Desktop& d, bool full_screen, const Act& act) {
-  if (!ImGui::BeginMenu("View")) return;
-  Settings& s = d.settings();
-  ImGui::MenuItem("Coupling panel", "F2", &s.show_left);
-  ImGui::MenuItem("Device panel", "F3", &s.show_right);
-  ImGui::MenuItem("Plots", "F4", &s.show_plots);
-  plots_menu(d, act);
-  ImGui::Separator();
-  ImGui::MenuItem("Ghost of the device", "G", &s.show_ghost);
-  ImGui::MenuItem("Lens at the tip, x5", "M", &s.show_lens);
-  ImGui::MenuItem("Trail", nullptr, &s.show_trail);
-  ImGui::MenuItem("Forces", nullptr, &s.show_forces);
-  ImGui::MenuItem("Floor grid", nullptr, &s.show_grid);
-  ImGui::MenuItem("Axes of the joints", nullptr, &s.show_joints);
-  ImGui::MenuItem("Twin in one picture", "Shift+B", &s.twin_overlaid);
-  ImGui::Separator();
-  item("Front", "1", Action::front_view, act);
-  item("Side", "2", Action::side_view, act);
-  item("Top", "3", Action::top_view, act);
-  item("Reset camera", "0", Action::reset_camera, act);
-  ImGui::Separator();
-  bool light = s.theme == Theme::light;
-  if (ImGui::MenuItem("Light theme", nullptr, &light)) {
-    s.theme = light ? Theme::light : Theme::dark;
-    apply_theme(s.theme, current_scale());
-  }
-  if (ImGui::BeginMenu("Picture quality")) {
-    for (const char* choice : {"automatic", "high", "medium", "low"}) {
-      if (ImGui::MenuItem(choice, nullptr, s.picture_quality == choice)) s.picture_quality = choice;
+// A menu inside of `menu` stands where its first command does in the table.
+void draw_menu(std::string_view menu, Desktop& d, RecentMenu& recent) {
+  const auto draw_parts = [&](std::string_view behind) {
+    for (const MenuPart& part : kParts) {
+      if (part.menu == menu && part.behind == behind) part.draw(d, recent);
     }
+  };
+  draw_parts("");
+  std::string_view inner;
+  for (const Command& command : commands()) {
+    const std::string_view of = command.menu != nullptr ? command.menu : "";
+    if (of == menu) {
+      if (command.how.apart) ImGui::Separator();
+      draw_item(command, d);
+      draw_parts(command.id);
+    } else if (of != inner && of.starts_with(std::string(menu) + "/")) {
+      inner = of;
+      const std::string title(inner.substr(menu.size() + 1));
+      if (!ImGui::BeginMenu(title.c_str())) continue;
+      draw_menu(inner, d, recent);
+      ImGui::EndMenu();
+    }
+  }
+}
+
+void draw_menus(Desktop& d, RecentMenu& recent) {
+  for (const char* menu : kMenus) {
+    if (!ImGui::BeginMenu(menu)) continue;
+    draw_menu(menu, d, recent);
     ImGui::EndMenu();
   }
-  if (ImGui::MenuItem("Full screen", "F11", full_screen)) act(Action::full_screen);
-  ImGui::EndMenu();
-}
-
-void session_menu(Desktop& d, const Act& act) {
-  if (!ImGui::BeginMenu("Session")) return;
-  Playback& playback = d.playback();
-  item(d.desk().recording() ? "Stop recording" : "Record", "R", Action::toggle_recording, act);
-  item("Play or pause", "P", Action::toggle_playing, act);
-  if (ImGui::MenuItem("Twin: two couplings on one hand", "B", d.settings().twin.on)) {
-    act(Action::toggle_twin);
-  }
-  item("Re-run under present settings", "E", Action::rerun, act, playback.on());
-  if (ImGui::MenuItem("Write as table (CSV)", nullptr, false,
-                      playback.on() && !playback.exporting())) {
-    playback.export_csv();
-  }
-  item("Write as video...", "V", Action::write_video, act,
-       playback.on() && !playback.video().busy());
-  item("Back to live", "Backspace", Action::back_to_live, act, playback.on());
-  ImGui::Separator();
-  if (ImGui::MenuItem("Experiments of the paper...", "F5")) d.open_dialog(Dialog::experiments);
-  item("Map of the sweep", "F6", Action::toggle_sweep, act);
-  ImGui::EndMenu();
-}
-
-void scene_menu(Desktop& d, const Act& act) {
-  if (!ImGui::BeginMenu("Scene")) return;
-  item("Gallery...", "Ctrl+G", Action::gallery, act);
-  ImGui::Separator();
-  for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
-    const bool present = d.document().file() == file.string();
-    if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, present)) d.open_scene(file);
-  }
-  ImGui::Separator();
-  const bool any = d.document().editor().selected().has_value() && !d.playback().on();
-  item("Copy selected object", "Ctrl+D", Action::duplicate_selected, act, any);
-  item("Remove selected object", "Delete", Action::remove_selected, act, any);
-  ImGui::Separator();
-  ImGui::TextDisabled("Drop models, scenes, recordings or sweeps on the window.");
-  ImGui::EndMenu();
-}
-
-void device_menu(Desktop& d, const Act& act) {
-  if (!ImGui::BeginMenu("Device")) return;
-  const ArmDescription& arm = d.desk().stage().arm();
-  ImGui::TextDisabled("%s, virtual, %d joints", arm.name.c_str(), arm.dof());
-  item("Open arm (URDF)...", nullptr, Action::open_arm, act, !d.desk().loop().device_in_place());
-  if (ImGui::MenuItem("Built-in arm", nullptr, d.built_in_arm())) d.use_built_in_arm();
-  item("Identify...", "F7", Action::toggle_identify, act);
-  ImGui::Separator();
-  const bool armed = d.desk().force_armed();
-  item(armed ? "Force off" : "Force on", armed ? "Esc" : "F", Action::toggle_force, act);
-  item("Start over", "Backspace", Action::start_over, act, !d.playback().on());
-  ImGui::EndMenu();
-}
-
-void help_menu(Desktop& d) {
-  if (!ImGui::BeginMenu("Help")) return;
-  if (ImGui::MenuItem("Play the story")) d.play_story();
-  if (ImGui::MenuItem("Keys and mouse", "?")) d.open_dialog(Dialog::help);
-  if (ImGui::MenuItem("About Limpid")) d.open_dialog(Dialog::about);
-  ImGui::EndMenu();
-}
-
-void menus(Desktop& d, RecentMenu& recent, bool full_screen, const Act& act) {
-  file_menu(d, recent, act);
-  view_menu(d, full_screen, act);
-  session_menu(d, act);
-  scene_menu(d, act);
-  device_menu(d, act);
-  help_menu(d);
 }
 
 // Of all menus side by side.
 float menus_width() {
   float width = ImGui::GetStyle().WindowPadding.x;
-  for (const char* menu : {"File", "View", "Session", "Scene", "Device", "Help"}) {
+  for (const char* menu : kMenus) {
     width += ImGui::CalcTextSize(menu).x + 2 * ImGui::GetStyle().ItemSpacing.x;
   }
   return width;
@@ -213,22 +162,52 @@ float menus_width() {
 
 }  // namespace
 
-void draw_menu_bar(Desktop& desktop, RecentMenu& recent, bool full_screen, const Act& act) {
+void RecentMenu::look(const std::vector<std::string>& recent) {
+  pictures_.clear();
+  entries_.clear();
+  for (const std::string& name : recent) {
+    std::error_code none;
+    entries_.push_back({name, picture_of(name), fs::is_regular_file(name, none)});
+  }
+}
+
+fs::path RecentMenu::draw(const std::vector<std::string>& recent) {
+  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return {};
+  if (ImGui::IsWindowAppearing()) look(recent);
+  std::vector<PictureItem> items;
+  float width = 0;
+  for (const Entry& entry : entries_) {
+    const std::string folder = entry.file.parent_path().string();
+    items.push_back({.picture = pictures_.get(entry.picture),
+                     .name = entry.file.filename().string(),
+                     .about = entry.there ? folder : "no longer there: " + folder,
+                     .there = entry.there});
+    width = std::max(width, picture_item_width(items.back()));
+  }
+  fs::path chosen;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (picture_item(items[i], width)) chosen = entries_[i].file;
+  }
+  ImGui::EndMenu();
+  return chosen;
+}
+
+void draw_menu_bar(Desktop& desktop, RecentMenu& recent) {
   if (!ImGui::BeginMainMenuBar()) return;
-  const LiveLoop& loop = desktop.desk().loop();
+  const LiveLoop& loop = desktop.live.loop();
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
-    menus(desktop, recent, full_screen, act);
+    draw_menus(desktop, recent);
   } else if (ImGui::BeginMenu("Menu")) {
-    menus(desktop, recent, full_screen, act);
+    draw_menus(desktop, recent);
     ImGui::EndMenu();
   }
-  const Parameters& p = desktop.settings().parameters;
+  const Parameters& p = desktop.settings.parameters;
   StatusLaw law{p.kind, p.eta};
   std::string played;
-  if (const PlayedSession* session = desktop.playback().shown()) {
+  if (const PlayedSession* session = desktop.playback.shown()) {
     const RowLayout& layout = session->stage().channels().layout();
-    law.kind = static_cast<CouplingKind>(layout.in(desktop.row(), Column::kind)[0]);
-    law.eta = layout.in(desktop.row(), Column::eta)[0];
+    law.kind = static_cast<CouplingKind>(layout.in(desktop.shown.row(), Column::kind)[0]);
+    law.eta = layout.in(desktop.shown.row(), Column::eta)[0];
     played = session->file().filename().string();
   }
   draw_status(loop, law, played);

@@ -2,6 +2,9 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace limpid {
 
@@ -25,6 +28,46 @@ std::vector<Pad> plugged_pads() {
                             .y = button(GLFW_GAMEPAD_BUTTON_Y)}});
   }
   return pads;
+}
+
+// One that comes while the window is open is told of, once; those of the start are in the panel.
+PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Camera& camera,
+                            double dt) {
+  const std::string& wanted = settings_.gamepad;
+  for (const Pad& pad : pads) {
+    const bool known = std::ranges::find(pads_, pad.id, &Pad::id) != pads_.end();
+    if (known || !known_ || pad.id == wanted) continue;
+    notices_.say(
+        fmt::format("{} is plugged in. Device, in the panel at the right (F3), lets it lead the "
+                    "hand.",
+                    pad.name));
+  }
+  pads_ = std::move(pads);
+  known_ = true;
+  const auto pad = std::ranges::find(pads_, wanted, &Pad::id);
+  const bool there = pad != pads_.end();
+  if (!there || heard.device) {
+    if (!there && !wanted.empty() && !leading_.empty()) {
+      notices_.say(fmt::format("{} is gone; the mouse leads the hand until it is back.", leading_),
+                   true);
+    }
+    leading_.clear();
+    hand_.lose(live_.controls());
+    return {};
+  }
+  if (leading_ != pad->name) {
+    leading_ = pad->name;
+    notices_.say(
+        fmt::format("{} leads the hand: left stick, triggers nearer and farther, A takes "
+                    "hold or lets go, B cuts the force, Y is the next coupling.",
+                    leading_));
+  }
+  const PadReading now = heard.listens ? pad->now : PadReading{.b = pad->now.b};
+  const Vec3 tip =
+      live_.stage().rows().tip(live_.loop().layout().in(live_.row(), Column::device_position));
+  if (!tip.allFinite()) return {};
+  return hand_.lead(now, {camera.right(), camera.up(), camera.forward()}, live_.stage().arm(), tip,
+                    dt, live_.controls());
 }
 
 }  // namespace limpid

@@ -8,7 +8,6 @@
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/identify_dialog.h"
 #include "app/desktop/shell/layout.h"
-#include "app/desktop/sweep/sweep_desk.h"
 #include "app/desktop/widgets/modal.h"
 
 namespace limpid {
@@ -28,26 +27,27 @@ nlohmann::json plots_of(const Stage& stage) {
 
 // |x_E| of the twin, 0 without one [rad].
 double twin_error(const Desktop& d) {
-  const TraceChannels& channels = d.shown().channels();
+  const TraceChannels& channels = d.shown.stage().channels();
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
-  if (!d.twin_row().empty()) channels.values(d.twin_row(), values);
+  if (!d.shown.twin_row().empty()) channels.values(d.shown.twin_row(), values);
   return values[static_cast<std::size_t>(Channel::error)];
 }
 
 // Null without one; `map`: left, top, right and bottom on the screen [px], where it is shown.
-nlohmann::json state_of(const SweepDesk& desk) {
-  if (desk.sweep() == nullptr) return nullptr;
-  const OpenedSweep& sweep = *desk.sweep();
-  nlohmann::json state{{"file", sweep.file.string()},
-                       {"done", sweep.table.count()},
-                       {"points", sweep.table.points()},
-                       {"measure", sweep.table.columns[desk.choice().column].name},
-                       {"x", sweep.plan->axes[desk.choice().x].name},
-                       {"place", desk.choice().place},
-                       {"drawn", desk.map() != nullptr && desk.map()->choice == desk.choice()}};
-  if (desk.choice().y) state["y"] = sweep.plan->axes[*desk.choice().y].name;
-  if (desk.on_screen) {
-    const auto& [rect, pointed_at] = *desk.on_screen;
+nlohmann::json state_of(const SweepController& controller) {
+  if (controller.sweep() == nullptr) return nullptr;
+  const OpenedSweep& sweep = *controller.sweep();
+  nlohmann::json state{
+      {"file", sweep.file.string()},
+      {"done", sweep.table.count()},
+      {"points", sweep.table.points()},
+      {"measure", sweep.table.columns[controller.choice().column].name},
+      {"x", sweep.plan->axes[controller.choice().x].name},
+      {"place", controller.choice().place},
+      {"drawn", controller.map() != nullptr && controller.map()->choice == controller.choice()}};
+  if (controller.choice().y) state["y"] = sweep.plan->axes[*controller.choice().y].name;
+  if (controller.on_screen) {
+    const auto& [rect, pointed_at] = *controller.on_screen;
     state["map"] = {rect.min.x, rect.min.y, rect.max.x, rect.max.y};
     if (pointed_at) state["pointed_at"] = *pointed_at;
   }
@@ -57,12 +57,12 @@ nlohmann::json state_of(const SweepDesk& desk) {
 nlohmann::json place(const ImVec2& at) { return {at.x, at.y}; }
 
 // `plugged`: the device is in the loop; `places`: what of the dialog can be clicked [px].
-nlohmann::json state_of(const IdentifyDesk& desk, bool plugged) {
+nlohmann::json state_of(const IdentifyController& controller, bool plugged) {
   nlohmann::json places = nlohmann::json::object();
   for (const auto& [label, at] : IdentifyDialog::places()) places[label] = place(at);
   constexpr std::array kPhases{"asking", "moving", "load", "working", "found"};
-  return {{"phase", kPhases[static_cast<std::size_t>(desk.phase())]},
-          {"wrong", desk.wrong()},
+  return {{"phase", kPhases[static_cast<std::size_t>(controller.phase())]},
+          {"wrong", controller.wrong()},
           {"plugged", plugged},
           {"places", places}};
 }
@@ -91,7 +91,7 @@ nlohmann::json closing() {
 
 // Of the recording that is played, at the row shown; null without one.
 nlohmann::json recorded(Desktop& d) {
-  PlayedSession* session = d.playback().shown();
+  PlayedSession* session = d.playback.shown();
   if (session == nullptr) return nullptr;
   const Parameters& p = session->settings();
   nlohmann::json facts = nlohmann::json::object();
@@ -100,36 +100,36 @@ nlohmann::json recorded(Desktop& d) {
 }
 
 // `check`: where the button is that begins the check of its axes; null while it is not there [px].
-nlohmann::json state_of(const DeviceDesk& desk) {
+nlohmann::json state_of(const DeviceController& controller) {
   const auto check = noted_place(kSidePanel, kCheckAxes);
-  return {{"in_use", desk.hub().in_use()},
-          {"problem", desk.problem()},
-          {"waits_for_choice", desk.waits_for_choice()},
+  return {{"in_use", controller.hub().in_use()},
+          {"problem", controller.problem()},
+          {"waits_for_choice", controller.waits_for_choice()},
           {"check", check ? place(*check) : nlohmann::json()},
-          {"checking", desk.check() != nullptr},
+          {"checking", controller.check() != nullptr},
           {"explains_force", noted_place(kSidePanel, "force").has_value()}};
 }
 
 std::string told(Desktop& d) {
-  const StoryStep* step = d.playback().on() ? d.playback().shown()->step() : nullptr;
+  const StoryStep* step = d.playback.on() ? d.playback.shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
 }
 
 }  // namespace
 
 void print_state(Desktop& d, const WindowState& window) {
-  const Parameters& p = d.settings().parameters;
-  const Desk& desk = d.desk();
-  const SceneEditor& editor = d.document().editor();
-  const PlayedSession* played = d.playback().shown();
+  const Parameters& p = d.settings.parameters;
+  const LiveSession& live = d.live;
+  const SceneEditor& editor = d.document.editor();
+  const PlayedSession* played = d.playback.shown();
   const Focus focus = d.focus();
   nlohmann::json notices = nlohmann::json::array();
-  for (const Notice& notice : d.notices().all()) notices.push_back(notice.text);
-  const std::span<const double> row = d.row();
-  const RowLayout& layout = d.shown().channels().layout();
-  const LoopStatus status = desk.loop().status();
-  std::vector<double> values(static_cast<std::size_t>(d.shown().channels().count()));
-  d.shown().channels().values(row, values);
+  for (const Notice& notice : d.notices.all()) notices.push_back(notice.text);
+  const std::span<const double> row = d.shown.row();
+  const RowLayout& layout = d.shown.stage().channels().layout();
+  const LoopStatus status = live.loop().status();
+  std::vector<double> values(static_cast<std::size_t>(d.shown.stage().channels().count()));
+  d.shown.stage().channels().values(row, values);
   const auto& selected = editor.selected();
   const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
   fmt::print(
@@ -148,21 +148,21 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"closing\": {}, "
       "\"recorded\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
-      channel(Channel::contact), channel(Channel::energy_total), d.shown().energy.own(),
-      channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], desk.force_armed(),
-      desk.loop().recording(), played != nullptr, played != nullptr && played->has_rerun(),
+      channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
+      channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
+      live.loop().recording(), played != nullptr, played != nullptr && played->has_rerun(),
       status.rate, status.ticks, status.late, status.missed, status.slipped,
-      desk.loop().trace_dropped(), objects_of(editor.scene()).size(),
+      live.loop().trace_dropped(), objects_of(editor.scene()).size(),
       selected ? nlohmann::json(name_of(editor.scene(), *selected)).dump() : "null",
-      d.document().loader().busy(), editor.dirty(), nlohmann::json(d.document().file()).dump(),
-      focus.question || modal(focus.dialog), d.quality_level(), p.alpha,
-      nlohmann::json(focus.question ? "question" : name(focus.dialog)).dump(), focus.text,
-      nlohmann::json(desk.stage().arm().name).dump(), p.k_vc, notices.dump(),
-      plots_of(d.shown()).dump(), !d.twin_row().empty(), twin_error(d), window.width, window.height,
-      d.settings().twin_overlaid, nlohmann::json(told(d)).dump(), d.playback().video().busy(),
-      d.pads().size(), window.frames, window.input_waits,
-      d.playback().loading() ? d.playback().loading_part() : 1, state_of(d.sweep()).dump(),
-      state_of(d.identify(), desk.loop().device_plugged()).dump(), state_of(d.devices()).dump(),
+      d.document.loader().busy(), editor.dirty(), nlohmann::json(d.document.file()).dump(),
+      focus.question || focus.modal, d.shown.quality_level(), p.alpha,
+      nlohmann::json(focus.question ? "question" : focus.dialog).dump(), focus.text,
+      nlohmann::json(live.stage().arm().name).dump(), p.k_vc, notices.dump(),
+      plots_of(d.shown.stage()).dump(), !d.shown.twin_row().empty(), twin_error(d), window.width,
+      window.height, d.settings.twin_overlaid, nlohmann::json(told(d)).dump(),
+      d.playback.video().busy(), d.pads.all().size(), window.frames, window.input_waits,
+      d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
+      state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
       banners_of(d).dump(), closing().dump(), recorded(d).dump(), p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }

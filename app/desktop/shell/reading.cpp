@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "app/base/version.h"
-#include "app/desktop/shell/keys.h"
+#include "app/desktop/shell/commands.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/style/theme.h"
 
@@ -34,9 +34,9 @@ void draw_help(bool& open) {
     for (const Shortcut& shortcut : shortcuts()) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(shortcut.keys);
+      ImGui::TextUnformatted(shortcut.keys.c_str());
       ImGui::TableNextColumn();
-      ImGui::TextWrapped("%s", shortcut.what);
+      ImGui::TextWrapped("%s", shortcut.what.c_str());
     }
     ImGui::EndTable();
   }

@@ -6,10 +6,11 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/desktop/document/unsaved.h"
-#include "app/desktop/shell/actions.h"
+#include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/frame.h"
 #include "app/desktop/shell/lost_display.h"
 #include "app/desktop/shell/pads.h"
@@ -56,8 +57,7 @@ class Application {
         desktop_(with(settings, options.parameters),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
-        frame_(desktop_, window_, [this](Action action) { carry_out(action, desktop_, window_); }) {
-  }
+        frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {}
   ~Application() {  // pictures go before the window they are drawn in
     frame_.drop_pictures();
     desktop_.drop_pictures();
@@ -76,6 +76,7 @@ class Application {
  private:
   Window::Options prepare_window();
   void turn();
+  void carry_out(const WindowRequests& asked);
   bool asked_to_close();  // true: at once
   void keep_scene();      // with the changes that nobody was asked about
   void say_what_was_saved();
@@ -93,8 +94,8 @@ class Application {
 };
 
 Window::Options Application::prepare_window() {
-  if (!desktop_.desk().loop().status().realtime.realtime()) yield_to_haptics();
-  const Settings& settings = desktop_.settings();
+  if (!desktop_.live.loop().status().realtime.realtime()) yield_to_haptics();
+  const Settings& settings = desktop_.settings;
   return {.width = settings.width,
           .height = settings.height,
           .ui_scale = options_.ui_scale > 0 ? options_.ui_scale : settings.ui_scale,
@@ -102,28 +103,28 @@ Window::Options Application::prepare_window() {
 }
 
 void Application::open() {
-  desktop_.automatic_quality() = AutoQuality(Quality::automatic_level(window_.renderer()));
-  desktop_.open_last_world(options_.device, options_.tip, options_.scene,
+  desktop_.shown.automatic_quality = AutoQuality(Quality::automatic_level(window_.renderer()));
+  desktop_.world.open_last(options_.device, options_.tip, options_.scene,
                            options_.parameters.has_value());
   // A double click on a file asks for the file and for nothing else.
   if (!options_.session.empty() || !options_.files.empty()) {
-    desktop_.devices().wait_for_choice(
+    desktop_.devices.wait_for_choice(
         "This window was started with a file, so that it connects to no device by itself.");
   }
-  if (!options_.in_use.empty()) desktop_.devices().use(options_.in_use);
+  if (!options_.in_use.empty()) desktop_.devices.use(options_.in_use);
 }
 
 void Application::run(const std::string& complaint) {
-  Notices& notices = desktop_.notices();
+  Notices& notices = desktop_.notices;
   for (const std::string& each :
-       {complaint, desktop_.layouts().complaint(), desktop_.presets().complaint(),
-        desktop_.devices().hub().complaint()}) {
+       {complaint, desktop_.plots.layouts.complaint(), desktop_.tuning.presets.complaint(),
+        desktop_.devices.hub().complaint()}) {
     if (!each.empty()) notices.say(each, true);
   }
-  desktop_.playback().recover_leftovers(sessions_dir());
-  desktop_.offer_kept(take_unsaved(scenes_dir()));
-  if (!options_.session.empty()) desktop_.playback().open(options_.session);
-  desktop_.open_files(options_.files);
+  desktop_.playback.recover_leftovers(sessions_dir());
+  desktop_.kept.offer(take_unsaved(scenes_dir()));
+  if (!options_.session.empty()) desktop_.playback.open(options_.session);
+  desktop_.world.open_files(options_.files);
   last_ = glfwGetTime();
   while (!leaving_) {
     if (window_.wait()) {
@@ -136,7 +137,7 @@ void Application::run(const std::string& complaint) {
 
 // Unsaved changes are asked about, unless somebody interrupts from outside.
 bool Application::asked_to_close() {
-  Document& document = desktop_.document();
+  Document& document = desktop_.document;
   if (interrupted) {
     keep_scene();
     return true;
@@ -147,16 +148,16 @@ bool Application::asked_to_close() {
 }
 
 void Application::keep_scene() {
-  const Document& document = desktop_.document();
+  const Document& document = desktop_.document;
   if (!document.editor().dirty()) return;
-  keep_changes(document.editor().document(), desktop_.desk().stage().arm(), document.file());
+  keep_changes(document.editor().document(), desktop_.live.stage().arm(), document.file());
 }
 
 // The motors first, then what has to be complete.
 void Application::finish() {
   try {
-    desktop_.desk().loop().close();
-    desktop_.desk().complete_recording();
+    desktop_.live.loop().close();
+    desktop_.live.complete_recording();
   } catch (const std::exception& e) {
     say(e.what());
   }
@@ -173,15 +174,15 @@ void Application::leave_without_display(bool with_scene) {
 
 // The desktop goes on in every turn; a frame is drawn where there is something new to see.
 void Application::turn() {
-  Notices& notices = desktop_.notices();
+  Notices& notices = desktop_.notices;
   if (interrupted) window_.close();
   const double now = glfwGetTime();
   bool drawing = window_.due();
   if (drawing) {
     window_.begin_frame(desktop_.focus());
-    desktop_.document().hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
-    guard(notices, [&] { handle_keys(desktop_, window_); });
-    guard(notices, [&] { desktop_.open_files(window_.dropped()); });
+    desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
+    guard(notices, [&] { handle_keys(window_.keys(), desktop_); });
+    guard(notices, [&] { desktop_.world.open_files(window_.dropped()); });
   }
   guard(notices, [&] { desktop_.follow_pads(plugged_pads(), window_.focused(), now - last_); });
   guard(notices, [&] { desktop_.update(now - last_); });
@@ -189,12 +190,13 @@ void Application::turn() {
   const bool moved = frame_.differs();
   if (moved && !drawing) window_.begin_frame(desktop_.focus());
   drawing |= moved;
+  if (drawing) frame_.draw();
+  carry_out(std::exchange(desktop_.asked, {}));
   if (drawing) {
-    frame_.draw();
     window_.end_frame();
     say_what_was_saved();
     // A picture that is shown again says nothing of what this computer can draw.
-    if (moved) desktop_.automatic_quality().frame(window_.frame_time());
+    if (moved) desktop_.shown.automatic_quality.frame(window_.frame_time());
   }
   frames_ += drawing ? 1 : 0;
   if (options_.print_state && now - printed_ >= kBetweenStates) {
@@ -205,27 +207,35 @@ void Application::turn() {
   }
 }
 
+void Application::carry_out(const WindowRequests& asked) {
+  if (asked.toggle_full_screen) window_.toggle_full_screen();
+  desktop_.full_screen = window_.full_screen();
+  desktop_.frame_time = window_.frame_time();
+  if (!asked.picture.empty()) window_.save_picture(asked.picture);
+  if (asked.close) window_.close();
+}
+
 void Application::say_what_was_saved() {
   for (const SavedPicture& picture : window_.saved()) {
     if (picture.error.empty()) {
-      desktop_.notices().say("Saved " + picture.file.string());
+      desktop_.notices.say("Saved " + picture.file.string());
     } else {
-      desktop_.notices().say(
+      desktop_.notices.say(
           picture.error + ". See to it that the folder is there and can be written to.", true);
     }
   }
 }
 
 void Application::note_size() {
-  Settings& settings = desktop_.settings();
+  Settings& settings = desktop_.settings;
   if (!window_.full_screen()) window_.asked_size(settings.width, settings.height);
 }
 
 void Application::keep() {
-  if (const SetAside* waiting = desktop_.document().unsaved_set_aside()) {
+  if (const SetAside* waiting = desktop_.document.unsaved_set_aside()) {
     keep_changes(waiting->world->document, waiting->arm, waiting->file);
   }
-  if (const std::string error = save_settings(desktop_.settings_to_keep(), began_);
+  if (const std::string error = save_settings(desktop_.tuning.settings_to_keep(), began_);
       !error.empty()) {
     say("settings not saved: " + error);
   }

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "app/device/device_book.h"
+#include "app/device/device_store.h"
 #include "core/dynamics/arm.h"
 #include "devices/files/urdf_file.h"
 #include "tests/support/device_traits.h"
@@ -46,16 +46,16 @@ class Yielding final : public Device {
 ArmDescription stick() { return read_urdf(LIMPID_ASSETS_DIR "/devices/joystick.urdf"); }
 
 // The window, as it is seen while it runs.
-AxisCheck checked(Yielding& device, AxisCheckTalk& talk, bool window_hangs = false,
+AxisCheck checked(Yielding& device, AxisCheckProgress& progress, bool window_hangs = false,
                   const SafetyLimits& limits = {}) {
   std::atomic<bool> done = false;
   std::thread window([&] {
     while (!done) {
-      if (!window_hangs) talk.see_window();
+      if (!window_hangs) progress.see_window();
       std::this_thread::sleep_for(16ms);
     }
   });
-  AxisCheck check = run_axis_check(device, stick(), limits, talk, {});
+  AxisCheck check = run_axis_check(device, stick(), limits, progress, {});
   done = true;
   window.join();
   return check;
@@ -63,8 +63,8 @@ AxisCheck checked(Yielding& device, AxisCheckTalk& talk, bool window_hangs = fal
 
 TEST(AxisCheckRun, FindsOutWhichWayEachAxisMoves) {
   Yielding device({0.5, -0.5});
-  AxisCheckTalk talk;
-  const AxisCheck check = checked(device, talk);
+  AxisCheckProgress progress;
+  const AxisCheck check = checked(device, progress);
   EXPECT_TRUE(check.passed()) << report_of(check);
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::right);
   EXPECT_EQ(check.finding(1).verdict, AxisVerdict::reversed);
@@ -79,12 +79,12 @@ TEST(AxisCheckRun, FindsOutWhichWayEachAxisMoves) {
 
 TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
   Yielding device({0.5, 0.5});
-  AxisCheckTalk talk;
+  AxisCheckProgress progress;
   std::thread hand([&] {
     std::this_thread::sleep_for(150ms);
-    talk.cancel = true;
+    progress.cancel = true;
   });
-  const AxisCheck check = checked(device, talk);
+  const AxisCheck check = checked(device, progress);
   hand.join();
   EXPECT_FALSE(check.passed());
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
@@ -95,8 +95,8 @@ TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
 
 TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
   Yielding device({1e-9, 1e-9});  // it would push for seconds
-  AxisCheckTalk talk;
-  const AxisCheck check = checked(device, talk, true);
+  AxisCheckProgress progress;
+  const AxisCheck check = checked(device, progress, true);
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
 }
@@ -104,9 +104,9 @@ TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
 TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   test::FakeDevice device(2);
   device.reading.age = 0.006;
-  AxisCheckTalk talk;
-  talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
-  const AxisCheck check = run_axis_check(device, stick(), {}, talk, {});
+  AxisCheckProgress progress;
+  progress.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const AxisCheck check = run_axis_check(device, stick(), {}, progress, {});
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
   EXPECT_TRUE(device.stopped);
 }
@@ -126,12 +126,12 @@ TEST(AxisCheckRun, PushesWithNoMoreThanTheForceThatIsSet) {
   }
   ASSERT_GT(reach, 0.01);
   Yielding device({0.5, 0.5});
-  AxisCheckTalk talk;
-  checked(device, talk);
+  AxisCheckProgress progress;
+  checked(device, progress);
   const double usual = device.largest;
   ASSERT_GT(usual, 0.1 * reach);
   Yielding gentle({0.5, 0.5});
-  AxisCheckTalk again;
+  AxisCheckProgress again;
   const AxisCheck check = checked(gentle, again, false, {.tip_force = 0.1});
   EXPECT_GT(gentle.largest, 0);
   EXPECT_LE(gentle.largest, 0.1 * reach * 1.1) << report_of(check);
@@ -157,17 +157,17 @@ TEST(AxisCheckRun, EndsAtALimitThatIsSet) {
     DeviceTraits traits_ = test::pushing(2, 0.35);
     std::uint64_t count_ = 0;
   } device;
-  AxisCheckTalk talk;
-  talk.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
-  const AxisCheck check = run_axis_check(device, stick(), {.range = 0.5}, talk, {});
+  AxisCheckProgress progress;
+  progress.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const AxisCheck check = run_axis_check(device, stick(), {.range = 0.5}, progress, {});
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::beyond_limit);
   EXPECT_EQ(device.largest, 0);
 }
 
 TEST(AxisCheckRun, IsOfAnArmWithAsManyJoints) {
   test::FakeDevice device(3);
-  AxisCheckTalk talk;
-  EXPECT_THROW(run_axis_check(device, stick(), {}, talk, {}), std::invalid_argument);
+  AxisCheckProgress progress;
+  EXPECT_THROW(run_axis_check(device, stick(), {}, progress, {}), std::invalid_argument);
 }
 
 }  // namespace

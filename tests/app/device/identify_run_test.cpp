@@ -31,8 +31,8 @@ TEST(IdentifyRun, KeepsWithinTheLimitsThatAreSetForTheDevice) {
   EXPECT_LT(plan.range, 0.3);
   EXPECT_EQ(plan.limits.energy, ExcitationPlan{}.limits.energy) << "no limit is widened";
   UnlikeDevice device(arm, {.encoder_step = 1e-4});
-  IdentifyTalk talk;
-  const IdentifyRun run = simulate_identification(device, arm, plan, talk);
+  IdentifyProgress progress;
+  const IdentifyRun run = simulate_identification(device, arm, plan, progress);
   EXPECT_EQ(run.end, ExcitationEnd::complete);
   double most = 0;
   for (Eigen::Index i = 0; i < run.record.rows(); i += 10) {
@@ -63,8 +63,8 @@ class Mute final : public Device {
 
 TEST(IdentifyRun, DoesNotPushADeviceThatHasNotSaidWhereItIs) {
   Mute device;
-  IdentifyTalk talk;
-  const IdentifyRun run = simulate_identification(device, omni(), {}, talk);
+  IdentifyProgress progress;
+  const IdentifyRun run = simulate_identification(device, omni(), {}, progress);
   EXPECT_EQ(run.end, ExcitationEnd::not_well);
   EXPECT_FALSE(device.pushed);
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/base/folders.h"
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {
@@ -15,15 +15,15 @@ class TheFirstStory : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     story_ = new Story(read_story(default_story()));
-    told_ = new Told(tell(*story_, false, [](double) {}));
+    run_ = new StoryRun(run_story(*story_, false, [](double) {}));
   }
   static void TearDownTestSuite() {
-    delete told_;
+    delete run_;
     delete story_;
   }
   // The step whose sentence has these words.
   static std::array<StepNumbers, 2> step(const std::string& words) {
-    const auto all = measure(story_->steps, told_->session);
+    const auto all = measure(story_->steps, run_->session);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (story_->steps[i].caption.find(words) != std::string::npos) return all[i];
     }
@@ -32,14 +32,14 @@ class TheFirstStory : public testing::Test {
   }
 
   static inline const Story* story_;
-  static inline const Told* told_;
+  static inline const StoryRun* run_;
 };
 
 TEST_F(TheFirstStory, IsToldToItsEndWithinAMinute) {
-  EXPECT_FALSE(told_->end.diverged);
+  EXPECT_FALSE(run_->end.diverged);
   EXPECT_LT(story_->seconds(), 60);
-  EXPECT_EQ(told_->session.size(), story_->plan.rows);
-  EXPECT_EQ(told_->session.twin->size(), story_->plan.rows);
+  EXPECT_EQ(run_->session.size(), story_->plan.rows);
+  EXPECT_EQ(run_->session.twin->size(), story_->plan.rows);
 }
 
 TEST_F(TheFirstStory, ShowsDeviceAndProxyDriftApartUnderTheStandardCouplingAlone) {
@@ -74,7 +74,7 @@ TEST_F(TheFirstStory, ShowsEnergyThatClimbsInAStiffGripAndThePredictiveLawThatKe
 }
 
 TEST_F(TheFirstStory, EndsAtRest) {
-  const Session& session = told_->session;
+  const Session& session = run_->session;
   for (const Session* run : {&session, session.twin.get()}) {
     for (const double v : run->at(run->size() - 1, Column::device_velocity)) {
       EXPECT_LT(std::abs(v), 1e-3);
@@ -83,8 +83,8 @@ TEST_F(TheFirstStory, EndsAtRest) {
 }
 
 TEST_F(TheFirstStory, IsTheSameEachTimeToTheLastBit) {
-  const Told again = tell(*story_, false, [](double) {});
-  const Session& session = told_->session;
+  const StoryRun again = run_story(*story_, false, [](double) {});
+  const Session& session = run_->session;
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(again.session)), -1);
   EXPECT_EQ(
       test::first_difference(test::rows_of(*session.twin), test::rows_of(*again.session.twin)), -1);

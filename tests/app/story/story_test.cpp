@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {

@@ -1,7 +1,7 @@
 // What a session keeps of its story, and shows again.
 #include <gmock/gmock.h>
 
-#include "app/story/tell.h"
+#include "app/story/run_story.h"
 #include "devices/files/session/session_story.h"
 #include "devices/files/text_file.h"
 #include "tests/support/temp_dir.h"
@@ -82,7 +82,7 @@ TEST(ToldSteps, GoWithASessionThroughItsFile) {
       "hand = [[0.1, 0.19, 0, 0]]\n",
       "s.toml", "/nowhere");
   const std::atomic<bool> never{false};
-  const Told told = tell(story, never, [](double) {});
+  const StoryRun run = run_story(story, never, [](double) {});
   const auto file = temp / "s.h5";
   write_session(told.session, {story.title, story.steps}, file, false);
   const ToldSteps again = told_in(file);

@@ -20,14 +20,14 @@ using testing::HasSubstr;
 ArmDescription paddle() { return read_urdf(test::assets_dir() / "devices/paddle.urdf"); }
 
 Identification identified(const ArmDescription& truth, double scale, double load) {
-  IdentifyOrder order;
+  IdentifyRequest order;
   order.guess = paddle();
   order.load = load;
   const Unlikeness bench{.encoder_step = 1e-4, .delay = 1, .torque_scale = scale};
   const auto run = [&](const ArmDescription& arm) {
     UnlikeDevice device(arm, bench);
-    IdentifyTalk talk;
-    return simulate_identification(device, order.guess, order.plan, talk);
+    IdentifyProgress progress;
+    return simulate_identification(device, order.guess, order.plan, progress);
   };
   return identification("a paddle", order, run(truth),
                         load > 0 ? run(loaded(truth, load)) : IdentifyRun{});
@@ -45,7 +45,7 @@ TEST(Identification, IsInTheTorquesThatTheMotorsGive) {
   ASSERT_TRUE(done.torque_scale);
   EXPECT_NEAR(done.torque_scale->value, 1.25, 0.03);
   EXPECT_NEAR(done.found.joints[0].coulomb.value, 0.02, 0.001);
-  EXPECT_NEAR(nature_of(done).torque_scale, 1.25, 0.03);
+  EXPECT_NEAR(profile_of(done).torque_scale, 1.25, 0.03);
   const Identification told = identified(truth, 1.25, 0);
   EXPECT_FALSE(told.torque_scale);
   EXPECT_NEAR(told.found.joints[0].coulomb.value, 0.02 / 1.25, 0.001);

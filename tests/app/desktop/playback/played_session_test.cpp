@@ -34,7 +34,7 @@ class RunAgain : public testing::Test {
   const std::filesystem::path file_ = dir_ / "a.h5";
   Session session_;
   Parameters chosen_;
-  BackgroundProgress progress_;
+  TaskProgress progress_;
 };
 
 TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {

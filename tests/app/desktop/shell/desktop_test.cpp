@@ -1,6 +1,7 @@
 // The desktop without a window: what it does to the loop, to devices and to what is not saved.
 #include "app/desktop/shell/desktop.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -10,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-#include "app/desktop/document/unsaved.h"
+#include "app/desktop/shell/commands.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
 #include "render/gl/offscreen.h"
@@ -74,7 +75,7 @@ struct ADesktop : testing::Test {
       GTEST_SKIP() << "no OpenGL here: " << e.what();
     }
     desktop = std::make_unique<Desktop>(Settings{}, AskForPriority{});
-    desktop->open_world("", "", "");
+    desktop->world.open_given("", "", "");
     frames(3);
   }
   void TearDown() override {
@@ -96,11 +97,11 @@ struct ADesktop : testing::Test {
     }
     return done();
   }
-  LiveLoop& loop() const { return desktop->desk().loop(); }
-  Document& document() const { return desktop->document(); }
+  LiveLoop& loop() const { return desktop->live.loop(); }
+  Document& document() const { return desktop->document; }
   Arming arming() const { return loop().snapshot().arming; }
   bool said(const std::string& what) const {
-    return std::ranges::any_of(desktop->notices().all(), [&](const Notice& notice) {
+    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
       return notice.text.find(what) != std::string::npos;
     });
   }
@@ -108,7 +109,7 @@ struct ADesktop : testing::Test {
   template <class Ask>
   bool until_on(Ask ask) {
     return until([&] {
-      if (!desktop->desk().force_armed()) {
+      if (!desktop->live.force_armed()) {
         ask();
         frames(5);
       }
@@ -118,7 +119,8 @@ struct ADesktop : testing::Test {
   bool armed() {
     return until_on([&] { loop().arm(); });
   }
-  // However late the loop's first tick with it is: a desk that did not connect it gives it no time.
+  // However late the loop's first tick with it is: a controller that did not connect it gives it no
+  // time.
   void await_device() {
     while (!loop().snapshot().connected) {
       std::this_thread::sleep_for(1ms);
@@ -127,7 +129,7 @@ struct ADesktop : testing::Test {
   }
   std::shared_ptr<Wire> plug_in(int dof) {
     auto wire = std::make_shared<Wire>();
-    desktop->open_device(std::make_unique<WiredDevice>(dof, wire));
+    desktop->world.open_device(std::make_unique<WiredDevice>(dof, wire));
     await_device();
     return wire;
   }
@@ -139,8 +141,9 @@ struct ADesktop : testing::Test {
     EXPECT_TRUE(armed());
     return wire;
   }
+  void run(const char* command) { EXPECT_EQ(run_command(command, *desktop), "") << command; }
   void record_something() {
-    desktop->toggle_recording();
+    desktop->world.toggle_recording();
     ASSERT_TRUE(until([&] { return loop().snapshot().recording; }));
     frames(20);
   }
@@ -168,10 +171,10 @@ TEST_F(ADesktop, HasForceOnTheVirtualArmFromTheStart) {
 TEST_F(ADesktop, DoesNotArmWhenItStartsOver) {
   desktop->cut_force();
   ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
-  desktop->desk().start_over();
+  desktop->live.start_over();
   frames(80);
   EXPECT_EQ(arming(), Arming::off);
-  desktop->desk().toggle_force();
+  desktop->live.toggle_force();
   EXPECT_TRUE(until([&] { return arming() == Arming::on; }));
 }
 
@@ -184,32 +187,32 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
     EXPECT_EQ(wire->torque, 0) << after;
   };
   expect_off("plugging in");
-  desktop->desk().start_over();
+  desktop->live.start_over();
   expect_off("starting over");
-  desktop->toggle_coupling();
+  desktop->tuning.next_law();
   document().undo();
   expect_off("undo");
-  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->world.open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   EXPECT_TRUE(loop().device_in_place()) << "the device stays in the loop";
   expect_off("another scene");
-  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
-  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
-  desktop->playback().start_rerun(desktop->settings().parameters);
-  ASSERT_TRUE(until([&] { return desktop->playback().shown()->has_rerun(); }));
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  desktop->playback.start_rerun(desktop->settings.parameters);
+  ASSERT_TRUE(until([&] { return desktop->playback.shown()->has_rerun(); }));
   expect_off("playback and re-run");
-  desktop->playback().close();
+  desktop->playback.close();
   expect_off("going back to live");
 }
 
 TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
   auto wire = pushed();
-  desktop->desk().start_over();
+  desktop->live.start_over();
   EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
   EXPECT_EQ(wire->torque, 0);
   wire->angle = 0;
   ASSERT_TRUE(armed());
-  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->world.open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   frames(70);
   EXPECT_EQ(arming(), Arming::off);
@@ -218,7 +221,7 @@ TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
 TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
   auto wire = std::make_shared<Wire>();
   wire->buttons = 2;
-  desktop->open_device(std::make_unique<WiredDevice>(3, wire));
+  desktop->world.open_device(std::make_unique<WiredDevice>(3, wire));
   await_device();
   frames(120);  // also beyond the time in which a device settles
   EXPECT_EQ(arming(), Arming::off);
@@ -233,7 +236,7 @@ TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
   };
   EXPECT_TRUE(until_on(press)) << "one that is pressed now arms";
   press();
-  EXPECT_TRUE(until([&] { return !desktop->desk().force_armed(); }));
+  EXPECT_TRUE(until([&] { return !desktop->live.force_armed(); }));
 }
 
 TEST_F(ADesktop, SaysThatADeviceIsGoneAndClosesItBesideTheWindow) {
@@ -248,9 +251,9 @@ TEST_F(ADesktop, SaysThatADeviceIsGoneAndClosesItBesideTheWindow) {
 TEST_F(ADesktop, RecordsAndClosesTheFileBesideTheWindow) {
   for (int i = 0; i < 2; ++i) {
     record_something();
-    desktop->toggle_recording();
+    desktop->world.toggle_recording();
     ASSERT_TRUE(until([&] { return said("Recorded"); }));
-    desktop->notices().clear();
+    desktop->notices.clear();
     std::this_thread::sleep_for(1100ms);  // names have seconds
   }
   ASSERT_EQ(recordings().size(), 2u);
@@ -267,7 +270,7 @@ TEST_F(ADesktop, CompletesARecordingWhenItEnds) {
 }
 
 TEST_F(ADesktop, LeavesNothingBehindWhenItEndsBeforeARecordingBegan) {
-  desktop->toggle_recording();
+  desktop->world.toggle_recording();
   desktop->drop_pictures();
   desktop.reset();
   EXPECT_TRUE(recordings().empty());
@@ -291,23 +294,23 @@ TEST_F(ADesktop, CompletesARecordingWhenADeviceBringsAnotherArm) {
 TEST_F(ADesktop, SaysThatItCannotRecordAndGoesOn) {
   fs::remove_all(dir / "data");
   std::ofstream(dir / "data") << "a file where a folder should be";
-  desktop->toggle_recording();
-  EXPECT_TRUE(until(
-      [&] { return !desktop->notices().all().empty() && desktop->notices().all().back().bad; }));
-  EXPECT_FALSE(desktop->desk().recording());
+  desktop->world.toggle_recording();
+  EXPECT_TRUE(
+      until([&] { return !desktop->notices.all().empty() && desktop->notices.all().back().bad; }));
+  EXPECT_FALSE(desktop->live.recording());
   const auto ticks = loop().status().ticks;
   EXPECT_TRUE(until([&] { return loop().status().ticks > ticks + 50; }));
 }
 
 // With the device in the loop that it was recorded with.
 TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
-  desktop->devices().hub().use("device");
-  desktop->devices().hub().notes("device").limits.tip_force = 1.25;
+  desktop->devices.hub().use("device");
+  desktop->devices.hub().notes("device").limits.tip_force = 1.25;
   plug_in(3);
   frames(2);
-  EXPECT_EQ(desktop->desk().controls().limits.tip_force, 1.25);
+  EXPECT_EQ(desktop->live.controls().limits.tip_force, 1.25);
   record_something();
-  desktop->toggle_recording();
+  desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
   ASSERT_EQ(recordings().size(), 1u);
   EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
@@ -317,7 +320,7 @@ TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
 TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
   const auto efforts = [&] {
     std::vector<double> all;
-    for (const Joint& joint : desktop->desk().stage().arm().joints) all.push_back(joint.effort);
+    for (const Joint& joint : desktop->live.stage().arm().joints) all.push_back(joint.effort);
     return all;
   };
   const std::vector<double> of_file = efforts();
@@ -326,39 +329,39 @@ TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
     for (double& each : all) each = std::min(each, most);
     return all;
   };
-  const std::string arm = desktop->desk().stage().arm().urdf;
+  const std::string arm = desktop->live.stage().arm().urdf;
   for (const double effort : {0.2, 0.05, 0.4, 100.0, 0.1}) {
     const auto wire = std::make_shared<Wire>();
-    desktop->open_device(std::make_unique<WiredDevice>(3, wire, effort));
+    desktop->world.open_device(std::make_unique<WiredDevice>(3, wire, effort));
     await_device();
     EXPECT_EQ(efforts(), within(effort)) << effort;
-    EXPECT_EQ(desktop->desk().stage().arm().urdf, arm);
+    EXPECT_EQ(desktop->live.stage().arm().urdf, arm);
     wire->angle = 0.3;  // its proxy pulls with all that there is
     ASSERT_TRUE(armed());
     frames(80);
     EXPECT_LE(wire->torque, std::min(effort, *std::ranges::max_element(of_file)) + 1e-12);
-    desktop->desk().start_over();
+    desktop->live.start_over();
     ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
   }
 }
 
 TEST_F(ADesktop, WritesBesideTheWindowAndSaysWhatBecameOfIt) {
   std::atomic<bool> elsewhere{false};
-  desktop->desk().save_beside([&, window = std::this_thread::get_id()] {
+  desktop->live.save_beside([&, window = std::this_thread::get_id()] {
     elsewhere = std::this_thread::get_id() != window;
     return PlotNotice{"Saved a table"};
   });
-  desktop->desk().save_beside([] { return PlotNotice{"No room for a table", true}; });
+  desktop->live.save_beside([] { return PlotNotice{"No room for a table", true}; });
   ASSERT_TRUE(until([&] { return said("No room for a table"); }));
   EXPECT_TRUE(said("Saved a table"));
   EXPECT_TRUE(elsewhere);
-  EXPECT_TRUE(desktop->notices().all().back().bad);
+  EXPECT_TRUE(desktop->notices.all().back().bad);
 }
 
 TEST_F(ADesktop, ChangesNoDeviceInARecording) {
   record_something();
-  desktop->devices().use("another");
-  EXPECT_EQ(desktop->devices().hub().in_use(), "");
+  desktop->devices.use("another");
+  EXPECT_EQ(desktop->devices.hub().in_use(), "");
   EXPECT_TRUE(said("Stop the recording"));
 }
 
@@ -370,18 +373,18 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   plan.hand.source = "mouse";
   Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
   ASSERT_TRUE(fs::exists(sessions / "cut.h5.part"));
-  desktop->playback().recover_leftovers(sessions);
+  desktop->playback.recover_leftovers(sessions);
   EXPECT_TRUE(said("Recovered cut.h5"));
-  EXPECT_EQ(desktop->playback().last(), sessions / "cut.h5");
+  EXPECT_EQ(desktop->playback.last(), sessions / "cut.h5");
 }
 
 TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
-  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   ASSERT_TRUE(document().editor().dirty());
   plug_in(3);
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
-  desktop->close_device();
+  desktop->world.close_device();
   EXPECT_FALSE(loop().device_in_place());
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
@@ -389,12 +392,12 @@ TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
 
 TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
   const std::string file = document().file();
-  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   plug_in(2);
   EXPECT_FALSE(has("mine"));
   EXPECT_NE(document().file(), file);
   ASSERT_NE(document().unsaved_set_aside(), nullptr);
-  desktop->close_device();
+  desktop->world.close_device();
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
   EXPECT_EQ(document().file(), file);
@@ -404,10 +407,10 @@ TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
 // Only what the user had open is put aside, not what a device brought.
 TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   const std::string file = document().file();
-  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   plug_in(2);
   plug_in(3);
-  desktop->close_device();
+  desktop->world.close_device();
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
   EXPECT_EQ(document().file(), file);
@@ -415,12 +418,12 @@ TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
 
 TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
   const fs::path file = dir / "scene.toml";
-  desktop->add_object(Sphere{.name = "saved", .radius = 0.01, .material = {500}});
+  desktop->world.add_object(Sphere{.name = "saved", .radius = 0.01, .material = {500}});
   ASSERT_TRUE(document().save_as(file));
-  desktop->add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
   fs::remove(file);
   plug_in(3);
-  desktop->close_device();
+  desktop->world.close_device();
   EXPECT_TRUE(has("saved"));
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
@@ -428,10 +431,10 @@ TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
 
 TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   frames(10);
-  desktop->toggle_coupling();
+  desktop->tuning.next_law();
   std::this_thread::sleep_for(250ms);  // a frame at high quality
   frames(20);
-  const History& history = desktop->desk().stage().history;
+  const History& history = desktop->live.stage().history;
   const int kind = static_cast<int>(Channel::kind);
   SampleIndex first = history.end() - 1;
   const float now = history.value(kind, first);
@@ -444,49 +447,67 @@ TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
 
 TEST_F(ADesktop, RunsATwinWhoseSettingsAreItsOwnAndWhoseWorldIsNot) {
   frames(5);
-  desktop->toggle_twin();
+  desktop->tuning.toggle_twin();
   frames(20);
-  EXPECT_FALSE(desktop->twin_row().empty());
-  TwinSettings& twin = desktop->settings().twin;
-  EXPECT_NE(twin.parameters.kind, desktop->settings().parameters.kind);
+  EXPECT_FALSE(desktop->shown.twin_row().empty());
+  TwinSettings& twin = desktop->settings.twin;
+  EXPECT_NE(twin.parameters.kind, desktop->settings.parameters.kind);
   twin.edited = true;
-  EXPECT_EQ(&desktop->edited(), &twin.parameters);
-  const CouplingKind first = desktop->settings().parameters.kind;
-  desktop->toggle_coupling();  // of the twin
-  EXPECT_EQ(desktop->settings().parameters.kind, first);
-  desktop->settings().parameters.hand_stiffness = 432;
+  EXPECT_EQ(&desktop->tuning.edited(), &twin.parameters);
+  const CouplingKind first = desktop->settings.parameters.kind;
+  desktop->tuning.next_law();  // of the twin
+  EXPECT_EQ(desktop->settings.parameters.kind, first);
+  desktop->settings.parameters.hand_stiffness = 432;
   frames(20);
   EXPECT_EQ(twin.parameters.hand_stiffness, 432);
-  EXPECT_EQ(desktop->desk().stage().names().second, name(twin.parameters.kind));
-  desktop->toggle_twin();
+  EXPECT_EQ(desktop->live.stage().names().second, name(twin.parameters.kind));
+  desktop->tuning.toggle_twin();
   frames(20);
-  EXPECT_TRUE(desktop->twin_row().empty());
-  EXPECT_EQ(&desktop->edited(), &desktop->settings().parameters);
-  EXPECT_TRUE(desktop->desk().stage().names().second.empty());
+  EXPECT_TRUE(desktop->shown.twin_row().empty());
+  EXPECT_EQ(&desktop->tuning.edited(), &desktop->settings.parameters);
+  EXPECT_TRUE(desktop->live.stage().names().second.empty());
 }
 
 TEST_F(ADesktop, TakesBackAPresetOfEitherRunOfATwin) {
   frames(5);
-  desktop->toggle_twin();
+  desktop->tuning.toggle_twin();
   frames(5);
-  Settings& settings = desktop->settings();
+  Settings& settings = desktop->settings;
   for (const bool second : {false, true}) {
     settings.twin.edited = second;
     Parameters& edited = second ? settings.twin.parameters : settings.parameters;
     const Parameters before = edited;
     const Parameters other = second ? settings.parameters : settings.twin.parameters;
-    desktop->use_preset("Light hand");
+    desktop->tuning.use_preset("Light hand");
     EXPECT_EQ(edited.eta, 0.3);
     EXPECT_EQ(edited.kind, CouplingKind::predictive);
     frames(5);
-    desktop->document().undo();
+    desktop->document.undo();
     EXPECT_EQ(edited, before);
     EXPECT_EQ(second ? settings.parameters : settings.twin.parameters, other);
     frames(5);
-    desktop->document().redo();
+    desktop->document.redo();
     EXPECT_EQ(edited.eta, 0.3);
     frames(5);
   }
+}
+
+TEST_F(ADesktop, RunsCommandsByTheirIdsAndSaysWhyOneCannotBeRun) {
+  run("view.ghost");
+  EXPECT_FALSE(desktop->settings.show_ghost);
+  EXPECT_FALSE(find_command("view.ghost")->how.checked(*desktop));
+  EXPECT_EQ(run_command("view.gost", *desktop), "There is no command \"view.gost\".");
+  EXPECT_EQ(run_command("session.rerun", *desktop), "Open a recording first (Ctrl+O).");
+  EXPECT_EQ(run_command("scene.remove", *desktop), "Select an object of the scene first (Tab).");
+  run_or_say("session.back_to_live", *desktop);
+  EXPECT_TRUE(said("Open a recording first"));
+  run("session.open");
+  EXPECT_EQ(desktop->dialog.name(), "open session");
+  EXPECT_THROW(desktop->dialog.open("a dialog"), std::logic_error);
+  desktop->dialog.close();
+  record_something();
+  EXPECT_THAT(run_command("session.twin", *desktop), testing::HasSubstr("Stop the recording"));
+  EXPECT_FALSE(desktop->settings.twin.on);
 }
 
 // With ImGui, whose menus and text fields Esc may be meant for.
@@ -507,12 +528,11 @@ struct ADesktopWithKeys : ADesktop {
 
 TEST_F(ADesktopWithKeys, OnTheVirtualArmEscClosesWhatIsOpenAndOnlyThenCutsTheForce) {
   ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
-  for (const Dialog dialog :
-       {Dialog::help, Dialog::sweep, Dialog::open_session, Dialog::identify}) {
-    desktop->open_dialog(dialog);
+  for (const char* dialog : {"help", "sweep", "open session", "identify"}) {
+    desktop->dialog.open(dialog);
     desktop->escape();
-    EXPECT_EQ(desktop->dialog(), Dialog::none);
-    EXPECT_TRUE(stays(Arming::on)) << name(dialog);
+    EXPECT_EQ(desktop->dialog.name(), "");
+    EXPECT_TRUE(stays(Arming::on)) << dialog;
   }
   ImGui::GetIO().WantTextInput = true;  // a number is typed over a slider
   ImGui::GetCurrentContext()->WantTextInputNextFrame = 1;
@@ -529,9 +549,9 @@ TEST_F(ADesktopWithKeys, OnTheVirtualArmEscClosesWhatIsOpenAndOnlyThenCutsTheFor
 
 TEST_F(ADesktopWithKeys, OnARealDeviceEscClosesAndCutsTheForce) {
   const auto wire = pushed();
-  desktop->open_dialog(Dialog::help);
+  desktop->dialog.open("help");
   desktop->escape();
-  EXPECT_EQ(desktop->dialog(), Dialog::none);
+  EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
   EXPECT_EQ(wire->torque, 0);
   ASSERT_TRUE(armed());
@@ -541,10 +561,10 @@ TEST_F(ADesktopWithKeys, OnARealDeviceEscClosesAndCutsTheForce) {
 
 TEST_F(ADesktopWithKeys, SpaceCutsTheForceThroughADialogAndLeavesItOpen) {
   ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
-  desktop->open_dialog(Dialog::help);
+  desktop->dialog.open("help");
   desktop->cut_force();
   EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
-  EXPECT_EQ(desktop->dialog(), Dialog::help);
+  EXPECT_EQ(desktop->dialog.name(), "help");
 }
 
 TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
@@ -555,17 +575,17 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
   ASSERT_EQ(desktop->banners().size(), 1u);
   EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. F arms it.");
   ASSERT_EQ(desktop->banners()[0].buttons.size(), 1u);
-  EXPECT_EQ(desktop->banners()[0].buttons[0].action, Action::toggle_force);
+  EXPECT_STREQ(desktop->banners()[0].buttons[0].command, "device.force");
   record_something();
   EXPECT_EQ(desktop->banners()[0].text, "Recording without force: not armed. F arms it.");
   EXPECT_TRUE(desktop->banners()[0].bad);
-  desktop->toggle_recording();
+  desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
   // The recording says so where it is looked at, whatever the loop does meanwhile.
   ASSERT_TRUE(armed());
   EXPECT_TRUE(desktop->banners().empty());
-  desktop->toggle_playing();
-  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  run("session.play");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   ASSERT_EQ(desktop->banners().size(), 1u);
   EXPECT_EQ(desktop->banners()[0].text, "In this recording: force off: not armed.");
   EXPECT_TRUE(desktop->banners()[0].buttons.empty());
@@ -573,34 +593,34 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
 
 // Whatever is done next, the settings are what they were.
 TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
-  Settings& settings = desktop->settings();
+  Settings& settings = desktop->settings;
   settings.parameters.hand_stiffness = 222;
   settings.parameters.eta = 0.8;
   frames(2);
   const Parameters before = settings.parameters;
   const auto broken = [&] {
-    desktop->break_passivity();
+    desktop->tuning.break_passivity();
     frames(2);
     EXPECT_EQ(settings.parameters.hand_stiffness, 3000);
     EXPECT_EQ(settings.parameters.hand_damping, 0);
-    EXPECT_EQ(desktop->banners().back().buttons.at(0).action, Action::end_passivity_break);
+    EXPECT_STREQ(desktop->banners().back().buttons.at(0).command, "coupling.end_break");
   };
   const auto expect_whole = [&](const char* after) {
     EXPECT_TRUE(settings.parameters == before) << after;
     EXPECT_FALSE(settings.before_break) << after;
   };
   broken();
-  desktop->end_break();
+  desktop->tuning.end_break();
   expect_whole("Repair");
   broken();
-  desktop->toggle_coupling();
+  desktop->tuning.next_law();
   expect_whole("C");
   broken();
   document().undo();
   expect_whole("Ctrl+Z");
   frames(2);
   broken();
-  desktop->use_preset("Light hand");
+  desktop->tuning.use_preset("Light hand");
   EXPECT_EQ(settings.parameters.hand_stiffness, 222);
   frames(2);
   document().undo();
@@ -614,44 +634,44 @@ TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   frames(2);
   expect_whole("another law");
   broken();
-  desktop->open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->world.open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   expect_whole("another scene");
   broken();
-  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
-  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   frames(1);
   EXPECT_TRUE(settings.parameters == before) << "a recording";
-  desktop->playback().close();
+  desktop->playback.close();
   broken();
   plug_in(3);
   EXPECT_EQ(settings.parameters.hand_stiffness, 222) << "a device";
-  desktop->close_device();
+  desktop->world.close_device();
   frames(2);
   broken();
-  EXPECT_EQ(desktop->settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
-  EXPECT_EQ(desktop->settings_to_keep().parameters.eta, 0.8);
-  EXPECT_FALSE(desktop->settings_to_keep().before_break);
+  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
+  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.eta, 0.8);
+  EXPECT_FALSE(desktop->tuning.settings_to_keep().before_break);
 }
 
 TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {
   frames(2);
-  const Parameters first = desktop->settings().parameters;
-  desktop->edited().eta = 0.77;
+  const Parameters first = desktop->settings.parameters;
+  desktop->tuning.edited().eta = 0.77;
   frames(60);  // a step of its own
-  desktop->break_passivity();
+  desktop->tuning.break_passivity();
   frames(5);
-  desktop->edited().eta = 0.2;  // moved meanwhile
+  desktop->tuning.edited().eta = 0.2;  // moved meanwhile
   frames(60);
   document().undo();
-  EXPECT_EQ(desktop->edited().eta, 0.77);
+  EXPECT_EQ(desktop->tuning.edited().eta, 0.77);
   frames(5);
   document().undo();
-  EXPECT_TRUE(desktop->settings().parameters == first);
+  EXPECT_TRUE(desktop->settings.parameters == first);
 }
 
 TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
-  Settings& settings = desktop->settings();
+  Settings& settings = desktop->settings;
   settings.parameters.kind = CouplingKind::proposed;
   settings.parameters.eta = 0.9;
   frames(3);
@@ -660,13 +680,13 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   frames(20);
   settings.parameters.kind = CouplingKind::standard;
   frames(20);
-  desktop->toggle_recording();
+  desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
   settings.parameters.eta = 3;
   settings.parameters.hand_stiffness = 99;
-  desktop->toggle_playing();
-  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
-  PlayedSession& session = *desktop->playback().shown();
+  run("session.play");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  PlayedSession& session = *desktop->playback.shown();
   Player& player = session.player();
   player.pause();
   const auto at = [&](double part) -> const Parameters& {
@@ -684,7 +704,7 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   }
   EXPECT_EQ(at(0).eta, 0.9);
   EXPECT_EQ(at(0.99).kind, CouplingKind::standard);
-  EXPECT_EQ(desktop->edited().eta, 3) << "for the re-run";
+  EXPECT_EQ(desktop->tuning.edited().eta, 3) << "for the re-run";
 }
 
 TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
@@ -699,61 +719,61 @@ TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
   for (const fs::path& file : keep("second")) files.push_back(file);
   ASSERT_EQ(files.size(), 2u);
   ASSERT_TRUE(until([&] { return desktop->banners().empty(); }));  // the force is on
-  desktop->offer_kept(files);
+  desktop->kept.offer(files);
   ASSERT_EQ(desktop->banners().size(), 1u);
   EXPECT_NE(desktop->banners()[0].text.find(files[1].filename().string()), std::string::npos);
-  desktop->discard_kept();
+  run("scene.discard_kept");
   EXPECT_FALSE(fs::exists(files[1]));
   ASSERT_EQ(desktop->banners().size(), 1u);
-  desktop->open_kept();
+  run("scene.open_kept");
   ASSERT_TRUE(until([&] { return has("first"); }));
   EXPECT_TRUE(fs::exists(files[0]));
   EXPECT_TRUE(until([&] { return desktop->banners().empty(); }));
 }
 
 TEST_F(ADesktop, ShowsTheChosenPlotsLiveAndInPlayback) {
-  desktop->add_plot();
-  desktop->settings().plot_choices.back() = {.kind = PlotKind::spectrum,
-                                             .channels = {"hand/torque_norm"}};
+  desktop->plots.add();
+  desktop->settings.plot_choices.back() = {.kind = PlotKind::spectrum,
+                                           .channels = {"hand/torque_norm"}};
   frames(3);
-  ASSERT_EQ(desktop->shown().plots.size(), 5u);
-  EXPECT_EQ(desktop->dialog(), Dialog::plot);
-  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
-  ASSERT_TRUE(until([&] { return desktop->playback().on(); }));
+  ASSERT_EQ(desktop->shown.stage().plots.size(), 5u);
+  EXPECT_EQ(desktop->dialog.name(), "plot");
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   frames(2);
-  ASSERT_EQ(desktop->shown().plots.size(), 5u);
-  EXPECT_EQ(desktop->shown().plots.back().spec().title, "spectrum of |f1|");
-  desktop->remove_plot(0);
-  desktop->use_layout("As at first");
+  ASSERT_EQ(desktop->shown.stage().plots.size(), 5u);
+  EXPECT_EQ(desktop->shown.stage().plots.back().spec().title, "spectrum of |f1|");
+  desktop->plots.remove(0);
+  desktop->plots.use("As at first");
   frames(2);
-  EXPECT_EQ(desktop->shown().plots.size(), 4u);
-  EXPECT_EQ(desktop->dialog(), Dialog::none);
+  EXPECT_EQ(desktop->shown.stage().plots.size(), 4u);
+  EXPECT_EQ(desktop->dialog.name(), "");
 }
 
 TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
-  desktop->open_world("", "", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
-  desktop->playback().open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
-  EXPECT_TRUE(until([&] { return desktop->playback().on(); }));
+  desktop->world.open_given("", "", fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  EXPECT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(until([&] { return !document().loader().busy(); }));
-  EXPECT_TRUE(desktop->playback().on()) << "and goes on playing";
-  desktop->playback().close();
+  EXPECT_TRUE(desktop->playback.on()) << "and goes on playing";
+  desktop->playback.close();
   EXPECT_FALSE(document().scene().meshes.empty());
 }
 
 TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
-  EXPECT_TRUE(desktop->automatic_view());
-  desktop->look(Camera::View::top);
-  EXPECT_FALSE(desktop->automatic_view());
-  desktop->reset_view();
-  EXPECT_TRUE(desktop->automatic_view());
+  EXPECT_TRUE(desktop->shown.automatic_view());
+  desktop->shown.look(Camera::View::top);
+  EXPECT_FALSE(desktop->shown.automatic_view());
+  desktop->shown.reset_view();
+  EXPECT_TRUE(desktop->shown.automatic_view());
 }
 
 // What the panel says of energy follows the plots' newest row, whatever was before it.
 TEST_F(ADesktop, AccountsForTheEnergyOfItsLoop) {
   const int energy = static_cast<int>(Channel::energy_total);
-  const auto stage = [&]() -> const Stage& { return desktop->desk().stage(); };
-  desktop->settings().parameters.eta = 0.3;  // not passive: there is energy to account for
-  Controls& controls = desktop->desk().controls();
+  const auto stage = [&]() -> const Stage& { return desktop->live.stage(); };
+  desktop->settings.parameters.eta = 0.3;  // not passive: there is energy to account for
+  Controls& controls = desktop->live.controls();
   controls.goal = Vec3(0.17, 0.04, 0.03);
   controls.grab = true;
   EXPECT_TRUE(until([&] { return std::abs(stage().energy.total()) > 1e-4; }));

@@ -94,7 +94,7 @@ TEST_F(KeyInputTest, AKeyMayOpenSomethingForTheNextOne) {
   tap(GLFW_KEY_N, 0, "n");
   type("eta");
   EXPECT_THAT(look(), ElementsAre(GLFW_KEY_N));
-  look({.text = true, .dialog = Dialog::plot});
+  look({.text = true, .dialog = "plot"});
   EXPECT_EQ(written_, "eta");
 }
 

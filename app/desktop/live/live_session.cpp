@@ -1,0 +1,242 @@
+#include "app/desktop/live/live_session.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "app/device/device_store.h"
+#include "app/run/replay.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kDrainRows = 512;
+
+// Where a new loop rests: the tip as at the middle of the arm's limits.
+Vec3 home(const ArmDescription& arm) {
+  const Eigen::VectorXd x = rest_pose(arm);
+  return RowView(arm).tip({x.data(), static_cast<std::size_t>(x.size())});
+}
+
+}  // namespace
+
+LiveSession::~LiveSession() {
+  loop_.close();
+  try {
+    complete_recording();
+  } catch (const std::exception& e) {
+    std::fputs(fmt::format("limpid: {}\n", e.what()).c_str(), stderr);  // the terminal may be gone
+  }
+  for (std::future<PlotNotice>& saving : saving_) {
+    if (const PlotNotice notice = saving.get(); notice.bad) {
+      std::fputs(fmt::format("limpid: {}\n", notice.text).c_str(), stderr);
+    }
+  }
+}
+
+void LiveSession::complete_recording() {
+  if (opening_.valid()) {  // it never began
+    const std::unique_ptr<Recorder> empty = opening_.get();
+    empty->finish();
+    fs::remove(empty->out());
+  }
+  loop_.finish_recording();
+  if (closing_.valid()) closing_.get();
+}
+
+void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshModels& models,
+                       const Parameters& p, double shown, std::unique_ptr<Device> device) {
+  auto fresh = make_stage(std::move(arm), std::move(document), models, p, shown);
+  const Vec3 rest = home(fresh->arm());
+  if (device) {
+    loop_.open(fresh->arm(), fresh->document().scene, p, std::move(device));
+  } else {
+    loop_.open(fresh->arm(), fresh->document().scene, p, rest);
+  }
+  controls_.grab = false;
+  controls_.goal = rest;
+  take_stage(std::move(fresh));
+}
+
+void LiveSession::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
+                              double shown) {
+  auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
+  touch(fresh->document().scene);
+  take_stage(std::move(fresh));
+}
+
+void LiveSession::touch(const Scene& scene) {
+  loop_.exchange(std::make_unique<TouchWorlds>(stage_->arm(), scene));
+}
+
+std::unique_ptr<Stage> LiveSession::make_stage(ArmDescription arm, SceneDocument document,
+                                               const MeshModels& models, const Parameters& p,
+                                               double shown) const {
+  const int channels = TraceChannels(RowLayout(arm.dof())).count();
+  return std::make_unique<Stage>(std::move(arm), std::move(document), models,
+                                 History({.channels = 2 * channels, .tick = p.tick}), shown);
+}
+
+void LiveSession::take_stage(std::unique_ptr<Stage> fresh) {
+  stage_ = std::move(fresh);
+  rows_.assign(2 * kDrainRows * static_cast<std::size_t>(loop_.layout().stride()), 0.0);
+}
+
+void LiveSession::drop_pictures() {
+  loop_.close();
+  stage_.reset();
+}
+
+std::span<const double> LiveSession::row() const {
+  return std::span(loop_.snapshot().row).first(static_cast<std::size_t>(loop_.layout().stride()));
+}
+
+bool LiveSession::force_armed() const {
+  const Arming now = loop_.snapshot().arming;
+  return now != Arming::off && now != Arming::tripped;
+}
+
+void LiveSession::start_over() {
+  if (recording()) {
+    notices_.say("Stop the recording before starting over.", true);
+    return;
+  }
+  controls_.grab = false;
+  ++controls_.resets;
+  const bool off = loop_.device_in_place() || !force_armed();
+  notices_.say(off ? "Started over, at rest and without force; F arms it."
+                   : "Started over, at rest.");
+}
+
+void LiveSession::let_go(std::unique_ptr<Device> device) {
+  device_tasks_.run(
+      [done = std::shared_ptr<Device>(std::move(device))]() mutable { done.reset(); });
+}
+
+std::span<const double> LiveSession::twin_row() const {
+  if (!controls_.twin || loop_.device_in_place()) return {};
+  const auto row =
+      std::span(loop_.snapshot().twin).first(static_cast<std::size_t>(loop_.layout().stride()));
+  return std::isnan(row[0]) ? std::span<const double>() : row;
+}
+
+std::string LiveSession::why_twin_is_fixed() const {
+  if (recording()) return "Stop the recording before the twin comes or goes.";
+  if (loop_.device_in_place()) {
+    return "A twin needs the virtual arm: one hand cannot hold two real devices.";
+  }
+  return {};
+}
+
+void LiveSession::update(const Parameters& p, const Parameters* twin) {
+  controls_.parameters = p;
+  controls_.twin = twin != nullptr;
+  if (twin != nullptr) controls_.twin_parameters = *twin;
+  loop_.set(controls_);
+  loop_.update();
+  follow_recording();
+  follow_saving();
+  stage_->follow(p);
+  take_rows();
+  set_marks();
+  stage_->energy.follow(stage_->history, stage_->history.end());
+  watch_loop();
+}
+
+void LiveSession::mark(const std::string& label, const std::string& key) {
+  changes_.push_back({0, key, label});
+}
+
+// The rows up to here are those of before: however long a frame takes, a mark stands at its change.
+void LiveSession::set_marks() {
+  History& history = stage_->history;
+  for (Mark& change : changes_) {
+    history.mark(history.end_time() - history.offset(), std::move(change.label),
+                 std::move(change.key));
+  }
+  changes_.clear();
+}
+
+void LiveSession::take_rows() {
+  const auto stride = static_cast<std::size_t>(loop_.layout().stride());
+  while (const std::size_t count = loop_.drain(rows_)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto both = std::span<const double>(rows_).subspan(2 * i * stride, 2 * stride);
+      stage_->append(both.first(stride), both.subspan(stride));
+    }
+  }
+}
+
+void LiveSession::watch_loop() {
+  const LoopStatus loop = loop_.status();
+  if (was_running_ && !loop.running) {
+    notices_.say(
+        fmt::format("The loop has stopped, without force: {}. Start Limpid again.", loop.failure),
+        true);
+  }
+  was_running_ = loop.running;
+}
+
+bool LiveSession::became_unstable() {
+  const bool diverged = loop_.snapshot().diverged;
+  return !std::exchange(was_diverged_, diverged) && diverged;
+}
+
+bool LiveSession::may_record() {
+  if (opening_.valid()) return false;
+  if (closing_.valid()) notices_.say("The last recording is still being closed.");
+  return !closing_.valid();
+}
+
+void LiveSession::record(const RunPlan& plan, const fs::path& folder) {
+  const std::string name =
+      fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+  SessionInfo about = session_info(plan);
+  if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
+  opening_ = file_tasks_.run(
+      [file = folder / name, info = std::move(about), initial = plan.parameters, twin = plan.twin] {
+        return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
+                                          twin ? &twin->parameters : nullptr);
+      });
+}
+
+void LiveSession::follow_recording() {
+  try {
+    if (auto recorder = take_ready(opening_)) {
+      loop_.record(std::move(*recorder));
+      mark("recording", "rec");
+    }
+    if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
+    if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
+      recorded_ = done->out();
+      closing_ = file_tasks_.run([done] {
+        done->finish();
+        const std::uint64_t dropped = done->dropped();
+        const std::string missing = dropped > 0 ? fmt::format(", {} ticks missing", dropped) : "";
+        return Notice{
+            fmt::format("Recorded {}{}. Play it with P.", done->out().filename().string(), missing),
+            dropped > 0};
+      });
+    }
+    if (auto notice = take_ready(closing_)) notices_.say(notice->text, notice->bad);
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
+void LiveSession::save_beside(std::function<PlotNotice()> work) {
+  saving_.push_back(file_tasks_.run(std::move(work)));
+}
+
+void LiveSession::follow_saving() {
+  for (std::future<PlotNotice>& saving : saving_) {
+    if (auto notice = take_ready(saving)) notices_.say(notice->text, notice->bad);
+  }
+  std::erase_if(saving_, [](const std::future<PlotNotice>& saving) { return !saving.valid(); });
+}
+
+}  // namespace limpid

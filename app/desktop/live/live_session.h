@@ -1,0 +1,110 @@
+// The running loop and what hangs on it: its controls, force, plots and recording.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/base/stage.h"
+#include "app/live/live_loop.h"
+#include "app/plot/plot_menu.h"
+#include "app/run/simulate.h"
+#include "app/session/tasks.h"
+
+namespace limpid {
+
+class LiveSession {
+ public:
+  LiveSession(Notices& notices, AskForPriority ask)
+      : notices_(notices), loop_(std::move(ask), [this](std::unique_ptr<Device> device) {
+          let_go(std::move(device));
+        }) {}
+  ~LiveSession();  // what is recorded is complete before the program ends
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
+
+  // Another world and its loop, with a real device or the virtual arm. `shown` as Stage's. Errors:
+  // as Stage and LiveLoop::open(); what there was before goes on then.
+  void open(ArmDescription arm, SceneDocument document, const MeshModels& models,
+            const Parameters& p, double shown, std::unique_ptr<Device> device);
+  // The same arm, and the loop that runs, in another scene.
+  void open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
+                   double shown);
+  // Another state of the scene, for the loop.
+  void touch(const Scene& scene);
+
+  LiveLoop& loop() { return loop_; }
+  const LiveLoop& loop() const { return loop_; }
+  Controls& controls() { return controls_; }
+  Stage& stage() { return *stage_; }
+  const Stage& stage() const { return *stage_; }
+  std::span<const double> row() const;       // the newest
+  std::span<const double> twin_row() const;  // the same of the twin; empty without one
+  // Why there can be no twin now, or the present one has to stay; empty if it may change.
+  std::string why_twin_is_fixed() const;
+
+  // Whether force is on, or will be as soon as nothing keeps it off.
+  bool force_armed() const;
+  void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
+  // At rest in the middle; a recording has to end first, and says so.
+  void start_over();
+
+  // From when it was asked for: what is recorded has to stay as it is.
+  bool recording() const { return loop_.recording() || opening_.valid(); }
+  // False while the last one is still being opened or closed.
+  bool may_record();
+  // In a new file of the folder.
+  void record(const RunPlan& plan, const std::filesystem::path& folder);
+  void stop_recording() { loop_.stop_recording(); }
+  // Waits until what is recorded is complete, after the loop has been closed. Errors: FileError.
+  void complete_recording();
+  // The file of the recording that has just ended, once.
+  std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
+
+  // Work on devices, which may hang; of their own, so that files never wait for it.
+  TaskQueue& device_tasks() { return device_tasks_; }
+  // Closes a device beside the window.
+  void let_go(std::unique_ptr<Device> device);
+  // Writes something beside the window, and says what became of it.
+  void save_beside(std::function<PlotNotice()> work);
+
+  // Once a frame: the controls with these parameters to the loop, and its rows to the plots.
+  // `twin`: of a second run beside it; null: none.
+  void update(const Parameters& p, const Parameters* twin);
+  // True once the loop has become unstable, once.
+  bool became_unstable();
+  // Marks in the plots that something changes with the next update().
+  void mark(const std::string& label, const std::string& key);
+  // Before the OpenGL context goes.
+  void drop_pictures();
+
+ private:
+  std::unique_ptr<Stage> make_stage(ArmDescription arm, SceneDocument document,
+                                    const MeshModels& models, const Parameters& p,
+                                    double shown) const;
+  void take_stage(std::unique_ptr<Stage> fresh);
+  void follow_recording();
+  void follow_saving();
+  void take_rows();
+  void set_marks();
+  void watch_loop();
+
+  Notices& notices_;
+  Controls controls_;
+  TaskQueue device_tasks_, file_tasks_;
+  LiveLoop loop_;
+  std::unique_ptr<Stage> stage_;
+  std::vector<double> rows_;
+  std::vector<Mark> changes_;  // to be marked, at times not known yet
+  bool was_diverged_ = false, was_running_ = false;
+  std::future<std::unique_ptr<Recorder>> opening_;
+  std::future<Notice> closing_;
+  std::vector<std::future<PlotNotice>> saving_;
+  std::optional<std::filesystem::path> recorded_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,509 @@
+#include "app/desktop/shell/commands.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "app/base/folders.h"
+#include "app/desktop/base/passivity_break.h"
+#include "app/desktop/shell/desktop.h"
+#include "app/style/number_slider.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr int kShift = GLFW_MOD_SHIFT;
+
+template <bool Settings::*kShown>
+bool is_shown(const Desktop& d) {
+  return d.settings.*kShown;
+}
+
+template <bool Settings::*kShown>
+void show_or_hide(Desktop& d) {
+  d.settings.*kShown = !(d.settings.*kShown);
+}
+
+// By a step of its slider.
+void step_setting(Desktop& d, const char* key, int direction) {
+  Parameters& p = d.tuning.edited();
+  const ParameterInfo& info = *find_parameter(key);
+  const double usual = parameter_number(Parameters{}, info);
+  set_parameter_number(p, info, slider_step(info, parameter_number(p, info), usual, direction));
+}
+
+void show_or_close(Desktop& d, const char* dialog) {
+  d.dialog.name() == dialog ? d.dialog.close() : d.dialog.open(dialog);
+}
+
+void show_sweep(Desktop& d) {
+  if (d.sweep.sweep() != nullptr || d.sweep.loading()) return show_or_close(d, "sweep");
+  d.notices.say(
+      "No sweep is open. Drop a sweep's folder or its table.h5 here, or open it with Ctrl+O.");
+}
+
+void change_theme(Desktop& d) {
+  Theme& theme = d.settings.theme;
+  theme = theme == Theme::light ? Theme::dark : Theme::light;
+  apply_theme(theme, current_scale());
+}
+
+void freeze_plots(Desktop& d) {
+  PlotGroup& group = d.shown.stage().group;
+  group.set_following(!group.following());
+}
+
+std::string picture_name() {
+  return fmt::format("limpid-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr)));
+}
+
+Command::Label force_label(const Desktop& d) {
+  return d.live.force_armed() ? Command::Label{"Force off", "Esc"}
+                              : Command::Label{"Force on", nullptr};
+}
+
+Command::Label record_label(const Desktop& d) {
+  return {d.live.recording() ? "Stop recording" : "Record", nullptr};
+}
+
+Player& player(Desktop& d) { return d.playback.shown()->player(); }
+
+// Where the scene has no file of the user's own, its name is asked for: those that came with Limpid
+// stay as they are.
+void save_scene_here(Desktop& d) {
+  const std::filesystem::path own = d.document.own_file();
+  own.empty() ? d.dialog.open("save scene") : void(d.document.save_as(own));
+}
+
+void save_and_leave(Desktop& d) {
+  const std::filesystem::path own = d.document.own_file();
+  if (own.empty()) {
+    // Leaving is up to the user then: the dialog may be given up.
+    d.document.stay();
+    d.dialog.open("save scene");
+  } else if (d.document.save_as(own)) {
+    d.document.leave_now();
+  }
+}
+
+void look_at_selected(Desktop& d) {
+  const Bounds box = d.document.selected_bounds();
+  d.shown.keep_view();
+  d.shown.camera.frame(box.isEmpty() ? d.live.stage().picture.bounds() : box);
+}
+
+void play_or_pause(Desktop& d) {
+  if (d.playback.on()) {
+    d.playback.toggle_playing();
+  } else if (!d.playback.last().empty()) {
+    d.playback.open(d.playback.last());
+  } else {
+    d.dialog.open("open session");
+  }
+}
+
+void play_story(Desktop& d) {
+  d.settings.hint_seen = true;
+  d.playback.open_story();
+}
+
+std::string no_recording(const Desktop& d) {
+  return d.playback.on() ? "" : "Open a recording first (Ctrl+O).";
+}
+
+std::string no_table(const Desktop& d) {
+  if (!d.playback.on()) return no_recording(d);
+  return d.playback.exporting() ? "The last table is still being written." : "";
+}
+
+std::string no_video(const Desktop& d) {
+  if (!d.playback.on()) return no_recording(d);
+  return d.playback.video().busy() ? "The last video is still being made." : "";
+}
+
+std::string in_playback(const Desktop& d) {
+  return d.playback.on() ? "Go back to live first (Backspace)." : "";
+}
+
+std::string no_question(const Desktop& d) {
+  return d.document.asking() ? "" : "There is no question about unsaved changes.";
+}
+
+std::string nothing_kept(const Desktop& d) {
+  return d.kept.any() ? "" : "There is no scene whose changes were kept.";
+}
+
+std::string nothing_selected(const Desktop& d) {
+  return d.document.editor().selected() ? "" : "Select an object of the scene first (Tab).";
+}
+
+std::string selection_fixed(const Desktop& d) {
+  const std::string why = nothing_selected(d);
+  return why.empty() ? d.document.why_fixed() : why;
+}
+
+std::string no_virtual_arm(const Desktop& d) {
+  return d.live.loop().device_in_place()
+             ? "A real device is in the arm's place. Choose the virtual arm first."
+             : "";
+}
+
+std::string not_broken(const Desktop& d) {
+  return passivity_broken(d.settings) ? "" : "Passivity is whole.";
+}
+
+std::string may_not_break(const Desktop& d) {
+  const std::string why = no_virtual_arm(d);
+  return why.empty() ? in_playback(d) : why;
+}
+
+constexpr Command row(const char* id, const char* text, const char* menu, const char* keys,
+                      const char* help, void (*run)(Desktop&), Command::How how = {}) {
+  return {id, text, menu, keys, help, run, how};
+}
+
+// Id, text, menu, keys, help. What everybody may need at once comes first; a menu has its commands
+// in the order here.
+constexpr std::array kCommands{
+    row("force.cut", "Force off at once", nullptr, "Space", "force off at once",
+        [](Desktop& d) { d.cut_force(); }, {.reach = Reach::all_but_text, .repeats = true}),
+    row("window.escape", "Close what is open, or force off", nullptr, "Esc",
+        "closes what is open; with nothing open, and always on a real device, force off",
+        [](Desktop& d) { d.escape(); }, {.reach = Reach::all}),
+    row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
+        [](Desktop& d) { d.dialog.open("open arm"); }, {.why_not = no_virtual_arm}),
+    row("arm.built_in", "Built-in arm", "Device", nullptr, nullptr,
+        [](Desktop& d) { d.world.open_arm(default_device()); },
+        {.checked = [](const Desktop& d) { return d.world.built_in_arm(); }}),
+    row("device.identify", "Identify...", "Device", "F7",
+        "identify the device: it moves and shows its inertia, friction and delay",
+        [](Desktop& d) { show_or_close(d, "identify"); }),
+    row("device.force", "Force on or off", "Device", "F", "force on or off",
+        [](Desktop& d) { d.live.toggle_force(); }, {.apart = true, .now = force_label}),
+    row("device.start_over", "Start over", "Device", "Backspace", "start over",
+        [](Desktop& d) { d.live.start_over(); }, {.why_not = in_playback}),
+    row("coupling.next", "Next coupling law", nullptr, "C", "the next coupling law",
+        [](Desktop& d) { d.tuning.next_law(); }),
+    row("coupling.smaller_eta", "Smaller impedance scaling, eta", nullptr, "[",
+        "smaller or larger impedance scaling, eta",
+        [](Desktop& d) { step_setting(d, "coupling.eta", -1); }, {.repeats = true}),
+    row("coupling.larger_eta", "Larger impedance scaling, eta", nullptr, "]", "",
+        [](Desktop& d) { step_setting(d, "coupling.eta", 1); }, {.repeats = true}),
+    row("observer.smaller_alpha", "Smaller observer gain, alpha", nullptr, "Shift+[",
+        "smaller or larger observer gain, alpha",
+        [](Desktop& d) { step_setting(d, "observer.alpha", -1); }, {.repeats = true}),
+    row("observer.larger_alpha", "Larger observer gain, alpha", nullptr, "Shift+]", "",
+        [](Desktop& d) { step_setting(d, "observer.alpha", 1); }, {.repeats = true}),
+    row("coupling.softer", "Softer coupling spring, k_vc", nullptr, "Ctrl+[",
+        "softer or stiffer coupling spring, k_vc",
+        [](Desktop& d) { step_setting(d, "coupling.k_vc", -1); }, {.repeats = true}),
+    row("coupling.stiffer", "Stiffer coupling spring, k_vc", nullptr, "Ctrl+]", "",
+        [](Desktop& d) { step_setting(d, "coupling.k_vc", 1); }, {.repeats = true}),
+    row("hand.softer", "Softer grip", nullptr, "Alt+[", "softer or stiffer grip",
+        [](Desktop& d) { step_setting(d, "hand.stiffness", -1); }, {.repeats = true}),
+    row("hand.stiffer", "Stiffer grip", nullptr, "Alt+]", "",
+        [](Desktop& d) { step_setting(d, "hand.stiffness", 1); }, {.repeats = true}),
+    row("coupling.break_passivity", "Break passivity", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.tuning.break_passivity(); }, {.why_not = may_not_break}),
+    row("coupling.end_break", "End broken passivity", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.tuning.end_break(); }, {.why_not = not_broken}),
+    row("session.open", "Open session or sweep...", "File", "Ctrl+O", "open a recording or a sweep",
+        [](Desktop& d) { d.dialog.open("open session"); }),
+    row("scene.add_model", "Add model...", "File", "Ctrl+M", "add a model, or drop one here",
+        [](Desktop& d) { d.dialog.open("add model"); }),
+    row("scene.save", "Save scene", "File", "Ctrl+S", "save the scene; under another name",
+        save_scene_here),
+    row("scene.save_as", "Save scene as...", "File", "Ctrl+Shift+S", "",
+        [](Desktop& d) { d.dialog.open("save scene"); }),
+    row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
+        [](Desktop& d) { d.asked.picture = sessions_dir() / picture_name(); }),
+    row("edit.undo", "Undo", "File", "Ctrl+Z", "undo", [](Desktop& d) { d.document.undo(); },
+        {.apart = true, .repeats = true}),
+    row("edit.redo", "Redo", "File", "Ctrl+Y, Ctrl+Shift+Z", "redo",
+        [](Desktop& d) { d.document.redo(); }, {.repeats = true}),
+    row("settings.reset", "All settings to their usual values", "File", nullptr, nullptr,
+        [](Desktop& d) { d.tuning.reset(); }),
+    row("settings.presets", "Save, rename...", "File/Presets of settings", "Ctrl+P",
+        "presets of settings", [](Desktop& d) { d.dialog.open("presets"); }, {.apart = true}),
+    row("window.quit", "Quit", "File", "Ctrl+Q", "quit", [](Desktop& d) { d.asked.close = true; },
+        {.apart = true}),
+    row("view.left_panel", "Coupling panel", "View", "F2", "coupling panel, device panel, plots",
+        show_or_hide<&Settings::show_left>, {.checked = is_shown<&Settings::show_left>}),
+    row("view.right_panel", "Device panel", "View", "F3", "", show_or_hide<&Settings::show_right>,
+        {.checked = is_shown<&Settings::show_right>}),
+    row("view.plots", "Plots", "View", "F4", "", show_or_hide<&Settings::show_plots>,
+        {.checked = is_shown<&Settings::show_plots>}),
+    row("plots.add", "Add a plot...", "View/Plots of", "N",
+        "a new plot: of any channel, over time, against another one, or its spectrum",
+        [](Desktop& d) { d.plots.add(); }, {.apart = true}),
+    row("plots.layouts", "Save, rename...", "View/Layouts", "Ctrl+L", "layouts of plots and panels",
+        [](Desktop& d) { d.dialog.open("layouts"); }, {.apart = true}),
+    row("plots.freeze", "Freeze or follow the plots", nullptr, "X", "freeze or follow the plots",
+        freeze_plots),
+    row("view.ghost", "Ghost of the device", "View", "G", "ghost of the device, lens at the tip",
+        show_or_hide<&Settings::show_ghost>,
+        {.apart = true, .checked = is_shown<&Settings::show_ghost>}),
+    row("view.lens", "Lens at the tip, x5", "View", "M", "", show_or_hide<&Settings::show_lens>,
+        {.checked = is_shown<&Settings::show_lens>}),
+    row("view.trail", "Trail", "View", nullptr, nullptr, show_or_hide<&Settings::show_trail>,
+        {.checked = is_shown<&Settings::show_trail>}),
+    row("view.forces", "Forces", "View", nullptr, nullptr, show_or_hide<&Settings::show_forces>,
+        {.checked = is_shown<&Settings::show_forces>}),
+    row("view.grid", "Floor grid", "View", nullptr, nullptr, show_or_hide<&Settings::show_grid>,
+        {.checked = is_shown<&Settings::show_grid>}),
+    row("view.joints", "Axes of the joints", "View", nullptr, nullptr,
+        show_or_hide<&Settings::show_joints>, {.checked = is_shown<&Settings::show_joints>}),
+    row("view.overlay", "Twin in one picture", "View", "Shift+B",
+        "both couplings of a twin in one picture", show_or_hide<&Settings::twin_overlaid>,
+        {.checked = is_shown<&Settings::twin_overlaid>}),
+    row("view.front", "Front", "View", "1", "front, side, top view; reset the camera",
+        [](Desktop& d) { d.shown.look(Camera::View::front); }, {.apart = true}),
+    row("view.side", "Side", "View", "2", "", [](Desktop& d) { d.shown.look(Camera::View::side); }),
+    row("view.top", "Top", "View", "3", "", [](Desktop& d) { d.shown.look(Camera::View::top); }),
+    row("view.reset", "Reset camera", "View", "0", "", [](Desktop& d) { d.shown.reset_view(); }),
+    row("view.light", "Light theme", "View", nullptr, nullptr, change_theme,
+        {.apart = true,
+         .checked = [](const Desktop& d) { return d.settings.theme == Theme::light; }}),
+    row("view.quality.automatic", "automatic", "View/Picture quality", nullptr, nullptr,
+        [](Desktop& d) { d.settings.picture_quality = "automatic"; },
+        {.checked = [](const Desktop& d) { return d.settings.picture_quality == "automatic"; }}),
+    row("view.quality.high", "high", "View/Picture quality", nullptr, nullptr,
+        [](Desktop& d) { d.settings.picture_quality = "high"; },
+        {.checked = [](const Desktop& d) { return d.settings.picture_quality == "high"; }}),
+    row("view.quality.medium", "medium", "View/Picture quality", nullptr, nullptr,
+        [](Desktop& d) { d.settings.picture_quality = "medium"; },
+        {.checked = [](const Desktop& d) { return d.settings.picture_quality == "medium"; }}),
+    row("view.quality.low", "low", "View/Picture quality", nullptr, nullptr,
+        [](Desktop& d) { d.settings.picture_quality = "low"; },
+        {.checked = [](const Desktop& d) { return d.settings.picture_quality == "low"; }}),
+    row("window.full_screen", "Full screen", "View", "F11", "full screen",
+        [](Desktop& d) { d.asked.toggle_full_screen = true; },
+        {.checked = [](const Desktop& d) { return d.full_screen; }}),
+    row("session.record", "Record", "Session", "R", "record, stop recording",
+        [](Desktop& d) { d.world.toggle_recording(); }, {.now = record_label}),
+    row("session.play", "Play or pause", "Session", "P", "play, pause", play_or_pause),
+    row("session.twin", "Twin: two couplings on one hand", "Session", "B",
+        "twin: a second coupling on the same hand", [](Desktop& d) { d.tuning.toggle_twin(); },
+        {.why_not = [](const Desktop& d) { return d.live.why_twin_is_fixed(); },
+         .checked = [](const Desktop& d) { return d.settings.twin.on; }}),
+    row("session.tick_back", "Step back by a tick", nullptr, "Left", "in playback: step by a tick",
+        [](Desktop& d) { player(d).step(-1); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
+    row("session.tick_on", "Step on by a tick", nullptr, "Right", "",
+        [](Desktop& d) { player(d).step(1); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
+    row("session.step_back", "Step back by 0.1 s", nullptr, "Shift+Left",
+        "in playback: step by 0.1 s", [](Desktop& d) { player(d).step(-100); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
+    row("session.step_on", "Step on by 0.1 s", nullptr, "Shift+Right", "",
+        [](Desktop& d) { player(d).step(100); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
+    row("session.to_the_beginning", "To the beginning", nullptr, "Home",
+        "in playback: to the beginning, loop, re-run, write a video",
+        [](Desktop& d) { player(d).seek(0); }, {.reach = Reach::playback, .why_not = no_recording}),
+    row("session.loop", "Begin again at the end", nullptr, "L", "",
+        [](Desktop& d) { player(d).loop = !player(d).loop; },
+        {.reach = Reach::playback, .why_not = no_recording}),
+    row("session.rerun", "Re-run under present settings", "Session", "E", "",
+        [](Desktop& d) { d.playback.start_rerun(d.tuning.edited()); },
+        {.reach = Reach::playback, .why_not = no_recording}),
+    row("session.write_table", "Write as table (CSV)", "Session", nullptr, nullptr,
+        [](Desktop& d) { d.playback.export_csv(); }, {.why_not = no_table}),
+    row("session.write_video", "Write as video...", "Session", "V", "",
+        [](Desktop& d) { d.dialog.open("video"); },
+        {.reach = Reach::playback, .why_not = no_video}),
+    row("session.back_to_live", "Back to live", "Session", "Backspace", "in playback: back to live",
+        [](Desktop& d) { d.playback.close(); },
+        {.reach = Reach::playback, .why_not = no_recording}),
+    row("experiments.show", "Experiments of the paper...", "Session", "F5",
+        "the paper's experiments; the map of the sweep that is open",
+        [](Desktop& d) { show_or_close(d, "experiments"); }, {.apart = true}),
+    row("sweep.show", "Map of the sweep", "Session", "F6", "", show_sweep),
+    row("scene.gallery", "Gallery...", "Scene", "Ctrl+G", "gallery of scenes",
+        [](Desktop& d) { d.dialog.open("gallery"); }),
+    row("scene.select_next", "Select the next object", nullptr, "Tab",
+        "select the next object of the scene, or the one before",
+        [](Desktop& d) { d.document.editor().select_next(1); }, {.repeats = true}),
+    row("scene.select_previous", "Select the object before", nullptr, "Shift+Tab", "",
+        [](Desktop& d) { d.document.editor().select_next(-1); }, {.repeats = true}),
+    row("scene.copy", "Copy selected object", "Scene", "Ctrl+D",
+        "copy or remove the selected object", [](Desktop& d) { d.document.duplicate_selected(); },
+        {.apart = true, .why_not = selection_fixed}),
+    row("scene.remove", "Remove selected object", "Scene", "Delete", "",
+        [](Desktop& d) { d.document.remove_selected(); }, {.why_not = selection_fixed}),
+    row("scene.look", "Look at the selected object", nullptr, nullptr, nullptr, look_at_selected,
+        {.why_not = nothing_selected}),
+    row("scene.save_and_leave", "Save the changes and go on", nullptr, "Enter, Keypad Enter",
+        nullptr, save_and_leave, {.reach = Reach::question, .why_not = no_question}),
+    row("scene.discard_and_leave", "Discard the changes and go on", nullptr, "D", nullptr,
+        [](Desktop& d) { d.document.discard_and_leave(); },
+        {.reach = Reach::question, .why_not = no_question}),
+    row("scene.open_kept", "Open the scene that was kept", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.world.open_scene(d.kept.take()); }, {.why_not = nothing_kept}),
+    row("scene.leave_kept", "Leave the scene that was kept for later", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.kept.leave(); }, {.why_not = nothing_kept}),
+    row("scene.discard_kept", "Discard the scene that was kept", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.kept.discard(); }, {.why_not = nothing_kept}),
+    row("help.story", "Play the story", "Help", nullptr, nullptr, play_story),
+    row("help.keys", "Keys and mouse", "Help", "?, F1", "this list",
+        [](Desktop& d) { show_or_close(d, "help"); }),
+    row("help.about", "About Limpid", "Help", nullptr, nullptr,
+        [](Desktop& d) { d.dialog.open("about"); }),
+};
+
+// What the mouse and the like do, before and after the keys.
+struct Hint {
+  const char *with, *what;
+};
+constexpr std::array kBefore{
+    Hint{"left drag", "pull the arm by its tip; wheel meanwhile: nearer and farther"},
+    Hint{"right drag, Alt+left drag", "turn the camera"},
+    Hint{"middle drag, Shift+right drag", "move the camera"},
+    Hint{"wheel", "zoom to the cursor"},
+};
+constexpr std::array kAfter{
+    Hint{"gamepad",
+         "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law"},
+    Hint{"plots", "drag pans, wheel zooms, double click fits, right click chooses and saves"},
+    Hint{"sliders", "double click to type, right click for the usual value"},
+};
+
+struct Key {
+  int modifiers, key;
+};
+
+// "Ctrl+Shift+S" as GLFW has it.
+Key key_of(std::string_view text) {
+  if (text == "?") return {kShift, GLFW_KEY_SLASH};
+  Key all{};
+  for (const auto& [name, modifier] : {std::pair(std::string_view("Ctrl+"), GLFW_MOD_CONTROL),
+                                       {"Alt+", GLFW_MOD_ALT},
+                                       {"Shift+", kShift}}) {
+    if (!text.starts_with(name)) continue;
+    all.modifiers |= modifier;
+    text.remove_prefix(name.size());
+  }
+  static constexpr std::array<std::pair<std::string_view, int>, 10> kNamed{
+      {{"Space", GLFW_KEY_SPACE},
+       {"Esc", GLFW_KEY_ESCAPE},
+       {"Enter", GLFW_KEY_ENTER},
+       {"Keypad Enter", GLFW_KEY_KP_ENTER},
+       {"Tab", GLFW_KEY_TAB},
+       {"Backspace", GLFW_KEY_BACKSPACE},
+       {"Delete", GLFW_KEY_DELETE},
+       {"Left", GLFW_KEY_LEFT},
+       {"Right", GLFW_KEY_RIGHT},
+       {"Home", GLFW_KEY_HOME}}};
+  const auto* named = std::ranges::find(kNamed, text, &std::pair<std::string_view, int>::first);
+  if (named != kNamed.end()) {
+    all.key = named->second;
+  } else if (text.size() > 1) {  // "F12"
+    all.key = GLFW_KEY_F1 - 1 + std::stoi(std::string(text.substr(1)));
+  } else {
+    all.key = text[0];
+  }
+  return all;
+}
+
+// "Ctrl+Y, Ctrl+Shift+Z" -> both.
+std::vector<std::string_view> keys_of(const Command& command) {
+  std::vector<std::string_view> keys;
+  std::string_view left = command.keys != nullptr ? command.keys : "";
+  while (!left.empty()) {
+    const std::size_t end = std::min(left.find(", "), left.size());
+    keys.push_back(left.substr(0, end));
+    left.remove_prefix(std::min(end + 2, left.size()));
+  }
+  return keys;
+}
+
+bool reaches(const Command& command, KeyOwner owner) {
+  switch (command.how.reach) {
+    case Reach::view: return owner == KeyOwner::view || owner == KeyOwner::playback;
+    case Reach::playback: return owner == KeyOwner::playback;
+    case Reach::question: return owner == KeyOwner::question;
+    case Reach::all_but_text: return owner != KeyOwner::text;
+    case Reach::all: return true;
+  }
+  return false;
+}
+
+// Nobody who wants the force off looks for the right modifiers first.
+bool has_key(const Command& command, int key, int modifiers) {
+  const bool any = command.how.reach == Reach::all || command.how.reach == Reach::all_but_text;
+  return std::ranges::any_of(keys_of(command), [&](std::string_view text) {
+    const Key each = key_of(text);
+    return each.key == key && (any || each.modifiers == modifiers);
+  });
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+const Command* find_command(std::string_view id) {
+  const auto* found = std::ranges::find(kCommands, id, &Command::id);
+  return found == kCommands.end() ? nullptr : found;
+}
+
+std::string why_not(const Command& command, const Desktop& desktop) {
+  return command.how.why_not != nullptr ? command.how.why_not(desktop) : std::string();
+}
+
+std::string run_command(std::string_view id, Desktop& desktop) {
+  const Command* command = find_command(id);
+  if (command == nullptr) return fmt::format("There is no command \"{}\".", id);
+  std::string why = why_not(*command, desktop);
+  if (why.empty()) command->run(desktop);
+  return why;
+}
+
+void run_or_say(std::string_view id, Desktop& desktop) {
+  const std::string why = run_command(id, desktop);
+  if (!why.empty()) desktop.notices.say_once(why, true);
+}
+
+const Command* command_of(KeyOwner owner, const KeyPress& press) {
+  const int held = press.modifiers & (kShift | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
+  const Command* found = nullptr;
+  for (const Command& command : kCommands) {
+    if (!reaches(command, owner) || !has_key(command, press.key, held)) continue;
+    if (found == nullptr || command.how.reach == Reach::playback) found = &command;
+  }
+  return found == nullptr || (press.repeated && !found->how.repeats) ? nullptr : found;
+}
+
+void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop) {
+  for (const KeyPress& press : pressed) {
+    // A key may have opened something for the next one.
+    const Command* command = command_of(owner_of(desktop.focus()), press);
+    if (command != nullptr) run_or_say(command->id, desktop);
+  }
+}
+
+std::string key_text(const Command& command) {
+  const auto keys = keys_of(command);
+  return std::string(keys.empty() ? "" : keys.front());
+}
+
+std::vector<Shortcut> shortcuts() {
+  std::vector<Shortcut> all;
+  for (const Hint& hint : kBefore) all.push_back({hint.with, hint.what});
+  for (const Command& command : kCommands) {
+    if (command.keys == nullptr || command.how.reach == Reach::question) continue;
+    if (command.help == nullptr || *command.help != '\0') {
+      all.push_back({command.keys, command.help != nullptr ? command.help : command.text});
+    } else {
+      all.back().keys += std::string(", ") + command.keys;
+    }
+  }
+  for (const Hint& hint : kAfter) all.push_back({hint.with, hint.what});
+  return all;
+}
+
+}  // namespace limpid

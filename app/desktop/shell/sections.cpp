@@ -1,0 +1,123 @@
+#include "app/desktop/shell/sections.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <array>
+#include <memory>
+
+#include "app/desktop/panels/analysis_panel.h"
+#include "app/desktop/panels/device_panel.h"
+#include "app/desktop/panels/parameter_rows.h"
+#include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/panels/timing_panel.h"
+#include "app/desktop/shell/desktop.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+
+namespace limpid {
+namespace {
+
+void say_for_rerun(const Desktop& d) {
+  if (!d.playback.on()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
+  ImGui::TextWrapped("For the re-run; what was recorded is on the left.");
+  ImGui::PopStyleColor();
+}
+
+std::string quality_text(const Desktop& d) {
+  const std::string& wanted = d.settings.picture_quality;
+  if (wanted != "automatic") return wanted;
+  const int level = d.shown.quality_level();
+  if (level == 0) return "automatic: best";
+  if (level == Quality::kLowest) return "automatic: lowest";
+  return fmt::format("automatic: {} below best", level);
+}
+
+DrawSection scene_section(Desktop& d) {
+  return [&d, panel = std::make_shared<ScenePanel>()](const Act& act) {
+    if (const PlayedSession* session = d.playback.shown()) {
+      return ScenePanel::draw_recorded(session->document());
+    }
+    panel->draw(d.document, d.live.stage().arm(), d.live.recording(), act,
+                [&d](SceneObject object) { d.world.add_object(std::move(object)); });
+  };
+}
+
+DrawSection hand_section(Desktop& d) {
+  return [&d](const Act&) {
+    say_for_rerun(d);
+    draw_parameters(d.settings.parameters, d.shown.stage().arm(),
+                    {"hand.stiffness", "hand.damping", "hand.mass"});
+    ImGui::Checkbox("hold where released", &d.settings.hold_on_release);
+    tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
+  };
+}
+
+DrawSection device_section(Desktop& d) {
+  return [&d](const Act&) {
+    Parameters& parameters = d.settings.parameters;
+    const ArmDescription& arm = d.shown.stage().arm();
+    if (draw_device_panel(d.devices, d.live, {d.pads.all(), d.settings.gamepad}, parameters)) {
+      d.dialog.open("identify");
+    }
+    say_for_rerun(d);
+    if (!d.live.loop().device_in_place()) {
+      draw_parameters(
+          parameters, arm,
+          {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
+    }
+    draw_parameters(
+        parameters, arm,
+        {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
+         "device.encoder_step", "device.delay", "model.delay", "predictor.preset",
+         "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
+  };
+}
+
+DrawSection analysis_section(Desktop& d) {
+  return [&d, panel = std::make_shared<AnalysisPanel>()](const Act&) {
+    const Stage& shown = d.shown.stage();
+    const auto pose = shown.channels().layout().in(d.shown.row(), Column::device_position);
+    PlayedSession* session = d.playback.shown();
+    const Scene& scene = session ? session->document().scene : d.document.scene();
+    panel->draw(session ? session->settings() : d.tuning.edited(), shown.arm(), scene, pose,
+                d.settings.band);
+  };
+}
+
+DrawSection timing_section(Desktop& d) {
+  return [&d, of_device = std::make_shared<DeviceTiming>()](const Act&) {
+    const LiveLoop& loop = d.live.loop();
+    draw_timing(loop, quality_text(d), d.frame_time);
+    if (!loop.device_in_place()) return;
+    of_device->draw(loop.device_pace(), d.live.stage().arm(), d.settings.parameters,
+                    d.document.scene(), loop.layout().in(d.live.row(), Column::device_position));
+  };
+}
+
+bool always(const Desktop&) { return true; }
+bool never(const Desktop&) { return false; }
+bool with_device(const Desktop& d) { return !d.devices.hub().in_use().empty(); }
+
+constexpr std::array kSections{
+    SectionKind{"Scene", always, scene_section},
+    SectionKind{"Hand", always, hand_section},
+    SectionKind{"Device", with_device, device_section},
+    SectionKind{"Analysis", never, analysis_section},
+    SectionKind{"Timing", always, timing_section},
+};
+
+}  // namespace
+
+Sections::Sections(Desktop& desktop) : desktop_(desktop) {
+  for (const SectionKind& kind : kSections) drawn_.emplace_back(&kind, kind.make(desktop));
+}
+
+void Sections::draw(const Act& act) {
+  for (const auto& [kind, draw_it] : drawn_) {
+    if (section(kind->title, kind->open(desktop_))) draw_it(act);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,170 @@
+#include "app/desktop/shell/tuning.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/base/folders.h"
+#include "app/desktop/base/passivity_break.h"
+#include "app/desktop/base/window_layout.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/twin_settings.h"
+#include "app/style/words.h"
+#include "core/dynamics/arm.h"
+#include "devices/files/config_file.h"
+
+namespace limpid {
+
+Tuning::Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
+               Playback& playback)
+    : presets(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
+      settings_(settings),
+      notices_(notices),
+      live_(live),
+      devices_(devices),
+      playback_(playback),
+      analysed_(settings.parameters),
+      analysed_twin_(settings.twin.parameters) {}
+
+Parameters& Tuning::edited() {
+  return edits_twin() ? settings_.twin.parameters : settings_.parameters;
+}
+
+void Tuning::next_law() {
+  if (passivity_broken(settings_)) return end_break();
+  edited().kind = next(edited().kind);
+}
+
+void Tuning::toggle_twin() {
+  end_break();
+  playback_.close();
+  TwinSettings& twin = settings_.twin;
+  twin.on = !twin.on;
+  twin.edited = false;
+  if (!twin.on) return notices_.say("The twin is gone. B brings it back.");
+  if (twin.parameters.kind == settings_.parameters.kind &&
+      twin.parameters.eta == settings_.parameters.eta) {
+    using enum CouplingKind;
+    twin.parameters.kind = settings_.parameters.kind == standard ? predictive : standard;
+  }
+  notices_.say("Two couplings on one hand. The tabs choose which one the sliders set.");
+}
+
+void Tuning::break_passivity() { limpid::break_passivity(settings_, live_.stage().arm()); }
+
+void Tuning::end_break() {
+  if (!passivity_broken(settings_)) return;
+  end_passivity_break(settings_);
+  notices_.say(kBreakEnded);
+}
+
+void Tuning::reset() {
+  end_break();
+  settings_.parameters = fitted(live_.stage().arm());
+  const bool usual = settings_.parameters == Parameters{};
+  notices_.say(usual
+                   ? "All settings have their usual values again, the paper's where it gives them."
+                   : "All settings have their usual values again, with gains fitted to this arm.");
+}
+
+void Tuning::use_preset(const std::string& name) {
+  const NamedTexts::Entry* preset = presets.find(name);
+  if (preset == nullptr) return;
+  end_break();
+  apply_preset(edited(), preset->text, name);
+  notices_.say(fmt::format("Settings: {}. Ctrl+Z brings back what was before.", name));
+}
+
+// Gains that suited the arm before may be far too stiff for this one. What a device's motors give
+// for its own weight is the device's, remembered with it: nothing of it is left to an arm that
+// comes after it.
+void Tuning::suit(const ArmDescription& arm, bool of_device) {
+  if (!fitted_for_ || fitted_for_->urdf != arm.urdf) {
+    const ArmDescription* before = fitted_for_ ? &*fitted_for_ : nullptr;
+    refit(settings_.parameters, before, &arm);
+    refit(settings_.twin.parameters, before, &arm);
+    fitted_for_ = arm;
+  }
+  CompensationSettings& now = settings_.parameters;
+  const CompensationSettings of_virtual = compensated_ ? compensated_->second : now;
+  compensated_.reset();
+  now = of_virtual;
+  if (!of_device) return;
+  const std::string& id = devices_.hub().in_use();
+  compensated_ = {id, of_virtual};
+  now = devices_.hub().notes(id).compensation;
+}
+
+void Tuning::note_compensation() {
+  const bool sliding = ImGui::GetCurrentContext() != nullptr && ImGui::IsAnyItemActive();
+  if (!compensated_ || sliding) return;
+  const CompensationSettings& now = settings_.parameters;
+  CompensationSettings& noted = devices_.hub().notes(compensated_->first).compensation;
+  if (noted == now) return;
+  noted = now;
+  devices_.save();
+}
+
+void Tuning::analyze_anew() {
+  const ArmDescription& arm = live_.stage().arm();
+  analysis_ = analyze(arm, rest_pose(arm), settings_.parameters, std::nullopt);
+}
+
+void Tuning::update() {
+  follow_twin();
+  const Parameters &first = settings_.parameters, &twin = settings_.twin.parameters;
+  const bool changed = !(first == analysed_) || !(twin == analysed_twin_);
+  if (!changed && analysed_of_twin_ == edits_twin()) return;
+  if (!playback_.on()) {
+    mark_changes(first, analysed_, "");
+    if (settings_.twin.on) mark_changes(twin, analysed_twin_, "twin: ");
+  }
+  analysed_ = first;
+  analysed_twin_ = twin;
+  analysed_of_twin_ = edits_twin();
+  const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
+  analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), edited(), std::nullopt);
+}
+
+// One hand, one device, one world for both; what the plots call them.
+void Tuning::follow_twin() {
+  TwinSettings& twin = settings_.twin;
+  if (live_.loop().device_in_place()) twin.on = false;
+  share_world(settings_.parameters, twin.parameters);
+  if (!twin.on) return live_.stage().name_runs({});
+  const auto names = twin_names(settings_.parameters, twin.parameters);
+  live_.stage().name_runs({names[0], names[1], true});
+}
+
+// In the plots. What both runs have in common is marked once.
+void Tuning::mark_changes(const Parameters& now, const Parameters& before,
+                          const std::string& whose) {
+  for (const ParameterInfo& info : parameter_table()) {
+    if (parameter_text(now, info) == parameter_text(before, info)) continue;
+    if (!whose.empty() && !own_of_twin(info)) continue;
+    live_.mark(whose + mark_text(info, now), whose + info.key);
+  }
+}
+
+// What is known of the settings at the row that is shown.
+void Tuning::follow_recorded(bool another) {
+  PlayedSession* session = playback_.shown();
+  if (session == nullptr || another) recorded_analysed_.reset();
+  if (session == nullptr) return;
+  const Parameters& now = session->settings();
+  if (recorded_analysed_ && *recorded_analysed_ == now) return;
+  recorded_analysed_ = now;
+  const ArmDescription& arm = session->stage().arm();
+  recorded_analysis_ = analyze(arm, rest_pose(arm), now, std::nullopt);
+}
+
+Settings Tuning::settings_to_keep() const {
+  Settings kept = settings_;
+  end_passivity_break(kept);
+  if (compensated_) static_cast<CompensationSettings&>(kept.parameters) = compensated_->second;
+  if (!fitted_for_) return kept;
+  refit(kept.parameters, &*fitted_for_, nullptr);
+  refit(kept.twin.parameters, &*fitted_for_, nullptr);
+  return kept;
+}
+
+}  // namespace limpid

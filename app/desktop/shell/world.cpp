@@ -1,0 +1,468 @@
+#include "app/desktop/shell/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <tuple>
+#include <utility>
+
+#include "app/base/folders.h"
+#include "app/desktop/shell/desktop.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/own_world.h"
+#include "core/dynamics/arm.h"
+#include "core/dynamics/farthest_tip.h"
+#include "core/dynamics/inverse_kinematics.h"
+#include "devices/files/scene/model_units.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/text_file.h"
+#include "devices/files/urdf_file.h"
+#include "render/model/model_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kSaid = 3;  // warnings that fit beside the picture
+constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
+
+// What the loop takes from an arm once, when it is opened.
+bool same_limits(const ArmDescription& one, const ArmDescription& other) {
+  return one.delay == other.delay &&
+         std::ranges::equal(one.joints, other.joints, {}, &Joint::effort, &Joint::effort);
+}
+
+// Earlier ones change what later ones go into.
+enum class DropKind : std::uint8_t { arm, scene, model, session, sweep, hand, unknown };
+
+DropKind drop_kind(const fs::path& file) {
+  std::error_code none;
+  const std::string suffix = small_suffix(file);
+  if (sweep_table_at(file)) return DropKind::sweep;
+  if (fs::is_directory(file, none)) return DropKind::unknown;
+  if (suffix == ".urdf" || suffix == ".xacro") return DropKind::arm;
+  if (suffix == ".toml") return DropKind::scene;
+  if (is_model_file(file)) return DropKind::model;
+  if (suffix == ".h5") return DropKind::session;
+  if (suffix == ".csv") return DropKind::hand;
+  return DropKind::unknown;
+}
+
+std::string why_not_opened(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  constexpr std::size_t kMost = 4;
+  std::string text = fmt::format(
+      "{}",
+      fmt::join(names.begin(),
+                names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMost)), ", "));
+  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
+  return fmt::format(
+      "{}: not opened. Drop models ({}), scenes (.toml), recordings (.h5), a sweep's folder or "
+      "table, a hand's path (.csv) or an arm (.urdf) here.",
+      text, kModelSuffixes);
+}
+
+}  // namespace
+
+void World::open_given(const std::string& device, const std::string& tip,
+                       const std::string& scene) {
+  device_file_ = device.empty() ? default_device().string() : device;
+  device_tip_ = tip;
+  ArmDescription arm = load_arm(device_file_, tip, consent(device_file_)).arm;
+  const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
+  SceneDocument whole = read_scene(file, arm);
+  if (whole.scene.meshes.empty()) {
+    d_.document.set_file(file.string());
+    return open(std::move(arm), std::move(whole), {});
+  }
+  // Models may be large: they come in while the window is there already. Saving what is there
+  // without them must not write over the scene's own file.
+  whole.scene.meshes.clear();
+  whole.models.clear();
+  whole.toml.clear();
+  d_.document.set_file(default_scene(arm).string());
+  open(std::move(arm), std::move(whole), {});
+  first_scene_ = file.string();
+  d_.document.loader().open_scene(file, d_.live.stage().arm());
+}
+
+void World::open_last(const std::string& device, const std::string& tip, const std::string& scene,
+                      bool fixed) {
+  std::string arm = device, end = tip, world = scene;
+  expanded_ = device;  // who names a file on the command line means it
+  if (device.empty()) std::tie(arm, end) = last_arm();
+  const ArmDescription first =
+      read_urdf(arm.empty() ? default_device().string() : arm, end, consent(arm));
+  if (fixed) d_.tuning.keep_as_they_are_for(first);
+  if (scene.empty() && (device.empty() || suits_default_world(first))) world = d_.settings.scene;
+  try {
+    open_given(arm, end, world);
+  } catch (const std::exception& e) {
+    if (!scene.empty() || world.empty()) throw;
+    open_given(arm, end, "");
+    d_.notices.say(e.what(), true);
+  }
+  if (!arm.empty()) say_about_arm();
+}
+
+void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
+                 std::unique_ptr<Device> device, bool saved) {
+  d_.tuning.end_break();
+  d_.tuning.suit(arm, device != nullptr);
+  d_.live.open(std::move(arm), std::move(document), models, d_.settings.parameters,
+               d_.settings.plot_length, std::move(device));
+  take_stage(std::move(models), saved);
+}
+
+// The stage's scene is the one that is edited from now on.
+void World::take_stage(MeshModels models, bool saved) {
+  const Stage& stage = d_.live.stage();
+  if (!d_.playback.on()) {
+    d_.shown.reset_view();
+    d_.shown.camera.finish();
+  }
+  d_.tuning.analyze_anew();
+  d_.document.open(stage.arm(), stage.document(), std::move(models), saved);
+  shown_ = d_.document.editor().version();
+  touched_ = shown_.world;
+}
+
+void World::open_arm(const fs::path& file, const std::string& tip) {
+  if (d_.live.recording()) {
+    return d_.notices.say("Stop the recording (R) before opening another arm.", true);
+  }
+  if (d_.live.loop().device_in_place()) {
+    return d_.notices.say("A real device is in the arm's place. Choose the virtual arm first.",
+                          true);
+  }
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  d_.document.loader().open_arm(whole, tip, consent(whole));
+}
+
+Xacro World::consent(const fs::path& file) const {
+  return !expanded_.empty() && file == expanded_ ? Xacro::expand : Xacro::refuse;
+}
+
+void World::ask_about(const XacroToExpand& arm) {
+  xacro_ = arm;
+  d_.dialog.open("expand xacro");
+}
+
+void World::expand_xacro() {
+  expanded_ = xacro_->file.string();
+  const bool known = expanded_ == d_.settings.device;  // that of the last time, with its tip
+  open_arm(expanded_, known ? d_.settings.device_tip : std::string());
+}
+
+bool World::built_in_arm() const { return device_file_ == default_device(); }
+
+// Of the last time; the built-in one if its file is gone or spoilt.
+std::pair<std::string, std::string> World::last_arm() {
+  try {
+    if (!d_.settings.device.empty()) read_urdf(d_.settings.device, d_.settings.device_tip);
+    return {d_.settings.device, d_.settings.device_tip};
+  } catch (const XacroToExpand& arm) {
+    ask_about(arm);
+    return {};
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+    d_.settings.device.clear();
+    d_.settings.device_tip.clear();
+    return {};
+  }
+}
+
+void World::accept(LoadedArm& loaded) {
+  const auto take = [this, loaded] { take_arm(loaded); };
+  if (scene_for(loaded.arm)) return take();
+  d_.document.leave(take);
+}
+
+// The present one, as far as it is of the arm's size.
+std::optional<SceneEditor::World> World::scene_for(const ArmDescription& arm) const {
+  const double now = reach(arm), before = reach(d_.live.stage().arm());
+  constexpr double kAlike = 1.5;
+  if (now > kAlike * before || before > kAlike * now) return std::nullopt;
+  return d_.document.scene_for(arm);
+}
+
+void World::take_arm(const LoadedArm& loaded) {
+  d_.playback.close();
+  if (auto scene = scene_for(loaded.arm)) {
+    open(loaded.arm, std::move(scene->document), std::move(scene->models), nullptr,
+         !d_.document.editor().dirty());
+  } else {
+    const fs::path file = default_scene(loaded.arm);
+    SceneDocument document = read_scene(file, loaded.arm);
+    MeshModels models = build_meshes(document);
+    open(loaded.arm, std::move(document), std::move(models));
+    d_.document.set_file(file.string());
+    d_.settings.scene.clear();
+  }
+  const bool built_in = loaded.file == default_device();
+  device_file_ = loaded.file.string();
+  device_tip_ = loaded.tip;
+  d_.settings.device = built_in ? "" : device_file_;
+  d_.settings.device_tip = loaded.tip;
+  if (!built_in) remember_recent(d_.settings, device_file_);
+  say_about_arm();
+}
+
+void World::say_about_arm() {
+  const ArmDescription& arm = d_.live.stage().arm();
+  std::string text =
+      fmt::format("Arm: {}, {} joint{} to {}, reach {:.2g} m.", arm.name, arm.dof(),
+                  arm.dof() == 1 ? "" : "s", arm.tip_link, farthest_tip(arm).distance);
+  if (!fit_text(fitted(arm)).empty()) text += " Gains are fitted to it.";
+  d_.notices.say(text);
+  for (std::size_t i = 0; i < std::min(kSaid, arm.warnings.size()); ++i) {
+    d_.notices.say(arm.warnings[i]);
+  }
+  if (arm.warnings.size() > kSaid) {
+    d_.notices.say(fmt::format("{} more warnings: limpid check {}", arm.warnings.size() - kSaid,
+                               fs::path(device_file_).filename().string()));
+  }
+}
+
+void World::open_device(std::unique_ptr<Device> device) {
+  d_.devices.plugged();
+  const DeviceTraits& traits = device->traits();
+  const ArmDescription& present = d_.live.stage().arm();
+  if (DeviceSlot::guides(traits)) {
+    const SceneEditor& editor = d_.document.editor();
+    if (d_.live.loop().device_in_place()) {
+      open(present, editor.document(), editor.models(), nullptr, !editor.dirty());
+    }
+    return d_.live.loop().plug(std::move(device));
+  }
+  // A device lowers the arm's limits to its own: the next one begins with those of the arm's file.
+  const bool in_place = d_.live.loop().device_in_place();
+  const bool lowered = in_place && arm_of_file_ && arm_of_file_->urdf == present.urdf;
+  const ArmDescription before = lowered ? *arm_of_file_ : present;
+  const ArmDescription arm = d_.devices.hub().arm_for(traits, before);
+  DeviceTraits without_limits = traits;
+  without_limits.effort.clear();
+  arm_of_file_ = d_.devices.hub().arm_for(without_limits, before);
+  const bool same_arm = in_place && arm.urdf == present.urdf;
+  if (same_arm && same_limits(arm, present)) return d_.live.loop().plug(std::move(device));
+  d_.playback.close();
+  if (!same_arm) return change_arm(arm, std::move(device));
+  const SceneEditor& editor = d_.document.editor();
+  open(arm, editor.document(), editor.models(), std::move(device), !editor.dirty());
+}
+
+void World::close_device() {
+  if (!d_.live.loop().device_in_place()) return d_.live.loop().plug(nullptr);
+  try {
+    change_arm(read_urdf(device_file_, device_tip_, consent(device_file_)), nullptr);
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+    change_arm(read_urdf(default_device()), nullptr);
+  }
+}
+
+void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
+  if (!device && d_.document.has_set_aside()) {
+    return d_.document.leave([this, arm] { take_up_set_aside(arm); });
+  }
+  if (auto scene = d_.document.scene_for(arm)) {
+    return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
+                !d_.document.editor().dirty());
+  }
+  d_.document.put_aside();
+  const std::filesystem::path file = scene_of_device(arm);
+  d_.document.set_file(file.string());
+  open(arm, read_scene(file, arm), {}, std::move(device));
+}
+
+// What was open before a device brought its own scene, with its changes.
+void World::take_up_set_aside(const ArmDescription& arm) {
+  const SetAside before = d_.document.take_set_aside();
+  d_.document.set_file(before.file);
+  open(arm, before.world->document, before.world->models, nullptr, !before.unsaved);
+}
+
+std::string World::why_fixed() const {
+  if (d_.live.recording()) {
+    return "Stop the recording (R) before changing the scene: it is part of what is recorded.";
+  }
+  return d_.playback.on()
+             ? "This is a recording's scene. Go back to live (Backspace) to change yours."
+             : "";
+}
+
+void World::open_scene(const fs::path& file) {
+  if (d_.live.recording()) {
+    d_.notices.say("Stop the recording (R) before opening another scene.", true);
+    return;
+  }
+  d_.document.leave([this, file = fs::absolute(file).lexically_normal()] {
+    d_.playback.close();
+    d_.document.loader().cancel();
+    first_scene_.clear();
+    d_.document.loader().open_scene(file, d_.live.stage().arm());
+  });
+}
+
+void World::add_model(const fs::path& file) {
+  if (d_.document.may_edit()) d_.document.loader().add_model(file);
+}
+
+void World::take_loaded() {
+  if (d_.live.recording()) return;  // it waits
+  try {
+    if (auto loaded = d_.document.loader().take()) {
+      std::visit([this](auto& what) { accept(what); }, *loaded);
+    }
+  } catch (const XacroToExpand& arm) {
+    ask_about(arm);
+  } catch (const TipsToChoose& choice) {
+    tips_ = choice;
+    d_.dialog.open("arm tip");
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+  }
+}
+
+void World::accept(LoadedScene& loaded) {
+  d_.tuning.end_break();
+  if (d_.live.loop().device_in_place()) {
+    d_.cut_force();
+    d_.live.open_beside(std::move(loaded.document), loaded.models, d_.settings.parameters,
+                        d_.settings.plot_length);
+    take_stage(std::move(loaded.models), true);
+  } else {
+    open(d_.live.stage().arm(), std::move(loaded.document), std::move(loaded.models));
+  }
+  const std::string file = loaded.file.string();
+  if (file == std::exchange(first_scene_, "")) {
+    d_.document.set_file(file);
+  } else if (file != d_.document.file()) {
+    d_.document.remember_file(file);
+    remember_recent(d_.settings, file);
+  }
+  const std::string& title = d_.live.stage().document().title;
+  d_.notices.say(fmt::format("Scene: {}", title.empty() ? loaded.file.filename().string() : title));
+  for (const std::string& warning : loaded.warnings) d_.notices.say(warning);
+}
+
+void World::accept(LoadedModel& loaded) { d_.document.add_model(std::move(loaded), workplace()); }
+
+// Where the arm, its tips and other objects are now.
+Workplace World::workplace() const {
+  const Stage& stage = d_.live.stage();
+  const ArmDescription& arm = stage.arm();
+  Workplace at;
+  at.base = arm.joints.front().origin.translation();
+  at.reach = reach(arm);
+  const Eigen::VectorXd x = rest_pose(arm);
+  at.rest = stage.rows().tip({x.data(), static_cast<std::size_t>(x.size())});
+  const RowLayout& layout = d_.live.loop().layout();
+  at.tips = {stage.rows().tip(layout.in(d_.live.row(), Column::device_position)),
+             stage.rows().tip(layout.in(d_.live.row(), Column::proxy_position))};
+  const SceneEditor& editor = d_.document.editor();
+  for (const ObjectRef& ref : objects_of(editor.scene())) {
+    const Model* model = ref.kind == ObjectKind::mesh ? editor.models()[ref.index].get() : nullptr;
+    const Bounds box = bounds_of(object_of(editor.scene(), ref), model);
+    if (!box.isEmpty()) at.taken.push_back(box);
+  }
+  return at;
+}
+
+void World::add_object(SceneObject object) {
+  d_.document.add_object(std::move(object), workplace());
+}
+
+void World::show_scene() {
+  const SceneEditor::Version& now = d_.document.editor().version();
+  if (now.world == shown_.world && now.selected == shown_.selected) return;
+  std::optional<std::size_t> highlighted;
+  if (now.selected && now.selected->kind == ObjectKind::mesh) highlighted = now.selected->index;
+  try {
+    d_.live.stage().show(now.world->document, now.world->models, highlighted);
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+  }
+  shown_ = now;
+}
+
+// The loop takes in what can be touched now, seldom enough not to be kept busy by a drag.
+void World::hand_scene_over(bool at_once) {
+  const auto now = std::chrono::steady_clock::now();
+  if (d_.document.editor().version().world == touched_ || d_.live.recording()) return;
+  if (!at_once && now - touched_since_ < kBetweenWorlds) return;
+  d_.live.touch(d_.document.scene());
+  touched_ = d_.document.editor().version().world;
+  touched_since_ = now;
+}
+
+void World::toggle_recording() {
+  if (d_.live.loop().recording()) return d_.live.stop_recording();
+  if (!d_.live.may_record()) return;
+  try {
+    start_recording();
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+  }
+}
+
+void World::start_recording() {
+  d_.playback.close();
+  RunPlan plan;
+  plan.arm = d_.live.stage().arm();
+  plan.document = d_.document.editor().document();
+  plan.document.toml = d_.document.toml();
+  plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
+  plan.parameters = d_.settings.parameters;
+  if (d_.settings.twin.on) plan.twin = TwinPlan{d_.settings.twin.parameters, {}, {}};
+  hand_scene_over(true);
+  d_.live.record(plan, sessions_dir());
+}
+
+void World::open_files(const std::vector<fs::path>& files) {
+  std::vector<fs::path> sorted = files, unknown;
+  std::ranges::stable_sort(sorted, {}, drop_kind);
+  for (const fs::path& file : sorted) {
+    try {
+      switch (drop_kind(file)) {
+        case DropKind::arm: open_arm(file); break;
+        case DropKind::scene: open_scene(file); break;
+        case DropKind::model: add_model(file); break;
+        case DropKind::session: d_.playback.open(file); break;
+        case DropKind::sweep: open_sweep(*sweep_table_at(file)); break;
+        case DropKind::hand: run_hand(file); break;
+        case DropKind::unknown: unknown.push_back(file); break;
+      }
+    } catch (const std::exception& e) {
+      d_.notices.say(e.what(), true);
+    }
+  }
+  if (!unknown.empty()) d_.notices.say(why_not_opened(unknown), true);
+}
+
+void World::open_sweep(const fs::path& table) {
+  std::error_code none;
+  d_.sweep.open(fs::weakly_canonical(table, none));
+  d_.dialog.open("sweep");
+}
+
+// Along the path as fast as it goes, in the present world; the window plays what came of it.
+void World::run_hand(const fs::path& file) {
+  RunPlan plan;
+  plan.arm = d_.live.stage().arm();
+  plan.document = d_.document.editor().document();
+  plan.document.toml = d_.document.toml();
+  plan.models = d_.document.editor().models();
+  plan.parameters = d_.settings.parameters;
+  d_.playback.run_hand(file, std::move(plan));
+}
+
+void World::hand_over(bool at_once) {
+  show_scene();
+  hand_scene_over(at_once);
+}
+
+}  // namespace limpid

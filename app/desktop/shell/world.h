@@ -1,0 +1,92 @@
+// Which arm, scene and device are open: how they come from files and ports into the loop and the
+// document, and what goes along with them.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/desktop/document/document.h"
+#include "app/desktop/live/live_session.h"
+#include "devices/files/urdf_file.h"
+
+namespace limpid {
+
+class Desktop;
+
+class World {
+ public:
+  explicit World(Desktop& desktop) : d_(desktop) {}
+
+  // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
+  void open_given(const std::string& device, const std::string& tip, const std::string& scene);
+  // The same, empty for what was open last time; a scene that is gone by now only says so.
+  // `fixed`: settings that were given by hand stay as they are, whatever the arm.
+  void open_last(const std::string& device, const std::string& tip, const std::string& scene,
+                 bool fixed);
+
+  // Loading goes on beside the window; what is there stays until it is done.
+  void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
+  void open_scene(const std::filesystem::path& file);
+  void add_model(const std::filesystem::path& file);
+  // Another arm in place of the virtual one, with its pictures and the gains that suit it.
+  void open_arm(const std::filesystem::path& file, const std::string& tip = {});
+  bool built_in_arm() const;
+  // The arm that the dialog "expand xacro" asks about, and the answer that it may be expanded.
+  const std::optional<XacroToExpand>& xacro() const { return xacro_; }
+  void expand_xacro();
+  // The arm whose tip is to be chosen, in the dialog "arm tip".
+  const std::optional<TipsToChoose>& tips() const { return tips_; }
+  void add_object(SceneObject object);
+
+  // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
+  // along with all its changes, or, if it cannot, the user is asked first.
+  void open_device(std::unique_ptr<Device> device);
+  void close_device();
+
+  void toggle_recording();  // of all that is there now
+  std::string why_fixed() const;
+
+  // Once a frame: what is ready goes into loop and document, what was changed to picture and loop.
+  void take_loaded();
+  void hand_over(bool at_once);
+
+ private:
+  void open(ArmDescription arm, SceneDocument document, MeshModels models,
+            std::unique_ptr<Device> device = nullptr, bool saved = true);
+  void take_stage(MeshModels models, bool saved);
+  void accept(LoadedArm& loaded);
+  void accept(LoadedScene& loaded);
+  void accept(LoadedModel& loaded);
+  void take_arm(const LoadedArm& loaded);
+  void say_about_arm();
+  std::pair<std::string, std::string> last_arm();  // file and tip
+  Xacro consent(const std::filesystem::path& file) const;
+  void ask_about(const XacroToExpand& arm);
+  std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
+  void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
+  void take_up_set_aside(const ArmDescription& arm);
+  void open_sweep(const std::filesystem::path& table);  // in its map
+  void run_hand(const std::filesystem::path& file);
+  void start_recording();
+  Workplace workplace() const;
+  void show_scene();
+  void hand_scene_over(bool at_once);
+
+  Desktop& d_;
+  std::string device_file_, device_tip_;
+  std::optional<ArmDescription> arm_of_file_;  // of the device in the arm's place
+  std::string first_scene_;                    // the start's, while its models come in
+  std::optional<TipsToChoose> tips_;
+  std::optional<XacroToExpand> xacro_;
+  std::string expanded_;  // the xacro file that may be expanded
+  SceneEditor::Version shown_;
+  std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
+  std::chrono::steady_clock::time_point touched_since_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,163 @@
+#include "app/story/run_story.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "app/run/replay.h"
+#include "app/story/story.h"
+#include "devices/files/session/session_story.h"
+#include "devices/files/toml_reader.h"
+
+namespace limpid {
+
+namespace {
+
+constexpr Range kTime{0, 1e9, false, "s"};
+
+// A box has edges of one length, as read from a script.
+toml::table box_table(const StoryCamera& camera) {
+  const Vec3 at = camera.of->center();
+  return toml::table{{"view", view_word(camera.view)},
+                     {"target", toml::array{at.x(), at.y(), at.z()}},
+                     {"size", camera.of->sizes().x()}};
+}
+
+toml::table table_of(const StoryStep& step) {
+  toml::table table{{"begins", step.begins}, {"ends", step.ends},     {"caption", step.caption},
+                    {"mark", step.mark},     {"beside", step.beside}, {"anew", step.anew}};
+  table.insert("names", toml::array{step.names[0], step.names[1]});
+  if (step.camera && step.camera->of) {
+    table.insert("camera", box_table(*step.camera));
+  } else if (step.camera) {
+    table.insert("camera", view_word(step.camera->view));
+  }
+  return table;
+}
+
+StoryStep step_in(const TomlTable& table, const std::string& where, double begins) {
+  StoryStep step;
+  step.begins = table.need(table.number("begins", kTime), "begins");
+  step.ends = table.need(table.number("ends", kTime), "ends");
+  if (step.begins < begins || step.ends <= step.begins) {
+    table.refuse("begins", "steps one after the other");
+  }
+  step.caption = table.need(table.text("caption"), "caption");
+  step.mark = table.text("mark").value_or("");
+  step.beside = flag_in(table, "beside", true);
+  step.anew = flag_in(table, "anew", false);
+  step.names = table.need(names_said(table), "names");
+  step.camera = camera_said(table, where);
+  return step;
+}
+
+}  // namespace
+
+std::string told_text(const ToldSteps& told) {
+  toml::array steps;
+  for (const StoryStep& step : told.steps) steps.push_back(table_of(step));
+  std::ostringstream text;
+  text << toml::table{{"title", told.title}, {"step", steps}} << '\n';
+  return text.str();
+}
+
+ToldSteps read_told(const std::string& text, const std::string& where) {
+  const toml::table whole = parse_toml(text, where);
+  const TomlTable table(whole, where, "");
+  ToldSteps told{table.text("title").value_or(""), {}};
+  double begins = 0;
+  for (const TomlTable& step : table.tables("step")) {
+    begins = told.steps.emplace_back(step_in(step, where, begins)).ends;
+  }
+  return told;
+}
+
+ToldSteps told_in(const std::filesystem::path& session) {
+  return read_told(attached_story(session), session.string() + ": story");
+}
+
+namespace {
+
+double square(std::span<const double> v) {
+  double sum = 0;
+  for (const double x : v) sum += x * x;
+  return sum;
+}
+
+StepNumbers numbers(const StoryStep& step, const Session& run) {
+  StepNumbers n;
+  const auto row_at = [&](double time) {
+    const auto row = static_cast<std::size_t>(std::llround(time / run.info.tick));
+    return std::min(row, run.size());
+  };
+  const std::size_t from = row_at(step.begins), to = row_at(step.ends);
+  double human = 0;
+  for (std::size_t k = from; k < to; ++k) {
+    const auto x1 = run.at(k, Column::device_position), x2 = run.at(k, Column::proxy_position);
+    double error = 0;
+    for (std::size_t i = 0; i < x1.size(); ++i) error += (x1[i] - x2[i]) * (x1[i] - x2[i]);
+    n.largest_error = std::max(n.largest_error, std::sqrt(error));
+    n.largest_contact =
+        std::max(n.largest_contact, std::sqrt(square(run.at(k, Column::contact_torque))));
+    human += square(run.layout.human_torque(run.row(k)));
+    const double risen = run.at(k, Column::energy_total)[0] - run.at(from, Column::energy_total)[0];
+    n.energy_given = std::max(n.energy_given, risen);
+  }
+  if (to > from) n.rms_human = std::sqrt(human / static_cast<double>(to - from));
+  return n;
+}
+
+}  // namespace
+
+StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
+                   const std::function<void(double)>& at) {
+  const RunPlan& plan = story.plan;
+  StoryRun run;
+  Session& first = run.session;
+  first.info = session_info(plan);
+  first.layout = RowLayout(plan.arm.dof());
+  first.changes = plan.changes;
+  const auto stride = static_cast<std::size_t>(first.layout.stride());
+  auto twin = std::make_shared<Session>(first);
+  twin->info.config = *first.info.twin;
+  twin->info.twin.reset();
+  twin->changes = plan.twin->changes;
+  first.rows.reserve(plan.rows * stride);
+  twin->rows.reserve(plan.rows * stride);
+  const auto take = [&](std::span<const double> rows, const auto&) {
+    first.rows.insert(first.rows.end(), rows.begin(), rows.begin() + first.layout.stride());
+    twin->rows.insert(twin->rows.end(), rows.begin() + first.layout.stride(), rows.end());
+    at(static_cast<double>(first.size()) * plan.parameters.tick);
+    return true;
+  };
+  run.end = simulate_twin(plan, {.realtime = false, .stop = &stop}, take);
+  first.twin = std::move(twin);
+  return run;
+}
+
+std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
+                                                const Session& session) {
+  std::vector<std::array<StepNumbers, 2>> all;
+  for (const StoryStep& step : steps) {
+    if (step.begins >= static_cast<double>(session.size()) * session.info.tick) break;
+    all.push_back({numbers(step, session), numbers(step, *session.twin)});
+  }
+  return all;
+}
+
+void write_session(const Session& session, const ToldSteps& told, const std::filesystem::path& out,
+                   bool force) {
+  SessionWriter writer(out, session.info, force);
+  const Session* runs[] = {&session, session.twin.get()};
+  for (std::size_t lane = 0; lane < 2 && runs[lane] != nullptr; ++lane) {
+    writer.append(runs[lane]->rows, lane);
+    for (const SettingChange& change : runs[lane]->changes) {
+      if (change.row < runs[lane]->size()) writer.append(change, lane);
+    }
+  }
+  writer.close();
+  attach_story(out, told_text(told));
+}
+
+}  // namespace limpid

@@ -1,0 +1,270 @@
+// The table of commands by itself, and every key there is against what the help says of it.
+#include "app/desktop/shell/commands.h"
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/tick/parameters.h"
+
+namespace limpid {
+namespace {
+
+constexpr int kShift = GLFW_MOD_SHIFT, kControl = GLFW_MOD_CONTROL;
+constexpr KeyOwner kOwners[] = {KeyOwner::view,  KeyOwner::playback, KeyOwner::dialog,
+                                KeyOwner::popup, KeyOwner::question, KeyOwner::text};
+
+struct Case {
+  const char* help;  // as the list of shortcuts writes it
+  int key;
+  int modifiers;
+  const char *live, *playback;  // ids of commands; empty: none
+  bool repeats = false;
+};
+
+// By hand from the help, not from the program's table.
+const Case kCases[] = {
+    {"1", GLFW_KEY_1, 0, "view.front", "view.front"},
+    {"2", GLFW_KEY_2, 0, "view.side", "view.side"},
+    {"3", GLFW_KEY_3, 0, "view.top", "view.top"},
+    {"0", GLFW_KEY_0, 0, "view.reset", "view.reset"},
+    {"C", GLFW_KEY_C, 0, "coupling.next", "coupling.next"},
+    {"B", GLFW_KEY_B, 0, "session.twin", "session.twin"},
+    {"Shift+B", GLFW_KEY_B, kShift, "view.overlay", "view.overlay"},
+    {"[", GLFW_KEY_LEFT_BRACKET, 0, "coupling.smaller_eta", "coupling.smaller_eta", true},
+    {"]", GLFW_KEY_RIGHT_BRACKET, 0, "coupling.larger_eta", "coupling.larger_eta", true},
+    {"Shift+[", GLFW_KEY_LEFT_BRACKET, kShift, "observer.smaller_alpha", "observer.smaller_alpha",
+     true},
+    {"Shift+]", GLFW_KEY_RIGHT_BRACKET, kShift, "observer.larger_alpha", "observer.larger_alpha",
+     true},
+    {"Ctrl+[", GLFW_KEY_LEFT_BRACKET, kControl, "coupling.softer", "coupling.softer", true},
+    {"Ctrl+]", GLFW_KEY_RIGHT_BRACKET, kControl, "coupling.stiffer", "coupling.stiffer", true},
+    {"Alt+[", GLFW_KEY_LEFT_BRACKET, GLFW_MOD_ALT, "hand.softer", "hand.softer", true},
+    {"Alt+]", GLFW_KEY_RIGHT_BRACKET, GLFW_MOD_ALT, "hand.stiffer", "hand.stiffer", true},
+    {"F", GLFW_KEY_F, 0, "device.force", "device.force"},
+    {"Backspace", GLFW_KEY_BACKSPACE, 0, "device.start_over", "session.back_to_live"},
+    {"R", GLFW_KEY_R, 0, "session.record", "session.record"},
+    {"P", GLFW_KEY_P, 0, "session.play", "session.play"},
+    {"Left", GLFW_KEY_LEFT, 0, "", "session.tick_back", true},
+    {"Right", GLFW_KEY_RIGHT, 0, "", "session.tick_on", true},
+    {"Shift+Left", GLFW_KEY_LEFT, kShift, "", "session.step_back", true},
+    {"Shift+Right", GLFW_KEY_RIGHT, kShift, "", "session.step_on", true},
+    {"Home", GLFW_KEY_HOME, 0, "", "session.to_the_beginning"},
+    {"L", GLFW_KEY_L, 0, "", "session.loop"},
+    {"E", GLFW_KEY_E, 0, "", "session.rerun"},
+    {"N", GLFW_KEY_N, 0, "plots.add", "plots.add"},
+    {"Ctrl+L", GLFW_KEY_L, kControl, "plots.layouts", "plots.layouts"},
+    {"Ctrl+P", GLFW_KEY_P, kControl, "settings.presets", "settings.presets"},
+    {"V", GLFW_KEY_V, 0, "", "session.write_video"},
+    {"X", GLFW_KEY_X, 0, "plots.freeze", "plots.freeze"},
+    {"G", GLFW_KEY_G, 0, "view.ghost", "view.ghost"},
+    {"M", GLFW_KEY_M, 0, "view.lens", "view.lens"},
+    {"F1", GLFW_KEY_F1, 0, "help.keys", "help.keys"},
+    {"?", GLFW_KEY_SLASH, kShift, "help.keys", "help.keys"},
+    {"F2", GLFW_KEY_F2, 0, "view.left_panel", "view.left_panel"},
+    {"F3", GLFW_KEY_F3, 0, "view.right_panel", "view.right_panel"},
+    {"F4", GLFW_KEY_F4, 0, "view.plots", "view.plots"},
+    {"F5", GLFW_KEY_F5, 0, "experiments.show", "experiments.show"},
+    {"F6", GLFW_KEY_F6, 0, "sweep.show", "sweep.show"},
+    {"F7", GLFW_KEY_F7, 0, "device.identify", "device.identify"},
+    {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
+    {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
+    {"Ctrl+O", GLFW_KEY_O, kControl, "session.open", "session.open"},
+    {"Ctrl+Q", GLFW_KEY_Q, kControl, "window.quit", "window.quit"},
+    {"Ctrl+Z", GLFW_KEY_Z, kControl, "edit.undo", "edit.undo", true},
+    {"Ctrl+Y", GLFW_KEY_Y, kControl, "edit.redo", "edit.redo", true},
+    {"Ctrl+Shift+Z", GLFW_KEY_Z, kControl | kShift, "edit.redo", "edit.redo", true},
+    {"Ctrl+G", GLFW_KEY_G, kControl, "scene.gallery", "scene.gallery"},
+    {"Ctrl+M", GLFW_KEY_M, kControl, "scene.add_model", "scene.add_model"},
+    {"Ctrl+S", GLFW_KEY_S, kControl, "scene.save", "scene.save"},
+    {"Ctrl+Shift+S", GLFW_KEY_S, kControl | kShift, "scene.save_as", "scene.save_as"},
+    {"Tab", GLFW_KEY_TAB, 0, "scene.select_next", "scene.select_next", true},
+    {"Shift+Tab", GLFW_KEY_TAB, kShift, "scene.select_previous", "scene.select_previous", true},
+    {"Delete", GLFW_KEY_DELETE, 0, "scene.remove", "scene.remove"},
+    {"Ctrl+D", GLFW_KEY_D, kControl, "scene.copy", "scene.copy"},
+};
+
+const Case* case_of(int key, int modifiers) {
+  for (const Case& c : kCases) {
+    if (c.key == key && c.modifiers == modifiers) return &c;
+  }
+  return nullptr;
+}
+
+// Empty: nothing acts.
+std::string_view id_of(KeyOwner owner, int key, int modifiers, bool repeated) {
+  const Command* command = command_of(owner, {key, modifiers, repeated});
+  return command != nullptr ? command->id : "";
+}
+
+// "Ctrl+Z, Ctrl+Y" -> both.
+std::vector<std::string> split(std::string text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; (at = text.find(", ")) != std::string::npos;) {
+    parts.push_back(text.substr(0, at));
+    text.erase(0, at + 2);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
+TEST(Keys, HelpListsExactlyTheKeysThatAct) {
+  // What the mouse does, and Esc and Space, which have tests of their own.
+  std::set<std::string> listed;
+  for (const Shortcut& shortcut : shortcuts()) {
+    // "[, ]" and the like; what the mouse does is written in words.
+    for (const std::string& key : split(shortcut.keys)) listed.insert(key);
+  }
+  for (const char* other :
+       {"left drag", "right drag", "Alt+left drag", "middle drag", "Shift+right drag", "wheel",
+        "plots", "sliders", "gamepad", "Esc", "Space"}) {
+    EXPECT_EQ(listed.erase(other), 1u) << other;
+  }
+  std::set<std::string> expected;
+  for (const Case& c : kCases) expected.insert(c.help);
+  EXPECT_EQ(listed, expected);
+}
+
+TEST(Keys, EachDoesWhatTheHelpSaysAndNothingUnlistedActs) {
+  for (int key = GLFW_KEY_SPACE + 1; key <= GLFW_KEY_LAST; ++key) {
+    if (key == GLFW_KEY_ESCAPE) continue;
+    for (int modifiers = 0; modifiers < 16; ++modifiers) {
+      const Case* c = case_of(key, modifiers);
+      EXPECT_EQ(id_of(KeyOwner::view, key, modifiers, false), std::string_view(c ? c->live : ""))
+          << key << " with " << modifiers;
+      EXPECT_EQ(id_of(KeyOwner::playback, key, modifiers, false),
+                std::string_view(c ? c->playback : ""))
+          << key << " with " << modifiers;
+    }
+  }
+}
+
+TEST(Keys, HeldKeySwitchesNothingToAndFro) {
+  for (const Case& c : kCases) {
+    EXPECT_EQ(id_of(KeyOwner::playback, c.key, c.modifiers, true),
+              std::string_view(c.repeats ? c.playback : ""))
+        << c.help;
+  }
+}
+
+TEST(Keys, NoneActsThroughATextFieldADialogOrAMenu) {
+  for (const KeyOwner owner : {KeyOwner::text, KeyOwner::dialog, KeyOwner::popup}) {
+    for (int key = GLFW_KEY_SPACE + 1; key <= GLFW_KEY_LAST; ++key) {
+      if (key == GLFW_KEY_ESCAPE) continue;
+      for (int modifiers = 0; modifiers < 16; ++modifiers) {
+        EXPECT_EQ(id_of(owner, key, modifiers, false), "") << key;
+      }
+    }
+  }
+}
+
+TEST(Keys, QuestionKnowsEnterAndDOnly) {
+  const std::map<int, std::string> answers{{GLFW_KEY_ENTER, "scene.save_and_leave"},
+                                           {GLFW_KEY_KP_ENTER, "scene.save_and_leave"},
+                                           {GLFW_KEY_D, "scene.discard_and_leave"}};
+  for (int key = GLFW_KEY_SPACE + 1; key <= GLFW_KEY_LAST; ++key) {
+    if (key == GLFW_KEY_ESCAPE) continue;
+    const auto found = answers.find(key);
+    EXPECT_EQ(id_of(KeyOwner::question, key, 0, false), found == answers.end() ? "" : found->second)
+        << key;
+    EXPECT_EQ(id_of(KeyOwner::question, key, 0, true), "") << key;
+    for (int modifiers = 1; modifiers < 16; ++modifiers) {
+      EXPECT_EQ(id_of(KeyOwner::question, key, modifiers, false), "") << key;
+    }
+  }
+}
+
+TEST(Keys, EscapeAlwaysAndSpaceOutsideOfTextCutTheForce) {
+  for (const KeyOwner owner : kOwners) {
+    for (int modifiers = 0; modifiers < 16; ++modifiers) {
+      EXPECT_EQ(id_of(owner, GLFW_KEY_ESCAPE, modifiers, false), "window.escape");
+      EXPECT_EQ(id_of(owner, GLFW_KEY_SPACE, modifiers, false),
+                owner == KeyOwner::text ? "" : "force.cut");
+    }
+    EXPECT_EQ(id_of(owner, GLFW_KEY_ESCAPE, 0, true), "") << "held, it closes one thing";
+  }
+}
+
+TEST(Commands, EachHasAnIdOfItsOwnATextAndSomethingToDo) {
+  std::set<std::string_view> ids;
+  std::set<std::string> listed;
+  for (const Command& command : commands()) {
+    EXPECT_TRUE(std::regex_match(command.id, std::regex("[a-z]+(\\.[a-z_]+)+"))) << command.id;
+    EXPECT_TRUE(ids.insert(command.id).second) << command.id;
+    EXPECT_STRNE(command.text, "") << command.id;
+    EXPECT_NE(command.run, nullptr) << command.id;
+    EXPECT_EQ(find_command(command.id), &command);
+    const std::string menu = command.menu != nullptr ? command.menu : "";
+    EXPECT_TRUE(std::regex_match(menu, std::regex("|(File|View|Session|Scene|Device|Help)(/.+)?")))
+        << menu;
+    // Two of a menu cannot be told apart by its texts otherwise.
+    if (!menu.empty()) {
+      EXPECT_TRUE(listed.insert(menu + "/" + command.text).second) << command.id;
+    }
+  }
+  EXPECT_EQ(find_command("edit.undone"), nullptr);
+}
+
+TEST(Commands, NoneHasTheKeyOfAnotherWhereBothAct) {
+  std::map<std::pair<Reach, std::string>, std::string> taken;
+  for (const Command& command : commands()) {
+    if (command.keys == nullptr) continue;
+    for (const std::string& key : split(command.keys)) {
+      const auto [at, fresh] = taken.insert({{command.how.reach, key}, command.id});
+      EXPECT_TRUE(fresh) << command.id << " and " << at->second;
+    }
+  }
+}
+
+// What is in no menu and has no key is a button of a panel, a dialog or a banner, which names it.
+TEST(Commands, EachIsReachedAndPanelsNameNoOthers) {
+  std::set<std::string> named;
+  for (const char* folder : {"panels", "shell"}) {
+    const auto path = std::filesystem::path(LIMPID_SOURCE_DIR) / "app/desktop" / folder;
+    for (const auto& file : std::filesystem::directory_iterator(path)) {
+      if (file.path().filename() == "commands.cpp") continue;
+      std::stringstream text;
+      text << std::ifstream(file.path()).rdbuf();
+      const std::string source = text.str();
+      const std::regex id("\"([a-z]+\\.[a-z_.]+)\"");
+      for (std::sregex_iterator i(source.begin(), source.end(), id), end; i != end; ++i) {
+        named.insert((*i)[1]);
+      }
+    }
+  }
+  for (const Command& command : commands()) {
+    EXPECT_TRUE(command.menu != nullptr || command.keys != nullptr || named.contains(command.id))
+        << command.id;
+  }
+  std::set<std::string> begins;  // some of settings, too: "coupling.eta"
+  for (const Command& command : commands()) {
+    const std::string whole = command.id;
+    begins.insert(whole.substr(0, whole.find('.')));
+  }
+  for (const std::string& id : named) {
+    if (!begins.contains(id.substr(0, id.find('.')))) continue;
+    EXPECT_TRUE(find_command(id) != nullptr || find_parameter(id) != nullptr) << id;
+  }
+}
+
+TEST(Commands, KeysAreWrittenAsTheHelpHasThem) {
+  const auto text = [](const char* id) { return key_text(*find_command(id)); };
+  EXPECT_EQ(text("scene.save_as"), "Ctrl+Shift+S");
+  EXPECT_EQ(text("hand.softer"), "Alt+[");
+  EXPECT_EQ(text("window.full_screen"), "F11");
+  EXPECT_EQ(text("help.keys"), "?");
+  EXPECT_EQ(text("scene.remove"), "Delete");
+  EXPECT_EQ(text("view.trail"), "");
+}
+
+}  // namespace
+}  // namespace limpid
