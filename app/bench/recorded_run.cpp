@@ -76,16 +76,15 @@ std::vector<Line> recorded_runs(const Line& unit) {
   std::vector<Line> lines;
   lines.push_back(line("run/alone", "run without a window, a tick", [&] {
     auto next = rows.begin();
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+    simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
       next = std::ranges::copy(row, next).out;
       return true;
     });
   }));
   lines.push_back(line("run/recorded", "the same, recorded", [&] {
     Recorder recorder(out.file, info, plan.parameters, true, Recorder::kWaitingRoom);
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
-      return recorder.push_waiting(row);
-    });
+    simulate(plan, {},
+             [&](std::span<const double> row, LaneChanges) { return recorder.push_waiting(row); });
     recorder.finish();
   }));
   lines.push_back(line("run/writing", "writing the file alone, a row", [&] {

@@ -79,7 +79,7 @@ RunPlan plan_from_session(const InputOptions& options) {
       }
     };
     move(plan.changes);
-    if (plan.twin) move(plan.twin->changes);
+    for (Lane& lane : plan.beside) move(lane.changes);
     plan.force.clear();
     plan.parameters.tick = chosen.tick;
   }
@@ -91,7 +91,7 @@ RunPlan plan_from_session(const InputOptions& options) {
     }
     if (plan.arm.urdf != session.info.device_urdf) {
       plan.start.reset();
-      if (plan.twin) plan.twin->start.reset();
+      for (Lane& lane : plan.beside) lane.start.reset();
     }
     if (!plan.hand_torque.empty() && plan.arm.dof() != session.info.dof) {
       throw UsageError(

@@ -63,8 +63,8 @@ std::string short_name(const Parameters& p) {
 
 // Another pair than the one that the options ask for: standard beside the chosen law, or settings
 // that are given.
-TwinPlan make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
-  TwinPlan twin{chosen, {}, {}};
+Lane make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
+  Lane twin{chosen, {}};
   for (const std::string& setting : settings) apply_setting(twin.parameters, setting);
   if (!settings.empty()) {
     if (twin.parameters.tick == chosen.tick) return twin;
@@ -80,12 +80,12 @@ class RunLog {
  public:
   RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
       : stride_(static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride())),
-        runs_(plan.twin ? 2 : 1, Summary(RowLayout(plan.arm.dof()), slides_of(plan.arm))),
+        runs_(plan.lanes(), Summary(RowLayout(plan.arm.dof()), slides_of(plan.arm))),
         recorder_(recorder),
         waits_(waits) {}
 
   // False to end the run.
-  bool take(std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
+  bool take(std::span<const double> rows, LaneChanges changed) {
     const bool memorable = runs_[0].add(rows.first(stride_));
     if (runs_.size() > 1) {
       const auto twin = rows.subspan(stride_);
@@ -105,9 +105,9 @@ class RunLog {
   std::span<const double> memorable() const { return runs_[0].memorable(); }
   std::span<const double> twin() const { return twin_; }  // at that time
   std::string text(const RunPlan& plan) const {
-    if (!plan.twin) return runs_[0].text();
+    if (plan.beside.empty()) return runs_[0].text();
     return Summary::beside(runs_[0], short_name(plan.parameters), runs_[1],
-                           short_name(plan.twin->parameters));
+                           short_name(*plan.twin()));
   }
 
  private:
@@ -123,13 +123,12 @@ RunEnd carry_out(const RunOptions& options, const RunPlan& plan, RunLog& log) {
                      .whole = static_cast<double>(plan.rows) * plan.parameters.tick,
                      .unit = "s",
                      .rate = "times real time"});
-  return simulate_twin(
-      plan, {options.realtime, &interrupted},
-      [&](std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
-        const bool goes_on = log.take(rows, changed);
-        progress.at(log.time());
-        return goes_on;
-      });
+  return simulate(plan, {options.realtime, &interrupted},
+                  [&](std::span<const double> rows, LaneChanges changed) {
+                    const bool goes_on = log.take(rows, changed);
+                    progress.at(log.time());
+                    return goes_on;
+                  });
 }
 
 int report(const RunOptions& options, const RunEnd& end, const Recorder* recorder, double time) {
@@ -179,14 +178,13 @@ int run(const RunOptions& options) {
   if (options.live.device) return live(options);
   RunPlan plan = make_plan(options.input);
   say_about(plan);
-  if (options.twin) plan.twin = make_twin(plan.parameters, *options.twin);
+  if (options.twin) plan.beside = {make_twin(plan.parameters, *options.twin)};
   if (!options.picture.empty()) check_picture(options.picture);
   catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
     recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
-                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom,
-                     plan.twin ? &plan.twin->parameters : nullptr);
+                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom, plan.twin());
   }
   RunLog log(plan, recorder ? &*recorder : nullptr, !options.realtime);
   const auto began = std::chrono::steady_clock::now();

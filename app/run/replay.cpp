@@ -27,7 +27,7 @@ SessionInfo session_info(const RunPlan& plan) {
   info.scene = plan.document.toml;
   info.models = files_of(plan.document);
   info.arm = std::make_shared<const ArmDescription>(plan.arm);
-  if (plan.twin) info.twin = config_text(plan.twin->parameters);
+  if (plan.twin() != nullptr) info.twin = config_text(*plan.twin());
   return info;
 }
 
@@ -129,7 +129,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   if (session.twin) {
     const Session& twin = *session.twin;
     const Parameters own = session_parameters(twin, where + " (twin)");
-    TwinPlan& again = plan.twin.emplace();
+    Lane& again = plan.beside.emplace_back();
     again.parameters = with_changed(own, session_parameters(session, where), chosen);
     again.parameters.tick = session.info.tick;
     again.changes = changes_again(twin, where + " (twin)", own, again.parameters);

@@ -30,6 +30,7 @@ void add_start(Digest& digest, const std::optional<RigStart>& start) {
   }
   for (const double x : start->target) digest.add(x);
   digest.add(std::uint64_t{start->armed});
+  digest.add(start->reserve);
 }
 
 void add_changes(Digest& digest, const std::vector<SettingChange>& changes) {
@@ -40,12 +41,10 @@ void add_changes(Digest& digest, const std::vector<SettingChange>& changes) {
   }
 }
 
-void add_twin(Digest& digest, const std::optional<TwinPlan>& twin) {
-  digest.add(std::uint64_t{twin.has_value()});
-  if (!twin) return;
-  digest.add(config_text(twin->parameters));
-  add_changes(digest, twin->changes);
-  add_start(digest, twin->start);
+void add_lane(Digest& digest, const Lane& lane) {
+  digest.add(config_text(lane.parameters));
+  add_changes(digest, lane.changes);
+  add_start(digest, lane.start);
 }
 
 }  // namespace
@@ -87,7 +86,6 @@ std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program) {
   Digest digest;
   digest.add(program);
   digest.add(info.app_version);
-  digest.add(info.config);
   digest.add(info.tick);
   digest.add(info.device_urdf);
   digest.add(info.scene);
@@ -97,14 +95,13 @@ std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program) {
     if (bytes) digest.add(bytes->data(), bytes->size());
   }
   add_hand(digest, plan.hand);
-  add_changes(digest, plan.changes);
   digest.add_all(plan.hand_torque);
   digest.add(std::uint64_t{plan.force.size()});
   for (const bool armed : plan.force) digest.add(std::uint64_t{armed});
-  add_start(digest, plan.start);
   digest.add(plan.rows);
   digest.add(plan.seed);
-  add_twin(digest, plan.twin);
+  digest.add(std::uint64_t{plan.lanes()});
+  for (std::size_t i = 0; i < plan.lanes(); ++i) add_lane(digest, plan.lane(i));
   return digest.value();
 }
 

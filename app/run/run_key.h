@@ -42,8 +42,8 @@ std::optional<std::uint64_t> file_digest(const std::filesystem::path& file);
 // Stands for the program that is running: another build has another one.
 std::uint64_t program_digest();
 
-// Stands for a program and all that decides a run: arm, scene and models, hand, parameters and
-// their changes, rows, seed, and the same of its twin.
+// Stands for a program and all that decides a run: arm, scene and models, hand, rows, seed,
+// and of each lane the parameters, their changes and the start.
 std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program);
 
 }  // namespace limpid

@@ -22,11 +22,14 @@ void note(RunEnd& end, const DivergenceWatch& watch) {
   end.why = watch.why();
 }
 
-// One of the runs: a rig and what changes in its settings.
-class Lane {
+// A lane under way: a rig and what changes in its settings.
+class LaneRun {
  public:
-  Lane(const RunPlan& plan, const Parameters& p, const std::vector<SettingChange>& changes)
-      : rig(plan.arm, plan.document.scene), watch(rig.layout()), parameters(p), changes_(changes) {
+  LaneRun(const RunPlan& plan, const Lane& lane)
+      : rig(plan.arm, plan.document.scene),
+        watch(rig.layout()),
+        parameters(lane.parameters),
+        changes_(lane.changes) {
     parameters.tick = plan.parameters.tick;
   }
 
@@ -57,17 +60,18 @@ class Lane {
   std::size_t next_ = 0;
 };
 
-// The run as a sequence of ticks, whoever paces them; of a twin both of its runs.
+// The run as a sequence of ticks of all its lanes, whoever paces them.
 class Run {
  public:
-  Run(const RunPlan& plan, const RunPace& pace, const TwinSink& sink)
+  Run(const RunPlan& plan, const RunPace& pace, const RowSink& sink)
       : plan_(plan), pace_(pace), sink_(sink) {
-    lanes_.emplace_back(plan, plan.parameters, plan.changes);
-    if (plan.twin) lanes_.emplace_back(plan, plan.twin->parameters, plan.twin->changes);
+    for (std::size_t i = 0; i < plan.lanes(); ++i) lanes_.emplace_back(plan, plan.lane(i));
     rows_.resize(lanes_.size() * stride());
+    changed_.resize(lanes_.size());
     const RigStart start = plan.start ? *plan.start : rest_at(plan.arm, plan.hand.sample(0, T()));
-    lanes_[0].rig.start(lanes_[0].parameters, start);
-    if (plan.twin) lanes_[1].rig.start(lanes_[1].parameters, plan.twin->start.value_or(start));
+    for (std::size_t i = 0; i < plan.lanes(); ++i) {
+      lanes_[i].rig.start(lanes_[i].parameters, plan.lane(i).start.value_or(start));
+    }
     armed_ = start.armed;
   }
 
@@ -80,14 +84,13 @@ class Run {
     }
     const auto k = static_cast<std::size_t>(end_.rows);
     const RigInput input{hand(k), wish(k)};
-    std::array<const Parameters*, 2> changed{};
     for (std::size_t i = 0; i < lanes_.size(); ++i) {
-      if (lanes_[i].apply_changes(end_.rows)) changed[i] = &lanes_[i].parameters;
+      changed_[i] = lanes_[i].apply_changes(end_.rows) ? &lanes_[i].parameters : nullptr;
       lanes_[i].step(input, wake_latency, std::span(rows_).subspan(i * stride(), stride()));
     }
     ++end_.rows;
-    end_.stopped = !sink_(rows_, changed);
-    for (const Lane& lane : lanes_) {
+    end_.stopped = !sink_(rows_, changed_);
+    for (const LaneRun& lane : lanes_) {
       if (!end_.diverged) note(end_, lane.watch);
     }
     return !end_.stopped && !end_.diverged;
@@ -118,9 +121,10 @@ class Run {
 
   const RunPlan& plan_;
   const RunPace& pace_;
-  const TwinSink& sink_;
-  std::deque<Lane> lanes_;
+  const RowSink& sink_;
+  std::deque<LaneRun> lanes_;
   std::vector<double> rows_;
+  std::vector<const Parameters*> changed_;
   bool armed_ = true;
   RunEnd end_;
 };
@@ -166,7 +170,7 @@ RunEnd end_of(const Session& session) {
   return end;
 }
 
-RunEnd simulate_twin(const RunPlan& plan, const RunPace& pace, const TwinSink& sink) {
+RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
   Run run(plan, pace, sink);
   if (pace.realtime) {
     run_paced(run, plan.parameters.tick);
@@ -175,16 +179,6 @@ RunEnd simulate_twin(const RunPlan& plan, const RunPace& pace, const TwinSink& s
     }
   }
   return run.end();
-}
-
-RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
-  const RowLayout layout(plan.arm.dof());
-  const auto stride = static_cast<std::size_t>(layout.stride());
-  return simulate_twin(
-      plan, pace,
-      [&](std::span<const double> rows, const std::array<const Parameters*, 2>& changed) {
-        return sink(rows.first(stride), changed[0]);
-      });
 }
 
 }  // namespace limpid

@@ -1,7 +1,6 @@
 // A run without a window: a hand's path through the rig, as fast as it goes or paced.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -17,38 +16,38 @@
 
 namespace limpid {
 
-// A second run on the same hand, in the same world, under settings of its own.
-struct TwinPlan {
-  Parameters parameters;               // at the first row; the tick is the other's
+// One run on the hand of a plan, in its world, under settings of its own.
+struct Lane {
+  Parameters parameters;               // at the first row; the tick is the first lane's
   std::vector<SettingChange> changes;  // later ones
-  std::optional<RigStart> start;       // default: where the other run starts
+  // Default: at rest, the tip on the hand's first point; of further lanes where the first one
+  // starts.
+  std::optional<RigStart> start = {};
 };
 
-// All that decides a run: the same plan gives the same rows, bit for bit.
-struct RunPlan {
+// All that decides a run: the same plan gives the same rows, bit for bit. It is its own first lane.
+struct RunPlan : Lane {
   ArmDescription arm;
   SceneDocument document;
   MeshModels models;  // what the scene's meshes look like
   HandPath hand;
-  Parameters parameters;               // at the first row
-  std::vector<SettingChange> changes;  // later ones, of a recording that is run again
   std::vector<double> hand_torque;  // N x n [N m], instead of a grip; empty: the hand's path leads
   std::vector<bool> force;          // armed at each row of a recording; empty: always
-  std::optional<RigStart> start;    // default: at rest, the tip on the hand's first point
   std::uint64_t rows = 0;           // how many ticks
   std::uint64_t seed = 0;           // for whatever is random
-  std::optional<TwinPlan> twin;
+  std::vector<Lane> beside;         // further lanes; one makes a twin
   std::string note = {};  // for people: why rows may come out otherwise than recorded; of a re-run
+
+  std::size_t lanes() const { return 1 + beside.size(); }
+  const Lane& lane(std::size_t i) const { return i == 0 ? *this : beside[i - 1]; }
+  // What a recorder wants to know of the second lane; null: there is none.
+  const Parameters* twin() const { return beside.empty() ? nullptr : &beside[0].parameters; }
 };
 
-// Called with each row in turn, and with the parameters if they have just changed. False ends the
-// run.
-using RowSink = std::function<bool(std::span<const double> row, const Parameters* changed)>;
-
-// The same of a twin: its two rows, one behind the other, and each run's parameters if they have
-// just changed.
-using TwinSink =
-    std::function<bool(std::span<const double> rows, std::array<const Parameters*, 2> changed)>;
+// Called with each tick's rows, lane behind lane, and with the parameters of each lane whose own
+// have just changed, else null. False ends the run.
+using LaneChanges = std::span<const Parameters* const>;
+using RowSink = std::function<bool(std::span<const double> rows, LaneChanges changed)>;
 
 struct RunEnd {
   std::uint64_t rows = 0;  // that were run
@@ -69,10 +68,9 @@ struct RunPace {
 // Makes a recorded change. Errors: ParameterError.
 void apply_change(Parameters& p, const SettingChange& change);
 
-// Ends early where the loop diverges (DivergenceWatch). Errors: std::invalid_argument if the hand's
-// first point cannot be reached; ParameterError in a recorded change.
+// All lanes in lockstep. Ends early where one of them diverges (DivergenceWatch). Errors:
+// std::invalid_argument if the hand's first point cannot be reached; ParameterError in a recorded
+// change.
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink);
-// Both runs of a plan with a twin, in lockstep; ends where either diverges.
-RunEnd simulate_twin(const RunPlan& plan, const RunPace& pace, const TwinSink& sink);
 
 }  // namespace limpid

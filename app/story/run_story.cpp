@@ -122,7 +122,7 @@ StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
   auto twin = std::make_shared<Session>(first);
   twin->info.config = *first.info.twin;
   twin->info.twin.reset();
-  twin->changes = plan.twin->changes;
+  twin->changes = plan.beside[0].changes;
   first.rows.reserve(plan.rows * stride);
   twin->rows.reserve(plan.rows * stride);
   const auto take = [&](std::span<const double> rows, const auto&) {
@@ -131,7 +131,7 @@ StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
     at(static_cast<double>(first.size()) * plan.parameters.tick);
     return true;
   };
-  run.end = simulate_twin(plan, {.realtime = false, .stop = &stop}, take);
+  run.end = simulate(plan, {.realtime = false, .stop = &stop}, take);
   first.twin = std::move(twin);
   return run;
 }

@@ -142,7 +142,7 @@ void StorySettings::into(RunPlan& plan) const {
   };
   plan.parameters = began_[kMainLane];
   plan.changes = rows(kMainLane);
-  plan.twin = TwinPlan{began_[kTwinLane], rows(kTwinLane), {}};
+  plan.beside = {Lane{began_[kTwinLane], rows(kTwinLane)}};
 }
 
 namespace {

@@ -156,9 +156,9 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   std::vector<double>& rows = result.session.rows;
   rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
   result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
-                        [&](std::span<const double> row, const Parameters* changed) {
+                        [&](std::span<const double> row, LaneChanges changed) {
                           rows.insert(rows.end(), row.begin(), row.end());
-                          if (recorder && changed != nullptr) recorder->changed(*changed);
+                          if (recorder && changed[0] != nullptr) recorder->changed(*changed[0]);
                           return !recorder || recorder->push_waiting(row);
                         });
   // What was cut short stays a .part and is run again another time.

@@ -108,7 +108,7 @@ std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
     return false;
   };
   bool given_up = false;
-  simulate(run, {.realtime = false, .stop = &stop}, [&](std::span<const double> row, auto*) {
+  simulate(run, {.realtime = false, .stop = &stop}, [&](std::span<const double> row, LaneChanges) {
     meter.add(row);
     given_up = also && !also(row);
     return !given_up && !must_stop();

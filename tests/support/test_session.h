@@ -22,7 +22,7 @@ inline RunPlan plan(const char* scene, const char* hand_file, double seconds) {
 
 inline Rows rows_of(const RunPlan& plan) {
   Rows rows(RowLayout(plan.arm.dof()));
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     rows.add(row);
     return true;
   });

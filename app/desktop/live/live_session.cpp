@@ -197,11 +197,11 @@ void LiveSession::record(const RunPlan& plan, const fs::path& folder) {
       fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
-  opening_ = file_tasks_.run(
-      [file = folder / name, info = std::move(about), initial = plan.parameters, twin = plan.twin] {
-        return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
-                                          twin ? &twin->parameters : nullptr);
-      });
+  opening_ = file_tasks_.run([file = folder / name, info = std::move(about),
+                              initial = plan.parameters, twin = plan.beside] {
+    return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
+                                      twin.empty() ? nullptr : &twin[0].parameters);
+  });
 }
 
 void LiveSession::follow_recording() {

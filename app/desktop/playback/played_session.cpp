@@ -90,7 +90,7 @@ std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, cons
   RunEnd end;
   try {
     end = simulate(world, {.realtime = false, .stop = &progress.cancel},
-                   [&](std::span<const double> row, const Parameters*) {
+                   [&](std::span<const double> row, LaneChanges) {
                      progress.part =
                          static_cast<double>(recorder.rows()) / static_cast<double>(world.rows);
                      return recorder.push_waiting(row);
@@ -104,12 +104,13 @@ std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, cons
 
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 TaskProgress& progress) {
-  const RunPlan plan = replay(session, where, chosen);
+  RunPlan plan = replay(session, where, chosen);
+  plan.beside.clear();
   std::vector<double> rows;
   rows.reserve(session.rows.size());
   std::uint64_t count = 0;
   const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
-                              [&](std::span<const double> row, const Parameters*) {
+                              [&](std::span<const double> row, LaneChanges) {
                                 rows.insert(rows.end(), row.begin(), row.end());
                                 progress.part =
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);

@@ -168,9 +168,9 @@ TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
   loop.set(controls);
   let_live(loop, 50);
   plan.parameters = controls.parameters;
-  plan.twin = TwinPlan{controls.twin_parameters, {}, {}};
+  plan.beside = {Lane{controls.twin_parameters, {}}};
   loop.record(std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters, false,
-                                         Recorder::kLiveRoom, &plan.twin->parameters));
+                                         Recorder::kLiveRoom, plan.twin()));
   let_live(loop, 300);
   controls.twin_parameters.k_vc = 7;
   loop.set(controls);
@@ -196,7 +196,7 @@ TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
   const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
   test::Rows first(session.layout), twin(session.layout);
   const auto stride = static_cast<std::size_t>(session.layout.stride());
-  simulate_twin(again, {}, [&](std::span<const double> rows, const auto&) {
+  simulate(again, {}, [&](std::span<const double> rows, const auto&) {
     first.add(rows.first(stride));
     twin.add(rows.subspan(stride));
     return true;
@@ -215,9 +215,9 @@ TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
   loop.set(controls);
   let_live(loop, 50);
   plan.parameters = controls.parameters;
-  plan.twin = TwinPlan{controls.twin_parameters, {}, {}};
+  plan.beside = {Lane{controls.twin_parameters, {}}};
   auto recorder = std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters,
-                                             false, Recorder::kLiveRoom, &plan.twin->parameters);
+                                             false, Recorder::kLiveRoom, plan.twin());
   controls.twin_parameters.k_vc = 7;
   loop.set(controls);
   let_live(loop, 50);

@@ -181,7 +181,7 @@ TEST(Simulate, SaysSinceWhenAndWhyALoopIsUnstable) {
   p.parameters.torque_limit = 1e4;
   p.rows = 20000;
   Rows rows(kLayout);
-  const RunEnd end = simulate(p, {}, [&](std::span<const double> one, const Parameters*) {
+  const RunEnd end = simulate(p, {}, [&](std::span<const double> one, LaneChanges) {
     rows.add(one);
     return true;
   });
@@ -211,8 +211,7 @@ TEST(Simulate, SaysSinceWhenAndWhyALoopIsUnstable) {
 
 TEST(Simulate, OfAStableLoopSaysNothingOfThat) {
   const RunPlan p = plan("table.toml", "touch.csv", 0.2);
-  const RunEnd end =
-      simulate(p, {}, [](std::span<const double>, const Parameters*) { return true; });
+  const RunEnd end = simulate(p, {}, [](std::span<const double>, LaneChanges) { return true; });
   EXPECT_FALSE(end.diverged);
   EXPECT_TRUE(end.why.empty());
 }

@@ -21,9 +21,8 @@ using test::rows_of;
 
 Session recorded(const RunPlan& plan, const fs::path& out) {
   Recorder recorder(out, session_info(plan), plan.parameters, false);
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
-    return recorder.push_waiting(row);
-  });
+  simulate(plan, {},
+           [&](std::span<const double> row, LaneChanges) { return recorder.push_waiting(row); });
   recorder.finish();
   return read_session(out);
 }

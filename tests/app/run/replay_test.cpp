@@ -18,8 +18,8 @@ using test::rows_of;
 // Runs a plan and records it, as `limpid run --record` does.
 Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
   Recorder recorder(out, session_info(plan), plan.parameters, false);
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters* changed) {
-    if (changed != nullptr) recorder.changed(*changed);
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges changed) {
+    if (changed[0] != nullptr) recorder.changed(*changed[0]);
     return recorder.push_waiting(row);
   });
   recorder.finish();
@@ -129,7 +129,7 @@ TEST(Replay, LetsTheEstimateActWhereNobodyMeasuredTheHand) {
 // A recording of a real device by this plan: nobody measured the hand.
 Session blind(const RunPlan& plan, const std::filesystem::path& out) {
   Recorder recorder(out, session_info(plan), plan.parameters, false);
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     std::vector<double> copy(row.begin(), row.end());
     const RowLayout layout(plan.arm.dof());
     for (double& value : layout.in(std::span(copy), Column::hand_torque)) value = std::nan("");

@@ -20,11 +20,11 @@ using test::rows_of;
 TEST(Simulate, RunsEveryRowOfThePlan) {
   const RunPlan p = plan("table.toml", "touch.csv", 1.5);
   std::uint64_t count = 0;
-  const RunEnd end = simulate(p, {}, [&](std::span<const double> row, const Parameters* changed) {
+  const RunEnd end = simulate(p, {}, [&](std::span<const double> row, LaneChanges changed) {
     const RowLayout layout(3);
     EXPECT_EQ(row.size(), static_cast<std::size_t>(layout.stride()));
     EXPECT_EQ(layout.in(row, Column::time)[0], static_cast<double>(count) * p.parameters.tick);
-    EXPECT_EQ(changed, nullptr);
+    EXPECT_EQ(changed[0], nullptr);
     ++count;
     return true;
   });
@@ -53,11 +53,10 @@ TEST(Simulate, GivesTheSameBitsTwice) {
 TEST(Simulate, GivesTheSameBitsAtItsOwnPaceAndAsFastAsItGoes) {
   const RunPlan p = plan("table.toml", "touch.csv", 0.3);
   Rows paced(RowLayout(3));
-  const RunEnd end =
-      simulate(p, {.realtime = true}, [&](std::span<const double> row, const Parameters*) {
-        paced.add(row);
-        return true;
-      });
+  const RunEnd end = simulate(p, {.realtime = true}, [&](std::span<const double> row, LaneChanges) {
+    paced.add(row);
+    return true;
+  });
   EXPECT_EQ(end.rows, 300u);
   EXPECT_EQ(first_difference(rows_of(p), paced), -1);
 }
@@ -66,7 +65,7 @@ TEST(Simulate, StopsWhenItIsToldTo) {
   const RunPlan p = plan("table.toml", "touch.csv", 2);
   std::atomic<bool> stop = false;
   std::uint64_t count = 0;
-  const RunEnd end = simulate(p, {.stop = &stop}, [&](std::span<const double>, const Parameters*) {
+  const RunEnd end = simulate(p, {.stop = &stop}, [&](std::span<const double>, LaneChanges) {
     stop = ++count == 123;
     return true;
   });
@@ -78,7 +77,7 @@ TEST(Simulate, StopsWhenItsSinkHasEnough) {
   const RunPlan p = plan("table.toml", "touch.csv", 2);
   std::uint64_t count = 0;
   const RunEnd end =
-      simulate(p, {}, [&](std::span<const double>, const Parameters*) { return ++count < 45; });
+      simulate(p, {}, [&](std::span<const double>, LaneChanges) { return ++count < 45; });
   EXPECT_TRUE(end.stopped);
   EXPECT_EQ(end.rows, 45u);
 }
@@ -92,11 +91,11 @@ TEST(Simulate, MakesChangesAtTheirRowsAndSaysSo) {
   std::uint64_t row_count = 0;
   std::vector<std::uint64_t> changed_at;
   Parameters last;
-  simulate(p, {}, [&](std::span<const double> row, const Parameters* changed) {
+  simulate(p, {}, [&](std::span<const double> row, LaneChanges changed) {
     const RowLayout layout(3);
-    if (changed != nullptr) {
+    if (changed[0] != nullptr) {
       changed_at.push_back(row_count);
-      last = *changed;
+      last = *changed[0];
     }
     EXPECT_EQ(layout.in(row, Column::eta)[0], row_count < 100 ? 1 : 2.5);
     EXPECT_EQ(layout.in(row, Column::kind)[0], row_count < 300 ? 1 : 0);
@@ -109,7 +108,7 @@ TEST(Simulate, MakesChangesAtTheirRowsAndSaysSo) {
 }
 
 TEST(Simulate, RefusesAHandOutOfReachAndAChangeThatIsNone) {
-  const auto sink = [](std::span<const double>, const Parameters*) { return true; };
+  const auto sink = [](std::span<const double>, LaneChanges) { return true; };
   RunPlan far = plan("table.toml", "touch.csv", 0.1);
   for (Vec3& point : far.hand.position) point += Vec3(2, 0, 0);
   EXPECT_THROW(simulate(far, {}, sink), std::invalid_argument);
@@ -126,8 +125,7 @@ TEST(Simulate, SaysWhenTheLoopIsUnstable) {
   p.parameters.tick = 0.01;
   p.parameters.torque_limit = 1e4;
   p.rows = 20000;
-  const RunEnd end =
-      simulate(p, {}, [](std::span<const double>, const Parameters*) { return true; });
+  const RunEnd end = simulate(p, {}, [](std::span<const double>, LaneChanges) { return true; });
   EXPECT_TRUE(end.diverged);
   EXPECT_LT(end.rows, 20000u);
 }

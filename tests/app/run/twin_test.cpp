@@ -24,7 +24,7 @@ Both run_both(const RunPlan& plan) {
   const RowLayout layout(plan.arm.dof());
   const auto stride = static_cast<std::size_t>(layout.stride());
   Both both{Rows(layout), Rows(layout)};
-  simulate_twin(plan, {}, [&](std::span<const double> rows, const auto&) {
+  simulate(plan, {}, [&](std::span<const double> rows, const auto&) {
     both.first.add(rows.first(stride));
     both.twin.add(rows.subspan(stride));
     return true;
@@ -37,7 +37,7 @@ RunPlan pair() {
   RunPlan plan = test::plan("obstacles.toml", "touch.csv", 2);
   plan.parameters.eta = 0.7;
   plan.changes = {{600, "coupling.eta = 0.9"}};
-  TwinPlan& twin = plan.twin.emplace();
+  Lane& twin = plan.beside.emplace_back();
   twin.parameters = plan.parameters;
   twin.parameters.kind = CouplingKind::standard;
   twin.changes = {{800, "coupling.k_vc = 8.0"}};
@@ -46,16 +46,16 @@ RunPlan pair() {
 
 RunPlan alone(const RunPlan& plan) {
   RunPlan one = plan;
-  one.parameters = plan.twin->parameters;
-  one.changes = plan.twin->changes;
-  one.twin.reset();
+  one.parameters = plan.beside[0].parameters;
+  one.changes = plan.beside[0].changes;
+  one.beside.clear();
   return one;
 }
 
 Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
   Recorder recorder(out, session_info(plan), plan.parameters, false, Recorder::kWaitingRoom,
-                    plan.twin ? &plan.twin->parameters : nullptr);
-  simulate_twin(plan, {}, [&](std::span<const double> rows, const auto& changed) {
+                    plan.twin());
+  simulate(plan, {}, [&](std::span<const double> rows, const auto& changed) {
     for (std::size_t lane = 0; lane < 2; ++lane) {
       if (changed[lane] != nullptr) recorder.changed(*changed[lane], lane);
     }
@@ -68,10 +68,34 @@ Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
 TEST(Twin, GivesEachRunWhatItGivesAlone) {
   const RunPlan plan = pair();
   RunPlan first = plan;
-  first.twin.reset();
+  first.beside.clear();
   const Both both = run_both(plan);
   EXPECT_EQ(first_difference(both.first, rows_of(first)), -1);
   EXPECT_EQ(first_difference(both.twin, rows_of(alone(plan))), -1);
+}
+
+TEST(Lanes, AreAsManyAsThePlanHasAndEachIsAsIfItRanAlone) {
+  RunPlan plan = pair();
+  Lane& third = plan.beside.emplace_back(plan.lane(0));
+  third.parameters.kind = CouplingKind::predictive;
+  third.changes = {{300, "coupling.eta = 0.3"}, {900, "coupling.kind = standard"}};
+  const auto stride = static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride());
+  std::vector<Rows> lanes(plan.lanes(), Rows(RowLayout(plan.arm.dof())));
+  std::vector<int> changes(plan.lanes());
+  simulate(plan, {}, [&](std::span<const double> rows, LaneChanges changed) {
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+      lanes[i].add(rows.subspan(i * stride, stride));
+      changes[i] += changed[i] != nullptr;
+    }
+    return true;
+  });
+  EXPECT_EQ(changes, (std::vector<int>{1, 1, 2}));
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    RunPlan one = plan;
+    static_cast<Lane&>(one) = plan.lane(i);
+    one.beside.clear();
+    EXPECT_EQ(first_difference(lanes[i], rows_of(one)), -1) << i;
+  }
 }
 
 TEST(Twin, IsOneFileFromWhichBothComeAgain) {
@@ -95,9 +119,9 @@ TEST(Twin, IsRunAgainWithWhatIsChosenOtherwiseButForWhatTheTwoDifferIn) {
   chosen.hand_stiffness = 500;
   chosen.kind = CouplingKind::predictive;
   const RunPlan again = replay(session, "a.h5", chosen);
-  ASSERT_TRUE(again.twin);
-  EXPECT_EQ(again.twin->parameters.hand_stiffness, 500);
-  EXPECT_EQ(again.twin->parameters.kind, CouplingKind::standard);
+  ASSERT_EQ(again.lanes(), 2u);
+  EXPECT_EQ(again.beside[0].parameters.hand_stiffness, 500);
+  EXPECT_EQ(again.beside[0].parameters.kind, CouplingKind::standard);
 }
 
 TEST(Twin, StandsBehindTheFirstRunInATable) {
@@ -132,16 +156,16 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
 
 TEST(Twin, EndsWhereItsSecondRunBecomesUnstable) {
   RunPlan plan = test::plan("free.toml", "free.csv", 8);
-  TwinPlan& wild = plan.twin.emplace();
+  Lane& wild = plan.beside.emplace_back();
   wild.parameters = plan.parameters;
   wild.parameters.kind = CouplingKind::standard;
   wild.parameters.k_vc = 1e5;
   wild.parameters.torque_limit = 1e4;
   RunPlan tame = plan;
-  tame.twin.reset();
+  tame.beside.clear();
   const auto none = [](std::span<const double>, const auto&) { return true; };
-  EXPECT_FALSE(simulate_twin(tame, {}, none).diverged);
-  const RunEnd end = simulate_twin(plan, {}, none);
+  EXPECT_FALSE(simulate(tame, {}, none).diverged);
+  const RunEnd end = simulate(plan, {}, none);
   EXPECT_TRUE(end.diverged);
   EXPECT_LT(end.rows, plan.rows);
   EXPECT_FALSE(end.why.empty());

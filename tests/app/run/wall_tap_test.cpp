@@ -30,7 +30,7 @@ Tapped tap(const ArmDescription& arm, const Eigen::VectorXd& x, WallTap wanted,
   t.plan = tap_plan(arm, t.place, t.tap, p);
   WallMeter meter = tap_meter(t.plan, t.tap);
   const RowLayout layout(arm.dof());
-  simulate(t.plan, {}, [&](std::span<const double> row, auto*) {
+  simulate(t.plan, {}, [&](std::span<const double> row, LaneChanges) {
     t.rows.insert(t.rows.end(), row.begin(), row.end());
     meter.add(layout, row);
     return true;

@@ -169,9 +169,9 @@ TEST(EnergyAccount, FindsNoFaultInAnyLawThatIsSwitchedToWhilePressing) {
           {2000, std::string("coupling.kind = \"") + name(static_cast<CouplingKind>(to)) + '"'}};
       double worst = -1;
       EnergyAccount account;
-      simulate(plan, {}, [&](std::span<const double> row, const Parameters* changed) {
+      simulate(plan, {}, [&](std::span<const double> row, LaneChanges changed) {
         const double time = channels.layout().in(row, Column::time)[0];
-        if (changed != nullptr) history.mark(time - plan.parameters.tick, "", "coupling.kind");
+        if (changed[0] != nullptr) history.mark(time - plan.parameters.tick, "", "coupling.kind");
         channels.append(history, row);
         account.follow(history, history.end());
         // What the predictive law promises is in its ledger, not in E_c.

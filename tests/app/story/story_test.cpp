@@ -58,11 +58,11 @@ TEST(StoryScripts, BecomeAPlanWithTheSettingsOfEachRunAtTheRowOfTheirStep) {
   const RunPlan& plan = story.plan;
   EXPECT_EQ(plan.rows, 5000u);
   EXPECT_EQ(plan.parameters.kind, CouplingKind::standard);
-  ASSERT_TRUE(plan.twin);
-  EXPECT_EQ(plan.twin->parameters.kind, Parameters{}.kind);
+  ASSERT_EQ(plan.lanes(), 2u);
+  EXPECT_EQ(plan.beside[0].parameters.kind, Parameters{}.kind);
   using Rows = std::vector<std::pair<std::uint64_t, std::string>>;
   EXPECT_EQ(listed(plan.changes), (Rows{{2500, "hand.stiffness = 700.0"}}));
-  EXPECT_EQ(listed(plan.twin->changes),
+  EXPECT_EQ(listed(plan.beside[0].changes),
             (Rows{{2500, "coupling.eta = 0.4"}, {2500, "hand.stiffness = 700.0"}}));
 }
 

@@ -49,7 +49,7 @@ class LiveExperiments : public testing::Test {
     Session s;
     s.info.tick = p.tick;
     s.layout = RowLayout(3);
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+    simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
       s.rows.insert(s.rows.end(), row.begin(), row.end());
       // As of a real device, whose hand nobody measures.
       for (double& torque : s.layout.in(std::span(s.rows).last(row.size()), Column::hand_torque)) {

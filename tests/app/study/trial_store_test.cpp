@@ -27,7 +27,7 @@ RunPlan rich_plan() {
   plan.hand_torque = {0.1, 0.2, 0.3};
   plan.force = {true, false};
   plan.start = rest_at(plan.arm, plan.hand.position.front());
-  plan.twin = TwinPlan{plan.parameters, {{20, "coupling.eta = 3.0"}}, plan.start};
+  plan.beside = {Lane{plan.parameters, {{20, "coupling.eta = 3.0"}}, plan.start}};
   return plan;
 }
 
@@ -54,13 +54,16 @@ const std::vector<std::pair<const char*, Change>> kChanges{
     {"how fast the proxy starts", [](RunPlan& p) { p.start->v2[2] = 1e-3; }},
     {"whether it starts armed", [](RunPlan& p) { p.start->armed = false; }},
     {"where it starts at all", [](RunPlan& p) { p.start.reset(); }},
+    {"what the ledger starts with", [](RunPlan& p) { p.start->reserve = 1e-3; }},
     {"the rows", [](RunPlan& p) { ++p.rows; }},
     {"the seed", [](RunPlan& p) { ++p.seed; }},
-    {"a parameter of the twin", [](RunPlan& p) { p.twin->parameters.eta = 0.5; }},
-    {"a change of the twin", [](RunPlan& p) { p.twin->changes[0].setting = "coupling.eta = 4"; }},
-    {"where the twin starts", [](RunPlan& p) { p.twin->start->x2[0] += 1e-15; }},
-    {"where the twin starts at all", [](RunPlan& p) { p.twin->start.reset(); }},
-    {"that there is a twin", [](RunPlan& p) { p.twin.reset(); }},
+    {"a parameter of the twin", [](RunPlan& p) { p.beside[0].parameters.eta = 0.5; }},
+    {"a change of the twin",
+     [](RunPlan& p) { p.beside[0].changes[0].setting = "coupling.eta = 4"; }},
+    {"where the twin starts", [](RunPlan& p) { p.beside[0].start->x2[0] += 1e-15; }},
+    {"where the twin starts at all", [](RunPlan& p) { p.beside[0].start.reset(); }},
+    {"one lane more", [](RunPlan& p) { p.beside.push_back(p.beside[0]); }},
+    {"that there is a twin", [](RunPlan& p) { p.beside.clear(); }},
 };
 
 TEST(TrialKey, IsAnotherOneForWhateverIsOtherwise) {

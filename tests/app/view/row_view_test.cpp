@@ -43,7 +43,7 @@ TEST(RowView, ShowsTheRecordedContactsOfALinkAsTheyWereLive) {
   ViewMemory live, played;
   std::vector<std::vector<ContactMark>> seen;
   Recorder recorder(dir / "a.h5", session_info(plan), plan.parameters, false);
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     seen.push_back(marks(rows, live, layout, row));
     return recorder.push_waiting(row);
   });

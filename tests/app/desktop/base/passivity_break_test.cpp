@@ -25,7 +25,7 @@ double given_while_held(const Parameters& p) {
   TraceChannels channels(RowLayout(3));
   channels.set_limits(motor_limits(plan.arm, p));
   History history({.channels = channels.count(), .seconds = 10});
-  simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     channels.append(history, row);
     return true;
   });

@@ -21,9 +21,8 @@ class RunAgain : public testing::Test {
     plan.parameters.tick = 0.01;
     plan.rows = 400;
     Recorder recorder(file_, session_info(plan), plan.parameters, false);
-    simulate(plan, {}, [&](std::span<const double> row, const Parameters*) {
-      return recorder.push_waiting(row);
-    });
+    simulate(plan, {},
+             [&](std::span<const double> row, LaneChanges) { return recorder.push_waiting(row); });
     recorder.finish();
     session_ = read_session(file_);
     chosen_ = session_parameters(session_, "a.h5");
