@@ -84,12 +84,12 @@ TEST(ToldSteps, GoWithASessionThroughItsFile) {
   const std::atomic<bool> never{false};
   const StoryRun run = run_story(story, never, [](double) {});
   const auto file = temp / "s.h5";
-  write_session(told.session, {story.title, story.steps}, file, false);
+  write_session(run.session, {story.title, story.steps}, file, false);
   const ToldSteps again = told_in(file);
   EXPECT_EQ(again.title, "Short");
   ASSERT_EQ(again.steps.size(), 2u);
   EXPECT_EQ(again.steps[1].caption, "Two.");
-  EXPECT_EQ(read_session(file).size(), told.session.size()) << "the rows are as they were";
+  EXPECT_EQ(read_session(file).size(), run.session.size()) << "the rows are as they were";
 }
 
 TEST(ToldSteps, ASessionWithoutAStoryHasNone) {
