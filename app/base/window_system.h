@@ -4,15 +4,25 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <cstdlib>
+
 namespace limpid {
 
 #ifdef GLFW_PLATFORM_WAYLAND
 constexpr bool kKnowsWayland = true;
-// Of the windows there are, after glfwInit(). On Wayland a program does not know where its windows
-// are and cannot give them an icon: the desktop finds it by the app id.
+// glfwInit(). Where no Wayland is named its library would complain on stderr.
+inline bool start_glfw() {
+  const char* wayland = std::getenv("WAYLAND_DISPLAY");
+  const bool named = wayland != nullptr && *wayland != '\0';
+  glfwInitHint(GLFW_PLATFORM, named ? GLFW_ANY_PLATFORM : GLFW_PLATFORM_X11);
+  return glfwInit() == GLFW_TRUE;
+}
+// Of the windows there are, once it has started. On Wayland a program does not know where its
+// windows are and cannot give them an icon: the desktop finds it by the app id.
 inline bool on_wayland() { return glfwGetPlatform() == GLFW_PLATFORM_WAYLAND; }
 #else
 constexpr bool kKnowsWayland = false;
+inline bool start_glfw() { return glfwInit() == GLFW_TRUE; }
 inline bool on_wayland() { return false; }
 #endif
 

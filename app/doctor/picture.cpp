@@ -40,7 +40,7 @@ std::string window_renderer() {
     glfwGetError(&why);
     throw std::runtime_error(why != nullptr ? why : otherwise);
   };
-  if (glfwInit() == GLFW_FALSE) refuse("glfwInit failed");
+  if (!start_glfw()) refuse("glfwInit failed");
   hint_window();
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   GLFWwindow* window = glfwCreateWindow(16, 16, "Limpid", nullptr, nullptr);

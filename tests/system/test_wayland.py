@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The window on Wayland, in a Weston that shows nobody anything. Needs GLFW 3.4, as Debian 13 has it."""
+"""The window on Wayland: in a Weston that is a window under Xvfb. Needs GLFW 3.4, as Debian 13 has it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from pathlib import Path
 from support import LIMPID
 
 
-@unittest.skipUnless(shutil.which("weston"), "needs weston")
+NEEDED = ("Xvfb", "weston", "xdotool")
+
+
+@unittest.skipUnless(all(shutil.which(tool) for tool in NEEDED), f"needs {', '.join(NEEDED)}")
 class OnWayland(unittest.TestCase):
     def setUp(self) -> None:
         self.home = Path(tempfile.mkdtemp(prefix="limpid-wayland-"))
@@ -35,49 +38,64 @@ class OnWayland(unittest.TestCase):
         (window,) = [f for f in json.loads(done.stdout)["findings"] if f["what"] == "window"]
         return window["found"]
 
-    def weston(self, scale: int) -> None:
-        """A desktop whose screen has so many pixels for each unit."""
-        server = subprocess.Popen(
-            ["weston", "--backend=headless", "--renderer=pixman", "--width=3200", "--height=1800",
-             f"--scale={scale}", "--idle-time=0", "--no-config", "--socket=limpid-test"],
-            env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+    def serve(self, *words: str, display: str = "", **how) -> None:
+        server = subprocess.Popen(words, env=self.environment | ({"DISPLAY": display} if display else {}),
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **how)  # fmt: skip
         self.addCleanup(server.wait)
         self.addCleanup(server.terminate)
+
+    def weston(self, scale: int) -> None:
+        """A desktop whose screen has so many pixels for each unit."""
+        read, write = os.pipe()
+        self.serve("Xvfb", "-displayfd", str(write), "-screen", "0", "2500x1500x24", "-nolisten", "tcp",
+                   "-ac", pass_fds=[write])  # fmt: skip
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.display = f":{pipe.readline().strip()}"
+        self.serve("weston", "--backend=x11", "--renderer=pixman", "--width=1200", "--height=700",
+                   f"--scale={scale}", "--idle-time=0", "--no-config", "--socket=limpid-test",
+                   display=self.display)  # fmt: skip
         end = time.monotonic() + 30
         while not (self.home / "limpid-test").exists():
             self.assertLess(time.monotonic(), end, "weston does not start")
             time.sleep(0.1)
 
-    def window(self) -> tuple[list[dict], str]:
-        """Its states until it has drawn some frames, and what it said to the desktop."""
+    def xdotool(self, *words: str) -> None:
+        subprocess.run(["xdotool", *words], env=self.environment | {"DISPLAY": self.display}, check=True)
+
+    def window(self) -> str:
+        """Opened, and its help by a key: what the program said to the desktop."""
         with (self.home / "states").open("w") as states, (self.home / "said").open("w") as said:
             app = subprocess.Popen([LIMPID, "--print-state"], stdout=states, stderr=said,
                                    env=self.environment | {"WAYLAND_DEBUG": "client"})  # fmt: skip
             try:
-                end = time.monotonic() + 60
-                while True:
-                    lines = (self.home / "states").read_text().split("\n")[:-1]
-                    seen = [json.loads(line) for line in lines]
-                    if seen and seen[-1]["frames"] > 20 and seen[-1]["ticks"] > 500:
-                        break
-                    self.assertIsNone(app.poll(), (self.home / "said").read_text()[-2000:])
-                    self.assertLess(time.monotonic(), end, seen[-1:])
-                    time.sleep(0.1)
+                self.wait(app, lambda s: s["frames"] > 20 and s["ticks"] > 500)
+                self.xdotool("mousemove", "600", "350", "key", "--delay", "200", "F1")  # it has to be over it
+                self.wait(app, lambda s: s["dialog"] == "help")
             finally:
                 app.terminate()
-                status = app.wait(20)
-        self.assertEqual(status, 0)
-        return seen, (self.home / "said").read_text()
+                app.wait(20)
+        return (self.home / "said").read_text()
+
+    def wait(self, app: subprocess.Popen, holds) -> None:
+        end = time.monotonic() + 60
+        state = None
+        while state is None or not holds(state):
+            self.assertIsNone(app.poll(), (self.home / "said").read_text()[-2000:])
+            self.assertLess(time.monotonic(), end, state)
+            time.sleep(0.1)
+            lines = (self.home / "states").read_text().split("\n")[:-1]
+            state = json.loads(lines[-1]) if lines else None
 
     def test_it_opens_with_the_desktops_name_for_it(self) -> None:
         self.weston(scale=1)
         self.assertIn("on Wayland", self.window_found())
-        _, said = self.window()
+        said = self.window()
         self.assertIn('set_app_id("limpid")', said)
 
     def test_two_pixels_for_a_unit_are_drawn(self) -> None:
         self.weston(scale=2)
-        _, said = self.window()
+        said = self.window()
         self.assertRegex(said, r"set_buffer_scale\(2\)|wp_viewport")
 
 

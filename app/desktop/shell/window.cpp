@@ -148,7 +148,7 @@ void watch_touches(GLFWwindow* window) {
 }  // namespace
 
 Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
-  if (glfwInit() == GLFW_FALSE) {
+  if (!start_glfw()) {
     const char* why = nullptr;
     glfwGetError(&why);
     throw std::runtime_error(std::string("no display to open a window on (") +
