@@ -46,7 +46,7 @@ class Document {
 
   // False, and says why, while the scene has to stay as it is.
   bool may_edit();
-  void add_object(SceneObject object, const Workplace& at);  // it gets a place in reach
+  void add_object(Object object, const Workplace& at);  // it gets a place in reach
   void add_model(LoadedModel loaded, const Workplace& at);
   void remove_selected();
   void duplicate_selected();

@@ -49,13 +49,13 @@ void Desktop::open_world(const std::string& device, const std::string& tip,
   ArmDescription arm = load_arm(device_file_, tip, consent(device_file_)).arm;
   const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
   SceneDocument whole = read_scene(file, arm);
-  if (whole.scene.meshes.empty()) {
+  if (std::ranges::none_of(whole.scene.objects, has_shape<Mesh>)) {
     document_.set_file(file.string());
     return open(std::move(arm), std::move(whole), {});
   }
   // Models may be large: they come in while the window is there already. Saving what is there
   // without them must not write over the scene's own file.
-  whole.scene.meshes.clear();
+  std::erase_if(whole.scene.objects, has_shape<Mesh>);
   whole.models.clear();
   whole.toml.clear();
   document_.set_file(default_scene(arm).string());

@@ -124,7 +124,7 @@ class Desktop {
   bool built_in_arm() const;
   // The arm whose tip is to be chosen, with Dialog::arm_tip.
   const std::optional<TipsToChoose>& tips() const { return tips_; }
-  void add_object(SceneObject object);
+  void add_object(Object object);
   void frame_selected();
   // Where the scene has no file of the user's own, its name is asked for.
   void save_scene();

@@ -95,17 +95,15 @@ Workplace Desktop::workplace() const {
   at.tips = {stage.rows().tip(layout.in(desk_.row(), Column::device_position)),
              stage.rows().tip(layout.in(desk_.row(), Column::proxy_position))};
   const SceneEditor& editor = document_.editor();
-  for (const ObjectRef& ref : objects_of(editor.scene())) {
-    const Model* model = ref.kind == ObjectKind::mesh ? editor.models()[ref.index].get() : nullptr;
-    const Bounds box = bounds_of(object_of(editor.scene(), ref), model);
+  const std::vector<Object>& objects = editor.scene().objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Bounds box = bounds_of(objects[i], editor.models()[i].get());
     if (!box.isEmpty()) at.taken.push_back(box);
   }
   return at;
 }
 
-void Desktop::add_object(SceneObject object) {
-  document_.add_object(std::move(object), workplace());
-}
+void Desktop::add_object(Object object) { document_.add_object(std::move(object), workplace()); }
 
 void Desktop::frame_selected() {
   if (!document_.editor().selected()) return;
@@ -137,10 +135,8 @@ void Desktop::save_and_leave() {
 void Desktop::show_scene() {
   const SceneEditor::Version& now = document_.editor().version();
   if (now.world == shown_.world && now.selected == shown_.selected) return;
-  std::optional<std::size_t> highlighted;
-  if (now.selected && now.selected->kind == ObjectKind::mesh) highlighted = now.selected->index;
   try {
-    desk_.stage().show(now.world->document, now.world->models, highlighted);
+    desk_.stage().show(now.world->document, now.world->models, now.selected);
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
   }

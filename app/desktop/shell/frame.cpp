@@ -98,8 +98,8 @@ ViewScene Frame::view_scene() {
     scene.rerun = session->rerun_row();
     scene.twin = session->twin_row();
     if (const StoryStep* step = session->step()) scene.told = step->caption;
-  } else if (const auto ref = desktop_.document().editor().selected()) {
-    scene.selected = object_of(desktop_.document().scene(), *ref);
+  } else if (const Object* selected = desktop_.document().editor().selected_object()) {
+    scene.selected = *selected;
   }
   if (!scene.recorded) scene.twin = desktop_.desk().twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown().names();
@@ -203,7 +203,7 @@ void Frame::draw_side(ScreenRect rect) {
       ScenePanel::draw_recorded(session->document());
     } else {
       scene_.draw(desktop_.document(), desk.stage().arm(), desk.recording(), act_,
-                  [this](SceneObject object) { desktop_.add_object(std::move(object)); });
+                  [this](Object object) { desktop_.add_object(std::move(object)); });
     }
   }
   if (section("Hand", true)) {
