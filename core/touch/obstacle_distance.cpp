@@ -4,6 +4,16 @@
 #include "core/touch/contacts.h"
 
 namespace limpid {
+namespace {
+
+// distance_to() without its normal.
+double only_distance_to(const Box& box, const Pose& pose, const Vec3& point) {
+  const Vec3 p = pose.linear().transpose() * (point - pose.translation());
+  const Vec3 out = p.cwiseAbs() - box.size / 2;
+  return (out.array() <= 0).all() ? out.maxCoeff() : out.cwiseMax(0).norm();
+}
+
+}  // namespace
 
 Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point) {
   return {plane.normal.dot(point - pose.translation()), plane.normal};
@@ -45,7 +55,7 @@ Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, cons
   // The distance to a convex body is convex along the segment: golden-section search.
   constexpr double kGolden = 0.6180339887498949;
   const auto at = [&](double s) { return Vec3(from + s * (to - from)); };
-  const auto distance = [&](double s) { return distance_to(box, pose, at(s)).distance; };
+  const auto distance = [&](double s) { return only_distance_to(box, pose, at(s)); };
   double low = 0, high = 1;
   double a = high - kGolden, b = low + kGolden;
   double at_a = distance(a), at_b = distance(b);
