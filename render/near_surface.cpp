@@ -12,16 +12,25 @@ namespace {
 constexpr double kTouch = 0.02, kShade = 0.06;  // how far off a surface is looked for [m]
 constexpr double kSame = 0.01;                  // of friction's limit: at it [-]
 
-std::optional<Surface> distance_to(const MeshObstacle& mesh, const Vec3& at, double within) {
-  if (!mesh.shape || !(mesh.size() > 0)) return std::nullopt;
-  const Pose stood = mesh.stood();
-  const Vec3 local = stood.inverse() * at / mesh.size() - mesh.shape->middle();
+using Found = std::optional<Surface>;
+
+template <class S>
+Found near(const S& shape, const Pose& pose, const Vec3& at, double) {
+  return distance_to(shape, pose, at);
+}
+
+Found near(const Mesh& mesh, const Pose& pose, const Vec3& at, double within) {
+  if (!mesh.triangles || !(mesh.size() > 0)) return std::nullopt;
+  const Pose stood = mesh.stood(pose);
+  const Vec3 local = stood.inverse() * at / mesh.size() - mesh.triangles->middle();
   MeshPoint found;
-  if (!mesh.shape->nearest(local, within / mesh.size(), MeshPoint::kNone, found))
+  if (!mesh.triangles->nearest(local, within / mesh.size(), MeshPoint::kNone, found))
     return std::nullopt;
   const double side = found.normal.dot(local - found.point) < 0 ? -1 : 1;
   return Surface{side * mesh.size() * found.distance, stood.linear() * found.normal};
 }
+
+Found near(const JointStop&, const Pose&, const Vec3&, double) { return std::nullopt; }
 
 bool slips(const ContactMark& contact, const Material& material) {
   const double normal = contact.force.dot(contact.normal);
@@ -36,16 +45,14 @@ bool slips(const ContactMark& contact, const Material& material) {
 
 std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within) {
   std::optional<NearSurface> nearest;
-  const auto look = [&](const Surface& s, const Material& material) {
-    const double distance = std::abs(s.distance);
-    if (!(distance <= within) || (nearest && distance >= nearest->distance)) return;
-    nearest = {at - s.distance * s.normal, s.normal, distance, material};
-  };
-  for (const Plane& plane : scene.planes) look(distance_to(plane, at), plane.material);
-  for (const Sphere& sphere : scene.spheres) look(distance_to(sphere, at), sphere.material);
-  for (const Box& box : scene.boxes) look(distance_to(box, at), box.material);
-  for (const MeshObstacle& mesh : scene.meshes)
-    if (const auto surface = distance_to(mesh, at, within)) look(*surface, mesh.material);
+  for (const Object& object : scene.objects) {
+    const Found found = std::visit(
+        [&](const auto& shape) { return near(shape, object.pose, at, within); }, object.shape);
+    if (!found) continue;
+    const double distance = std::abs(found->distance);
+    if (!(distance <= within) || (nearest && distance >= nearest->distance)) continue;
+    nearest = {at - found->distance * found->normal, found->normal, distance, object.material};
+  }
   return nearest;
 }
 

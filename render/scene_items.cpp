@@ -32,59 +32,12 @@ double reach_of(const ArmDescription& arm) {
   return std::max(reach, 0.05);
 }
 
-// A touchable shape that a model of the scene already shows is not drawn twice.
-bool shown_by_visual(const Plane& plane, const std::vector<Bounds>& visuals) {
-  return std::any_of(visuals.begin(), visuals.end(), [&](const Bounds& box) {
-    double highest = -1e9;
-    for (int i = 0; i < 8; ++i)
-      highest = std::max(
-          highest, plane.normal.dot(box.corner(static_cast<Bounds::CornerType>(i)) - plane.point));
-    return std::abs(highest) < 0.002;
-  });
-}
-
 bool shown_by_visual(const Bounds& shape, const std::vector<Bounds>& visuals) {
   const double close = 0.1 * shape.sizes().maxCoeff();
   return std::any_of(visuals.begin(), visuals.end(), [&](const Bounds& box) {
     return (box.min() - shape.min()).cwiseAbs().maxCoeff() < close &&
            (box.max() - shape.max()).cwiseAbs().maxCoeff() < close;
   });
-}
-
-Item slab(const Plane& plane, double reach) {
-  const double edge = 2.2 * reach, thickness = 0.07 * reach;
-  const Vec3 normal = plane.normal.normalized();
-  const Vec3 ahead = 0.45 * reach * Vec3::UnitX();
-  Pose pose = Pose::Identity();
-  pose.translation() = ahead - normal.dot(ahead - plane.point) * normal - 0.5 * thickness * normal;
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
-  return {make_box({edge, edge, thickness}, 0.25 * thickness, kObject), pose, -1};
-}
-
-void add_scene(const Scene& scene, std::span<const VisualPicture> seen, double reach,
-               SceneItems& items) {
-  std::vector<Bounds> visuals;
-  for (const VisualPicture& visual : seen) {
-    Item item{load_model_file(visual.file), visual.pose, -1};
-    transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
-    add_coarse(item.model);
-    visuals.push_back(moved(item.model.bounds(), item.pose));
-    items.world.push_back(std::move(item));
-  }
-  for (const Plane& plane : scene.planes)
-    if (!shown_by_visual(plane, visuals)) items.world.push_back(slab(plane, reach));
-  for (const Sphere& sphere : scene.spheres) {
-    const Vec3 r = Vec3::Constant(sphere.radius);
-    if (shown_by_visual(Bounds(sphere.center - r, sphere.center + r), visuals)) continue;
-    Pose pose = Pose::Identity();
-    pose.translation() = sphere.center;
-    items.world.push_back({make_sphere(sphere.radius, kObject), pose, -1});
-  }
-  for (const Box& box : scene.boxes) {
-    const Bounds edges(-0.5 * box.size, 0.5 * box.size);
-    if (shown_by_visual(moved(edges, box.pose), visuals)) continue;
-    items.world.push_back({make_box(box.size, 0.04 * box.size.minCoeff(), kObject), box.pose, -1});
-  }
 }
 
 // The direction, in the frame of joint j at zero, in which the arm leaves the joint's axis.
@@ -100,21 +53,79 @@ Vec3 lever(const ArmDescription& arm, std::size_t j) {
   return arm.joints[j].axis.unitOrthogonal() * 0.05;
 }
 
-void add_joint_walls(const ArmDescription& arm, const Scene& scene, SceneItems& items) {
-  for (const JointContact& contact : scene.joint_contacts) {
-    if (contact.joint < 0 || contact.joint >= arm.dof()) continue;
-    const auto j = static_cast<std::size_t>(contact.joint);
-    const Vec3 axis = arm.joints[j].axis.normalized(), arm_of = lever(arm, j);
+// Adds what there is to see of an object. A shape that a model of the scene already shows is not
+// drawn twice.
+class ObjectItems {
+ public:
+  ObjectItems(const ArmDescription& arm, const std::vector<Bounds>& visuals, SceneItems& items)
+      : arm_(arm), visuals_(visuals), items_(items) {}
+
+  void add(const Pose& pose, const Plane& plane) {
+    const Vec3 normal = plane.normal.normalized();
+    const Vec3 point = pose.translation();
+    if (normal.z() > 0.999) items_.level_planes.push_back(point.z());
+    const bool shown = std::any_of(visuals_.begin(), visuals_.end(), [&](const Bounds& box) {
+      double highest = -1e9;
+      for (int i = 0; i < 8; ++i) {
+        const Vec3 corner = box.corner(static_cast<Bounds::CornerType>(i));
+        highest = std::max(highest, plane.normal.dot(corner - point));
+      }
+      return std::abs(highest) < 0.002;
+    });
+    if (shown) return;
+    const double edge = 2.2 * items_.reach, thickness = 0.07 * items_.reach;
+    const Vec3 ahead = 0.45 * items_.reach * Vec3::UnitX();
+    Pose slab = pose_at(ahead - normal.dot(ahead - point) * normal - 0.5 * thickness * normal);
+    slab.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+    items_.world.push_back(
+        {make_box({edge, edge, thickness}, 0.25 * thickness, kObject), slab, -1});
+  }
+
+  void add(const Pose& pose, const Sphere& sphere) {
+    const Vec3 r = Vec3::Constant(sphere.radius);
+    if (shown_by_visual(moved(Bounds(-r, r), pose), visuals_)) return;
+    items_.world.push_back({make_sphere(sphere.radius, kObject), pose, -1});
+  }
+
+  void add(const Pose& pose, const Box& box) {
+    const Bounds edges(-0.5 * box.size, 0.5 * box.size);
+    if (shown_by_visual(moved(edges, pose), visuals_)) return;
+    items_.world.push_back({make_box(box.size, 0.04 * box.size.minCoeff(), kObject), pose, -1});
+  }
+
+  void add(const Pose&, const Mesh&) {}  // SceneView::set_meshes() has their models
+
+  void add(const Pose&, const JointStop& stop) {
+    if (stop.joint < 0 || stop.joint >= arm_.dof()) return;
+    const auto j = static_cast<std::size_t>(stop.joint);
+    const Vec3 axis = arm_.joints[j].axis.normalized(), arm_of = lever(arm_, j);
     const Vec3 x = arm_of.normalized();
     Mat3 frame;
     frame << x, axis.cross(x), axis;
-    Pose pose = arm.joints[j].origin;
-    pose.rotate(Eigen::AngleAxisd(contact.angle, axis).toRotationMatrix() * frame);
+    Pose pose = arm_.joints[j].origin;
+    pose.rotate(Eigen::AngleAxisd(stop.angle, axis).toRotationMatrix() * frame);
     const double length = arm_of.norm();
-    const double angle = contact.direction < 0 ? -0.5 : 0.5;
-    items.walls.push_back({make_sector(0.15 * length, 0.8 * length, angle, 0.2 * length, {}), pose,
-                           contact.joint - 1});
+    const double angle = stop.direction < 0 ? -0.5 : 0.5;
+    items_.walls.push_back(
+        {make_sector(0.15 * length, 0.8 * length, angle, 0.2 * length, {}), pose, stop.joint - 1});
   }
+
+ private:
+  const ArmDescription& arm_;
+  const std::vector<Bounds>& visuals_;
+  SceneItems& items_;
+};
+
+std::vector<Bounds> add_visuals(std::span<const VisualPicture> seen, SceneItems& items) {
+  std::vector<Bounds> bounds;
+  for (const VisualPicture& visual : seen) {
+    Item item{load_model_file(visual.file), visual.pose, -1};
+    transform(item.model, Eigen::Affine3d(Eigen::Scaling(visual.scale)));
+    add_coarse(item.model);
+    bounds.push_back(moved(item.model.bounds(), item.pose));
+    items.world.push_back(std::move(item));
+  }
+  return bounds;
 }
 
 // The arm at rest, and the room in front of it where the hand will be.
@@ -195,13 +206,13 @@ void collect_scene_items(const ArmDescription& arm, const Scene& scene,
   items.walls.clear();
   items.probes.clear();
   items.level_planes.clear();
-  add_scene(scene, visuals, items.reach, items);
-  add_joint_walls(arm, scene, items);
+  const std::vector<Bounds> shown = add_visuals(visuals, items);
+  ObjectItems objects(arm, shown, items);
+  for (const Object& object : scene.objects)
+    std::visit([&](const auto& shape) { objects.add(object.pose, shape); }, object.shape);
   for (const Probe& probe : scene.probes)
     items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
                             Pose::Identity(), probe.link});
-  for (const Plane& plane : scene.planes)
-    if (plane.normal.normalized().z() > 0.999) items.level_planes.push_back(plane.point.z());
 }
 
 SceneItems collect_items(const ArmDescription& arm, const Scene& scene,

@@ -48,11 +48,8 @@ Vec3 tip_of(const ArmDescription& description, const Eigen::VectorXd& x) {
 }
 
 Scene plane_over(const Vec3& tip) {
-  Plane plane;
-  plane.name = "plane";
-  plane.point = tip + Vec3(0, 0, 0.002);
   Scene scene;
-  scene.planes.push_back(plane);
+  scene.add({"plane", pose_at(tip + Vec3(0, 0, 0.002)), Plane{}});
   return scene;
 }
 

@@ -63,16 +63,13 @@ std::shared_ptr<const TriangleMesh> bumpy_body(std::size_t triangles) {
 Scene StrokePlace::on_mesh(std::shared_ptr<const TriangleMesh> shape, double tip_radius,
                            bool capsule) const {
   Scene scene = touching_with(arm, tip_radius, capsule);
-  MeshObstacle mesh;
-  mesh.pose.translation() = middle;
-  mesh.shape = std::move(shape);
-  scene.meshes.push_back(mesh);
+  scene.add({"", pose_at(middle), Mesh{.triangles = std::move(shape)}});
   return scene;
 }
 
 Scene StrokePlace::on_plane(double tip_radius, bool capsule) const {
   Scene scene = touching_with(arm, tip_radius, capsule);
-  scene.planes.push_back({"", middle - Vec3(1.1 * kSize, 0, 0), -Vec3::UnitX(), 600});
+  scene.add({"", pose_at(middle - Vec3(1.1 * kSize, 0, 0)), Plane{-Vec3::UnitX()}});
   return scene;
 }
 

@@ -124,24 +124,27 @@ CheckReport on_arm(const std::string& file, const InputOptions& input) {
   return report;
 }
 
-void list_mesh(const MeshObstacle& mesh, const Model& model, CheckReport& report) {
+void list_mesh(const std::string& name, const Mesh& mesh, const Model& model, CheckReport& report) {
   const Vec3 size = mesh.size() * model.bounds().sizes();
   report.facts.push_back(fmt::format("model        {}, {} triangles, {:.3g} x {:.3g} x {:.3g} m",
-                                     mesh.name, model.indices.size() / 3, size.x(), size.y(),
-                                     size.z()));
+                                     name, model.indices.size() / 3, size.x(), size.y(), size.z()));
 }
 
 CheckReport on_scene(const std::string& file, const InputOptions& input) {
   const LoadedScene loaded = load_scene(file, arm_of(input));
-  const Scene& scene = loaded.document.scene;
+  const std::vector<Object>& objects = loaded.document.scene.objects;
   CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
   report.facts.push_back(
       fmt::format("to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
-                  scene.planes.size(), scene.spheres.size(), scene.boxes.size(),
-                  scene.meshes.size(), scene.joint_contacts.size()));
-  for (std::size_t i = 0; i < loaded.models.size(); ++i) {
-    list_mesh(scene.meshes[i], *loaded.models[i], report);
+                  std::ranges::count_if(objects, has_shape<Plane>),
+                  std::ranges::count_if(objects, has_shape<Sphere>),
+                  std::ranges::count_if(objects, has_shape<Box>),
+                  std::ranges::count_if(objects, has_shape<Mesh>),
+                  std::ranges::count_if(objects, has_shape<JointStop>)));
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&objects[i].shape);
+    if (mesh != nullptr) list_mesh(objects[i].name, *mesh, *loaded.models[i], report);
   }
   return report;
 }

@@ -12,7 +12,7 @@
 #include "app/cli/progress.h"
 #include "app/study/live.h"
 #include "core/realtime/realtime.h"
-#include "devices/files/scene/scene_writer.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 namespace {
@@ -117,11 +117,7 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
   };
   lab.stiffen = [&bench](double stiffness) {
     SceneDocument document = bench.plan().document;
-    Scene& scene = document.scene;
-    for (auto& each : scene.planes) each.material.stiffness = stiffness;
-    for (auto& each : scene.spheres) each.material.stiffness = stiffness;
-    for (auto& each : scene.boxes) each.material.stiffness = stiffness;
-    for (auto& each : scene.meshes) each.material.stiffness = stiffness;
+    set_surface_stiffness(document.scene, stiffness);
     document.toml = scene_text(document, bench.plan().arm);
     bench.touch(document);
   };

@@ -177,7 +177,9 @@ Rehearsal rehearse(const ArmDescription& truth, const Unlikeness& bench,
                    const ArmDescription& believed, const Parameters& p) {
   Rehearsal result;
   Scene stop;
-  stop.joint_contacts.push_back({"stop", 0, rest_pose(truth)[0] + kStop, 1, kStopStiffness});
+  stop.add({.name = "stop",
+            .shape = JointStop{0, rest_pose(truth)[0] + kStop, 1},
+            .material = {kStopStiffness}});
   Stand pressed(truth, bench, believed, p, stop);
   press(pressed, p, result);
   Stand free(truth, bench, believed, p, Scene{});

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <future>
+#include <map>
 
 #include "app/run/model_report.h"
 #include "core/touch/triangle_mesh.h"
@@ -12,38 +13,40 @@
 namespace limpid {
 namespace {
 
-std::string where(const SceneDocument& document, const MeshObstacle& mesh) {
+std::string where(const SceneDocument& document, const Mesh& mesh) {
   const std::string& path = document.models.at(mesh.model).path;
   return path.empty() ? mesh.model : path;
 }
 
 // What is touched is built beside what is drawn from afar: each takes longer than reading did.
-std::shared_ptr<const Model> finished(Model model, MeshObstacle& mesh, const std::string& name,
+std::shared_ptr<const Model> finished(Model model, Mesh& mesh, const std::string& name,
                                       const LoadProgress& progress) {
   std::future<std::shared_ptr<const TriangleMesh>> shape;
-  if (!mesh.shape) {
+  if (!mesh.triangles) {
     shape = std::async([&] { return shape_of(model, name, progress.cancel); });
   }
   add_coarse(model);
-  if (shape.valid()) mesh.shape = shape.get();
+  if (shape.valid()) mesh.triangles = shape.get();
   return std::make_shared<const Model>(std::move(model));
 }
 
 }  // namespace
 
 MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
-  MeshModels models;
-  std::vector<MeshObstacle>& meshes = document.scene.meshes;
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    MeshObstacle& mesh = meshes[i];
+  std::vector<Object>& objects = document.scene.objects;
+  MeshModels models(objects.size());
+  std::map<std::string, std::size_t> known;  // the first object of a file
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!has_shape<Mesh>(objects[i])) continue;
+    Mesh& mesh = std::get<Mesh>(objects[i].shape);
     ModelFile& file = document.models.at(mesh.model);
     const std::string name = where(document, mesh);
-    std::size_t same = 0;
-    while (same < i && where(document, meshes[same]) != name) ++same;
-    if (same < i) {
-      file.bytes = document.models.at(meshes[same].model).bytes;
-      mesh.shape = meshes[same].shape;
-      models.push_back(models[same]);
+    const auto [same, is_new] = known.try_emplace(name, i);
+    if (!is_new) {
+      const Mesh& first = std::get<Mesh>(objects[same->second].shape);
+      file.bytes = document.models.at(first.model).bytes;
+      mesh.triangles = first.triangles;
+      models[i] = models[same->second];
       continue;
     }
     const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
@@ -55,7 +58,7 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
       if (!whole.empty()) {
         file.bytes = std::make_shared<const std::vector<unsigned char>>(std::move(whole));
       }
-      models.push_back(finished(std::move(model), mesh, name, progress));
+      models[i] = finished(std::move(model), mesh, name, progress);
     } catch (const LoadCancelled&) {
       throw;
     } catch (const std::exception& e) {
@@ -67,17 +70,15 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
 
 std::vector<std::string> mesh_warnings(const Scene& scene, const MeshModels& models) {
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const MeshObstacle& mesh = scene.meshes[i];
-    for (const std::string& warning : models[i]->warnings) {
-      lines.push_back(mesh.name + ": " + warning);
-    }
-    if (const std::string odd = size_warning(*models[i], mesh.size()); !odd.empty()) {
-      lines.push_back(mesh.name + ": " + odd);
-    }
-    for (const std::string& line : touch_warnings(*models[i], *mesh.shape)) {
-      lines.push_back(mesh.name + ": " + line);
-    }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.objects[i].shape);
+    if (mesh == nullptr) continue;
+    const auto say = [&, start = scene.objects[i].name + ": "](const std::string& line) {
+      if (!line.empty()) lines.push_back(start + line);
+    };
+    for (const std::string& warning : models[i]->warnings) say(warning);
+    say(size_warning(*models[i], mesh->size()));
+    for (const std::string& line : touch_warnings(*models[i], *mesh->triangles)) say(line);
   }
   return lines;
 }

@@ -11,7 +11,7 @@
 
 namespace limpid {
 
-// What a scene's meshes look like, in their order.
+// What a scene's meshes look like, at the places of its objects; null for others.
 using MeshModels = std::vector<std::shared_ptr<const Model>>;
 
 // Reads the model of every mesh and builds its shape, if it has none yet. Equal files share both.

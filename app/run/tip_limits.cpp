@@ -35,18 +35,6 @@ TipLimits::Wall predictive_wall(const TipMoved& tip, const WallSetting& s, const
   return {wall.stiffness, why()};
 }
 
-double stiffest(const Scene& scene) {
-  double most = 0;
-  const auto look = [&most](const auto& things) {
-    for (const auto& thing : things) most = std::max(most, thing.material.stiffness);
-  };
-  look(scene.planes);
-  look(scene.spheres);
-  look(scene.boxes);
-  look(scene.meshes);
-  return most;
-}
-
 }  // namespace
 
 TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x,
@@ -68,7 +56,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
                                 "the damping there is against the lag of the contact"};
   at(CouplingKind::predictive) = predictive_wall(easiest(arm.J, arm.M), s, p);
   l.every_hand = every_hands_wall(l.tip, p.tick, l.delay);
-  l.scene = stiffest(scene);
+  l.scene = stiffest_surface(scene);
   l.felt = {(1 + p.inertia_ratio) * l.tip.mass,
             l.tip.damping,
             p.b_v / lever2,

@@ -86,14 +86,19 @@ RunPlan tap_plan(const ArmDescription& arm, const TapPlace& place, const WallTap
   return plan;
 }
 
-WallMeter::WallMeter(const ArmDescription& arm, const Plane& wall, double T, std::uint64_t from)
-    : arm_(arm), wall_(wall), fast_(WallTap::kFast, 1 / T), from_(from) {}
+WallMeter::WallMeter(const ArmDescription& arm, const Object& wall, double T, std::uint64_t from)
+    : arm_(arm),
+      point_(wall.pose.translation()),
+      out_(std::get<Plane>(wall.shape).normal),
+      stiffness_(wall.material.stiffness),
+      fast_(WallTap::kFast, 1 / T),
+      from_(from) {}
 
 void WallMeter::add(const RowLayout& layout, std::span<const double> row) {
   const auto forces = layout.in(row, Column::contact_force);
   double push = 0;
   for (std::size_t i = 0; i + 2 < forces.size(); i += 3) {
-    push += wall_.normal.dot(Vec3(forces[i], forces[i + 1], forces[i + 2]));
+    push += out_.dot(Vec3(forces[i], forces[i + 1], forces[i + 2]));
   }
   const double trembling = fast_(push);
   if (row_++ < from_) return;
@@ -102,12 +107,10 @@ void WallMeter::add(const RowLayout& layout, std::span<const double> row) {
   const auto x = layout.in(row, Column::device_position);
   const Vec3 tip =
       arm_.tip_at(Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
-  depth_ += std::max(0.0, wall_.normal.dot(wall_.point - tip));
+  depth_ += std::max(0.0, out_.dot(point_ - tip));
 }
 
-double WallMeter::felt() const {
-  return depth_ > 0 ? force_ / depth_ / wall_.material.stiffness : 0;
-}
+double WallMeter::felt() const { return depth_ > 0 ? force_ / depth_ / stiffness_ : 0; }
 
 double WallMeter::rattle() const {
   return row_ > from_ ? std::sqrt(fast2_ / static_cast<double>(row_ - from_)) : 0;
@@ -115,7 +118,7 @@ double WallMeter::rattle() const {
 
 WallMeter tap_meter(const RunPlan& plan, const WallTap& tap) {
   const auto judged = static_cast<std::uint64_t>(std::llround(tap.judged / plan.parameters.tick));
-  return {plan.arm, plan.document.scene.planes.front(), plan.parameters.tick,
+  return {plan.arm, plan.document.scene.objects.front(), plan.parameters.tick,
           plan.rows - std::min(plan.rows, judged)};
 }
 

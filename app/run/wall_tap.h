@@ -39,11 +39,11 @@ struct WallTap {
 RunPlan tap_plan(const ArmDescription& arm, const TapPlace& place, const WallTap& tap,
                  const Parameters& p);
 
-// Takes the rows of a run at a flat wall, and says what was felt of it from row `from` on.
+// Takes the rows of a run at a plane, and says what was felt of it from row `from` on.
 class WallMeter {
  public:
   // `T` [s].
-  WallMeter(const ArmDescription& arm, const Plane& wall, double T, std::uint64_t from);
+  WallMeter(const ArmDescription& arm, const Object& wall, double T, std::uint64_t from);
 
   void add(const RowLayout& layout, std::span<const double> row);
 
@@ -53,7 +53,8 @@ class WallMeter {
 
  private:
   Arm<kAnyDof> arm_;
-  Plane wall_;
+  Vec3 point_, out_;  // of the wall
+  double stiffness_;  // [N/m]
   HighPass fast_;
   std::uint64_t from_, row_ = 0;
   double fast2_ = 0, force_ = 0, depth_ = 0;

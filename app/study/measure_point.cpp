@@ -96,9 +96,11 @@ std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
 
 std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
                                   const std::atomic<bool>& stop, const PointSink& also) {
-  const std::vector<Plane>& walls = run.document.scene.planes;
+  const std::vector<Object>& objects = run.document.scene.objects;
+  const auto wall = std::ranges::find_if(objects, has_shape<Plane>);
+  const bool one_wall = std::ranges::count_if(objects, has_shape<Plane>) == 1;
   RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan),
-                 walls.size() == 1 ? walls.data() : nullptr);
+                 one_wall ? &*wall : nullptr);
   const auto must_stop = [&] {
     for (const StopRule& rule : plan.stops) {
       if (meter.seconds() >= rule.after && rule.limit.met(rule.limit.measure->value(meter))) {

@@ -74,7 +74,7 @@ const MeasureInfo* find_measure(std::string_view name) {
 }
 
 RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
-                   const Plane* wall)
+                   const Object* wall)
     : layout_(arm.dof()),
       summary_(layout_),
       T_(T),

@@ -7,7 +7,7 @@
 
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "devices/files/scene/scene_writer.h"
+#include "devices/files/scene/scene_file.h"
 
 namespace limpid {
 

@@ -17,13 +17,6 @@
 namespace limpid {
 namespace {
 
-void set_stiffness(Scene& scene, double k) {
-  for (Plane& each : scene.planes) each.material.stiffness = k;
-  for (Sphere& each : scene.spheres) each.material.stiffness = k;
-  for (Box& each : scene.boxes) each.material.stiffness = k;
-  for (MeshObstacle& each : scene.meshes) each.material.stiffness = k;
-}
-
 // What an axis does to a run: parameters, the scene and the arm; what a case names of the world.
 struct Chosen {
   SweepWorld world;
@@ -167,7 +160,7 @@ RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double>
   RunPlan run = *plan.worlds.at(chosen.world);
   run.parameters = chosen.parameters;
   run.seed = plan.seed;
-  if (chosen.stiffness) set_stiffness(run.document.scene, *chosen.stiffness);
+  if (chosen.stiffness) set_surface_stiffness(run.document.scene, *chosen.stiffness);
   if (plan.jump) run.hand.time.back() = run.parameters.tick;
   if (point.repeat > 0) run.hand = varied(run.hand, plan.seed, point.repeat);
   const double seconds = plan.seconds > 0 ? plan.seconds : run.hand.duration();

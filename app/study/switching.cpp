@@ -84,7 +84,7 @@ struct Balance {
 Balance balance_of(const Trial& trial, const Session& s) {
   const double damper = s.at(0, Column::kind)[0] == 2 ? kWallDamping : 0;
   Balance balance;
-  const double K = trial.plan.document.scene.joint_contacts.front().stiffness;
+  const double K = trial.plan.document.scene.objects.front().material.stiffness;
   double taken = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
     balance.gain.push_back(s.at(k, Column::contact_gain)[0] + taken);

@@ -18,13 +18,14 @@
 
 namespace limpid {
 
-// `models` in the order of the scene's meshes.
 inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshModels& models,
                                               std::optional<std::size_t> highlighted = {}) {
   std::vector<MeshPicture> pictures;
-  for (std::size_t i = 0; i < std::min(scene.meshes.size(), models.size()); ++i) {
-    const MeshObstacle& mesh = scene.meshes[i];
-    pictures.push_back({models[i], mesh.stood(), mesh.size(), highlighted == i});
+  for (std::size_t i = 0; i < std::min(scene.objects.size(), models.size()); ++i) {
+    const Object& object = scene.objects[i];
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh == nullptr) continue;
+    pictures.push_back({models[i], mesh->stood(object.pose), mesh->size(), highlighted == i});
   }
   return pictures;
 }

@@ -15,42 +15,44 @@ constexpr int kMostBalls = 24;
 }  // namespace
 
 template <int N>
-Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene) : scene_(scene) {
+Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
+    : stiffest_(stiffest_surface(scene)) {
   const Vec3 tip = arm.tip.translation();
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
   probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
-  const std::size_t obstacles = scene.planes.size() + scene.spheres.size() + scene.boxes.size();
+  for (const Object& object : scene.objects) {
+    std::visit(
+        [&]<class S>(const S& shape) {
+          if constexpr (std::is_same_v<S, JointStop>) {
+            stops_.push_back({shape, {.stiffness = object.material.stiffness}});
+          } else if constexpr (!std::is_same_v<S, Mesh>) {
+            solids_.push_back({shape, object.pose, object.material});
+          }
+        },
+        object.shape);
+  }
   Contact<N> empty;
   empty.gradient = Vec<N>::Zero(arm.dof());
-  contacts_.assign(obstacles * probes_.size() + scene.joint_contacts.size(), empty);
-  add_mesh_contacts(arm);
+  contacts_.assign(solids_.size() * probes_.size() + stops_.size(), empty);
+  for (const Object& object : scene.objects) {
+    if (has_shape<Mesh>(object)) add_mesh_contacts(object, arm);
+  }
   memories_.resize(contacts_.size() + meshes_.size());
-  const auto look = [&](const auto& surfaces) {
-    for (const auto& s : surfaces) stiffest_ = std::max(stiffest_, s.material.stiffness);
-  };
-  look(scene.planes);
-  look(scene.spheres);
-  look(scene.boxes);
-  look(scene.meshes);
 }
 
 template <int N>
-void Contacts<N>::add_mesh_contacts(const ArmDescription& arm) {
-  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
-    const MeshObstacle& mesh = scene_.meshes[m];
-    for (const Probe& probe : probes_) {
-      const double length = (probe.to - probe.from).norm();
-      const double apart = std::max(kSpacing * probe.radius, length / (kMostBalls - 1));
-      const int balls = length > 0 ? 1 + static_cast<int>(std::ceil(length / apart)) : 1;
-      for (int i = 0; i < balls; ++i) {
-        const double part = balls > 1 ? static_cast<double>(i) / (balls - 1) : 0;
-        MeshContact<N> contact(mesh, probe.radius, arm.dof());
-        contact.mesh = static_cast<int>(m);
-        contact.id = contacts_.size() + meshes_.size();
-        contact.link = probe.link;
-        contact.on_link = probe.from + part * (probe.to - probe.from);
-        meshes_.push_back(std::move(contact));
-      }
+void Contacts<N>::add_mesh_contacts(const Object& mesh, const ArmDescription& arm) {
+  for (const Probe& probe : probes_) {
+    const double length = (probe.to - probe.from).norm();
+    const double apart = std::max(kSpacing * probe.radius, length / (kMostBalls - 1));
+    const int balls = length > 0 ? 1 + static_cast<int>(std::ceil(length / apart)) : 1;
+    for (int i = 0; i < balls; ++i) {
+      const double part = balls > 1 ? static_cast<double>(i) / (balls - 1) : 0;
+      MeshContact<N> contact(mesh, probe.radius, arm.dof());
+      contact.id = contacts_.size() + meshes_.size();
+      contact.link = probe.link;
+      contact.on_link = probe.from + part * (probe.to - probe.from);
+      meshes_.push_back(std::move(contact));
     }
   }
 }
@@ -70,12 +72,9 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
 template <int N>
 void Contacts<N>::take_over(const Contacts& other) {
   for (MeshContact<N>& mine : meshes_) {
-    const MeshObstacle& mesh = scene_.meshes[static_cast<std::size_t>(mine.mesh)];
     for (const MeshContact<N>& theirs : other.meshes_) {
-      const MeshObstacle& before = other.scene_.meshes[static_cast<std::size_t>(theirs.mesh)];
-      if (mesh.shape != before.shape || mesh.size() != before.size() ||
-          mesh.stood().matrix() != before.stood().matrix() || mine.link != theirs.link ||
-          mine.on_link != theirs.on_link || mine.touch.radius() != theirs.touch.radius()) {
+      if (!mine.touch.same_surface(theirs.touch) || mine.link != theirs.link ||
+          mine.on_link != theirs.on_link) {
         continue;
       }
       mine.touch.take_over(theirs.touch);
@@ -110,25 +109,26 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
   for (const Probe& probe : probes_) {
     const Vec3 from = Arm<N>::point(f, probe.link, probe.from);
     const Vec3 to = Arm<N>::point(f, probe.link, probe.to);
-    const auto touch = [&](const auto& obstacle) {
-      const Vec3 point = from == to ? from : nearest_on_segment(obstacle, from, to);
-      const Surface s = distance_to(obstacle, point);
+    const bool ball = from == to;
+    const auto touch = [&](const auto& shape, const Solid& solid) {
+      const Vec3 point = ball ? from : nearest_on_segment(shape, solid.pose, from, to);
+      const Surface s = distance_to(shape, solid.pose, point);
       const double depth = probe.radius - s.distance;
       if (depth > -kReach) {
-        add({depth, {}, obstacle.material, point, s.normal, probe.link, id}, arm, f);
+        add({depth, {}, solid.material, point, s.normal, probe.link, id}, arm, f);
       }
       ++id;
     };
-    for (const Plane& plane : scene_.planes) touch(plane);
-    for (const Sphere& sphere : scene_.spheres) touch(sphere);
-    for (const Box& box : scene_.boxes) touch(box);
+    for (const Solid& solid : solids_) {
+      std::visit([&](const auto& shape) { touch(shape, solid); }, solid.shape);
+    }
   }
-  for (const JointContact& stop : scene_.joint_contacts) {
+  for (const auto& [stop, material] : stops_) {
     Contact<N>& c = contacts_[count_++];
     c.depth = stop.direction * (x[stop.joint] - stop.angle);
     c.gradient.setZero();
     c.gradient[stop.joint] = stop.direction;
-    c.material = {.stiffness = stop.stiffness};
+    c.material = material;
     c.point = f.p[static_cast<std::size_t>(stop.joint)];
     c.normal.setZero();
     c.friction.setZero();

@@ -13,6 +13,20 @@
 
 namespace limpid {
 
+// Signed distance of a point to the surface, negative inside, and the outward normal there.
+struct Surface {
+  double distance;  // [m]
+  Vec3 normal;
+};
+Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point);
+Surface distance_to(const Sphere& sphere, const Pose& pose, const Vec3& point);
+Surface distance_to(const Box& box, const Pose& pose, const Vec3& point);
+
+// The point of the segment from-to nearest to a shape.
+Vec3 nearest_on_segment(const Plane& plane, const Pose& pose, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Sphere& sphere, const Pose& pose, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, const Vec3& to);
+
 // One possible contact, linear in the configuration around x2: penetration
 // d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
 template <int N>
@@ -46,11 +60,11 @@ inline double friction_stiffness(const Material& m) {
 // the nearest x that the mesh leaves free, within a tick a room of planes.
 template <int N>
 struct MeshContact {
-  MeshContact(const MeshObstacle& obstacle, double radius, Eigen::Index dof)
-      : touch(obstacle, radius), material(obstacle.material), J(Jacobian<N>::Zero(3, dof)) {}
+  MeshContact(const Object& mesh, double radius, Eigen::Index dof)
+      : touch(mesh, radius), material(mesh.material), J(Jacobian<N>::Zero(3, dof)) {}
 
   MeshTouch touch;
-  int mesh = 0, link = 0;       // indices
+  int link = 0;                 // index
   std::size_t id = 0;           // among all contacts
   Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
   Material material;
@@ -122,14 +136,26 @@ class Contacts {
   double potential() const { return potential_; }
 
  private:
+  // Objects as a tick wants them.
+  struct Solid {
+    std::variant<Plane, Sphere, Box> shape;  // those that distance_to() knows
+    Pose pose;
+    Material material;
+  };
+  struct Stop {
+    JointStop at;
+    Material material;
+  };
+
   double stored() const;
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
-  void add_mesh_contacts(const ArmDescription& arm);
+  void add_mesh_contacts(const Object& mesh, const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   static void aim(MeshContact<N>& contact);
 
-  Scene scene_;
   std::vector<Probe> probes_;  // the tip first
+  std::vector<Solid> solids_;
+  std::vector<Stop> stops_;
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
@@ -141,19 +167,5 @@ class Contacts {
 extern template class Contacts<3>;
 extern template class Contacts<7>;
 extern template class Contacts<kAnyDof>;
-
-// Signed distance of a point to the surface, negative inside, and the outward normal there.
-struct Surface {
-  double distance;  // [m]
-  Vec3 normal;
-};
-Surface distance_to(const Plane& plane, const Vec3& point);
-Surface distance_to(const Sphere& sphere, const Vec3& point);
-Surface distance_to(const Box& box, const Vec3& point);
-
-// The point of the segment from-to nearest to the obstacle.
-Vec3 nearest_on_segment(const Plane& plane, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Sphere& sphere, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Box& box, const Vec3& from, const Vec3& to);
 
 }  // namespace limpid

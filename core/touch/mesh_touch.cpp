@@ -19,13 +19,16 @@ constexpr int kMostLooks = 3;  // around a convex surface
 
 }  // namespace
 
-MeshTouch::MeshTouch(const MeshObstacle& mesh, double radius)
-    : shape_(mesh.shape),
-      closed_(mesh.shape->health().closed()),
-      pose_(mesh.stood()),
+MeshTouch::MeshTouch(const Object& object, double radius)
+    : MeshTouch(std::get<Mesh>(object.shape), object.pose, radius) {}
+
+MeshTouch::MeshTouch(const Mesh& mesh, const Pose& pose, double radius)
+    : shape_(mesh.triangles),
+      closed_(shape_->health().closed()),
+      pose_(mesh.stood(pose)),
       scale_(mesh.size()),
       radius_(radius),
-      skin_(kSkin * mesh.shape->radius()),
+      skin_(kSkin * shape_->radius()),
       look_(kLook / mesh.size()) {
   r_ = std::max(radius / scale_, skin_);
   tolerance_ = 1e-5 * r_ + 0.1 * skin_;
@@ -59,6 +62,11 @@ void MeshTouch::place(const Vec3& c) {
   held_ = lost_ = !advance(p);
   anchor_ = to_world(g_);
   publish();
+}
+
+bool MeshTouch::same_surface(const MeshTouch& other) const {
+  return shape_ == other.shape_ && scale_ == other.scale_ &&
+         pose_.matrix() == other.pose_.matrix() && radius_ == other.radius_;
 }
 
 void MeshTouch::take_over(const MeshTouch& other) {

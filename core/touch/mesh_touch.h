@@ -16,14 +16,16 @@ namespace limpid {
 // and slipping only takes energy away.
 class MeshTouch {
  public:
-  MeshTouch(const MeshObstacle& mesh, double radius);  // [m]
+  MeshTouch(const Object& mesh, double radius);  // whose shape is one; of the ball [m]
 
   // Starts anew at c [m]. A centre inside of a closed mesh belongs outside, at the nearest place;
   // one behind a sheet stays there.
   void place(const Vec3& c);
   // To c [m] within a tick of length T [s].
   void follow(const Vec3& c, double T);
-  // Takes over where another one is; it must be of the same mesh, place, scale and radius.
+  // Of the same mesh, place, scale and radius.
+  bool same_surface(const MeshTouch& other) const;
+  // Takes over where another one of the same surface is.
   void take_over(const MeshTouch& other);
 
   // Near enough to touch within a tick.
@@ -37,6 +39,7 @@ class MeshTouch {
   double radius() const { return radius_; }
 
  private:
+  MeshTouch(const Mesh& mesh, const Pose& pose, double radius);
   Vec3 to_mesh(const Vec3& world) const;
   Vec3 to_world(const Vec3& local) const;
   bool advance(const Vec3& p);

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/math/sizes.h"
@@ -13,36 +14,70 @@ namespace limpid {
 
 class TriangleMesh;
 
+// Shapes, each around the origin of its object's pose.
+
+// Everything below a level; a pose shifts it and does not turn it.
 struct Plane {
-  std::string name;
-  Vec3 point = Vec3::Zero();    // on the surface [m]
   Vec3 normal = Vec3::UnitZ();  // unit, out of the material
-  Material material{};
+  friend bool operator==(const Plane&, const Plane&) = default;
 };
 
 struct Sphere {
-  std::string name;
-  Vec3 center = Vec3::Zero();  // [m]
-  double radius = 0.05;        // [m]
-  Material material{};
+  double radius = 0.05;  // [m]
+  friend bool operator==(const Sphere&, const Sphere&) = default;
 };
 
 struct Box {
-  std::string name;
-  Pose pose = Pose::Identity();     // of its centre
   Vec3 size = Vec3::Constant(0.1);  // full edge lengths [m]
-  Material material{};
+  friend bool operator==(const Box&, const Box&) = default;
+};
+
+// A model of triangles. Its points are stood(pose) * (size() * p).
+struct Mesh {
+  std::string model{};  // which one: the name that the scene's text has for its file
+  double scale = 1;
+  double unit = 1;                                  // of the model's coordinates [m]
+  bool y_up = false;                                // the model's y axis points up, else its z axis
+  std::shared_ptr<const TriangleMesh> triangles{};  // the model's, built before it is touched
+
+  double size() const { return unit * scale; }
+  Pose stood(const Pose& pose) const {
+    Pose out = pose;
+    if (y_up) {
+      out.linear().col(1) = pose.linear().col(2);
+      out.linear().col(2) = -pose.linear().col(1);
+    }
+    return out;
+  }
+  friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
 // A stiff stop of one joint, in joint space (the paper's proximal contact): the joint touches it
-// when direction * (x2[joint] - angle) > 0.
-struct JointContact {
-  std::string name;
-  int joint = 0;          // index, base first
-  double angle = 0;       // [rad]
-  double direction = 1;   // +1: touched from below, -1: from above
-  double stiffness = 20;  // [N m/rad]
+// when direction * (x2[joint] - angle) > 0. It is nowhere in space: its object's pose says nothing.
+struct JointStop {
+  static constexpr double kUsualStiffness = 20;  // [N m/rad]
+
+  int joint = 0;         // index, base first
+  double angle = 0;      // [rad]
+  double direction = 1;  // +1: touched from below, -1: from above
+  friend bool operator==(const JointStop&, const JointStop&) = default;
 };
+
+using Shape = std::variant<Plane, Sphere, Box, Mesh, JointStop>;
+
+struct Object {
+  std::string name{};
+  Pose pose = Pose::Identity();  // [m]
+  Shape shape{};
+  Material material{};  // of a joint's stop the stiffness alone, in [N m/rad]
+};
+
+template <class S>
+bool has_shape(const Object& object) {
+  return std::holds_alternative<S>(object.shape);
+}
+// Whether it is somewhere in space, with a stiffness in [N/m].
+inline bool has_surface(const Object& object) { return !has_shape<JointStop>(object); }
 
 // A part of the arm that touches: a capsule (a point if both ends agree) fixed to a link.
 struct Probe {
@@ -53,37 +88,22 @@ struct Probe {
   double radius = 0;         // [m]
 };
 
-// A model of triangles. Its points are stood() * (size() * p).
-struct MeshObstacle {
-  std::string name;
-  std::string model;             // which one: the name that the scene's text has for its file
-  Pose pose = Pose::Identity();  // [m]
-  double scale = 1;
-  double unit = 1;    // of the model's coordinates [m]
-  bool y_up = false;  // the model's y axis points up, else its z axis
-  Material material{};
-  std::shared_ptr<const TriangleMesh> shape;  // the model's, built before it is touched
-
-  double size() const { return unit * scale; }
-  Pose stood() const {
-    Pose out = pose;
-    if (y_up) {
-      out.linear().col(1) = pose.linear().col(2);
-      out.linear().col(2) = -pose.linear().col(1);
-    }
-    return out;
-  }
-};
-
 struct Scene {
   double tip_radius = 0;  // [m]; the tip is always a probe
-  std::vector<Plane> planes;
-  std::vector<Sphere> spheres;
-  std::vector<Box> boxes;
-  std::vector<MeshObstacle> meshes;
-  std::vector<JointContact> joint_contacts;
+  // Of one shape together, in the order of Shape: a file keeps no other, and contacts follow it.
+  std::vector<Object> objects;
   std::vector<Probe> probes;  // besides the tip
+
+  // Puts it behind the others of its shape; returns its place.
+  std::size_t add(Object object);
 };
+
+// A pose that only shifts [m].
+Pose pose_at(const Vec3& position);
+
+// Of all surfaces; 0 without any [N/m].
+double stiffest_surface(const Scene& scene);
+void set_surface_stiffness(Scene& scene, double stiffness);
 
 // Where something touches and how hard it pushes on the proxy.
 struct ContactForce {

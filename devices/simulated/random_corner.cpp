@@ -60,8 +60,8 @@ LimitedCorner limited_corner(unsigned seed, const CornerWidth& width,
       if (normal.dot(c.out) > 0.3) break;
     }
     const double K = i > 0 && random.between(0, 1) < 0.5 ? stiffness / 3 : stiffness;
-    c.scene.planes.push_back(
-        {"", c.start.target - kAway * c.out, normal, {K, 0, friction, friction}});
+    c.scene.add(
+        {"", pose_at(c.start.target - kAway * c.out), Plane{normal}, {K, 0, friction, friction}});
   }
   c.press = random.between(1, 5);
   c.rise = random.between(0.02, 0.2);

@@ -25,13 +25,13 @@ std::string text(const Pose& pose) {
 }
 
 // The arm and the plane as MuJoCo spells them; only tip and plane can touch, without friction.
-std::string mjcf(const ArmDescription& arm, const Plane& plane) {
+std::string mjcf(const ArmDescription& arm, const Object& plane) {
   std::string xml = fmt::format(
       "<mujoco><compiler angle=\"radian\" boundmass=\"1e-9\"/>"
       "<option timestep=\"0.001\" gravity=\"0 0 0\"/><worldbody>"
       "<geom type=\"plane\" size=\"1 1 1\" pos=\"{}\" condim=\"1\" contype=\"1\" "
       "conaffinity=\"2\"/>",
-      text(plane.point));
+      text(plane.pose.translation()));
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const Joint& joint = arm.joints[i];
     const Link& link = arm.links[i];
@@ -68,7 +68,7 @@ std::unique_ptr<mjModel, Free> load(const std::string& xml) {
 
 std::optional<Samples> mujoco_steps(const ArmDescription& arm, const Scene& scene,
                                     const Eigen::VectorXd& x, int steps) {
-  const auto model = load(mjcf(arm, scene.planes.front()));
+  const auto model = load(mjcf(arm, scene.objects.front()));
   const std::unique_ptr<mjData, Free> data(mj_makeData(model.get()));
   std::copy_n(x.data(), x.size(), data->qpos);
   data->xfrc_applied[6 * (model->nbody - 1) + 2] = -1;  // [N]

@@ -92,7 +92,7 @@ void run(const char* folder) {
   fmt::print("{}\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
   const ArmDescription arm = two_links();
   Scene scene;
-  scene.planes.push_back({"table", Vec3(0, 0, -0.1), Vec3::UnitZ(), 600});
+  scene.add({"table", pose_at(Vec3(0, 0, -0.1)), Plane{Vec3::UnitZ()}, 600});
   SceneView view(std::string(LIMPID_SOURCE_DIR) + "/shaders", arm, scene, {});
   Camera camera;
   camera.resize(kWidth, kHeight);

@@ -21,27 +21,27 @@ void check(const limpid::Material& material) {
   demand(material.friction_static >= 0 && std::isfinite(material.friction_static));
 }
 
+void check(const limpid::Plane& plane, int) { demand(std::abs(plane.normal.norm() - 1) < 1e-9); }
+
+void check(const limpid::Sphere& sphere, int) {
+  demand(sphere.radius > 0 && std::isfinite(sphere.radius));
+}
+
+void check(const limpid::Box& box, int) { demand(box.size.allFinite() && box.size.minCoeff() > 0); }
+
+void check(const limpid::Mesh& mesh, int) { demand(std::isfinite(mesh.size()) && mesh.size() > 0); }
+
+void check(const limpid::JointStop& stop, int joints) {
+  demand(stop.joint >= 0 && stop.joint < joints && std::isfinite(stop.angle));
+  demand(std::abs(stop.direction) == 1);
+}
+
 void check(const limpid::Scene& scene, int joints) {
   demand(scene.tip_radius >= 0 && std::isfinite(scene.tip_radius));
-  for (const limpid::Plane& plane : scene.planes) {
-    demand(plane.point.allFinite() && std::abs(plane.normal.norm() - 1) < 1e-9);
-    check(plane.material);
-  }
-  for (const limpid::Sphere& sphere : scene.spheres) {
-    demand(sphere.center.allFinite() && sphere.radius > 0 && std::isfinite(sphere.radius));
-    check(sphere.material);
-  }
-  for (const limpid::Box& box : scene.boxes) {
-    demand(box.pose.matrix().allFinite() && box.size.allFinite() && box.size.minCoeff() > 0);
-    check(box.material);
-  }
-  for (const limpid::MeshObstacle& mesh : scene.meshes) {
-    demand(mesh.stood().matrix().allFinite() && std::isfinite(mesh.size()) && mesh.size() > 0);
-    check(mesh.material);
-  }
-  for (const limpid::JointContact& contact : scene.joint_contacts) {
-    demand(contact.joint >= 0 && contact.joint < joints && std::isfinite(contact.angle));
-    demand(std::abs(contact.direction) == 1 && contact.stiffness > 0);
+  for (const limpid::Object& object : scene.objects) {
+    demand(object.pose.matrix().allFinite());
+    check(object.material);
+    std::visit([&](const auto& shape) { check(shape, joints); }, object.shape);
   }
   for (const limpid::Probe& probe : scene.probes) {
     demand(probe.link >= 0 && probe.link < joints && probe.radius >= 0);
@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     const std::string written = limpid::scene_text(scene, arm);
     const limpid::SceneDocument again = limpid::parse_scene(written, "fuzz.toml", "", arm, files);
     check(again.scene, arm.dof());
-    demand(again.title == scene.title && again.scene.meshes.size() == scene.scene.meshes.size());
+    demand(again.title == scene.title && again.scene.objects.size() == scene.scene.objects.size());
     demand(again.scene.probes.size() == scene.scene.probes.size());
   } catch (const limpid::FileError& error) {
     demand(std::string(error.what()).find('\n') == std::string::npos);

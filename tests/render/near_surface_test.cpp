@@ -9,8 +9,8 @@ namespace {
 
 Scene rough_table() {
   Scene scene;
-  scene.planes.push_back({"table", Vec3::Zero(), Vec3::UnitZ(), {600, 0, 0.6, 0.4}});
-  scene.spheres.push_back({"ball", Vec3(0, 0, 0.1), 0.03, {}});
+  scene.add({"table", pose_at(Vec3::Zero()), Plane{Vec3::UnitZ()}, {600, 0, 0.6, 0.4}});
+  scene.add({"ball", pose_at(Vec3(0, 0, 0.1)), Sphere{0.03}});
   return scene;
 }
 

@@ -133,9 +133,7 @@ TEST_F(Picture, ShowsEachJointsAxisInItsColour) {
 
 TEST_F(Picture, ShowsAGhostInsideOfWhatItTouches) {
   Scene scene;
-  scene.boxes.emplace_back();
-  scene.boxes[0].pose.translation() = kMiddleOfSecondLink;
-  scene.boxes[0].size = Vec3(0.12, 0.15, 0.12);
+  scene.add({"", pose_at(kMiddleOfSecondLink), Box{Vec3(0.12, 0.15, 0.12)}});
   view_.emplace(kRoot / "shaders", arm_, scene, kNoVisuals);
   const Eigen::Vector3i without = seen_at(kMiddleOfSecondLink);
   state_.device = pose_of(arm_, 0, 0);
@@ -293,8 +291,7 @@ TEST_F(Picture, ExchangesTheSceneAndKeepsTheRest) {
   const Vec3 there(0.1, 0, 0.15);
   const Eigen::Vector3i empty = seen_at(there);
   Scene scene;
-  scene.boxes.emplace_back();
-  scene.boxes[0].pose = at(there);
+  scene.add({"", at(there), Box{}});
   view_->set_scene(scene, kNoVisuals);
   EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
   EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));

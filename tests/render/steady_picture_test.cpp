@@ -34,8 +34,8 @@ ArmPose pose_of(const ArmDescription& arm, double first, double second) {
 
 Scene table() {
   Scene scene;
-  scene.planes.push_back({"table", Vec3(0, 0, -0.12), Vec3::UnitZ(), {}});
-  scene.spheres.push_back({"ball", Vec3(0.3, 0.1, -0.06), 0.05, {}});
+  scene.add({"table", pose_at(Vec3(0, 0, -0.12)), Plane{Vec3::UnitZ()}});
+  scene.add({"ball", pose_at(Vec3(0.3, 0.1, -0.06)), Sphere{0.05}});
   return scene;
 }
 

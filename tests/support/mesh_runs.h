@@ -22,8 +22,8 @@ using Path = std::function<Vec3(double)>;  // where the hand wants the tip at a 
 inline Scene with_mesh(const Triangles& triangles, const Vec3& at, double stiffness = 600) {
   Scene scene;
   scene.tip_radius = kTip;
-  scene.meshes.push_back(obstacle(triangles, stiffness));
-  scene.meshes.back().pose.translation() = at;
+  scene.add(obstacle(triangles, stiffness));
+  scene.objects.back().pose.translation() = at;
   return scene;
 }
 

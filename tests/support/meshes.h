@@ -40,13 +40,11 @@ struct Triangles {
   }
 };
 
-inline MeshObstacle obstacle(const Triangles& triangles, double stiffness = 600) {
-  MeshObstacle out;
-  out.name = "mesh";
-  out.material.stiffness = stiffness;
-  out.shape = triangles.mesh();
-  return out;
+inline Object obstacle(const Triangles& triangles, double stiffness = 600) {
+  return {"mesh", Pose::Identity(), Mesh{.triangles = triangles.mesh()}, {stiffness}};
 }
+inline Mesh& mesh_of(Object& obstacle) { return std::get<Mesh>(obstacle.shape); }
+inline const Mesh& mesh_of(const Object& obstacle) { return std::get<Mesh>(obstacle.shape); }
 
 // rows x columns quadrilaterals of two triangles each over [0, 1]^2, z = 0, facing +z; `wrap` joins
 // the borders.

@@ -23,7 +23,7 @@ struct LimitedLoop : testing::Test {
     desk->arm = arm;
     for (Joint& joint : desk->arm.joints) joint.effort = effort;
     desk->document = {};
-    desk->document.scene.joint_contacts.push_back({"", 0, -1, 1, 100});
+    desk->document.scene.add({.shape = JointStop{0, -1, 1}, .material = {100}});
     desk->controls.parameters.k_vc = 100;
     desk->set([&](Controls& controls) { controls.limits = limits; });
     desk->open(Desk<Model>::connect(effort));

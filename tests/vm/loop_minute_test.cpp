@@ -95,8 +95,8 @@ TYPED_TEST_SUITE(PidMinute, Models, Names);
 
 TYPED_TEST(PidMinute, AgreesWithTheVirtualArm) {
   Desk<TypeParam> desk;
-  desk.document.scene.spheres
-      .clear();  // around its edge the torque changes faster than the hand moves
+  // Around its edge the torque changes faster than the hand moves.
+  std::erase_if(desk.document.scene.objects, has_shape<Sphere>);
   const Minute minute = run_on_device(desk);
   ASSERT_GE(minute.session.size(), 60'000u);
   desk.device->with(

@@ -134,7 +134,7 @@ Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
   Felt out;
   for (const bool pressing : {false, true}) {
     Scene scene;
-    if (pressing) scene.joint_contacts.push_back({"stop", 0, 0.1, 1, 2});
+    if (pressing) scene.add({.name = "stop", .shape = JointStop{0, 0.1, 1}, .material = {2}});
     SimulatedDesk<RawDeviceModel> desk(believed, scene, stick.made(),
                                        suited(believed, stick.layout.resolution));
     const Hand hand(desk.model->hand(), stick, pressing ? leaning : swinging);

@@ -18,7 +18,7 @@ ArmDescription joystick() { return read_urdf(assets_dir() / "devices/joystick.ur
 // Without the bump: around its edge the torque changes faster than the hand moves.
 Scene gate() {
   Scene scene = read_scene(assets_dir() / "devices/joystick.toml", joystick()).scene;
-  scene.spheres.clear();
+  std::erase_if(scene.objects, has_shape<Sphere>);
   return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "app/desktop/base/stage.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include "app/base/folders.h"
 #include "app/view/row_view.h"
@@ -9,30 +10,16 @@
 namespace limpid {
 namespace {
 
-// Everything SceneView::set_scene() looks at, which reads files and builds shapes.
+// Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
 bool same_items(const SceneDocument& first, const SceneDocument& second) {
-  const Scene &a = first.scene, &b = second.scene;
-  const auto same = [](const auto& x, const auto& y, const auto& equal) {
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
-  };
-  return same(a.planes, b.planes,
-              [](const Plane& p, const Plane& q) {
-                return p.point == q.point && p.normal == q.normal;
-              }) &&
-         same(a.spheres, b.spheres,
-              [](const Sphere& p, const Sphere& q) {
-                return p.center == q.center && p.radius == q.radius;
-              }) &&
-         same(a.boxes, b.boxes,
-              [](const Box& p, const Box& q) {
-                return p.pose.matrix() == q.pose.matrix() && p.size == q.size;
-              }) &&
-         same(a.joint_contacts, b.joint_contacts,
-              [](const JointContact& p, const JointContact& q) {
-                return p.joint == q.joint && p.angle == q.angle && p.direction == q.direction;
-              }) &&
-         same(first.visuals, second.visuals,
-              [](const SceneVisual& p, const SceneVisual& q) { return p.file == q.file; });
+  const auto seen = [](const Object& object) { return !has_shape<Mesh>(object); };
+  return std::ranges::equal(first.scene.objects | std::views::filter(seen),
+                            second.scene.objects | std::views::filter(seen),
+                            [](const Object& a, const Object& b) {
+                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+                            }) &&
+         std::ranges::equal(first.visuals, second.visuals, {}, &SceneVisual::file,
+                            &SceneVisual::file);
 }
 
 // The pictures are read once: whatever else is made of the stage's arm has them.

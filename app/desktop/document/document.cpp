@@ -58,17 +58,15 @@ bool Document::may_edit() {
   return why.empty();
 }
 
-void Document::add_object(SceneObject object, const Workplace& at) {
+void Document::add_object(Object object, const Workplace& at) {
   if (!may_edit()) return;
   const auto table = table_height(scene(), at.rest);
   const Bounds box = bounds_of(object, nullptr);
   if (!box.isEmpty()) {
     const Vec3 place = find_place(box.sizes(), table, at);
-    if (auto* sphere = std::get_if<Sphere>(&object)) sphere->center = place;
-    if (auto* cuboid = std::get_if<Box>(&object)) cuboid->pose.translation() = place;
-  }
-  if (auto* plane = std::get_if<Plane>(&object)) {
-    plane->point = at.rest - Vec3(0, 0, table ? 0.02 : 0.04);
+    object.pose.translation() = place;
+  } else if (has_shape<Plane>(object)) {
+    object.pose.translation() = at.rest - Vec3(0, 0, table ? 0.02 : 0.04);
   }
   try {
     editor_.add(std::move(object));
@@ -80,21 +78,22 @@ void Document::add_object(SceneObject object, const Workplace& at) {
 void Document::add_model(LoadedModel loaded, const Workplace& at) {
   const Bounds bounds = loaded.model->bounds();
   place_mesh(loaded.mesh, bounds, scene(), at);
-  const double scale = loaded.mesh.scale;
-  const std::size_t triangles = loaded.mesh.shape->triangles();
-  const double centimetres = 100 * loaded.mesh.size() * bounds.sizes().maxCoeff();
+  const Mesh& mesh = std::get<Mesh>(loaded.mesh.shape);
+  const double scale = mesh.scale;
+  const std::size_t triangles = mesh.triangles->triangles();
+  const double centimetres = 100 * mesh.size() * bounds.sizes().maxCoeff();
   editor_.add(std::move(loaded.mesh), std::move(loaded.file), loaded.model);
-  std::string text = fmt::format("Added {}: {} triangles, {}, {:.3g} cm{}. Ctrl+Z removes it.",
-                                 name_of(scene(), *editor_.selected()), with_commas(triangles),
-                                 text_of(loaded.axes), centimetres,
-                                 scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
+  std::string text =
+      fmt::format("Added {}: {} triangles, {}, {:.3g} cm{}. Ctrl+Z removes it.",
+                  editor_.selected_object()->name, with_commas(triangles), text_of(loaded.axes),
+                  centimetres, scale == 1 ? "" : fmt::format(", scaled by {:.3g}", scale));
   for (const std::string& warning : loaded.warnings) text += "\n" + warning;
   notices_.say(text);
 }
 
 void Document::remove_selected() {
   if (!editor_.selected() || !may_edit()) return;
-  const std::string name = name_of(scene(), *editor_.selected());
+  const std::string name = editor_.selected_object()->name;
   editor_.remove(*editor_.selected());
   notices_.say(fmt::format("Removed {}. Ctrl+Z brings it back.", name));
 }
@@ -109,10 +108,8 @@ void Document::duplicate_selected() {
 }
 
 Bounds Document::selected_bounds() const {
-  if (!editor_.selected()) return {};
-  const ObjectRef ref = *editor_.selected();
-  const Model* model = ref.kind == ObjectKind::mesh ? editor_.models()[ref.index].get() : nullptr;
-  return bounds_of(object_of(scene(), ref), model);
+  const Object* const object = editor_.selected_object();
+  return object ? bounds_of(*object, editor_.models()[*editor_.selected()].get()) : Bounds();
 }
 
 // The world that a twin shares with the first run is no setting of its own; what breaks passivity
@@ -229,8 +226,10 @@ std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm)
     SceneDocument document =
         parse_scene(toml(), file_, fs::path(file_).parent_path(), arm, files_of(present));
     document.models = present.models;
-    for (std::size_t i = 0; i < document.scene.meshes.size(); ++i) {
-      document.scene.meshes[i].shape = present.scene.meshes.at(i).shape;
+    for (std::size_t i = 0; i < document.scene.objects.size(); ++i) {
+      if (auto* mesh = std::get_if<Mesh>(&document.scene.objects[i].shape)) {
+        mesh->triangles = std::get<Mesh>(present.scene.objects.at(i).shape).triangles;
+      }
     }
     return SceneEditor::World{std::move(document), editor_.models()};
   } catch (const std::exception&) {  // it names joints or links that this arm does not have

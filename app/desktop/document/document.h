@@ -48,7 +48,7 @@ class Document {
   std::string why_fixed() const;
   // False, and says why, while that is so.
   bool may_edit();
-  void add_object(SceneObject object, const Workplace& at);  // it gets a place in reach
+  void add_object(Object object, const Workplace& at);  // it gets a place in reach
   void add_model(LoadedModel loaded, const Workplace& at);
   void remove_selected();
   void duplicate_selected();

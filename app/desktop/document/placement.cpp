@@ -38,11 +38,11 @@ double badness(const Bounds& box, const Vec3& wanted, const Workplace& at) {
 
 std::optional<double> table_height(const Scene& scene, const Vec3& rest) {
   std::optional<double> highest;
-  for (const Plane& plane : scene.planes) {
-    const bool level = plane.normal.z() > 0.99;
-    if (level && plane.point.z() < rest.z() && plane.point.z() > highest.value_or(-1e9)) {
-      highest = plane.point.z();
-    }
+  for (const Object& object : scene.objects) {
+    const auto* plane = std::get_if<Plane>(&object.shape);
+    if (plane == nullptr || plane->normal.z() <= 0.99) continue;
+    const double height = object.pose.translation().z();
+    if (height < rest.z() && height > highest.value_or(-1e9)) highest = height;
   }
   return highest;
 }
@@ -78,14 +78,15 @@ double handy_scale(double extent) {
   return std::round(exact / digit) * digit;
 }
 
-void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at) {
+void place_mesh(Object& object, const Bounds& model, const Scene& scene, const Workplace& at) {
+  Mesh& mesh = std::get<Mesh>(object.shape);
   mesh.scale = handy_scale(mesh.unit * model.sizes().maxCoeff());
-  mesh.pose = Pose::Identity();
-  const Bounds upright = moved(model, Eigen::Affine3d(mesh.stood()) * Eigen::Scaling(mesh.size()));
+  const Pose unmoved = mesh.stood(Pose::Identity());
+  const Bounds upright = moved(model, Eigen::Affine3d(unmoved) * Eigen::Scaling(mesh.size()));
   const Vec3 place = find_place(upright.sizes(), table_height(scene, at.rest), at);
   const Vec3 shift = place - upright.center();
-  mesh.pose.translation() = (shift * 1e4).array().round() / 1e4;              // to 0.1 mm
-  if (table_height(scene, at.rest)) mesh.pose.translation().z() = shift.z();  // stands on it
+  object.pose = pose_at((shift * 1e4).array().round() / 1e4);                   // to 0.1 mm
+  if (table_height(scene, at.rest)) object.pose.translation().z() = shift.z();  // stands on it
 }
 
 }  // namespace limpid

@@ -31,6 +31,6 @@ Vec3 find_place(const Vec3& size, std::optional<double> table, const Workplace& 
 double handy_scale(double extent);
 
 // Scales a mesh of these bounds (as its file has them) and gives it a place, upright.
-void place_mesh(MeshObstacle& mesh, const Bounds& model, const Scene& scene, const Workplace& at);
+void place_mesh(Object& mesh, const Bounds& model, const Scene& scene, const Workplace& at);
 
 }  // namespace limpid

@@ -39,8 +39,9 @@ LoadedScene load_scene(const fs::path& file, const ArmDescription& arm,
 
 LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   SceneDocument one;
-  MeshObstacle& mesh = one.scene.meshes.emplace_back();
-  mesh.name = file.stem().string();
+  Object& object =
+      one.scene.objects.emplace_back(Object{.name = file.stem().string(), .shape = Mesh{}});
+  Mesh& mesh = std::get<Mesh>(object.shape);
   mesh.model = fs::absolute(file).lexically_normal().string();
   const std::string bytes = read_text(file, scene_limits::kLargestModel);
   ModelFile& model = one.models[mesh.model];
@@ -51,7 +52,7 @@ LoadedModel load_model(const fs::path& file, const LoadProgress& progress) {
   mesh.unit = axes.unit;
   mesh.y_up = axes.y_up;
   std::vector<std::string> warnings = mesh_warnings(one.scene, models);
-  return {std::move(mesh), std::move(model), models.front(), axes, std::move(warnings)};
+  return {std::move(object), std::move(model), models.front(), axes, std::move(warnings)};
 }
 
 LoadedArm load_arm(const fs::path& file, const std::string& tip, Xacro xacro,

@@ -23,7 +23,7 @@ struct LoadedScene {
   std::vector<std::string> warnings;
 };
 struct LoadedModel {
-  MeshObstacle mesh;  // named for its file; without a place
+  Object mesh;  // named for its file; without a place
   ModelFile file;
   std::shared_ptr<const Model> model;
   ModelAxes axes;  // as the mesh has them

@@ -37,22 +37,15 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
   return changed;
 }
 
-bool position(const char* label, Vec3& point, const char* help) {
-  Vec3 millimetres = 1e3 * point;
+bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
+              const char* help = "Forward, left and up from the arm's base.") {
+  Vec3 millimetres = 1e3 * pose.translation();
   if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
              "%.1f", help)) {
     return false;
   }
-  point = 1e-3 * millimetres;
+  pose.translation() = 1e-3 * millimetres;
   return true;
-}
-
-bool position(Pose& pose) {
-  Vec3 at = pose.translation();
-  const bool changed =
-      position("Position x, y, z [mm]", at, "Forward, left and up from the arm's base.");
-  pose.translation() = at;
-  return changed;
 }
 
 bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
@@ -116,11 +109,11 @@ bool joint_stiffness(double& value) {
   info.unit = "N m/rad";
   info.slider_minimum = 0.1;
   info.slider_maximum = 1e3;
-  return slider(value, info, JointContact{}.stiffness, of_material.meaning);
+  return slider(value, info, JointStop::kUsualStiffness, of_material.meaning);
 }
 
 // How the numbers of the model's file are meant.
-bool choose_axes(MeshObstacle& mesh) {
+bool choose_axes(Mesh& mesh) {
   bool changed = false;
   caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
   const ModelUnit* const present = model_unit(mesh.unit);
@@ -155,25 +148,26 @@ bool drag_number(const char* label, double& value, double speed, double least, d
   return changed;
 }
 
-void ObjectEditor::draw(Document& document, const ObjectRef& ref, const ArmDescription& arm) {
-  draw_name(document, ref);
+void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {
+  draw_name(document, place);
   arm_ = &arm;
-  if (ref.kind == ObjectKind::mesh && document.editor().models()[ref.index] != measured_) {
-    measured_ = document.editor().models()[ref.index];
-    extent_ = measured_->bounds().sizes().maxCoeff();
+  if (const auto& model = document.editor().models()[place]; model && model != measured_) {
+    measured_ = model;
+    extent_ = model->bounds().sizes().maxCoeff();
   }
-  SceneObject object = object_of(document.scene(), ref);
-  const std::string what(std::visit([this](auto& o) { return edit(o); }, object));
-  if (!what.empty() && document.may_edit()) document.editor().set(ref, std::move(object), what);
+  Object object = document.scene().objects[place];
+  const std::string what(
+      std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  if (!what.empty() && document.may_edit()) document.editor().set(place, std::move(object), what);
 }
 
-void ObjectEditor::draw_name(Document& document, const ObjectRef& ref) {
-  const std::string& present = name_of(document.scene(), ref);
+void ObjectEditor::draw_name(Document& document, std::size_t place) {
+  const std::string& present = document.scene().objects[place].name;
   if (name_of_ != present) name_ = name_of_ = present;
   ImGui::SetNextItemWidth(-1);
   ImGui::InputText("##name", &name_);
   if (ImGui::IsItemDeactivated()) {
-    if (document.may_edit()) document.editor().rename(ref, name_);
+    if (document.may_edit()) document.editor().rename(place, name_);
     name_of_.clear();
   }
   tooltip("Its name");
@@ -193,9 +187,9 @@ bool ObjectEditor::edit_rotation(Pose& pose) {
   return true;
 }
 
-std::string_view ObjectEditor::edit(Plane& plane) {
-  std::string_view what = edit_material(plane.material);
-  if (position("Point on it x, y, z [mm]", plane.point, "The plane goes through it.")) {
+std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through it.")) {
     what = "place";
   }
   if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f", "Out of the material.")) {
@@ -204,9 +198,9 @@ std::string_view ObjectEditor::edit(Plane& plane) {
   return what;
 }
 
-std::string_view ObjectEditor::edit(Sphere& sphere) {
-  std::string_view what = edit_material(sphere.material);
-  if (position("Centre x, y, z [mm]", sphere.center, "Forward, left and up from the arm's base.")) {
+std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Centre x, y, z [mm]")) {
     what = "place";
   }
   double radius = 1e3 * sphere.radius;
@@ -217,10 +211,10 @@ std::string_view ObjectEditor::edit(Sphere& sphere) {
   return what;
 }
 
-std::string_view ObjectEditor::edit(Box& box) {
-  std::string_view what = edit_material(box.material);
-  if (position(box.pose)) what = "place";
-  if (edit_rotation(box.pose)) what = "rotation";
+std::string_view ObjectEditor::edit(Object& object, Box& box) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
   Vec3 size = 1e3 * box.size;
   if (drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
     box.size = 1e-3 * size;
@@ -229,10 +223,10 @@ std::string_view ObjectEditor::edit(Box& box) {
   return what;
 }
 
-std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
-  std::string_view what = edit_material(mesh.material);
-  if (position(mesh.pose)) what = "place";
-  if (edit_rotation(mesh.pose)) what = "rotation";
+std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
   double millimetres = 1e3 * mesh.size() * extent_;
   if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
                   "1: as large as its file says.")) {
@@ -245,35 +239,35 @@ std::string_view ObjectEditor::edit(MeshObstacle& mesh) {
     what = "scale";
   }
   if (choose_axes(mesh)) what = "axes";
-  read_out("triangles", fmt::format("{}", mesh.shape->triangles()), {}, mesh.model.c_str());
-  const std::string health = mesh.shape->health().text();
+  read_out("triangles", fmt::format("{}", mesh.triangles->triangles()), {}, mesh.model.c_str());
+  const std::string health = mesh.triangles->health().text();
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());
   ImGui::PopTextWrapPos();
   return what;
 }
 
-std::string_view ObjectEditor::edit(JointContact& contact) {
+std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
   std::string_view what;
-  if (joint_stiffness(contact.stiffness)) what = "stiffness";
+  if (joint_stiffness(object.material.stiffness)) what = "stiffness";
   const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
-  if (ImGui::BeginCombo("joint", name(contact.joint).c_str())) {
+  if (ImGui::BeginCombo("joint", name(stop.joint).c_str())) {
     for (int i = 0; i < arm_->dof(); ++i) {
-      if (ImGui::Selectable(fmt::format("{}##{}", name(i), i).c_str(), i == contact.joint)) {
-        contact.joint = i;
+      if (ImGui::Selectable(fmt::format("{}##{}", name(i), i).c_str(), i == stop.joint)) {
+        stop.joint = i;
         what = "joint";
       }
     }
     ImGui::EndCombo();
   }
-  double angle = contact.angle / kDegree;
+  double angle = stop.angle / kDegree;
   if (drag_number("Angle", angle, kDegreeSpeed, -360, 360, "%.1f\xC2\xB0", "Where it stops")) {
-    contact.angle = angle * kDegree;
+    stop.angle = angle * kDegree;
     what = "angle";
   }
-  bool above = contact.direction > 0;
+  bool above = stop.direction > 0;
   if (ImGui::Checkbox("stops what goes above", &above)) {
-    contact.direction = above ? 1 : -1;
+    stop.direction = above ? 1 : -1;
     what = "side";
   }
   tooltip("Otherwise it stops what goes below the angle.");

@@ -15,16 +15,16 @@ bool drag_number(const char* label, double& value, double speed, double least, d
 
 class ObjectEditor {
  public:
-  void draw(Document& document, const ObjectRef& ref, const ArmDescription& arm);
+  void draw(Document& document, std::size_t place, const ArmDescription& arm);
 
  private:
-  void draw_name(Document& document, const ObjectRef& ref);
+  void draw_name(Document& document, std::size_t place);
   // Each says what was changed, "" for nothing.
-  std::string_view edit(Plane& plane);
-  std::string_view edit(Sphere& sphere);
-  std::string_view edit(Box& box);
-  std::string_view edit(MeshObstacle& mesh);
-  std::string_view edit(JointContact& contact);
+  std::string_view edit(Object& object, Plane& plane);
+  std::string_view edit(Object& object, Sphere& sphere);
+  std::string_view edit(Object& object, Box& box);
+  std::string_view edit(Object& object, Mesh& mesh);
+  std::string_view edit(Object& object, JointStop& stop);
   bool edit_rotation(Pose& pose);
 
   std::string name_;            // being typed

@@ -6,35 +6,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/desktop/panels/object_signs.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 
 namespace limpid {
 namespace {
-
-// A small picture of the kind, before the name.
-void draw_icon(ObjectKind kind, const ImVec2& middle, float r, ImU32 ink) {
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  const auto [x, y] = middle;
-  const float thick = 1.4f * current_scale();
-  switch (kind) {
-    case ObjectKind::plane:
-      draw->AddLine({x - r, y + 0.5f * r}, {x + r, y + 0.5f * r}, ink, 1.6f * thick);
-      draw->AddLine({x, y + 0.4f * r}, {x, y - r}, ink, thick);
-      break;
-    case ObjectKind::sphere: draw->AddCircle(middle, r, ink, 20, thick); break;
-    case ObjectKind::box: draw->AddRect({x - r, y - r}, {x + r, y + r}, ink, 0, 0, thick); break;
-    case ObjectKind::mesh:
-      draw->AddTriangle({x - r, y + r}, {x + r, y + r}, {x, y - r}, ink, thick);
-      draw->AddTriangle({x - 0.5f * r, y}, {x + 0.5f * r, y}, {x, y + r}, ink, thick);
-      break;
-    case ObjectKind::joint_contact:
-      draw->PathArcTo({x - r, y + r}, 1.8f * r, -1.57f, 0, 12);
-      draw->PathStroke(ink, 0, thick);
-      break;
-  }
-}
 
 void draw_title(const SceneDocument& document) {
   const std::string title = document.title.empty() ? "untitled" : document.title;
@@ -50,15 +28,16 @@ void draw_why_fixed(const char* why) {
 
 // `editor`: where they can be chosen; null: they cannot. `fresh`: what is chosen was not before.
 void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& act) {
-  const std::vector<ObjectRef> all = objects_of(scene);
+  const std::vector<Object>& all = scene.objects;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
   const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
   ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
   if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a model here.");
-  for (const ObjectRef& ref : all) {
-    ImGui::PushID(static_cast<int>(ref.kind) * 1000 + static_cast<int>(ref.index));
-    const bool chosen = editor != nullptr && editor->selected() == ref;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Object& object = all[i];
+    ImGui::PushID(static_cast<int>(i));
+    const bool chosen = editor != nullptr && editor->selected() == i;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float em = ImGui::GetFontSize();
     if (chosen && fresh) ImGui::SetScrollHereY();
@@ -66,16 +45,16 @@ void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& a
         ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
     if (clicked && editor != nullptr) {
       const bool twice = ImGui::IsMouseDoubleClicked(0);
-      editor->select(chosen && !twice ? std::nullopt : std::optional(ref));
+      editor->select(chosen && !twice ? std::nullopt : std::optional(i));
       if (twice) act("scene.look");
     }
     tooltip(
-        fmt::format("{}, {}. Double click to look at it.", name_of(scene, ref), kind_name(ref.kind))
+        fmt::format("{}, {}. Double click to look at it.", object.name, shape_name(object.shape))
             .c_str());
-    draw_icon(ref.kind, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
+    draw_icon(object.shape, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
               colour(current_palette().muted));
     ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
-                                        name_of(scene, ref).c_str());
+                                        object.name.c_str());
     ImGui::PopID();
   }
   ImGui::EndChild();
@@ -99,13 +78,8 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
     if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
-    if (ImGui::MenuItem("Ball")) add(Sphere{.name = "ball", .radius = 0.02});
-    if (ImGui::MenuItem("Block")) {
-      add(Box{.name = "block", .size = Vec3::Constant(0.04)});
-    }
-    if (ImGui::MenuItem("Plane")) add(Plane{.name = "plane"});
-    if (ImGui::MenuItem("Joint stop")) {
-      add(JointContact{.name = "stop", .joint = 0, .angle = 0.6});
+    for (const NewObject& each : new_objects()) {
+      if (ImGui::MenuItem(each.label)) add(each.object);
     }
     ImGui::EndPopup();
   }
@@ -135,9 +109,9 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
   const bool fresh = std::exchange(selected_, editor.selected()) != selected_;
   draw_list(editor.scene(), &editor, fresh, act);
   draw_buttons(editor.selected().has_value(), act, add);
-  if (const auto ref = editor.selected()) {
+  if (const auto place = editor.selected()) {
     ImGui::Separator();
-    object_.draw(document, *ref, arm);
+    object_.draw(document, *place, arm);
     ImGui::Separator();
   }
   double tip = 1e3 * editor.scene().tip_radius;

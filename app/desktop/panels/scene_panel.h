@@ -11,7 +11,7 @@ namespace limpid {
 
 class ScenePanel {
  public:
-  using AddObject = std::function<void(SceneObject)>;
+  using AddObject = std::function<void(Object)>;
 
   // The scene that is worked on, for this arm; in a recording it is `fixed`.
   void draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
@@ -21,7 +21,7 @@ class ScenePanel {
 
  private:
   ObjectEditor object_;
-  std::optional<ObjectRef> selected_;  // in the last frame
+  std::optional<std::size_t> selected_;  // in the last frame
 };
 
 }  // namespace limpid

@@ -8,7 +8,7 @@
 
 #include "app/desktop/base/picture_signs.h"
 #include "app/desktop/live/hand_goal.h"
-#include "app/desktop/panels/selection_outline.h"
+#include "app/desktop/panels/object_signs.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
 #include "app/style/theme.h"

@@ -27,7 +27,7 @@ struct ViewScene {
   bool overlaid = false;               // both in one picture
   std::string told = {};               // a story's sentence
   std::string pad = {};                // the gamepad that leads the hand; or none
-  std::optional<SceneObject> selected = {};
+  std::optional<Object> selected = {};
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point
   int pixel_height = 0;    // of the window [px]

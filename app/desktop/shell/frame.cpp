@@ -87,8 +87,8 @@ ViewScene Frame::view_scene() {
     scene.rerun = session->rerun_row();
     scene.twin = session->twin_row();
     if (const StoryStep* step = session->step()) scene.told = step->caption;
-  } else if (const auto ref = desktop_.document.editor().selected()) {
-    scene.selected = object_of(desktop_.document.scene(), *ref);
+  } else if (const Object* selected = desktop_.document.editor().selected_object()) {
+    scene.selected = *selected;
   }
   if (!scene.recorded) scene.twin = desktop_.live.twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();

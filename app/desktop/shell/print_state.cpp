@@ -130,7 +130,7 @@ void print_state(Desktop& d, const WindowState& window) {
   const LoopStatus status = live.loop().status();
   std::vector<double> values(static_cast<std::size_t>(d.shown.stage().channels().count()));
   d.shown.stage().channels().values(row, values);
-  const auto& selected = editor.selected();
+  const Object* const selected = editor.selected_object();
   const auto channel = [&](Channel c) { return values[static_cast<std::size_t>(c)]; };
   fmt::print(
       "{{\"time\": {:.3f}, \"kind\": {}, \"eta\": {}, \"error\": {:.6f}, \"contact\": {:.5f}, "
@@ -152,10 +152,10 @@ void print_state(Desktop& d, const WindowState& window) {
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
       live.loop().recording(), played != nullptr, played != nullptr && played->has_rerun(),
       status.rate, status.ticks, status.late, status.missed, status.slipped,
-      live.loop().trace_dropped(), objects_of(editor.scene()).size(),
-      selected ? nlohmann::json(name_of(editor.scene(), *selected)).dump() : "null",
-      d.document.loader().busy(), editor.dirty(), nlohmann::json(d.document.file()).dump(),
-      focus.question || focus.modal, d.shown.quality_level(), p.alpha,
+      live.loop().trace_dropped(), editor.scene().objects.size(),
+      selected ? nlohmann::json(selected->name).dump() : "null", d.document.loader().busy(),
+      editor.dirty(), nlohmann::json(d.document.file()).dump(), focus.question || focus.modal,
+      d.shown.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : focus.dialog).dump(), focus.text,
       nlohmann::json(live.stage().arm().name).dump(), p.k_vc, notices.dump(),
       plots_of(d.shown.stage()).dump(), !d.shown.twin_row().empty(), twin_error(d), window.width,

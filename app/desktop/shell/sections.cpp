@@ -40,7 +40,7 @@ DrawSection scene_section(Desktop& d) {
       return ScenePanel::draw_recorded(session->document());
     }
     panel->draw(d.document, d.live.stage().arm(), d.live.recording(), act,
-                [&d](SceneObject object) { d.world.add_object(std::move(object)); });
+                [&d](Object object) { d.world.add_object(std::move(object)); });
   };
 }
 

@@ -74,13 +74,13 @@ void World::open_given(const std::string& device, const std::string& tip,
   ArmDescription arm = load_arm(device_file_, tip, consent(device_file_)).arm;
   const fs::path file = scene.empty() ? default_scene(arm) : fs::absolute(scene);
   SceneDocument whole = read_scene(file, arm);
-  if (whole.scene.meshes.empty()) {
+  if (std::ranges::none_of(whole.scene.objects, has_shape<Mesh>)) {
     d_.document.set_file(file.string());
     return open(std::move(arm), std::move(whole), {});
   }
   // Models may be large: they come in while the window is there already. Saving what is there
   // without them must not write over the scene's own file.
-  whole.scene.meshes.clear();
+  std::erase_if(whole.scene.objects, has_shape<Mesh>);
   whole.models.clear();
   whole.toml.clear();
   d_.document.set_file(default_scene(arm).string());
@@ -364,25 +364,21 @@ Workplace World::workplace() const {
   at.tips = {stage.rows().tip(layout.in(d_.live.row(), Column::device_position)),
              stage.rows().tip(layout.in(d_.live.row(), Column::proxy_position))};
   const SceneEditor& editor = d_.document.editor();
-  for (const ObjectRef& ref : objects_of(editor.scene())) {
-    const Model* model = ref.kind == ObjectKind::mesh ? editor.models()[ref.index].get() : nullptr;
-    const Bounds box = bounds_of(object_of(editor.scene(), ref), model);
+  const std::vector<Object>& objects = editor.scene().objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Bounds box = bounds_of(objects[i], editor.models()[i].get());
     if (!box.isEmpty()) at.taken.push_back(box);
   }
   return at;
 }
 
-void World::add_object(SceneObject object) {
-  d_.document.add_object(std::move(object), workplace());
-}
+void World::add_object(Object object) { d_.document.add_object(std::move(object), workplace()); }
 
 void World::show_scene() {
   const SceneEditor::Version& now = d_.document.editor().version();
   if (now.world == shown_.world && now.selected == shown_.selected) return;
-  std::optional<std::size_t> highlighted;
-  if (now.selected && now.selected->kind == ObjectKind::mesh) highlighted = now.selected->index;
   try {
-    d_.live.stage().show(now.world->document, now.world->models, highlighted);
+    d_.live.stage().show(now.world->document, now.world->models, now.selected);
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
   }

@@ -41,7 +41,7 @@ class World {
   void expand_xacro();
   // The arm whose tip is to be chosen, in the dialog "arm tip".
   const std::optional<TipsToChoose>& tips() const { return tips_; }
-  void add_object(SceneObject object);
+  void add_object(Object object);
 
   // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
   // along with all its changes, or, if it cannot, the user is asked first.

@@ -28,15 +28,16 @@ struct SceneDocument {
   std::string title;
   std::string about;  // one sentence for people
   std::vector<SceneVisual> visuals;
-  std::map<std::string, ModelFile> models;  // by MeshObstacle::model
+  std::map<std::string, ModelFile> models;  // by Mesh::model
   std::string toml;                         // the text it came from
 };
 
 // The models that its meshes have, as a recording keeps them; not others that may be left.
 inline SceneFiles files_of(const SceneDocument& document) {
   SceneFiles files;
-  for (const MeshObstacle& mesh : document.scene.meshes) {
-    files[mesh.model] = document.models.at(mesh.model).bytes;
+  for (const Object& object : document.scene.objects) {
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh != nullptr) files[mesh->model] = document.models.at(mesh->model).bytes;
   }
   return files;
 }

@@ -22,15 +22,19 @@ constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
 using namespace scene_limits;
 
 Pose pose(const TomlTable& t, const Vec3& position) {
-  Pose p = Pose::Identity();
-  p.translation() = position;
+  Pose p = pose_at(position);
   if (const auto rpy = t.vector("rpy", kAngle)) p.linear() = rotation(*rpy);
   return p;
 }
 
+Pose optional_pose(const TomlTable& t) {
+  return pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
+}
+
 Vec3 point(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
-// These keys and those of a material.
-void allow_with_material(const TomlTable& t, std::vector<const char*> keys) {
+// These keys, and those of everything that has a surface.
+void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
+  keys.insert(keys.begin(), "name");
   for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
   t.allow_only(keys);
 }
@@ -45,72 +49,69 @@ Material material(const TomlTable& t) {
 }
 std::string name(const TomlTable& t) { return t.need(t.text("name"), "name"); }
 
-Plane plane(const TomlTable& t) {
-  allow_with_material(t, {"name", "point", "normal"});
-  const Vec3 normal = t.need(t.vector("normal", kDirection), "normal");
-  if (!(normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
-  // One that is unit already stays as it is: what was written is read back to the last bit.
-  const bool unit = std::abs(normal.squaredNorm() - 1) < 1e-15;
-  return {name(t), point(t, "point"), unit ? normal : normal.normalized(), material(t)};
+std::string number(double x) {
+  std::string text = fmt::format("{}", x);
+  if (text.find_first_of(".ein") == std::string::npos) text += ".0";
+  return text;
 }
 
-Sphere sphere(const TomlTable& t) {
-  allow_with_material(t, {"name", "center", "radius"});
-  return {name(t), point(t, "center"), t.need(t.number("radius", kLength), "radius"), material(t)};
+std::string vector(const Vec3& v) {
+  return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
 }
 
-Box box(const TomlTable& t) {
-  allow_with_material(t, {"name", "center", "size", "rpy"});
-  return {name(t), pose(t, point(t, "center")), t.need(t.vector("size", kLength), "size"),
-          material(t)};
-}
-
-int joint_index(const TomlTable& t, const ArmDescription& arm) {
-  std::vector<std::string> names;
-  for (const Joint& joint : arm.joints) names.push_back(joint.name);
-  const std::string allowed =
-      fmt::format("{}, or a number from 1 to {}", fmt::join(names, ", "), arm.dof());
-  const toml::node* node = t.find("joint");
-  if (node == nullptr) t.refuse_missing("joint");
-  if (const auto wanted = node->value_exact<std::string>()) {
-    for (int i = 0; i < arm.dof(); ++i) {
-      if (arm.joints[static_cast<std::size_t>(i)].name == *wanted) return i;
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += {'\\', c};
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (byte < 0x20 || byte == 0x7f) {
+      out += fmt::format("\\u{:04X}", byte);
+    } else {
+      out += c;
     }
   }
-  const auto number = node->value_exact<std::int64_t>();
-  if (!number || *number < 1 || *number > arm.dof()) t.refuse("joint", allowed);
-  return static_cast<int>(*number) - 1;
+  return out + '"';
 }
 
-JointContact joint_contact(const TomlTable& t, const ArmDescription& arm) {
-  t.allow_only({"name", "joint", "angle", "side", "stiffness"});
-  const std::string side = t.need(t.text("side"), "side");
-  if (side != "above" && side != "below") t.refuse("side", "\"above\", \"below\"");
-  return {name(t), joint_index(t, arm), t.need(t.number("angle", kAngle), "angle"),
-          side == "above" ? 1.0 : -1.0,
-          t.need(t.number("stiffness", kJointStiffness), "stiffness")};
-}
-
-// Links of the file that were merged into a moving one will do: the ends are moved along.
-const NamedFrame& frame(const TomlTable& t, const ArmDescription& arm) {
-  const std::string wanted = t.need(t.text("link"), "link");
-  std::vector<std::string> names;
-  for (const NamedFrame& each : arm.frames) {
-    if (each.link < 0) continue;
-    if (each.name == wanted) return each;
-    names.push_back(each.name);
+class Text {
+ public:
+  void table(const char* kind) {
+    text_ += fmt::format("{}[[{}]]\n", text_.empty() ? "" : "\n", kind);
   }
-  t.refuse("link", fmt::format("a link that moves: {}", fmt::join(names, ", ")));
+  void put(const char* key, const std::string& value) { line(key, quoted(value)); }
+  void put(const char* key, double value) { line(key, number(value)); }
+  void put(const char* key, const Vec3& value) { line(key, vector(value)); }
+  void put(const char* key, int value) { line(key, std::to_string(value)); }
+  void put_position(const char* key, const Pose& pose) { put(key, Vec3(pose.translation())); }
+  void put_rotation(const Pose& pose) {
+    if (pose.linear() != Mat3::Identity()) put("rpy", rpy_of(pose.linear()));
+  }
+  // Of what may be left out.
+  void put_place(const Pose& pose, double scale) {
+    if (!pose.translation().isZero(0)) put_position("position", pose);
+    put_rotation(pose);
+    if (scale != 1) put("scale", scale);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void line(const char* key, const std::string& value) {
+    text_ += fmt::format("{} = {}\n", key, value);
+  }
+  std::string text_;
+};
+
+void put_material(Text& text, const Material& material) {
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double value = material.*each.field;
+    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
+  }
 }
 
-Probe probe(const TomlTable& t, const ArmDescription& arm) {
-  t.allow_only({"name", "link", "from", "to", "radius"});
-  const NamedFrame& at = frame(t, arm);
-  const Vec3 from = point(t, "from");
-  const Vec3 to = t.vector("to", kPosition).value_or(from);
-  return {name(t), at.link, at.origin * from, at.origin * to,
-          t.need(t.number("radius", kRadius), "radius")};
-}
+void hold(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
 
 std::string model_file(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
@@ -133,16 +134,75 @@ fs::path model_path(const TomlTable& t, const std::string& file, const fs::path&
   return absolute;
 }
 
-Pose optional_pose(const TomlTable& t) {
-  return pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
-}
-
 ModelFile read_model(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
   const fs::path path = model_path(t, file, base_dir);
   const std::string bytes = read_text(path, kLargestModel);
   return {path.string(),
           std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
 }
+
+// What a shape is in a file: how its tables are called, what is read from one besides name and
+// material, what is written to one, and what a shape is held within.
+const char* table_of(const Plane&) { return "plane"; }
+
+void read(const TomlTable& t, const ArmDescription&, Object& object, Plane& plane) {
+  allow_with_common(t, {"point", "normal"});
+  plane.normal = t.need(t.vector("normal", kDirection), "normal");
+  if (!(plane.normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
+  // One that is unit already stays as it is: what was written is read back to the last bit.
+  if (!(std::abs(plane.normal.squaredNorm() - 1) < 1e-15)) plane.normal.normalize();
+  object.pose = pose_at(point(t, "point"));
+}
+
+void write(const Object& object, const Plane& plane, const ArmDescription&, Text& text) {
+  text.put_position("point", object.pose);
+  text.put("normal", plane.normal);
+}
+
+void hold(Object& object, Plane& plane) {
+  object.pose.linear().setIdentity();
+  const double length = plane.normal.stableNorm();
+  const bool direction = std::isfinite(length) && length > 1e-9;
+  plane.normal = direction ? Vec3(plane.normal / length) : Vec3(Vec3::UnitZ());
+}
+
+const char* table_of(const Sphere&) { return "sphere"; }
+
+void read(const TomlTable& t, const ArmDescription&, Object& object, Sphere& sphere) {
+  allow_with_common(t, {"center", "radius"});
+  object.pose = pose_at(point(t, "center"));
+  sphere.radius = t.need(t.number("radius", kLength), "radius");
+}
+
+void write(const Object& object, const Sphere& sphere, const ArmDescription&, Text& text) {
+  text.put_position("center", object.pose);
+  text.put("radius", sphere.radius);
+}
+
+void hold(Object& object, Sphere& sphere) {
+  object.pose.linear().setIdentity();
+  hold(sphere.radius, kLength, Sphere{}.radius);
+}
+
+const char* table_of(const Box&) { return "box"; }
+
+void read(const TomlTable& t, const ArmDescription&, Object& object, Box& box) {
+  allow_with_common(t, {"center", "size", "rpy"});
+  object.pose = pose(t, point(t, "center"));
+  box.size = t.need(t.vector("size", kLength), "size");
+}
+
+void write(const Object& object, const Box& box, const ArmDescription&, Text& text) {
+  text.put_position("center", object.pose);
+  text.put("size", box.size);
+  text.put_rotation(object.pose);
+}
+
+void hold(Object&, Box& box) {
+  for (double& edge : box.size) hold(edge, kLength, Box{}.size.x());
+}
+
+const char* table_of(const Mesh&) { return "mesh"; }
 
 double unit(const TomlTable& t, const std::string& file) {
   const auto wanted = t.text("unit");
@@ -155,19 +215,156 @@ double unit(const TomlTable& t, const std::string& file) {
   t.refuse("unit", fmt::format("{}", fmt::join(names, ", ")));
 }
 
-MeshObstacle mesh(const TomlTable& t) {
-  allow_with_material(t, {"name", "file", "position", "rpy", "scale", "unit", "up"});
-  MeshObstacle out;
-  out.name = name(t);
-  out.model = model_file(t);
-  out.pose = optional_pose(t);
-  out.scale = t.number("scale", kScale).value_or(1);
-  out.unit = unit(t, out.model);
+void read(const TomlTable& t, const ArmDescription&, Object& object, Mesh& mesh) {
+  allow_with_common(t, {"file", "position", "rpy", "scale", "unit", "up"});
+  mesh.model = model_file(t);
+  object.pose = optional_pose(t);
+  mesh.scale = t.number("scale", kScale).value_or(1);
+  mesh.unit = unit(t, mesh.model);
   const std::string up = t.text("up").value_or("z");
   if (up != "y" && up != "z") t.refuse("up", "\"y\", \"z\"");
-  out.y_up = up == "y";
-  out.material = material(t);
-  return out;
+  mesh.y_up = up == "y";
+}
+
+void write(const Object& object, const Mesh& mesh, const ArmDescription&, Text& text) {
+  text.put("file", mesh.model);
+  text.put_place(object.pose, mesh.scale);
+  const ModelUnit* const known = model_unit(mesh.unit);
+  if (known && mesh.unit != usual_unit(mesh.model)) text.put("unit", std::string(known->name));
+  if (mesh.y_up) text.put("up", std::string("y"));
+}
+
+void hold(Object&, Mesh& mesh) {
+  hold(mesh.scale, kScale, 1);
+  if (model_unit(mesh.unit) == nullptr) mesh.unit = 1;
+}
+
+const char* table_of(const JointStop&) { return "joint_contact"; }
+
+int joint_index(const TomlTable& t, const ArmDescription& arm) {
+  std::vector<std::string> names;
+  for (const Joint& joint : arm.joints) names.push_back(joint.name);
+  const std::string allowed =
+      fmt::format("{}, or a number from 1 to {}", fmt::join(names, ", "), arm.dof());
+  const toml::node* node = t.find("joint");
+  if (node == nullptr) t.refuse_missing("joint");
+  if (const auto wanted = node->value_exact<std::string>()) {
+    for (int i = 0; i < arm.dof(); ++i) {
+      if (arm.joints[static_cast<std::size_t>(i)].name == *wanted) return i;
+    }
+  }
+  const auto number = node->value_exact<std::int64_t>();
+  if (!number || *number < 1 || *number > arm.dof()) t.refuse("joint", allowed);
+  return static_cast<int>(*number) - 1;
+}
+
+void read(const TomlTable& t, const ArmDescription& arm, Object& object, JointStop& stop) {
+  t.allow_only({"name", "joint", "angle", "side", "stiffness"});
+  const std::string side = t.need(t.text("side"), "side");
+  if (side != "above" && side != "below") t.refuse("side", "\"above\", \"below\"");
+  stop.joint = joint_index(t, arm);
+  stop.angle = t.need(t.number("angle", kAngle), "angle");
+  stop.direction = side == "above" ? 1 : -1;
+  object.material = {.stiffness = t.need(t.number("stiffness", kJointStiffness), "stiffness")};
+}
+
+void put_joint(Text& text, const JointStop& stop, const ArmDescription& arm) {
+  const auto named = [&](const Joint& joint) {
+    return joint.name == arm.joints[static_cast<std::size_t>(stop.joint)].name;
+  };
+  const auto first = std::find_if(arm.joints.begin(), arm.joints.end(), named);
+  if (std::distance(arm.joints.begin(), first) == stop.joint) {
+    text.put("joint", first->name);
+  } else {
+    text.put("joint", stop.joint + 1);
+  }
+}
+
+void write(const Object& object, const JointStop& stop, const ArmDescription& arm, Text& text) {
+  put_joint(text, stop, arm);
+  text.put("angle", stop.angle);
+  text.put("side", std::string(stop.direction > 0 ? "above" : "below"));
+  text.put("stiffness", object.material.stiffness);
+}
+
+void hold(Object& object, JointStop& stop) {
+  hold(stop.angle, kAngle, 0);
+  stop.direction = stop.direction < 0 ? -1 : 1;
+  object.pose.setIdentity();
+  hold(object.material.stiffness, kJointStiffness, JointStop::kUsualStiffness);
+}
+
+// One of each, in the order of files.
+template <std::size_t... I>
+std::array<Shape, sizeof...(I)> every_shape(std::index_sequence<I...>) {
+  return {Shape(std::in_place_index<I>)...};
+}
+const auto kShapes = every_shape(std::make_index_sequence<std::variant_size_v<Shape>>());
+
+const char* table_of(const Shape& shape) {
+  return std::visit([](const auto& s) { return table_of(s); }, shape);
+}
+
+void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path& base_dir,
+                  const SceneFiles& files, SceneDocument& out) {
+  for (const Shape& shape : kShapes) {
+    for (const TomlTable& each : t.tables(table_of(shape))) {
+      Object& object = out.scene.objects.emplace_back(Object{.shape = shape});
+      std::visit([&](auto& s) { read(each, arm, object, s); }, object.shape);
+      object.name = name(each);
+      if (has_surface(object)) object.material = material(each);
+      const auto* mesh = std::get_if<Mesh>(&object.shape);
+      if (mesh == nullptr || out.models.contains(mesh->model)) continue;
+      const auto known = files.find(mesh->model);
+      out.models[mesh->model] = known != files.end() ? ModelFile{"", known->second}
+                                                     : read_model(each, mesh->model, base_dir);
+    }
+  }
+}
+
+// Links of the file that were merged into a moving one will do: the ends are moved along.
+const NamedFrame& named_frame(const TomlTable& t, const ArmDescription& arm) {
+  const std::string wanted = t.need(t.text("link"), "link");
+  std::vector<std::string> names;
+  for (const NamedFrame& each : arm.frames) {
+    if (each.link < 0) continue;
+    if (each.name == wanted) return each;
+    names.push_back(each.name);
+  }
+  t.refuse("link", fmt::format("a link that moves: {}", fmt::join(names, ", ")));
+}
+
+Probe probe(const TomlTable& t, const ArmDescription& arm) {
+  t.allow_only({"name", "link", "from", "to", "radius"});
+  const NamedFrame& at = named_frame(t, arm);
+  const Vec3 from = point(t, "from");
+  const Vec3 to = t.vector("to", kPosition).value_or(from);
+  return {name(t), at.link, at.origin * from, at.origin * to,
+          t.need(t.number("radius", kRadius), "radius")};
+}
+
+// The frame that the ends are written in: the link's own where the file has a name for it.
+const NamedFrame& frame(const Probe& probe, const ArmDescription& arm) {
+  const NamedFrame* found = nullptr;
+  for (const NamedFrame& each : arm.frames) {
+    if (each.link != probe.link) continue;
+    if (each.origin.matrix() == Pose::Identity().matrix()) return each;
+    if (found == nullptr) found = &each;
+  }
+  if (found != nullptr) return *found;
+  throw FileError(fmt::format("probe {}: its link has no name", probe.name));
+}
+
+void put_probe(Text& text, const Probe& probe, const ArmDescription& arm) {
+  const NamedFrame& at = frame(probe, arm);
+  const bool own = at.origin.matrix() == Pose::Identity().matrix();
+  const Pose back = own ? Pose::Identity() : at.origin.inverse();
+  text.table("probe");
+  text.put("name", probe.name);
+  text.put("link", at.name);
+  text.put("from", Vec3(back * probe.from));
+  if (probe.to != probe.from) text.put("to", Vec3(back * probe.to));
+  text.put("radius", probe.radius);
 }
 
 // False for one that is left out.
@@ -182,9 +379,14 @@ bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
   return true;
 }
 
+std::string relative(const std::string& file, const fs::path& folder) {
+  if (folder.empty()) return file;
+  const fs::path inside = fs::path(file).lexically_relative(folder.lexically_normal());
+  return inside.empty() || *inside.begin() == ".." ? file : inside.string();
+}
+
 void check_counts(const Scene& scene, const std::string& where) {
-  const std::size_t contacts = scene.planes.size() + scene.spheres.size() + scene.boxes.size() +
-                               scene.meshes.size() + scene.joint_contacts.size();
+  const std::size_t contacts = scene.objects.size();
   if (contacts > kMostContacts) {
     throw FileError(
         fmt::format("{}: {} planes, spheres, boxes, meshes and joint contacts; at most {}", where,
@@ -208,26 +410,16 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
                           const SceneFiles& files) {
   const toml::table table = parse_toml(text, where);
   const TomlTable t(table, where, "");
-  t.allow_only({"title", "about", "tip_radius", "plane", "sphere", "box", "mesh", "joint_contact",
-                "probe", "visual"});
+  std::vector<const char*> keys{"title", "about", "tip_radius"};
+  for (const Shape& shape : kShapes) keys.push_back(table_of(shape));
+  keys.insert(keys.end(), {"probe", "visual"});
+  t.allow_only(keys);
   SceneDocument out;
   out.title = t.text("title").value_or("");
   out.about = t.text("about").value_or("");
   Scene& scene = out.scene;
   scene.tip_radius = t.number("tip_radius", kRadius).value_or(0);
-  for (const TomlTable& each : t.tables("plane")) scene.planes.push_back(plane(each));
-  for (const TomlTable& each : t.tables("sphere")) scene.spheres.push_back(sphere(each));
-  for (const TomlTable& each : t.tables("box")) scene.boxes.push_back(box(each));
-  for (const TomlTable& each : t.tables("mesh")) {
-    const std::string& model = scene.meshes.emplace_back(mesh(each)).model;
-    if (out.models.contains(model)) continue;
-    const auto known = files.find(model);
-    out.models[model] =
-        known != files.end() ? ModelFile{"", known->second} : read_model(each, model, base_dir);
-  }
-  for (const TomlTable& each : t.tables("joint_contact")) {
-    scene.joint_contacts.push_back(joint_contact(each, arm));
-  }
+  read_objects(t, arm, base_dir, files, out);
   for (const TomlTable& each : t.tables("probe")) scene.probes.push_back(probe(each, arm));
   for (const TomlTable& each : t.tables("visual")) {
     SceneVisual seen;
@@ -236,6 +428,36 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
   check_counts(scene, where);
   out.toml = text;
   return out;
+}
+
+void hold(Object& object) {
+  for (double& x : object.pose.translation()) hold(x, kPosition, 0);
+  const Mat3 R = object.pose.linear();
+  object.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
+  if (has_surface(object)) hold(object.material);
+  std::visit([&](auto& shape) { hold(object, shape); }, object.shape);
+}
+
+std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
+                       const fs::path& folder) {
+  const Scene& scene = document.scene;
+  Text text;
+  if (!document.title.empty()) text.put("title", document.title);
+  if (!document.about.empty()) text.put("about", document.about);
+  if (scene.tip_radius != 0) text.put("tip_radius", scene.tip_radius);
+  for (const Object& object : scene.objects) {
+    text.table(table_of(object.shape));
+    text.put("name", object.name);
+    std::visit([&](const auto& shape) { write(object, shape, arm, text); }, object.shape);
+    if (has_surface(object)) put_material(text, object.material);
+  }
+  for (const Probe& probe : scene.probes) put_probe(text, probe, arm);
+  for (const SceneVisual& visual : document.visuals) {
+    text.table("visual");
+    text.put("file", relative(visual.file, folder));
+    text.put_place(visual.pose, visual.scale);
+  }
+  return text.text();
 }
 
 }  // namespace limpid

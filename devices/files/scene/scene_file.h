@@ -1,4 +1,5 @@
-// Scenes from TOML files. Lengths in metres, angles in radians, in the device base frame.
+// Scenes as TOML files, read and written. Lengths in metres, angles in radians, in the device base
+// frame.
 //
 //     title = "A table"
 //     about = "One sentence for people."
@@ -76,5 +77,14 @@ SceneDocument read_scene(const std::filesystem::path& file, const ArmDescription
 SceneDocument parse_scene(const std::string& text, const std::string& where,
                           const std::filesystem::path& base_dir, const ArmDescription& arm,
                           const SceneFiles& files = {});
+
+// Text from which parse_scene() makes this scene again, to the last bit (rotations that no angles
+// give exactly: to round-off). Meshes are named as the scene names them, visuals relative to
+// `folder` where they lie inside of it. Comments of a text the scene came from are not in it.
+std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
+                       const std::filesystem::path& folder = {});
+
+// Holds an object within what a file may say, its rotation at one that a file says exactly.
+void hold(Object& object);
 
 }  // namespace limpid

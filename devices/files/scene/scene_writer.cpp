@@ -4,175 +4,163 @@
 
 #include <algorithm>
 
-#include "devices/files/rpy.h"
-#include "devices/files/scene/material_keys.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/scene/model_units.h"
+#include "devices/files/scene/obj_companions.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+using Bytes = std::vector<unsigned char>;
 
-std::string number(double x) {
-  std::string text = fmt::format("{}", x);
-  if (text.find_first_of(".ein") == std::string::npos) text += ".0";
-  return text;
+Bytes read_bytes(const fs::path& file) {
+  const std::string text = read_text(file, scene_limits::kLargestModel);
+  return {text.begin(), text.end()};
 }
 
-std::string vector(const Vec3& v) {
-  return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
+// Kinds of models that consist of several files, as a rule, which are not looked for here.
+bool stays(const fs::path& file) {
+  const std::string suffix = small_suffix(file);
+  return suffix == ".gltf" || suffix == ".dae";
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += {'\\', c};
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (byte < 0x20 || byte == 0x7f) {
-      out += fmt::format("\\u{:04X}", byte);
-    } else {
-      out += c;
+bool holds(const fs::path& file, const Bytes& bytes) {
+  std::error_code none;
+  return fs::is_regular_file(file, none) && fs::file_size(file, none) == bytes.size() &&
+         read_bytes(file) == bytes;
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code none;
+  return fs::exists(fs::symlink_status(file, none));
+}
+
+// The name of the i-th thing of one name.
+std::string numbered(const std::string& name, int i) {
+  return i == 1 ? name : fmt::format("{}-{}", name, i);
+}
+
+// The models of a scene, brought to where its file can name them.
+class Models {
+ public:
+  explicit Models(fs::path folder) : folder_(std::move(folder)) {}
+  ~Models() {
+    std::error_code none;
+    if (!kept_) {
+      for (auto copy = copies_.rbegin(); copy != copies_.rend(); ++copy) fs::remove(*copy, none);
     }
   }
-  return out + '"';
-}
+  Models(const Models&) = delete;
+  Models& operator=(const Models&) = delete;
 
-class Text {
- public:
-  void table(const char* kind) {
-    text_ += fmt::format("{}[[{}]]\n", text_.empty() ? "" : "\n", kind);
+  // The name for a model at `path`, or with these bytes if it has none.
+  std::string place(const fs::path& path, const std::string& name, const Bytes* bytes) {
+    const auto [known, is_new] = names_.try_emplace(path.empty() ? fs::path(name) : path);
+    if (is_new) known->second = find_place(path, name, bytes);
+    return known->second;
   }
-  void put(const char* key, const std::string& value) { line(key, quoted(value)); }
-  void put(const char* key, double value) { line(key, number(value)); }
-  void put(const char* key, const Vec3& value) { line(key, vector(value)); }
-  void put(const char* key, int value) { line(key, std::to_string(value)); }
-  void put_rotation(const Pose& pose) {
-    if (pose.linear() != Mat3::Identity()) put("rpy", rpy_of(pose.linear()));
-  }
-  // Of what may be left out.
-  void put_place(const Pose& pose, double scale) {
-    if (!pose.translation().isZero(0)) put("position", Vec3(pose.translation()));
-    put_rotation(pose);
-    if (scale != 1) put("scale", scale);
-  }
-  const std::string& text() const { return text_; }
+  void keep() { kept_ = true; }
 
  private:
-  void line(const char* key, const std::string& value) {
-    text_ += fmt::format("{} = {}\n", key, value);
+  std::string find_place(const fs::path& path, const std::string& name, const Bytes* bytes) {
+    std::error_code none;
+    const bool there = !path.empty() && fs::is_regular_file(path, none);
+    if (there) {
+      const fs::path inside = path.lexically_relative(folder_);
+      if (!inside.empty() && *inside.begin() != "..") return inside.string();
+      if (stays(path)) return path.string();
+      if (small_suffix(path) == ".obj") return copy_obj(path);
+    }
+    return bytes != nullptr ? copy(fs::path(name), *bytes) : copy(fs::path(name), read_bytes(path));
   }
-  std::string text_;
+
+  std::string copy(const fs::path& name, const Bytes& bytes) {
+    for (int i = 1;; ++i) {
+      const fs::path out =
+          folder_ / (numbered(name.stem().string(), i) + name.extension().string());
+      if (!is_there(out)) write(out, bytes);
+      if (holds(out, bytes)) return out.filename().string();
+    }
+  }
+
+  // It names its companions, which therefore keep their names: in a folder of their own.
+  std::string copy_obj(const fs::path& path) {
+    std::vector<fs::path> files = obj_companions(path);
+    if (files.empty()) return copy(path.filename(), read_bytes(path));
+    files.push_back(path.filename());
+    for (int i = 1;; ++i) {
+      const fs::path name = numbered(path.stem().string(), i);
+      const bool fresh = !is_there(folder_ / name);
+      if (fresh) make_folder(folder_ / name);
+      const bool same = std::ranges::all_of(files, [&](const fs::path& each) {
+        const fs::path out = folder_ / name / each;
+        const Bytes bytes = read_bytes(path.parent_path() / each);
+        if (fresh) make_folder(out.parent_path());
+        if (fresh && !is_there(out)) write(out, bytes);
+        return holds(out, bytes);
+      });
+      if (same) return (name / path.filename()).string();
+    }
+  }
+
+  void write(const fs::path& out, const Bytes& bytes) {
+    write_atomically(out, bytes);
+    copies_.push_back(out);
+  }
+
+  void make_folder(const fs::path& out) {
+    if (is_there(out)) return;
+    make_folder(out.parent_path());
+    std::error_code error;
+    if (!fs::create_directory(out, error)) {
+      throw FileError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
+    }
+    copies_.push_back(out);
+  }
+
+  fs::path folder_;
+  std::map<fs::path, std::string> names_;
+  std::vector<fs::path> copies_;
+  bool kept_ = false;
 };
-
-void put_material(Text& text, const Material& material) {
-  for (const MaterialKey& each : kMaterialKeys) {
-    const double value = material.*each.field;
-    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
-  }
-}
-
-void put_joint(Text& text, const JointContact& contact, const ArmDescription& arm) {
-  const auto named = [&](const Joint& joint) {
-    return joint.name == arm.joints[static_cast<std::size_t>(contact.joint)].name;
-  };
-  const auto first = std::find_if(arm.joints.begin(), arm.joints.end(), named);
-  if (std::distance(arm.joints.begin(), first) == contact.joint) {
-    text.put("joint", first->name);
-  } else {
-    text.put("joint", contact.joint + 1);
-  }
-}
-
-// The frame that the ends are written in: the link's own where the file has a name for it.
-const NamedFrame& frame(const Probe& probe, const ArmDescription& arm) {
-  const NamedFrame* found = nullptr;
-  for (const NamedFrame& each : arm.frames) {
-    if (each.link != probe.link) continue;
-    if (each.origin.matrix() == Pose::Identity().matrix()) return each;
-    if (found == nullptr) found = &each;
-  }
-  if (found != nullptr) return *found;
-  throw FileError(fmt::format("probe {}: its link has no name", probe.name));
-}
-
-void put_probe(Text& text, const Probe& probe, const ArmDescription& arm) {
-  const NamedFrame& at = frame(probe, arm);
-  const bool own = at.origin.matrix() == Pose::Identity().matrix();
-  const Pose back = own ? Pose::Identity() : at.origin.inverse();
-  text.table("probe");
-  text.put("name", probe.name);
-  text.put("link", at.name);
-  text.put("from", Vec3(back * probe.from));
-  if (probe.to != probe.from) text.put("to", Vec3(back * probe.to));
-  text.put("radius", probe.radius);
-}
-
-std::string relative(const std::string& file, const fs::path& folder) {
-  if (folder.empty()) return file;
-  const fs::path inside = fs::path(file).lexically_relative(folder.lexically_normal());
-  return inside.empty() || *inside.begin() == ".." ? file : inside.string();
-}
 
 }  // namespace
 
-std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
-                       const fs::path& folder) {
-  const Scene& scene = document.scene;
-  Text text;
-  if (!document.title.empty()) text.put("title", document.title);
-  if (!document.about.empty()) text.put("about", document.about);
-  if (scene.tip_radius != 0) text.put("tip_radius", scene.tip_radius);
-  for (const Plane& plane : scene.planes) {
-    text.table("plane");
-    text.put("name", plane.name);
-    text.put("point", plane.point);
-    text.put("normal", plane.normal);
-    put_material(text, plane.material);
+SceneDocument save_scene(const SceneDocument& document, const ArmDescription& arm,
+                         const fs::path& file) {
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) {
+    const std::string why = why_not_found(folder, "there is no folder");
+    throw FileError(fmt::format("{}: {}: {}", file.string(), why.empty() ? "not a folder" : why,
+                                folder.string()));
   }
-  for (const Sphere& sphere : scene.spheres) {
-    text.table("sphere");
-    text.put("name", sphere.name);
-    text.put("center", sphere.center);
-    text.put("radius", sphere.radius);
-    put_material(text, sphere.material);
+  if (fs::is_directory(file, none)) throw FileError(file.string() + ": is a folder");
+  SceneDocument out = document;
+  out.models.clear();
+  Models models(folder);
+  for (Object& object : out.scene.objects) {
+    auto* const mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh == nullptr) continue;
+    const ModelFile& model = document.models.at(mesh->model);
+    mesh->model = models.place(model.path, mesh->model, model.bytes.get());
+    out.models[mesh->model] = {(folder / mesh->model).lexically_normal().string(), model.bytes};
   }
-  for (const Box& box : scene.boxes) {
-    text.table("box");
-    text.put("name", box.name);
-    text.put("center", Vec3(box.pose.translation()));
-    text.put("size", box.size);
-    text.put_rotation(box.pose);
-    put_material(text, box.material);
+  for (SceneVisual& visual : out.visuals) {
+    const std::string name = models.place(visual.file, visual.file, nullptr);
+    visual.file = (folder / name).lexically_normal().string();
   }
-  for (const MeshObstacle& mesh : scene.meshes) {
-    text.table("mesh");
-    text.put("name", mesh.name);
-    text.put("file", mesh.model);
-    text.put_place(mesh.pose, mesh.scale);
-    const ModelUnit* const unit = model_unit(mesh.unit);
-    if (unit && mesh.unit != usual_unit(mesh.model)) text.put("unit", std::string(unit->name));
-    if (mesh.y_up) text.put("up", std::string("y"));
-    put_material(text, mesh.material);
-  }
-  for (const JointContact& contact : scene.joint_contacts) {
-    text.table("joint_contact");
-    text.put("name", contact.name);
-    put_joint(text, contact, arm);
-    text.put("angle", contact.angle);
-    text.put("side", std::string(contact.direction > 0 ? "above" : "below"));
-    text.put("stiffness", contact.stiffness);
-  }
-  for (const Probe& probe : scene.probes) put_probe(text, probe, arm);
-  for (const SceneVisual& visual : document.visuals) {
-    text.table("visual");
-    text.put("file", relative(visual.file, folder));
-    text.put_place(visual.pose, visual.scale);
-  }
-  return text.text();
+  out.toml = scene_text(out, arm, folder);
+  // What could not be read again never takes the place of what can.
+  parse_scene(out.toml, file.string(), folder, arm, files_of(out));
+  write_atomically(
+      file, std::span(reinterpret_cast<const unsigned char*>(out.toml.data()), out.toml.size()));
+  models.keep();
+  return out;
 }
 
 }  // namespace limpid

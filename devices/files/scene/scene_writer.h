@@ -1,19 +1,12 @@
-// Scenes as TOML files, the way read_scene() reads them.
+// Scenes written to files, with the models that they name.
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "core/dynamics/arm_description.h"
 #include "devices/files/scene/scene_document.h"
 
 namespace limpid {
-
-// Text from which parse_scene() makes this scene again, to the last bit (rotations that no angles
-// give exactly: to round-off). Meshes are named as the scene names them, visuals relative to
-// `folder` where they lie inside of it. Comments of a text the scene came from are not in it.
-std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
-                       const std::filesystem::path& folder = {});
 
 // Writes the scene to `file` at one stroke, and returns it as that file has it. Models in the
 // file's folder are named relative to it; others are copied beside it, under another name where a

@@ -56,7 +56,6 @@ void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimensi
   check(H5DSattach_scale(dataset.get(), scale.get(), dimension) >= 0, file, "cannot write");
 }
 
-
 Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
                        hsize_t chunk, std::optional<double> fill) {
   const Properties creation(H5Pcreate(H5P_DATASET_CREATE));

@@ -99,8 +99,9 @@ void expect_to_stand_alone(RunPlan plan, const fs::path& folder,
     EXPECT_EQ(first_difference(rows_of(session), rows_of(rerun)), -1);
     ASSERT_EQ(rerun.models.size(), plan.models.size());
     for (std::size_t i = 0; i < plan.models.size(); ++i) {
-      const std::string& model = rerun.document.scene.meshes[i].model;
-      EXPECT_EQ(rerun.document.models.at(model).path, "") << "read from the session";
+      const auto* mesh = std::get_if<Mesh>(&rerun.document.scene.objects[i].shape);
+      if (mesh == nullptr) continue;
+      EXPECT_EQ(rerun.document.models.at(mesh->model).path, "") << "read from the session";
       expect_same(*plan.models[i], *rerun.models[i]);
     }
     EXPECT_EQ(picture_of(rerun), picture);

@@ -12,6 +12,7 @@
 
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/text_file.h"
+#include "tests/support/objects.h"
 
 namespace limpid {
 namespace {
@@ -44,7 +45,7 @@ std::vector<unsigned char> sheet(std::uint32_t side) {
 SceneDocument with_sheets(std::uint32_t side, const std::vector<std::string>& names) {
   SceneDocument document;
   for (const std::string& name : names) {
-    document.scene.meshes.emplace_back().model = name;
+    document.scene.add({.shape = Mesh{.model = name}});
     document.models[name] = {"/nowhere/sheet.stl",
                              std::make_shared<const std::vector<unsigned char>>(sheet(side))};
   }
@@ -58,23 +59,37 @@ TEST(SceneMeshes, CanBeTouchedAndDrawnCoarsely) {
   EXPECT_EQ(models[0]->indices.size() / 3, 2 * kSide * kSide);
   EXPECT_GT(models[0]->coarse.size() / 3, 10'000u);
   EXPECT_LT(models[0]->coarse.size() / 3, 100'000u);
-  ASSERT_TRUE(document.scene.meshes[0].shape);
-  EXPECT_EQ(document.scene.meshes[0].shape->triangles(), 2 * kSide * kSide);
+  const auto shape = test::shape<Mesh>(document.scene).triangles;
+  ASSERT_TRUE(shape);
+  EXPECT_EQ(shape->triangles(), 2 * kSide * kSide);
+}
+
+TEST(SceneMeshes, AreAtThePlacesOfTheirObjects) {
+  SceneDocument document = with_sheets(3, {"a.stl"});
+  document.scene.add({.shape = JointStop{}});
+  document.scene.add({.shape = Sphere{}});
+  const MeshModels models = build_meshes(document);
+  ASSERT_EQ(models.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(models[i] != nullptr, has_shape<Mesh>(document.scene.objects[i])) << i;
+  }
+  EXPECT_TRUE(test::shape<Mesh>(document.scene).triangles);
 }
 
 TEST(SceneMeshes, ShareWhatIsOfOneFile) {
   SceneDocument document = with_sheets(3, {"a.stl", "b.stl"});
   const MeshModels models = build_meshes(document);
   EXPECT_EQ(models[0], models[1]);
-  EXPECT_EQ(document.scene.meshes[0].shape, document.scene.meshes[1].shape);
+  EXPECT_EQ(test::shape<Mesh>(document.scene, 0).triangles,
+            test::shape<Mesh>(document.scene, 1).triangles);
 }
 
 // A sheet of 3 units, at the size at which it stands in the scene.
 TEST(SceneMeshes, WarnOfSizesThatNoHandTouches) {
   SceneDocument document = with_sheets(3, {"sheet.stl"});
   const MeshModels models = build_meshes(document);
-  MeshObstacle& mesh = document.scene.meshes[0];
-  mesh.name = "sheet";
+  Mesh& mesh = test::shape<Mesh>(document.scene);
+  document.scene.objects[0].name = "sheet";
   const auto size_lines = [&](double unit, double scale) {
     mesh.unit = unit;
     mesh.scale = scale;

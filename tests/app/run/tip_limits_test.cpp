@@ -76,8 +76,9 @@ TEST(TipLimits, ReckonWithTheDeviceAsItWasMeasured) {
 TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
   Scene scene;
   EXPECT_EQ(limits({}, scene).scene, 0);
-  scene.planes.emplace_back().material.stiffness = 600;
-  scene.spheres.emplace_back().material.stiffness = 5000;
+  scene.add({.shape = Plane{}, .material = {600}});
+  scene.add({.shape = Sphere{}, .material = {5000}});
+  scene.add({.shape = JointStop{}, .material = {6000}});  // in N m/rad
   EXPECT_EQ(limits({}, scene).scene, 5000);
 }
 

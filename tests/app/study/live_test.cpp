@@ -45,7 +45,7 @@ class LiveExperiments : public testing::Test {
     p.hand_stiffness = hand.stiffness;
     p.encoder_step = encoder_step_;
     RunPlan plan = plan_in(kTableScene, hand_path(trial.name, p.tick, trial.seconds, hand.at), p);
-    plan.document.scene.planes[0].material.stiffness = stiffness_;
+    set_surface_stiffness(plan.document.scene, stiffness_);
     Session s;
     s.info.tick = p.tick;
     s.layout = RowLayout(3);

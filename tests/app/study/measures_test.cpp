@@ -9,6 +9,7 @@
 #include "app/study/measure_point.h"
 #include "tests/app/study/plans.h"
 #include "tests/support/built_in.h"
+#include "tests/support/objects.h"
 
 namespace limpid {
 namespace {
@@ -54,7 +55,7 @@ set = ["coupling.kind = standard"]
 axis = [{ key = "scene.stiffness", values = [100, 400] }]
 )");
   const RunPlan run = run_of(plan_, 0);
-  const Vec3 n = run.document.scene.planes.front().normal;
+  const Vec3 n = test::shape<Plane>(run.document.scene).normal;
   const Eigen::MatrixXd J = arm_at(run.arm, rest_pose(run.arm)).J;
   const double lever2 = (J.transpose() * n).squaredNorm();
   for (std::uint64_t i = 0; i < 2; ++i) {

@@ -61,11 +61,12 @@ TEST_F(SweepPlans, TapWallsWithArmsOfAnySizeAndMassAsStiffAsAreNamedForThem) {
     double mass = 0;
     for (const Link& link : run.arm.links) mass += link.mass;
     EXPECT_NEAR(mass, point.values[1], 1e-9 * mass);
-    ASSERT_EQ(run.document.scene.planes.size(), 1u);
+    ASSERT_EQ(run.document.scene.objects.size(), 1u);
     // The tip begins before the wall, and the hand ends in it.
-    const Plane& wall = run.document.scene.planes.front();
-    EXPECT_GT(wall.normal.dot(run.start->target - wall.point), 0);
-    EXPECT_LT(wall.normal.dot(run.hand.position.back() - wall.point), 0);
+    const Object& wall = run.document.scene.objects.front();
+    const Vec3 out = std::get<Plane>(wall.shape).normal, foot = wall.pose.translation();
+    EXPECT_GT(out.dot(run.start->target - foot), 0);
+    EXPECT_LT(out.dot(run.hand.position.back() - foot), 0);
     EXPECT_FALSE(run.arm.urdf.empty()) << "a session of it has its file";
   }
   EXPECT_EQ(run_of(plan, 0).hand.position, run_of(plan, 0).hand.position);
@@ -76,7 +77,7 @@ TEST_F(SweepPlans, TapWallsOfTheStiffnessThatAnAxisHas) {
 measure = ["wall"]
 axis = [ { key = "scene.stiffness", values = [200, 400] } ])");
   for (std::uint64_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(run_of(plan, i).document.scene.planes.front().material.stiffness, 200 * (i + 1));
+    EXPECT_EQ(run_of(plan, i).document.scene.objects.front().material.stiffness, 200 * (i + 1));
   }
 }
 
@@ -142,11 +143,11 @@ axis = [
   EXPECT_EQ(slow.rows, 250u);
   EXPECT_EQ(slow.parameters.hand_damping, 3);
   EXPECT_EQ(slow.parameters.kind, CouplingKind::predictive);
-  ASSERT_EQ(slow.document.scene.planes.size(), 1u);
-  EXPECT_EQ(slow.document.scene.planes[0].material.stiffness, 750);
+  ASSERT_EQ(slow.document.scene.objects.size(), 1u);
+  EXPECT_EQ(slow.document.scene.objects[0].material.stiffness, 750);
   EXPECT_EQ(slow.hand.source, "circle.csv");
   EXPECT_EQ(free.rows, 5000u);
-  EXPECT_TRUE(free.document.scene.planes.empty());
+  EXPECT_TRUE(free.document.scene.objects.empty());
   EXPECT_EQ(free.hand.source, "touch.csv");
 }
 

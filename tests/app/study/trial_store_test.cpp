@@ -78,16 +78,16 @@ TEST(TrialKey, IsAnotherOneForWhateverIsOtherwise) {
 
 TEST(TrialKey, KnowsTheModelsOfTheScene) {
   RunPlan plan = rich_plan();
-  MeshObstacle mesh = test::obstacle(test::sheet(1, 1));
-  mesh.model = "a.glb";
+  Object mesh = test::obstacle(test::sheet(1, 1));
+  test::mesh_of(mesh).model = "a.glb";
   using Bytes = std::vector<unsigned char>;
   plan.document.models["a.glb"].bytes = std::make_shared<const Bytes>(Bytes{1, 2, 3});
-  plan.document.scene.meshes.push_back(mesh);
+  const std::size_t place = plan.document.scene.add(mesh);
   std::set<std::uint64_t> keys{trial_key(rich_plan(), 1), trial_key(plan, 1)};
   plan.document.models["a.glb"].bytes = std::make_shared<const Bytes>(Bytes{1, 2, 4});
   keys.insert(trial_key(plan, 1));
   plan.document.models["b.glb"] = plan.document.models["a.glb"];
-  plan.document.scene.meshes[0].model = "b.glb";
+  test::mesh_of(plan.document.scene.objects[place]).model = "b.glb";
   keys.insert(trial_key(plan, 1));
   EXPECT_EQ(keys.size(), 4u);
 }

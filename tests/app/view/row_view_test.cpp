@@ -31,7 +31,7 @@ RunPlan link_against_a_ball() {
   const Vec3 middle = 0.5 * (f.p[2] + arm.tip(f));
   plan.document.scene.probes.push_back(
       {"link", 2, Vec3::Zero(), plan.arm.tip.translation(), 0.005});
-  plan.document.scene.spheres.push_back({"", middle - Vec3(0, 0, 0.026), 0.02, 500});
+  plan.document.scene.add({"", pose_at(middle - Vec3(0, 0, 0.026)), Sphere{0.02}, 500});
   return plan;
 }
 

@@ -43,7 +43,7 @@ Rows run(const ArmDescription& arm, const Scene& scene, const Parameters& p, std
 // A stop that the first joint meets on its way.
 Scene stop() {
   Scene scene;
-  scene.joint_contacts.push_back({"", 0, 0.5, 1, 20});
+  scene.add({.shape = JointStop{0, 0.5, 1}, .material = {20}});
   return scene;
 }
 
@@ -262,7 +262,7 @@ TEST(Tick, CountsWhatContactsGainFromWhereItStarts) {
   const ArmDescription arm = random_arm(3, 128);
   const Parameters p;
   Scene scene;
-  scene.joint_contacts.push_back({"", 0, led(3, 0, p.tick)[0] - 0.2, 1, 20});
+  scene.add({.shape = JointStop{0, led(3, 0, p.tick)[0] - 0.2, 1}, .material = {20}});
   const Rows rows = run(arm, scene, p, 600);
   EXPECT_EQ(rows.at(0, Column::contact_gain), 0);
   EXPECT_NEAR(rows.at(0, Column::contact_potential), 0.5 * 20 * 0.04, 0.02);

@@ -74,9 +74,9 @@ class Bench {
     return M;
   }
   // A wall this deep in the arm's tip.
-  static Plane plane(const Vec3& normal, double depth, const Material& material) {
+  static Object plane(const Vec3& normal, double depth, const Material& material) {
     const Vec3 tip = Arm3(test::random_arm(3, 5)).tip_at(start());
-    return {"", tip + depth * normal, normal, material};
+    return {"", pose_at(tip + depth * normal), Plane{normal}, material};
   }
   static Vec3 start() { return {0.3, -0.5, 0.8}; }
 
@@ -134,15 +134,16 @@ Scene some_corner(Random& random, int walls, bool friction) {
   const Mat3 axes = random.rotation();
   for (int i = 0; i < walls; ++i) {
     const Vec3 normal = (axes.col(i) + 0.3 * random.direction()).normalized();
-    scene.planes.push_back(
-        Bench::plane(normal, random.between(-2e-4, 2e-4), some_material(random, friction)));
+    scene.add(Bench::plane(normal, random.between(-2e-4, 2e-4), some_material(random, friction)));
   }
   return scene;
 }
 
 Vec3 press(const Scene& scene, Random& random) {
   Vec3 push = 2 * random.direction();
-  for (const Plane& plane : scene.planes) push -= random.between(-1, 6) * plane.normal;
+  for (const Object& plane : scene.objects) {
+    push -= random.between(-1, 6) * std::get<Plane>(plane.shape).normal;
+  }
   return push;
 }
 
@@ -290,7 +291,7 @@ TEST(ContactSolve, TakesTheDeepest32OfMore) {
   std::vector<int> order(50);
   for (int i = 0; i < 50; ++i) order[static_cast<std::size_t>(i)] = 7 * i % 50;
   for (const int i : order) {
-    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 1e-4 + 1e-5 * i, {.stiffness = 0.1}));
+    scene.add(Bench::plane(Vec3::UnitZ(), 1e-4 + 1e-5 * i, {.stiffness = 0.1}));
   }
   Bench bench(scene, 94);
   bench.answer.contact.damping = 0;  // which would hold those that others push out
@@ -308,7 +309,7 @@ TEST(ContactSolve, ForgetsWhatItLeft) {
   const Material m{.stiffness = 1000, .friction_static = 0.5, .friction_kinetic = 0.1};
   for (const double away : {1e-3, 5e-3, 0.05}) {
     Scene scene;
-    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 1e-3, m));
+    scene.add(Bench::plane(Vec3::UnitZ(), 1e-3, m));
     Bench bench(scene, 95);
     bench.tick(Vec3(0.3, 0, -1));
     bench.go_on();
@@ -327,7 +328,7 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
   for (const double kinetic : {0.2, 0.0}) {
     Scene scene;
     const Material m{.stiffness = 1000, .friction_static = 0.6, .friction_kinetic = kinetic};
-    scene.planes.push_back(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // held by 2 N
+    scene.add(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // held by 2 N
     Bench bench(scene, 96);
     bench.answer.on_device.setIdentity();
     bench.answer.contact.on_proxy.setZero();
@@ -370,17 +371,18 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
     constexpr double kRadius = 0.004;
     Scene flat, mesh;
     flat.tip_radius = mesh.tip_radius = kRadius;
-    const Plane plane = Bench::plane(random.direction(), 5e-4 - kRadius, m);
-    flat.planes.push_back(plane);
-    MeshObstacle sheet = test::obstacle(test::sheet(3, 2));
+    const Vec3 normal = random.direction();
+    const Object plane = Bench::plane(normal, 5e-4 - kRadius, m);
+    flat.add(plane);
+    Object sheet = test::obstacle(test::sheet(3, 2));
     sheet.material = m;
     sheet.pose.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).toRotationMatrix();
-    sheet.pose.translation() = plane.point;
-    mesh.meshes.push_back(sheet);
+        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+    sheet.pose.translation() = plane.pose.translation();
+    mesh.add(sheet);
     Bench a(flat, 98), b(mesh, 98);
     for (int k = 0; k < 60; ++k) {
-      const Vec3 push = -3 * plane.normal + 0.05 * k * plane.normal.unitOrthogonal();
+      const Vec3 push = -3 * normal + 0.05 * k * normal.unitOrthogonal();
       a.tick(push);
       b.tick(push);
       // Where it breaks within the tick, a mesh knows when by a 32nd.
@@ -423,7 +425,7 @@ TEST(ContactSolve, BoundsTheDamperOfAWall) {
     const auto force = [&](double damping) {
       Scene scene;
       const Material material{.stiffness = 3000, .damping = damping};
-      scene.planes.push_back(Bench::plane(normal, depth, material));
+      scene.add(Bench::plane(normal, depth, material));
       Bench bench(scene, 214);
       bench.tick(push);
       const Vec3 along = bench.tip_jacobian().transpose() * normal;

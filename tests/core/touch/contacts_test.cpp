@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "tests/support/meshes.h"
+#include "tests/support/objects.h"
 
 namespace limpid {
 namespace {
@@ -17,19 +18,27 @@ namespace {
 using test::Random;
 using test::random_arm;
 
-Plane some_plane() { return {"", Vec3(0.1, -0.2, 0.3), Vec3(1, 2, -3).normalized(), 600}; }
-Sphere some_sphere() { return {"", Vec3(0.1, -0.2, 0.3), 0.07, 600}; }
-Box some_box() {
+// A shape and where it is.
+template <class S>
+struct Placed {
+  S shape;
+  Pose pose = pose_at(Vec3(0.1, -0.2, 0.3));
+
+  Surface from(const Vec3& point) const { return distance_to(shape, pose, point); }
+  Vec3 origin() const { return pose.translation(); }
+};
+
+Placed<Plane> some_plane() { return {Plane{Vec3(1, 2, -3).normalized()}}; }
+Placed<Sphere> some_sphere() { return {Sphere{0.07}}; }
+Placed<Box> some_box() {
   Random random(3);
-  Box box;
+  Placed<Box> box{Box{Vec3(0.11, 0.23, 0.17)}};
   box.pose.linear() = random.rotation();
-  box.pose.translation() = Vec3(0.1, -0.2, 0.3);
-  box.size = Vec3(0.11, 0.23, 0.17);
   return box;
 }
 
 // Distance to the nearest of a grid of points on the box's six faces.
-double distance_to_grid(const Box& box, const Vec3& point, int cells) {
+double distance_to_grid(const Placed<Box>& box, const Vec3& point, int cells) {
   double least = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-0.5, 0.5}) {
@@ -39,7 +48,7 @@ double distance_to_grid(const Box& box, const Vec3& point, int cells) {
           p[axis] = side;
           p[(axis + 1) % 3] = static_cast<double>(i) / cells - 0.5;
           p[(axis + 2) % 3] = static_cast<double>(j) / cells - 0.5;
-          least = std::min(least, (box.pose * p.cwiseProduct(box.size) - point).norm());
+          least = std::min(least, (box.pose * p.cwiseProduct(box.shape.size) - point).norm());
         }
       }
     }
@@ -47,61 +56,61 @@ double distance_to_grid(const Box& box, const Vec3& point, int cells) {
   return least;
 }
 
-bool inside(const Box& box, const Vec3& point) {
+bool inside(const Placed<Box>& box, const Vec3& point) {
   const Vec3 p = box.pose.inverse() * point;
-  return (p.cwiseAbs().array() < box.size.array() / 2).all();
+  return (p.cwiseAbs().array() < box.shape.size.array() / 2).all();
 }
 
 // The normal of a surface is the gradient of the distance to it.
-template <class Obstacle>
-void expect_gradient(const Obstacle& obstacle, const Vec3& point) {
+template <class S>
+void expect_gradient(const Placed<S>& placed, const Vec3& point) {
   constexpr double h = 1e-6;
   Vec3 slope;
   for (int i = 0; i < 3; ++i) {
     const Vec3 step = h * Vec3::Unit(i);
-    slope[i] = (distance_to(obstacle, point + step).distance -
-                distance_to(obstacle, point - step).distance) /
-               (2 * h);
+    slope[i] = (placed.from(point + step).distance - placed.from(point - step).distance) / (2 * h);
   }
-  const Vec3 normal = distance_to(obstacle, point).normal;
+  const Vec3 normal = placed.from(point).normal;
   EXPECT_NEAR(normal.norm(), 1, 1e-12);
   EXPECT_LT((normal - slope).norm(), 1e-6);
 }
 
 TEST(Distance, ToAPlaneIsSignedAndAlongItsNormal) {
-  const Plane plane = some_plane();
-  EXPECT_NEAR(distance_to(plane, plane.point).distance, 0, 1e-15);
-  EXPECT_NEAR(distance_to(plane, plane.point + 0.2 * plane.normal).distance, 0.2, 1e-15);
-  const Vec3 within = plane.normal.unitOrthogonal();
-  EXPECT_NEAR(distance_to(plane, plane.point - 0.1 * plane.normal + within).distance, -0.1, 1e-15);
+  const Placed<Plane> plane = some_plane();
+  const Vec3 normal = plane.shape.normal;
+  EXPECT_NEAR(plane.from(plane.origin()).distance, 0, 1e-15);
+  EXPECT_NEAR(plane.from(plane.origin() + 0.2 * normal).distance, 0.2, 1e-15);
+  const Vec3 within = normal.unitOrthogonal();
+  EXPECT_NEAR(plane.from(plane.origin() - 0.1 * normal + within).distance, -0.1, 1e-15);
   expect_gradient(plane, Vec3(0.3, 0.1, -0.2));
 }
 
 TEST(Distance, ToASphereIsFromItsCentreLessTheRadius) {
-  const Sphere sphere = some_sphere();
+  const Placed<Sphere> sphere = some_sphere();
+  const double radius = sphere.shape.radius;
   Random random(1);
   for (int round = 0; round < 100; ++round) {
     const Vec3 direction = random.direction();
     const double r = random.between(0.01, 0.2);
-    const Vec3 point = sphere.center + r * direction;
-    EXPECT_NEAR(distance_to(sphere, point).distance, r - sphere.radius, 1e-15);
+    const Vec3 point = sphere.origin() + r * direction;
+    EXPECT_NEAR(sphere.from(point).distance, r - radius, 1e-15);
     expect_gradient(sphere, point);
   }
-  const Surface centre = distance_to(sphere, sphere.center);
-  EXPECT_EQ(centre.distance, -sphere.radius);
+  const Surface centre = sphere.from(sphere.origin());
+  EXPECT_EQ(centre.distance, -radius);
   EXPECT_NEAR(centre.normal.norm(), 1, 1e-15);
 }
 
 TEST(Distance, ToABoxIsToTheNearestOfItsPoints) {
-  const Box box = some_box();
+  const Placed<Box> box = some_box();
   constexpr int kCells = 60;
-  const double spacing = box.size.maxCoeff() / kCells;
+  const double spacing = box.shape.size.maxCoeff() / kCells;
   Random random(2);
   int within = 0;
   for (int round = 0; round < 60; ++round) {
     const Vec3 point = box.pose.translation() + random.point(0.15);
     const double sampled = distance_to_grid(box, point, kCells);
-    const Surface surface = distance_to(box, point);
+    const Surface surface = box.from(point);
     EXPECT_EQ(surface.distance < 0, inside(box, point));
     EXPECT_LE(std::abs(surface.distance), sampled + 1e-15);
     EXPECT_GE(std::abs(surface.distance), sampled - spacing);
@@ -109,25 +118,25 @@ TEST(Distance, ToABoxIsToTheNearestOfItsPoints) {
     expect_gradient(box, point);
     // One step along the normal lands on the surface.
     const Vec3 foot = point - surface.distance * surface.normal;
-    EXPECT_NEAR(distance_to(box, foot).distance, 0, 1e-12);
+    EXPECT_NEAR(box.from(foot).distance, 0, 1e-12);
   }
   EXPECT_GT(within, 5);
 }
 
-template <class Obstacle>
-void expect_nearest(const Obstacle& obstacle, Random& random) {
+template <class S>
+void expect_nearest(const Placed<S>& placed, Random& random) {
   for (int round = 0; round < 100; ++round) {
     const Vec3 from = Vec3(0.1, -0.2, 0.3) + random.point(0.3);
     const Vec3 to = Vec3(0.1, -0.2, 0.3) + random.point(0.3);
-    const Vec3 found = nearest_on_segment(obstacle, from, to);
+    const Vec3 found = nearest_on_segment(placed.shape, placed.pose, from, to);
     const Vec3 along = to - from;
     const double s = along.dot(found - from) / along.squaredNorm();
     EXPECT_LT((from + s * along - found).norm(), 1e-12);
     EXPECT_GE(s, -1e-12);
     EXPECT_LE(s, 1 + 1e-12);
-    const double least = distance_to(obstacle, found).distance;
+    const double least = placed.from(found).distance;
     for (int i = 0; i <= 500; ++i) {
-      EXPECT_GE(distance_to(obstacle, from + i / 500.0 * along).distance, least - 1e-9);
+      EXPECT_GE(placed.from(from + i / 500.0 * along).distance, least - 1e-9);
     }
   }
 }
@@ -190,7 +199,7 @@ TEST_P(ContactsOfJoints, OfACapsuleOnABallAreAsDeepAsTheirSurfacesOverlap) {
   World w(GetParam());
   const Vec3 side = (w.to - w.from).unitOrthogonal();
   const Vec3 middle = 0.6 * w.from + 0.4 * w.to;
-  w.scene.spheres.push_back({"", middle + 0.049 * side, 0.04, 700});
+  w.scene.add({"", pose_at(middle + 0.049 * side), Sphere{0.04}, 700});
   const auto contacts = w.contacts_at(w.x);
   ASSERT_FALSE(contacts.empty());
   const Contact<kAnyDof>& c = contacts.back();
@@ -205,7 +214,7 @@ TEST_P(ContactsOfJoints, OfACapsuleOnAPlaneHaveTheGradientOfTheirDepth) {
   World w(GetParam());
   const Vec3 normal = Vec3(0.3, -0.5, 0.8).normalized();
   const Vec3 low = normal.dot(w.to - w.from) < 0 ? w.to : w.from;
-  w.scene.planes.push_back({"", low + 0.004 * normal, normal, 600});
+  w.scene.add({"", pose_at(low + 0.004 * normal), Plane{normal}, 600});
   const auto contacts = w.contacts_at(w.x);
   ASSERT_FALSE(contacts.empty());
   EXPECT_NEAR(contacts.back().depth, 0.012 + 0.004, 1e-12);
@@ -216,11 +225,11 @@ TEST_P(ContactsOfJoints, OfTheTipInABoxHaveTheGradientOfTheirDepth) {
   World w(GetParam());
   w.scene.tip_radius = 0.005;
   w.scene.probes.clear();
-  Box box = some_box();
+  Placed<Box> box = some_box();
   // The middle of a face 3 mm above the tip.
-  const Vec3 face(0.01, 0.02, box.size.z() / 2);
+  const Vec3 face(0.01, 0.02, box.shape.size.z() / 2);
   box.pose.translation() = w.arm.tip(w.frames) - box.pose.linear() * (face - Vec3(0, 0, 0.003));
-  w.scene.boxes.push_back(box);
+  w.scene.add({"", box.pose, box.shape});
   const auto contacts = w.contacts_at(w.x);
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_NEAR(contacts[0].depth, 0.005 + 0.003, 1e-12);
@@ -232,8 +241,8 @@ TEST_P(ContactsOfJoints, OfAJointAreAsDeepAsItIsBeyond) {
   World w(GetParam());
   w.scene.probes.clear();
   const int joint = GetParam() / 2;
-  w.scene.joint_contacts.push_back({"", joint, w.x[joint] - 0.1, 1, 20});
-  w.scene.joint_contacts.push_back({"", joint, w.x[joint] - 0.1, -1, 30});
+  w.scene.add({.shape = JointStop{joint, w.x[joint] - 0.1, 1}, .material = {20}});
+  w.scene.add({.shape = JointStop{joint, w.x[joint] - 0.1, -1}, .material = {30}});
   const auto contacts = w.contacts_at(w.x);
   ASSERT_EQ(contacts.size(), 2u);
   EXPECT_NEAR(contacts[0].depth, 0.1, 1e-15);
@@ -250,9 +259,9 @@ TEST(Contacts, AreListedByTheHardestIfThereIsNoRoomForAll) {
   w.scene.probes.clear();
   for (const double stiffness : {300.0, 500.0, 200.0, 700.0, 400.0, 600.0, 100.0}) {
     const Vec3 side(0, std::cos(stiffness), std::sin(stiffness));
-    w.scene.spheres.push_back({"", w.arm.tip(w.frames) + 0.029 * side, 0.03, stiffness});
+    w.scene.add({"", pose_at(w.arm.tip(w.frames) + 0.029 * side), Sphere{0.03}, stiffness});
   }
-  w.scene.joint_contacts.push_back({"", 0, w.x[0] - 0.1, 1, 1e4});
+  w.scene.add({.shape = JointStop{0, w.x[0] - 0.1, 1}, .material = {1e4}});
   Contacts<kAnyDof> contacts(w.description, w.scene);
   contacts.find(w.arm, w.frames, w.x, 0.001);
   Vec<kAnyDof> f2;
@@ -271,8 +280,8 @@ TEST(Contacts, AreListedByTheHardestIfThereIsNoRoomForAll) {
 
 TEST(Contacts, ThatAreFarAwayAreLeftOut) {
   World w(3);
-  w.scene.spheres.push_back({"", Vec3(5, 5, 5), 0.1, 600});
-  w.scene.planes.push_back({"", Vec3(0, 0, -9), Vec3::UnitZ(), 600});
+  w.scene.add({"", pose_at(Vec3(5, 5, 5)), Sphere{0.1}, 600});
+  w.scene.add({"", pose_at(Vec3(0, 0, -9)), Plane{Vec3::UnitZ()}, 600});
   EXPECT_TRUE(w.contacts_at(w.x).empty());
 }
 
@@ -280,10 +289,10 @@ TEST(Contacts, HaveRoomForEveryPairAndKnowTheEnergyInThem) {
   World w(3);
   const Vec3 tip = w.arm.tip(w.frames);
   for (int i = 0; i < 5; ++i) {
-    w.scene.spheres.push_back(
-        {"", tip + 0.01 * Random(static_cast<unsigned>(i)).direction(), 0.03, 100.0 * (i + 1)});
+    w.scene.add({"", pose_at(tip + 0.01 * Random(static_cast<unsigned>(i)).direction()),
+                 Sphere{0.03}, 100.0 * (i + 1)});
   }
-  w.scene.joint_contacts.push_back({"", 1, w.x[1] - 0.2, 1, 20});
+  w.scene.add({.shape = JointStop{1, w.x[1] - 0.2, 1}, .material = {20}});
   Contacts<kAnyDof> contacts(w.description, w.scene);
   EXPECT_EQ(contacts.capacity(), 5u * 2 + 1);
   contacts.find(w.arm, w.frames, w.x, 0.001);
@@ -307,18 +316,18 @@ class TipBeforeThings : public testing::Test {
 
   // Deep by this much; negative: apart.
   void add_plane(double deep) {
-    scene_.planes.push_back({"", tip_ - (kRadius - deep) * out_[0], out_[0], 700});
+    scene_.add({"", pose_at(tip_ - (kRadius - deep) * out_[0]), Plane{out_[0]}, 700});
   }
   void add_ball(double deep) {
-    scene_.spheres.push_back({"", tip_ - (0.03 + kRadius - deep) * out_[1], 0.03, 800});
+    scene_.add({"", pose_at(tip_ - (0.03 + kRadius - deep) * out_[1]), Sphere{0.03}, 800});
   }
   void add_sheet(double deep, double scale = 1, double aside = 0) {
-    MeshObstacle sheet = test::obstacle(test::sheet(4, 0.3), 900);
-    sheet.scale = scale;
+    Object sheet = test::obstacle(test::sheet(4, 0.3), 900);
+    test::mesh_of(sheet).scale = scale;
     sheet.pose.linear() =
         Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), out_[2]).toRotationMatrix();
     sheet.pose.translation() = tip_ - (kRadius - deep) * out_[2] + aside * out_[2].unitOrthogonal();
-    scene_.meshes.push_back(sheet);
+    scene_.add(sheet);
   }
   // Where the joints are with the tip there, going straight from x.
   Vec<kAnyDof> led(Vec<kAnyDof> x, const Vec3& to) const {
@@ -453,7 +462,7 @@ TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
   contacts = placed(x_);
   find(contacts, x_);
   EXPECT_TRUE(contacts.list().empty());
-  scene_.joint_contacts.push_back({"", 1, x_[1] + 0.3, 1, 20});  // 0.3 rad before a stop
+  scene_.add({.shape = JointStop{1, x_[1] + 0.3, 1}, .material = {20}});  // 0.3 rad before a stop
   contacts = placed(x_);
   find(contacts, x_);
   EXPECT_EQ(contacts.potential(), 0);
@@ -493,7 +502,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   set(1, 0, kRadius);
   Contacts<kAnyDof> first = came_through();
   ASSERT_GT(side_after(first), 0.007);  // to where it came from
-  const std::shared_ptr<const TriangleMesh> shape = scene_.meshes[0].shape;
+  const std::shared_ptr<const TriangleMesh> shape = test::shape<Mesh>(scene_).triangles;
   const auto taken_over = [&] {
     Contacts<kAnyDof> next = placed(behind_);
     next.take_over(first);
@@ -501,14 +510,14 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   };
   set(1, 0, kRadius);
   EXPECT_LT(taken_over(), 0) << "another shape, even if it is an equal one";
-  scene_.meshes[0].shape = shape;
+  test::shape<Mesh>(scene_).triangles = shape;
   EXPECT_GT(taken_over(), 0.007);
-  scene_.meshes[0].material.stiffness = 100;  // may change
+  test::object<Mesh>(scene_).material.stiffness = 100;  // may change
   EXPECT_GT(taken_over(), 0.007);
   for (const auto& [scale, aside, radius] :
        {std::tuple(2.0, 0.0, kRadius), {1.0, 0.001, kRadius}, {1.0, 0.0, 0.0051}}) {
     set(scale, aside, radius);
-    scene_.meshes[0].shape = shape;
+    test::shape<Mesh>(scene_).triangles = shape;
     EXPECT_LT(taken_over(), 0) << scale << ' ' << aside << ' ' << radius;
   }
 }
@@ -516,7 +525,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
 // From end to end, 0.75 radii apart at most, but no more than 24.
 TEST(Contacts, OfACapsuleAndAMeshAreARowOfBallsFromEndToEnd) {
   World w(3);
-  w.scene.meshes.push_back(test::obstacle(test::sheet(4, 0.3), 900));
+  w.scene.add(test::obstacle(test::sheet(4, 0.3), 900));
   for (const auto& [length, radius, balls] : {std::tuple(0.1, 0.01, 15),
                                               {0.015, 0.01, 3},
                                               {0.001, 0.01, 2},

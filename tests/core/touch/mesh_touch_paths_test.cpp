@@ -20,7 +20,7 @@ constexpr double kSlip = 0.1 * T;  // of the anchor beyond what the centre does,
 // A ball, its force over the stiffness, and what must be true of it in every tick.
 class Watched {
  public:
-  Watched(const MeshObstacle& mesh, double radius, const Vec3& c)
+  Watched(const Object& mesh, double radius, const Vec3& c)
       : mesh_(mesh), touch_(mesh, radius), c_(c) {
     touch_.place(c);
     pull_ = find_pull();
@@ -39,17 +39,20 @@ class Watched {
     held += touch_.held() ? 1 : 0;
     touched += pull_.norm() > 0 ? 1 : 0;
     deepest = std::max(deepest, pull_.norm());
-    if (++ticks_ % 4 == 0 && mesh_.shape->health().closed() && !touch_.held()) {
-      ASSERT_FALSE(mesh_.shape->behind(local(touch_.anchor())));
+    if (++ticks_ % 4 == 0 && test::mesh_of(mesh_).triangles->health().closed() && !touch_.held()) {
+      ASSERT_FALSE(test::mesh_of(mesh_).triangles->behind(local(touch_.anchor())));
     }
   }
 
   const Vec3& center() const { return c_; }
   const Vec3& pull() const { return pull_; }
   const MeshTouch& touch() const { return touch_; }
-  double size() const { return mesh_.scale * mesh_.shape->radius(); }
+  double size() const {
+    return test::mesh_of(mesh_).scale * test::mesh_of(mesh_).triangles->radius();
+  }
   Vec3 local(const Vec3& world) const {
-    return mesh_.pose.inverse() * world / mesh_.scale - mesh_.shape->middle();
+    return mesh_.pose.inverse() * world / test::mesh_of(mesh_).scale -
+           test::mesh_of(mesh_).triangles->middle();
   }
 
   int held = 0, touched = 0;
@@ -65,7 +68,7 @@ class Watched {
     return x - c_;
   }
 
-  MeshObstacle mesh_;
+  Object mesh_;
   MeshTouch touch_;
   Vec3 c_, pull_;
   int ticks_ = 0;
@@ -117,9 +120,7 @@ class AnyMesh : public testing::TestWithParam<const char*> {
     int touched = 0;
     for (const double size : kSizes) {
       for (const double radius : kRadii) {
-        MeshObstacle obstacle;
-        obstacle.shape = mesh;
-        obstacle.scale = size;
+        Object obstacle{.shape = Mesh{.scale = size, .triangles = mesh}};
         obstacle.pose.linear() = random.rotation();
         obstacle.pose.translation() = random.point(0.3);
         SCOPED_TRACE(testing::Message() << "size " << size << ", radius " << radius * size);
@@ -134,18 +135,20 @@ INSTANTIATE_TEST_SUITE_P(Shapes, AnyMesh, testing::ValuesIn(kShapes),
                          [](const auto& name) { return std::string(name.param); });
 
 // In front of the surface.
-Vec3 start(const MeshObstacle& mesh, double radius, double most_apart, Random& random) {
-  const Vec3 far = 2 * mesh.shape->radius() * random.direction();
+Vec3 start(const Object& mesh, double radius, double most_apart, Random& random) {
+  const Vec3 far = 2 * test::mesh_of(mesh).triangles->radius() * random.direction();
   MeshPoint near;
-  EXPECT_TRUE(mesh.shape->nearest(far, 1e9, MeshPoint::kNone, near));
-  const double gap = (radius + std::min(0.2 * mesh.scale, most_apart)) / mesh.scale;
+  EXPECT_TRUE(test::mesh_of(mesh).triangles->nearest(far, 1e9, MeshPoint::kNone, near));
+  const double gap =
+      (radius + std::min(0.2 * test::mesh_of(mesh).scale, most_apart)) / test::mesh_of(mesh).scale;
   return mesh.pose *
-         (mesh.scale * (near.point + mesh.shape->middle() + gap * (far - near.point).normalized()));
+         (test::mesh_of(mesh).scale * (near.point + test::mesh_of(mesh).triangles->middle() +
+                                       gap * (far - near.point).normalized()));
 }
 
 TEST_P(AnyMesh, IsNeverFallenThroughOnASmoothPathThroughIt) {
-  at_every_size([](const MeshObstacle& mesh, double radius, Random& random) {
-    const double size = mesh.scale;
+  at_every_size([](const Object& mesh, double radius, Random& random) {
+    const double size = test::mesh_of(mesh).scale;
     const double step = std::min(1.0, 4 * size) * T;  // at most 1 m/s
     Watched ball(mesh, radius, start(mesh, radius, 0.05, random));
     const Vec3 inwards = (mesh.pose.translation() - ball.center()).normalized();
@@ -164,8 +167,8 @@ TEST_P(AnyMesh, IsNeverFallenThroughOnASmoothPathThroughIt) {
 }
 
 TEST_P(AnyMesh, IsNeverFallenThroughOnARandomWalk) {
-  at_every_size([](const MeshObstacle& mesh, double radius, Random& random) {
-    const double size = mesh.scale;
+  at_every_size([](const Object& mesh, double radius, Random& random) {
+    const double size = test::mesh_of(mesh).scale;
     Watched ball(mesh, radius, start(mesh, radius, 0.001, random));
     for (int k = 0; k < 2000; ++k) {
       const Vec3 home = (mesh.pose.translation() - ball.center()) / size;
@@ -178,8 +181,8 @@ TEST_P(AnyMesh, IsNeverFallenThroughOnARandomWalk) {
 }
 
 TEST_P(AnyMesh, LeavesNothingBehindOnceItHasBeenLeft) {
-  at_every_size([](const MeshObstacle& mesh, double radius, Random& random) {
-    const double size = mesh.scale;
+  at_every_size([](const Object& mesh, double radius, Random& random) {
+    const double size = test::mesh_of(mesh).scale;
     int touched = 0;
     for (int round = 0; round < 5; ++round) {
       // Straight in, and out the same way.
@@ -211,8 +214,8 @@ void press_a_sheet(const Triangles& sheet, double highest, double depth, unsigne
   Random random(seed);
   for (const double size : kSizes) {
     for (const double radius : {0.0, 0.01, 0.1}) {
-      MeshObstacle mesh = test::obstacle(sheet);
-      mesh.scale = size;
+      Object mesh = test::obstacle(sheet);
+      test::mesh_of(mesh).scale = size;
       mesh.pose.linear() = random.rotation();
       mesh.pose.translation() = random.point(0.3);
       for (const double side : {1.0, -1.0}) {
@@ -250,7 +253,7 @@ TEST(AnOpenSheet, PushesToTheSideItWasTouchedFromWhenWavy) {
 }
 
 TEST(ABall, PlacedInsideOfAClosedBodyComesOutAtTheNearestPlace) {
-  const MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
+  const Object cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
   MeshTouch touch(cube, 0.002);
   const Vec3 c(0.01, -0.02, 0.045);
   touch.place(c);
@@ -259,7 +262,7 @@ TEST(ABall, PlacedInsideOfAClosedBodyComesOutAtTheNearestPlace) {
 }
 
 TEST(ABall, PlacedBehindASheetStaysThere) {
-  const MeshObstacle sheet = test::obstacle(test::sheet(5, 0.1));
+  const Object sheet = test::obstacle(test::sheet(5, 0.1));
   MeshTouch touch(sheet, 0.002);
   const Vec3 c(0.01, -0.02, -0.0015);
   touch.place(c);
@@ -267,7 +270,7 @@ TEST(ABall, PlacedBehindASheetStaysThere) {
 }
 
 TEST(ABall, PlacedAnewForgetsWhatWasNoPlace) {
-  const MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
+  const Object cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
   MeshTouch touch(cube, 0.002);
   const Vec3 c(0.01, -0.02, 0.051), nowhere = Vec3::Constant(std::nan(""));
   touch.place(c);

@@ -48,8 +48,8 @@ TEST(Ball, OnAFlatSheetIsAsDeepAsItOverlaps) {
   for (const double size : {1e-3, 0.1, 10.0}) {
     for (const double radius : {0.01 * size, 0.1 * size}) {
       for (const int cells : {1, 20}) {
-        MeshObstacle sheet = test::obstacle(test::sheet(cells, 1));
-        sheet.scale = size;
+        Object sheet = test::obstacle(test::sheet(cells, 1));
+        test::mesh_of(sheet).scale = size;
         for (const double side : {1.0, -1.0}) {
           MeshTouch touch(sheet, radius);
           Vec3 c(0.03 * size, 0.11 * size, side * 2 * radius);
@@ -72,8 +72,8 @@ TEST(Ball, OnAFlatSheetIsAsDeepAsItOverlaps) {
 
 TEST(Ball, OnAFineSphereIsPushedOutOfItsMiddle) {
   const Triangles sphere = test::icosphere(5);  // facets 4e-2 across, 3e-4 beneath the sphere
-  MeshObstacle obstacle = test::obstacle(sphere);
-  obstacle.scale = 0.05;
+  Object obstacle = test::obstacle(sphere);
+  test::mesh_of(obstacle).scale = 0.05;
   obstacle.pose.translation() = Vec3(0.2, -0.1, 0.05);
   Random random(322);
   for (const double radius : {0.0, 0.001, 0.01, 0.1}) {
@@ -106,7 +106,7 @@ TEST(Ball, OnAFineSphereIsPushedOutOfItsMiddle) {
 
 TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
   Random random(323);
-  MeshObstacle cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
+  Object cube = test::obstacle(test::box(Vec3(0.1, 0.1, 0.1)));
   cube.pose = some_pose(random, 0.1);
   constexpr double kRadius = 0.005;
   MeshTouch touch(cube, kRadius);
@@ -161,11 +161,11 @@ TEST(Ball, InAGrooveIsHeldByBothOfItsSides) {
   for (const double slope : {0.05, 0.5, 1.2}) {
     for (const double radius : {0.0, 0.002, 0.02}) {
       const Triangles triangles = groove(slope, 3);
-      MeshObstacle obstacle = test::obstacle(triangles);
+      Object obstacle = test::obstacle(triangles);
       obstacle.pose = some_pose(random, 0.1);
       // Where the two offset planes meet; a point without a size stays a little off the surface.
       const double bottom = radius / std::cos(slope);
-      const double skin = 1.1e-5 * obstacle.shape->radius() / std::cos(slope);
+      const double skin = 1.1e-5 * test::mesh_of(obstacle).triangles->radius() / std::cos(slope);
       MeshTouch touch(obstacle, radius);
       Vec3 c = obstacle.pose * Vec3(0.001, 0.013, bottom + 0.03);
       touch.place(c);
@@ -190,10 +190,10 @@ TEST(Ball, InACornerOfThreeStaysThere) {
   Triangles corner;  // the inside of the corner of a room
   corner.vertices = {{0, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, {0, 0, 0.2f}};
   corner.indices = {0, 1, 2, 0, 2, 3, 0, 3, 1};
-  MeshObstacle obstacle = test::obstacle(corner);
+  Object obstacle = test::obstacle(corner);
   obstacle.pose = some_pose(random, 0.1);
   for (const double radius : {0.0, 0.003}) {
-    const double off = std::max(radius, 1e-5 * obstacle.shape->radius());
+    const double off = std::max(radius, 1e-5 * test::mesh_of(obstacle).triangles->radius());
     MeshTouch touch(obstacle, radius);
     Vec3 c = obstacle.pose * Vec3(0.02, 0.02, 0.02);
     touch.place(c);
@@ -252,11 +252,11 @@ TEST(Ball, OnAFlatSurfaceDoesNotFeelItsTriangles) {
 TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
   Random random(327);
   const Triangles body = test::bumpy_body(4, 0.3);
-  const MeshObstacle still = test::obstacle(body);
+  const Object still = test::obstacle(body);
   for (const double scale : {0.01, 1.0, 7.0}) {
-    MeshObstacle turned = still;
+    Object turned = still;
     turned.pose = some_pose(random, 1);
-    turned.scale = scale * still.scale;
+    test::mesh_of(turned).scale = scale * test::mesh_of(still).scale;
     for (const double radius : {0.0, 0.02}) {
       MeshTouch here(still, radius), there(turned, scale * radius);
       const auto map = [&](const Vec3& p) { return Vec3(turned.pose * Vec3(scale * p)); };

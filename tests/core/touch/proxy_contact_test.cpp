@@ -20,7 +20,7 @@ ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0}; }
 TEST(ProxyInContact, OfOneJointFollowsTheScalarMidpointRule) {
   constexpr double T = 0.001, K = 20, k_vc = 10, b = 0.013, kAngle = 0.2;
   Scene scene;
-  scene.joint_contacts.push_back({"", 0, kAngle, 1, K});
+  scene.add({.shape = JointStop{0, kAngle, 1}, .material = {K}});
   AnyProxy proxy(random_arm(1, 50), scene);
   proxy.place(Vector::Constant(1, 0), Vector::Constant(1, 0), 1e-4);
   const double m = proxy.M()(0, 0);
@@ -59,7 +59,8 @@ TEST(ProxyInContact, ThatLastsKeepsItsEnergy) {
       Random random(51);
       const Vector x = random.vector(n, 2);
       Scene scene;
-      for (int j = 0; j < n; ++j) scene.joint_contacts.push_back({"", j, x[j] - 0.65, 1, 20});
+      for (int j = 0; j < n; ++j)
+        scene.add({.shape = JointStop{j, x[j] - 0.65, 1}, .material = {20}});
       AnyProxy proxy(random_arm(n, 52), scene);
       proxy.place(x, Vector::Zero(n), 0.5);
       ProxyDrive<kAnyDof> drive = no_drive(n);
@@ -88,14 +89,14 @@ Scene crowd(const ArmDescription& description, const Vector& x) {
   Scene scene;
   scene.tip_radius = 0.004;
   for (int i = 0; i < 5; ++i) {
-    scene.spheres.push_back({"", tip + 0.03 * random.direction(), 0.02, random.between(100, 2000)});
+    scene.add(
+        {"", pose_at(tip + 0.03 * random.direction()), Sphere{0.02}, random.between(100, 2000)});
   }
-  scene.planes.push_back({"", tip - Vec3(0, 0, 0.01), Vec3::UnitZ(), 600});
-  Box box;
+  scene.add({"", pose_at(tip - Vec3(0, 0, 0.01)), Plane{Vec3::UnitZ()}, 600});
+  Object box{.pose = pose_at(tip + Vec3(0.05, 0, 0)), .shape = Box{}};
   box.pose.linear() = random.rotation();
-  box.pose.translation() = tip + Vec3(0.05, 0, 0);
-  scene.boxes.push_back(box);
-  scene.joint_contacts.push_back({"", 0, x[0] + 0.05, 1, 20});
+  scene.add(box);
+  scene.add({.shape = JointStop{0, x[0] + 0.05, 1}, .material = {20}});
   scene.probes.push_back(
       {"", description.dof() - 1, Vec3::Zero(), 0.9 * description.tip.translation(), 0.01});
   return scene;
@@ -160,7 +161,7 @@ TEST(ProxyInContact, RestsWhereSpringAndSurfaceBalance) {
   Random random(56);
   const Vector x = random.vector(n, 1);
   Scene scene;
-  scene.joint_contacts.push_back({"", 1, x[1] - 0.3, 1, 20});
+  scene.add({.shape = JointStop{1, x[1] - 0.3, 1}, .material = {20}});
   AnyProxy proxy(random_arm(n, 57), scene);
   proxy.place(x, Vector::Zero(n), 1e-4);
   for (int k = 0; k < 4000; ++k) {

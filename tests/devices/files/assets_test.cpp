@@ -9,6 +9,7 @@
 #include "devices/files/session/hand_file.h"
 #include "devices/files/urdf_file.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/objects.h"
 
 namespace limpid {
 namespace {
@@ -160,12 +161,13 @@ int times_entered(const HandPath& path, const std::function<bool(const Vec3&)>& 
 TEST(Hands, PushTheUpperArmThreeTimesThenTheTableThreeTimes) {
   const Scene scene = read_scene(test::assets() / "scenes/proximal.toml", omni()).scene;
   const HandPath path = read_hand(test::assets() / "hands/proximal.csv");
-  const JointContact& stop = scene.joint_contacts.at(0);
-  const Plane& table = scene.planes.at(0);
+  const JointStop& stop = test::shape<JointStop>(scene);
+  const Vec3 up = test::shape<Plane>(scene).normal;
+  const Vec3 table = test::object<Plane>(scene).pose.translation();
   const auto pushes = [&](const Vec3& p) {
     return stop.direction * (angles_at(p)[stop.joint] - stop.angle) > 0;
   };
-  const auto touches = [&](const Vec3& p) { return table.normal.dot(p - table.point) < 0; };
+  const auto touches = [&](const Vec3& p) { return up.dot(p - table) < 0; };
   EXPECT_EQ(times_entered(path, pushes), 3);
   EXPECT_EQ(times_entered(path, touches), 3);
   for (const Vec3& p : path.position) EXPECT_FALSE(pushes(p) && touches(p));
@@ -175,7 +177,8 @@ TEST(Hands, PushTheUpperArmThreeTimesThenTheTableThreeTimes) {
 TEST(Hands, PressTheTableFiveMillimetresDeepAndLeaveItAgain) {
   const Scene scene = read_scene(test::assets() / "scenes/table.toml", omni()).scene;
   const HandPath path = read_hand(test::assets() / "hands/touch.csv");
-  const auto touches = [&](const Vec3& p) { return p.z() < scene.planes.at(0).point.z(); };
+  const double height = test::object<Plane>(scene).pose.translation().z();
+  const auto touches = [&](const Vec3& p) { return p.z() < height; };
   EXPECT_EQ(times_entered(path, touches), 2);
   double lowest = 0;
   for (const Vec3& p : path.position) lowest = std::min(lowest, p.z());

@@ -141,7 +141,7 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
     arm.joints[i].effort = 0.4;
   }
   Scene scene;
-  scene.joint_contacts.push_back({"stop", 0, -0.02, 1, 20});
+  scene.add({.name = "stop", .shape = JointStop{0, -0.02, 1}, .material = {20}});
   Rig rig(arm, scene, device.get());
   RigStart start;
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::Vector3d::Zero();

@@ -199,7 +199,7 @@ TEST_F(ASocketDevice, IsDrivenByTheLoopAndLostWithoutForceWhenItsProgramIsKilled
   ArmDescription arm = test::random_arm(2, 7);
   for (Joint& joint : arm.joints) joint.effort = 0.2;
   Scene scene;
-  scene.joint_contacts.push_back({"stop", 0, -0.1, 1, 20});
+  scene.add({.name = "stop", .shape = JointStop{0, -0.1, 1}, .material = {20}});
   Rig rig(arm, scene, device.get());
   Parameters p;
   RigStart start;

@@ -75,7 +75,8 @@ class LateMotors : public testing::Test {
     const Parameters p = l.parameters();
     Scene scene;
     if (l.wall > 0) {
-      scene.planes.push_back({"", start_.target - kAbove * Vec3::UnitZ(), Vec3::UnitZ(), {l.wall}});
+      scene.add(
+          {"", pose_at(start_.target - kAbove * Vec3::UnitZ()), Plane{Vec3::UnitZ()}, {l.wall}});
     }
     Rig rig(arm_, scene);
     rig.start(p, start_);

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Couplings, MeshInEveryCoupling,
 TEST_P(MeshInEveryCoupling, ThatIsFlatIsFeltAsAPlane) {
   Scene plane;
   plane.tip_radius = kTip;
-  plane.planes.push_back({"", Vec3(0, 0, kTop), Vec3::UnitZ(), 600});
+  plane.add({"", pose_at(Vec3(0, 0, kTop)), Plane{Vec3::UnitZ()}, 600});
   // A mesh finds to a thousandth of the tick when contact is made: so much of the damper's force,
   // 2.5 N s/m at 0.1 m/s and 0.2 m from the joints.
   const double bound = GetParam() == CouplingKind::predictive ? 5e-5 : 1e-10;
@@ -65,11 +65,9 @@ TEST_P(MeshInEveryCoupling, ThatIsFlatIsFeltAsAPlane) {
 TEST_P(MeshInEveryCoupling, OfABoxIsFeltAsThatBox) {
   Scene box;
   box.tip_radius = kTip;
-  Box one;
-  one.size = Vec3(0.05, 0.04, 0.06);
-  one.pose.translation() = Vec3(kHome.x(), 0, kTop - 0.03);
-  box.boxes.push_back(one);
-  const Scene mesh = with_mesh(test::box(one.size, 3), one.pose.translation());
+  const Vec3 size(0.05, 0.04, 0.06), at(kHome.x(), 0, kTop - 0.03);
+  box.add({"", pose_at(at), Box{size}});
+  const Scene mesh = with_mesh(test::box(size, 3), at);
   const Path path = stroke(kTop + 0.0025, 0.035);  // over the edges, in by less than the tip
   const Rows a = run(box, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
   const double most = largest(a, Column::contact_torque);
@@ -82,10 +80,10 @@ TEST_P(MeshInEveryCoupling, OfABallIsFeltAsThatBall) {
   constexpr double kRadius = 0.03;
   Scene ball;
   ball.tip_radius = kTip;
-  ball.spheres.push_back({"", Vec3(kHome.x(), 0, kTop - kRadius), kRadius, 600});
+  ball.add({"", pose_at(Vec3(kHome.x(), 0, kTop - kRadius)), Sphere{kRadius}, 600});
   const Triangles fine =
       test::icosphere(6).mapped([&](const Vec3& p) { return Vec3(kRadius * p); });
-  const Scene mesh = with_mesh(fine, ball.spheres[0].center);
+  const Scene mesh = with_mesh(fine, ball.objects[0].pose.translation());
   const Path path = stroke(kTop + 0.002, 0.01);
   const Rows a = run(ball, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
   const double most = largest(a, Column::contact_torque);
@@ -199,7 +197,7 @@ TEST_P(MeshInEveryCoupling, GetsToAnotherStiffnessWithoutAJump) {
   const Parameters p = parameters();
   Scene scene = with_mesh(test::sheet(5, 0.2), Vec3(kHome.x(), 0, kTop), 600);
   Rig rig(arm, scene);
-  scene.meshes[0].material.stiffness = 1200;
+  scene.objects[0].material.stiffness = 1200;
   TouchWorld stiffer(arm, scene);
   rig.start(p, rest_at(arm, path(0)));
   Rows rows(rig.layout());

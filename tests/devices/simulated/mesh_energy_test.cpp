@@ -157,7 +157,7 @@ TEST_P(MeshEnergy, IsStableWhereAPlaneAsStiffIs) {
     for (const double stiffness : {600.0, 1500.0, 3000.0}) {
       Scene plane;
       plane.tip_radius = kTip;
-      plane.planes.push_back({"", Vec3(0, 0, kTop), Vec3::UnitZ(), stiffness});
+      plane.add({"", pose_at(Vec3(0, 0, kTop)), Plane{Vec3::UnitZ()}, stiffness});
       Parameters p = parameters();
       p.eta = eta;
       if (produces_energy(run(plane, p, path, 4))) continue;

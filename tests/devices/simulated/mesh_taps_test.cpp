@@ -20,14 +20,14 @@ using test::with_mesh;
 const Vec3 kAt(0.2, 0, -0.04);
 constexpr double kRadius = 0.03;  // of ball and bowl [m]
 
-struct Shape {
+struct Tapped {
   const char* name;
   Scene scene;
   Spot spot;
   bool slips = false;  // a soft grip does not stay there
 };
 
-Shape ball(double wall) {
+Tapped ball(double wall) {
   const Vec3 middle = kAt - kRadius * Vec3::UnitZ();
   const auto triangles = test::icosphere(6).mapped([](const Vec3& p) { return Vec3(kRadius * p); });
   return {"ball",
@@ -36,7 +36,7 @@ Shape ball(double wall) {
            [=](const Vec3& tip) { return kRadius + kTip - (tip - middle).norm(); }}};
 }
 
-Shape bowl(double wall) {
+Tapped bowl(double wall) {
   const Vec3 middle = kAt + kRadius * Vec3::UnitZ();
   const auto triangles = test::height_field(60, 0.04, [](double x, double y) {
     return kRadius - std::sqrt(kRadius * kRadius - x * x - y * y);
@@ -48,7 +48,7 @@ Shape bowl(double wall) {
 }
 
 // Two faces that the tip rests on, and beneath which it is pulled back to the crease.
-Shape valley(double slope, double wall) {
+Tapped valley(double slope, double wall) {
   const auto triangles =
       test::height_field(8, 0.1, [=](double x, double) { return slope * std::abs(x); });
   return {"valley", with_mesh(triangles, kAt, wall),
@@ -56,10 +56,10 @@ Shape valley(double slope, double wall) {
 }
 
 // Of a box that stands on its edge.
-Shape edge(double wall) {
+Tapped edge(double wall) {
   constexpr double kSize = 0.04;
   Scene scene = with_mesh(test::box(Vec3::Constant(kSize), 2), Vec3::Zero(), wall);
-  Pose& pose = scene.meshes[0].pose;
+  Pose& pose = scene.objects[0].pose;
   pose.linear() = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
   pose.translation() = kAt - kSize / std::numbers::sqrt2 * Vec3::UnitZ();
   const auto depth = [](const Vec3& tip) {
@@ -68,13 +68,13 @@ Shape edge(double wall) {
   return {"edge", scene, {kAt + kTip * Vec3::UnitZ(), Vec3::UnitZ(), depth}, true};
 }
 
-Shape sheet(double side, double wall) {
+Tapped sheet(double side, double wall) {
   const Vec3 out = side * Vec3::UnitZ();
   return {side > 0 ? "sheet" : "sheet from below", with_mesh(test::sheet(7, 0.1), kAt, wall),
           test::flat_spot(kAt + kTip * out, out)};
 }
 
-std::vector<Shape> shapes(double wall) {
+std::vector<Tapped> shapes(double wall) {
   return {ball(wall), bowl(wall),     valley(1, wall), valley(0.3, wall),
           edge(wall), sheet(1, wall), sheet(-1, wall)};
 }
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(EncoderSteps, MeshTaps, testing::Values(0, 1e-4));
 TEST_P(MeshTaps, AreFeltAsTheyAreSetAndGiveTheHandNoEnergy) {
   const double step = GetParam();
   for (const double wall : {600.0, 2000.0, 5000.0}) {
-    for (const Shape& shape : shapes(wall)) {
+    for (const Tapped& shape : shapes(wall)) {
       for (const double mass : {0.0, 0.2}) {
         for (const double grip : {300.0, 3000.0}) {
           Parameters p;

@@ -109,21 +109,23 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
   Random random(150);
   Scene scene;
   scene.tip_radius = 0.003;
-  scene.planes.push_back({"", tip - Vec3(0, 0, 0.005), Vec3::UnitZ(), 600});
+  scene.add({"", pose_at(tip - Vec3(0, 0, 0.005)), Plane{Vec3::UnitZ()}, 600});
   for (int i = 0; i < 8; ++i) {
-    scene.spheres.push_back({"", tip + 0.03 * random.direction(), 0.02, 600});
-    Box box;
+    scene.add({"", pose_at(tip + 0.03 * random.direction()), Sphere{0.02}, 600});
+    Object box{.shape = Box{}};
     box.pose.linear() = random.rotation();
     box.pose.translation() = tip + 0.08 * random.direction();
-    scene.boxes.push_back(box);
+    scene.add(box);
   }
-  scene.meshes.push_back(test::obstacle(test::bumpy_body(4, 0.3)));
-  scene.meshes.back().scale = 0.02;
-  scene.meshes.back().pose.translation() = tip + Vec3(0.01, 0.03, -0.01);
-  scene.meshes.push_back(test::obstacle(test::sheet(20, 0.3)));
-  scene.meshes.back().pose.linear() = random.rotation();
-  scene.meshes.back().pose.translation() = tip + 0.01 * random.direction();
-  scene.joint_contacts.push_back({"", 0, 0.02, 1, 20});
+  Object body = test::obstacle(test::bumpy_body(4, 0.3)),
+         sheet = test::obstacle(test::sheet(20, 0.3));
+  test::mesh_of(body).scale = 0.02;
+  body.pose.translation() = tip + Vec3(0.01, 0.03, -0.01);
+  sheet.pose.linear() = random.rotation();
+  sheet.pose.translation() = tip + 0.01 * random.direction();
+  scene.add(body);
+  scene.add(sheet);
+  scene.add({.shape = JointStop{0, 0.02, 1}, .material = {20}});
   scene.probes.push_back(
       {"", description.dof() - 1, Vec3::Zero(), description.tip.translation(), 0.01});
   return scene;

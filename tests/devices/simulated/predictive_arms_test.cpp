@@ -55,7 +55,7 @@ TEST(PredictiveArms, FeelWallsAsTheyAreSetAndWithoutEnergy) {
     for (const double wall : {600.0, 5000.0}) {
       taps.wall = wall;
       Scene scene;
-      scene.planes.push_back({"", spot.place, out, {wall}});
+      scene.add({"", pose_at(spot.place), Plane{out}, {wall}});
       for (const double eta : {1.0, 0.3}) {
         for (const double mass : {0.0, 0.2}) {
           Parameters p;

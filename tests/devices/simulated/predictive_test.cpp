@@ -30,7 +30,7 @@ Parameters predictive(double eta) {
 
 Scene table(const Material& material) {
   Scene scene;
-  scene.planes.push_back({"", kTable, Vec3::UnitZ(), material});
+  scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, material});
   return scene;
 }
 
@@ -131,7 +131,7 @@ TEST(PredictiveCoupling, KnowsOfTheDeviceWhatItsEncodersSay) {
 Scene corner(int planes, const Material& material) {
   Scene scene;
   for (const Vec3& out : {Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitX()), Vec3(-Vec3::UnitY())}) {
-    if (planes-- > 0) scene.planes.push_back({"", kTable, out, material});
+    if (planes-- > 0) scene.add({"", pose_at(kTable), Plane{out}, material});
   }
   return scene;
 }

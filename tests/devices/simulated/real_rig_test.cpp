@@ -32,7 +32,7 @@ struct RealRig : testing::Test {
   }
   static Scene stop_at(double x) {
     Scene scene;
-    scene.joint_contacts.push_back({"stop", 0, x - 0.05, 1, 20});
+    scene.add({.name = "stop", .shape = JointStop{0, x - 0.05, 1}, .material = {20}});
     return scene;
   }
   ForceState step(int ticks = 1) {
@@ -452,7 +452,7 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
   const double lever = reach(arm);
   ASSERT_GT(lever, 0.3);
   Scene scene;
-  scene.joint_contacts.push_back({"stop", 0, 0, 1, 100});
+  scene.add({.name = "stop", .shape = JointStop{0, 0, 1}, .material = {100}});
   Rig rig(arm, scene, nullptr);
   Parameters p;
   p.k_vc = 100;

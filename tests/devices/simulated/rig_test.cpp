@@ -29,9 +29,9 @@ Scene things(const ArmDescription& description) {
   const Vec3 tip = arm.tip(f);
   Scene scene;
   scene.tip_radius = 0.003;
-  scene.planes.push_back({"", tip - Vec3(0, 0, 0.008), Vec3(0.1, 0.2, 1).normalized(), 600});
-  scene.spheres.push_back({"", tip + Vec3(0.04, 0.01, 0), 0.03, 800});
-  scene.joint_contacts.push_back({"", 0, rest_pose(description)[0] + 0.05, 1, 20});
+  scene.add({"", pose_at(tip - Vec3(0, 0, 0.008)), Plane{Vec3(0.1, 0.2, 1).normalized()}, 600});
+  scene.add({"", pose_at(tip + Vec3(0.04, 0.01, 0)), Sphere{0.03}, 800});
+  scene.add({.shape = JointStop{0, rest_pose(description)[0] + 0.05, 1}, .material = {20}});
   return scene;
 }
 
@@ -197,8 +197,9 @@ TEST(Rig, RecordsContactForcesThatMakeTheContactTorque) {
   arm.frames(rest_pose(description), f);
   const Vec3 home = arm.tip(f), middle = 0.5 * (f.p[2] + home);
   Scene scene = things(description);
-  scene.joint_contacts.clear();
-  scene.spheres = {{"", middle + Vec3(0, 0.024, 0), 0.02, 500}};
+  std::erase_if(scene.objects, has_shape<JointStop>);
+  std::erase_if(scene.objects, has_shape<Sphere>);
+  scene.add({"", pose_at(middle + Vec3(0, 0.024, 0)), Sphere{0.02}, 500});
   scene.probes.push_back({"link", 2, Vec3::Zero(), description.tip.translation(), 0.005});
   Rig rig(description, scene);
   rig.start(Script::parameters(0), rest_at(description, home));

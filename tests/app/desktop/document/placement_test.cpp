@@ -19,7 +19,7 @@ Workplace desk() {
 
 Scene table(double height) {
   Scene scene;
-  scene.planes.push_back({"top", Vec3(0.2, 0, height), Vec3::UnitZ(), 600});
+  scene.add({"top", pose_at(Vec3(0.2, 0, height)), Plane{Vec3::UnitZ()}, 600});
   return scene;
 }
 
@@ -39,9 +39,9 @@ TEST(HandyScale, IsOneForWhatHasNoSize) {
 
 TEST(TableHeight, IsThatOfTheHighestLevelPlaneBelowTheTip) {
   Scene scene = table(-0.04);
-  scene.planes.push_back(table(-0.1).planes[0]);
-  scene.planes.push_back(table(0.1).planes[0]);
-  scene.planes.push_back({"wall", Vec3(0.1, 0, -0.01), Vec3::UnitX(), 600});
+  scene.add(table(-0.1).objects[0]);
+  scene.add(table(0.1).objects[0]);
+  scene.add({"wall", pose_at(Vec3(0.1, 0, -0.01)), Plane{Vec3::UnitX()}, 600});
   EXPECT_EQ(table_height(scene, Vec3(0.2, 0, 0)), -0.04);
   EXPECT_EQ(table_height({}, Vec3(0.2, 0, 0)), std::nullopt);
 }
@@ -71,10 +71,11 @@ TEST(Place, IsInReachAndNeverAroundATipOrAnotherObject) {
 TEST(Place, OfAModelIsUprightOnTheTable) {
   // glTF's y is up: 10 m tall, 4 m deep, off its origin.
   const Bounds model(Vec3(3, 5, 1), Vec3(6, 15, 5));
-  MeshObstacle mesh;
-  mesh.y_up = true;
-  place_mesh(mesh, model, table(-0.04), desk());
-  const Bounds stands = moved(model, Eigen::Affine3d(mesh.stood()) * Eigen::Scaling(mesh.size()));
+  Object object{.shape = Mesh{.y_up = true}};
+  place_mesh(object, model, table(-0.04), desk());
+  const Mesh& mesh = std::get<Mesh>(object.shape);
+  const Bounds stands =
+      moved(model, Eigen::Affine3d(mesh.stood(object.pose)) * Eigen::Scaling(mesh.size()));
   EXPECT_NEAR(stands.sizes().z(), 0.08, 1e-3);
   EXPECT_NEAR(stands.sizes().x(), 0.024, 1e-3);
   EXPECT_NEAR(stands.sizes().y(), 0.032, 1e-3);

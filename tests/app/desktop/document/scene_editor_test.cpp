@@ -7,19 +7,18 @@
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_writer.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/objects.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
 namespace {
 
-MeshObstacle mesh(const std::string& name) {
-  MeshObstacle out;
-  out.name = name;
-  out.model = "/models/" + name + ".glb";
+Object mesh(const std::string& name) {
   const std::vector<Eigen::Vector3f> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<std::uint32_t> faces{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-  out.shape = std::make_shared<const TriangleMesh>(corners, faces);
-  return out;
+  return {name, Pose::Identity(),
+          Mesh{.model = "/models/" + name + ".glb",
+               .triangles = std::make_shared<const TriangleMesh>(corners, faces)}};
 }
 
 ModelFile file(const std::string& name) {
@@ -41,21 +40,22 @@ SceneEditor full() {
   SceneDocument document;
   document.toml = "title = \"by hand\"  # a comment";
   editor.open(document, {});
-  editor.add(Plane{.name = "top"});
-  editor.add(Sphere{.name = "ball"});
-  editor.add(Box{.name = "block"});
+  editor.add({.name = "top", .shape = Plane{}});
+  editor.add({.name = "ball", .shape = Sphere{}});
+  editor.add({.name = "block", .shape = Box{}});
   editor.add(mesh("gear"), file("gear"), model());
-  editor.add(JointContact{.name = "stop"});
+  editor.add({.name = "stop", .shape = JointStop{}});
   return editor;
 }
 
 std::vector<std::string> names(const SceneEditor& editor) {
   std::vector<std::string> all;
-  for (const ObjectRef& ref : objects_of(editor.scene())) {
-    all.push_back(name_of(editor.scene(), ref));
-  }
+  for (const Object& object : editor.scene().objects) all.push_back(object.name);
   return all;
 }
+
+// Where full() has them.
+constexpr std::size_t kTop = 0, kBall = 1, kBlock = 2, kGear = 3, kStop = 4;
 
 using testing::ElementsAre;
 
@@ -63,21 +63,54 @@ TEST(SceneEditor, ListsEveryKindOfObject) {
   EXPECT_THAT(names(full()), ElementsAre("top", "ball", "block", "gear", "stop"));
 }
 
+// In the order in which a file has them: a copy's place is the same once it was read again.
+TEST(SceneEditor, PutsWhatIsNewBehindThoseOfItsShape) {
+  SceneEditor editor = full();
+  const ArmDescription arm = test::random_arm(3, 2);
+  for (std::size_t i = 5; i-- > 0;) editor.duplicate(i);
+  EXPECT_THAT(names(editor), ElementsAre("top", "top 2", "ball", "ball 2", "block", "block 2",
+                                         "gear", "gear 2", "stop", "stop 2"));
+  SceneEditor again;
+  again.open(parse_scene(scene_text(editor.document(), arm), "edited", "", arm,
+                         files_of(editor.document())),
+             editor.models());
+  EXPECT_EQ(names(again), names(editor));
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(editor.models()[i] != nullptr, has_shape<Mesh>(editor.scene().objects[i])) << i;
+  }
+}
+
+// Every shape goes through a step of undo and back, to the last bit, with its place and model.
+TEST(SceneEditor, BringsBackWhatWasRemoved) {
+  for (std::size_t place = 0; place < 5; ++place) {
+    SceneEditor editor = full();
+    const SceneEditor::Version before = editor.version();
+    const Object object = editor.scene().objects[place];
+    const MeshModels models = editor.models();
+    editor.remove(place);
+    EXPECT_EQ(editor.scene().objects.size(), 4u);
+    EXPECT_EQ(editor.models().size(), 4u);
+    editor.restore(before);
+    test::expect_same(editor.scene().objects.at(place), object);
+    EXPECT_EQ(editor.models(), models);
+  }
+}
+
 TEST(SceneEditor, SelectsWhatItMade) {
   SceneEditor editor = full();
-  EXPECT_EQ(name_of(editor.scene(), *editor.selected()), "stop");
-  editor.duplicate({ObjectKind::mesh, 0});
-  EXPECT_EQ(name_of(editor.scene(), *editor.selected()), "gear 2");
+  EXPECT_EQ(editor.selected_object()->name, "stop");
+  editor.duplicate(kGear);
+  EXPECT_EQ(editor.selected_object()->name, "gear 2");
   editor.duplicate(*editor.selected());
-  EXPECT_EQ(name_of(editor.scene(), *editor.selected()), "gear 3");
-  EXPECT_EQ(editor.models().size(), 3u);
+  EXPECT_EQ(editor.selected_object()->name, "gear 3");
+  EXPECT_EQ(editor.models().size(), editor.scene().objects.size());
 }
 
 TEST(SceneEditor, PutsACopyBesideTheFirstOne) {
   SceneEditor editor = full();
-  editor.duplicate({ObjectKind::mesh, 0});
+  editor.duplicate(kGear);
   const auto box = [&](std::size_t i) {
-    return bounds_of(object_of(editor.scene(), {ObjectKind::mesh, i}), editor.models()[i].get());
+    return bounds_of(editor.scene().objects[kGear + i], editor.models()[kGear + i].get());
   };
   EXPECT_FALSE(box(0).intersects(box(1)));
 }
@@ -89,7 +122,7 @@ TEST(SceneEditor, KeepsModelsWithTheirMeshes) {
   editor.add(mesh("a"), file("a"), first);
   editor.add(mesh("b"), file("b"), second);
   editor.add(mesh("c"), file("c"), third);
-  editor.remove({ObjectKind::mesh, 1});
+  editor.remove(1);
   EXPECT_THAT(names(editor), ElementsAre("a", "c"));
   EXPECT_THAT(editor.models(), ElementsAre(first, third));
   EXPECT_FALSE(editor.selected());
@@ -97,14 +130,14 @@ TEST(SceneEditor, KeepsModelsWithTheirMeshes) {
 
 TEST(SceneEditor, KeepsFilesOfModelsAsLongAsAMeshHasThem) {
   SceneEditor editor = full();
-  editor.duplicate({ObjectKind::mesh, 0});
+  editor.duplicate(kGear);
   const SceneEditor::Version both = editor.version();
   const auto models = [&] { return editor.document().models; };
   const std::string name = "/models/gear.glb";
-  editor.remove({ObjectKind::mesh, 0});
+  editor.remove(kGear);
   ASSERT_TRUE(models().contains(name)) << "the copy has it";
   EXPECT_EQ(*models().at(name).bytes, *file("gear").bytes);
-  editor.remove({ObjectKind::mesh, 0});
+  editor.remove(kGear);
   EXPECT_TRUE(models().empty());
   editor.restore(both);
   EXPECT_TRUE(models().contains(name)) << "undone";
@@ -116,25 +149,25 @@ TEST(SceneEditor, TellsApartWhatOneFileHeldAtTwoTimes) {
   const ModelFile later{file("gear").path, file("changed gear").bytes};
   for (int i = 0; i < 2; ++i) editor.add(mesh("gear"), later, model());
   const auto bytes_of = [&](std::size_t i) {
-    return *files_of(editor.document()).at(editor.scene().meshes.at(i).model);
+    return *files_of(editor.document()).at(test::shape<Mesh>(editor.scene(), i).model);
   };
   EXPECT_EQ(bytes_of(0), *file("gear").bytes);
   EXPECT_EQ(bytes_of(1), *later.bytes);
   EXPECT_EQ(bytes_of(2), *later.bytes);
-  EXPECT_EQ(editor.scene().meshes[1].model, "/models/gear-2.glb");
+  EXPECT_EQ(test::shape<Mesh>(editor.scene(), 1).model, "/models/gear-2.glb");
   EXPECT_EQ(files_of(editor.document()).size(), 2u) << "what is the same is there once";
 }
 
 TEST(SceneEditor, NeverHasTwoObjectsOfOneName) {
   SceneEditor editor = full();
-  editor.add(Sphere{.name = "gear"});
-  EXPECT_EQ(name_of(editor.scene(), *editor.selected()), "gear 2");
-  editor.rename({ObjectKind::box, 0}, "gear");
-  EXPECT_EQ(name_of(editor.scene(), {ObjectKind::box, 0}), "gear 3");
-  editor.rename({ObjectKind::box, 0}, "gear 3");
-  EXPECT_EQ(name_of(editor.scene(), {ObjectKind::box, 0}), "gear 3") << "its own is free";
-  editor.rename({ObjectKind::box, 0}, "");
-  EXPECT_EQ(name_of(editor.scene(), {ObjectKind::box, 0}), "gear 3") << "it needs one";
+  editor.add({.name = "gear", .shape = Sphere{}});
+  EXPECT_EQ(editor.selected_object()->name, "gear 2");
+  editor.rename(kBlock + 1, "gear");
+  EXPECT_EQ(editor.scene().objects[kBlock + 1].name, "gear 3");
+  editor.rename(kBlock + 1, "gear 3");
+  EXPECT_EQ(editor.scene().objects[kBlock + 1].name, "gear 3") << "its own is free";
+  editor.rename(kBlock + 1, "");
+  EXPECT_EQ(editor.scene().objects[kBlock + 1].name, "gear 3") << "it needs one";
 }
 
 TEST(SceneEditor, KnowsWhetherThereIsAnythingToSave) {
@@ -142,7 +175,7 @@ TEST(SceneEditor, KnowsWhetherThereIsAnythingToSave) {
   editor.open({}, {});
   EXPECT_FALSE(editor.dirty());
   const SceneEditor::Version before = editor.version();
-  editor.add(Sphere{});
+  editor.add({.shape = Sphere{}});
   EXPECT_TRUE(editor.dirty());
   const SceneEditor::Version after = editor.version();
   editor.restore(before);
@@ -159,36 +192,36 @@ TEST(SceneEditor, KnowsWhetherThereIsAnythingToSave) {
 TEST(SceneEditor, LeavesEarlierVersionsAsTheyWere) {
   SceneEditor editor = full();
   const SceneEditor::Version before = editor.version();
-  Sphere ball = std::get<Sphere>(object_of(editor.scene(), {ObjectKind::sphere, 0}));
-  ball.radius = 0.5;
-  editor.set({ObjectKind::sphere, 0}, ball, "radius");
-  EXPECT_EQ(editor.scene().spheres[0].radius, 0.5);
-  EXPECT_EQ(before.world->document.scene.spheres[0].radius, Sphere{}.radius);
+  Object ball = editor.scene().objects[kBall];
+  ball.shape = Sphere{0.5};
+  editor.set(kBall, ball, "radius");
+  EXPECT_EQ(test::shape<Sphere>(editor.scene()).radius, 0.5);
+  EXPECT_EQ(test::shape<Sphere>(before.world->document.scene).radius, Sphere{}.radius);
   editor.restore(before);
-  EXPECT_EQ(editor.scene().spheres[0].radius, Sphere{}.radius);
+  EXPECT_EQ(test::shape<Sphere>(editor.scene()).radius, Sphere{}.radius);
   EXPECT_EQ(editor.selected(), before.selected);
 }
 
 TEST(SceneEditor, NamesDragsOfTheSameNumberAlikeAndOthersOtherwise) {
   SceneEditor editor = full();
-  const auto set = [&](ObjectRef ref, const char* what) {
-    editor.set(ref, object_of(editor.scene(), ref), what);
+  const auto set = [&](std::size_t place, const char* what) {
+    editor.set(place, editor.scene().objects[place], what);
     return editor.last_change();
   };
-  EXPECT_EQ(set({ObjectKind::box, 0}, "size"), set({ObjectKind::box, 0}, "size"));
-  EXPECT_NE(set({ObjectKind::box, 0}, "size"), set({ObjectKind::box, 0}, "place"));
-  EXPECT_NE(set({ObjectKind::box, 0}, "place"), set({ObjectKind::sphere, 0}, "place"));
-  editor.remove({ObjectKind::box, 0});
+  EXPECT_EQ(set(kBlock, "size"), set(kBlock, "size"));
+  EXPECT_NE(set(kBlock, "size"), set(kBlock, "place"));
+  EXPECT_NE(set(kBlock, "place"), set(kBall, "place"));
+  editor.remove(kBlock);
   EXPECT_EQ(editor.last_change(), "");
 }
 
 TEST(SceneEditor, HoldsAtMost64Objects) {
   SceneEditor editor;
   editor.open({}, {});
-  for (int i = 0; i < 64; ++i) editor.add(Sphere{});
-  EXPECT_THAT(test::refusal<std::runtime_error>([&] { editor.add(Sphere{}); }),
+  for (int i = 0; i < 64; ++i) editor.add({.shape = Sphere{}});
+  EXPECT_THAT(test::refusal<std::runtime_error>([&] { editor.add({.shape = Sphere{}}); }),
               testing::HasSubstr("64"));
-  EXPECT_EQ(objects_of(editor.scene()).size(), 64u);
+  EXPECT_EQ(editor.scene().objects.size(), 64u);
 }
 
 TEST(SceneEditor, StepsThroughAllObjectsInACircle) {
@@ -197,11 +230,11 @@ TEST(SceneEditor, StepsThroughAllObjectsInACircle) {
   std::vector<std::string> seen;
   for (int i = 0; i < 6; ++i) {
     editor.select_next(1);
-    seen.push_back(name_of(editor.scene(), *editor.selected()));
+    seen.push_back(editor.selected_object()->name);
   }
   EXPECT_THAT(seen, ElementsAre("top", "ball", "block", "gear", "stop", "top"));
   editor.select_next(-1);
-  EXPECT_EQ(name_of(editor.scene(), *editor.selected()), "stop");
+  EXPECT_EQ(editor.selected_object()->name, "stop");
   SceneEditor empty;
   empty.select_next(1);
   EXPECT_FALSE(empty.selected());
@@ -227,29 +260,27 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
   };
   SceneEditor editor = full();
   for (int i = 0; i < 500; ++i) {
-    editor.set({ObjectKind::plane, 0}, Plane{"p", vector(0.1), vector(1), number(600)}, "");
-    editor.set({ObjectKind::sphere, 0}, Sphere{"s", vector(0.1), number(0.1), number(600)}, "");
-    editor.set({ObjectKind::box, 0}, Box{"b", pose(), vector(0.1), number(600)}, "");
-    editor.set({ObjectKind::joint_contact, 0},
-               JointContact{"j", 2, number(1), number(1), number(20)}, "");
-    MeshObstacle gear = mesh("gear");
+    editor.set(kTop, {"p", pose(), Plane{vector(1)}, number(600)}, "");
+    editor.set(kBall, {"s", pose(), Sphere{number(0.1)}, number(600)}, "");
+    editor.set(kBlock, {"b", pose(), Box{vector(0.1)}, number(600)}, "");
+    editor.set(kStop, {"j", pose(), JointStop{2, number(1), number(1)}, number(20)}, "");
+    Object gear = mesh("gear");
     gear.pose = pose();
-    gear.scale = number(1);
-    gear.material.stiffness = number(600);
-    editor.set({ObjectKind::mesh, 0}, gear, "");
+    std::get<Mesh>(gear.shape).scale = number(1);
+    gear.material = {number(600), number(1), number(0.5), number(0.5)};
+    editor.set(kGear, gear, "");
     editor.set_tip_radius(number(0.01));
 
     const Scene& scene = editor.scene();
     const std::string text = scene_text(editor.document(), arm);
     const Scene again = parse_scene(text, "edited", "", arm, files_of(editor.document())).scene;
     EXPECT_EQ(again.tip_radius, scene.tip_radius);
-    EXPECT_EQ(again.planes[0].point, scene.planes[0].point);
-    EXPECT_EQ(again.planes[0].normal, scene.planes[0].normal);
-    EXPECT_EQ(again.spheres[0].radius, scene.spheres[0].radius);
-    EXPECT_EQ(again.boxes[0].pose.matrix(), scene.boxes[0].pose.matrix());
-    EXPECT_EQ(again.meshes[0].pose.matrix(), scene.meshes[0].pose.matrix());
-    EXPECT_EQ(again.meshes[0].scale, scene.meshes[0].scale);
-    EXPECT_EQ(again.joint_contacts[0].direction, scene.joint_contacts[0].direction);
+    ASSERT_EQ(again.objects.size(), scene.objects.size());
+    for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+      Object object = scene.objects[k];
+      if (auto* shape = std::get_if<Mesh>(&object.shape)) shape->triangles = nullptr;
+      test::expect_same(again.objects[k], object);
+    }
     if (HasFailure()) return;
   }
 }

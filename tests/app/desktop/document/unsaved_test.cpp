@@ -16,10 +16,7 @@ namespace fs = std::filesystem;
 
 class Unsaved : public testing::Test {
  protected:
-  void SetUp() override {
-    document.scene.spheres.push_back(
-        Sphere{.name = "ball", .center = {0.1, 0, 0.05}, .radius = 0.02});
-  }
+  void SetUp() override { document.scene.add({"ball", pose_at({0.1, 0, 0.05}), Sphere{0.02}}); }
 
   const test::TempDir dir;
   const fs::path folder = dir / "unsaved";
@@ -34,8 +31,8 @@ TEST_F(Unsaved, ChangesAreThereAtTheNextStartAndToldOfOnce) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found.front(), folder / "table-recovered.toml");
   const Scene again = read_scene(found.front().string(), arm).scene;
-  ASSERT_EQ(again.spheres.size(), 1u);
-  EXPECT_EQ(again.spheres.front().name, "ball");
+  ASSERT_EQ(again.objects.size(), 1u);
+  EXPECT_EQ(again.objects.front().name, "ball");
   EXPECT_TRUE(take_unsaved(folder).empty());
 }
 

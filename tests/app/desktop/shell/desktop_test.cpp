@@ -155,8 +155,8 @@ struct ADesktop : testing::Test {
     return files;
   }
   bool has(const std::string& name) const {
-    return std::ranges::any_of(document().editor().scene().spheres,
-                               [&](const Sphere& sphere) { return sphere.name == name; });
+    return std::ranges::any_of(document().editor().scene().objects,
+                               [&](const Object& object) { return object.name == name; });
   }
 
   const test::TempDir dir;
@@ -379,7 +379,7 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
 }
 
 TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
-  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
   ASSERT_TRUE(document().editor().dirty());
   plug_in(3);
   EXPECT_TRUE(has("mine"));
@@ -392,7 +392,7 @@ TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
 
 TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
   const std::string file = document().file();
-  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
   plug_in(2);
   EXPECT_FALSE(has("mine"));
   EXPECT_NE(document().file(), file);
@@ -407,7 +407,7 @@ TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
 // Only what the user had open is put aside, not what a device brought.
 TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   const std::string file = document().file();
-  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
   plug_in(2);
   plug_in(3);
   desktop->world.close_device();
@@ -418,9 +418,9 @@ TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
 
 TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
   const fs::path file = dir / "scene.toml";
-  desktop->world.add_object(Sphere{.name = "saved", .radius = 0.01, .material = {500}});
+  desktop->world.add_object({"saved", Pose::Identity(), Sphere{0.01}, {500}});
   ASSERT_TRUE(document().save_as(file));
-  desktop->world.add_object(Sphere{.name = "mine", .radius = 0.01, .material = {500}});
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
   fs::remove(file);
   plug_in(3);
   desktop->world.close_device();
@@ -711,7 +711,7 @@ TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
   const fs::path folder = dir / "kept";
   const auto keep = [&](const std::string& ball) {
     SceneDocument document;
-    document.scene.spheres.push_back(Sphere{.name = ball, .center = {0.1, 0, 0}, .radius = 0.02});
+    document.scene.add({ball, pose_at({0.1, 0, 0}), Sphere{0.02}});
     keep_unsaved(document, test::omni(), "mine", folder);
     return take_unsaved(folder);
   };
@@ -755,9 +755,9 @@ TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
   desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   EXPECT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(until([&] { return !document().loader().busy(); }));
-  EXPECT_TRUE(desktop->playback.on()) << "and goes on playing";
-  desktop->playback.close();
-  EXPECT_FALSE(document().scene().meshes.empty());
+  EXPECT_TRUE(desktop->playback().on()) << "and goes on playing";
+  desktop->playback().close();
+  EXPECT_TRUE(std::ranges::any_of(document().scene().objects, has_shape<Mesh>));
 }
 
 TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {

@@ -1,5 +1,6 @@
 #include "devices/files/scene/scene_file.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/objects.h"
 
 namespace limpid {
 namespace {
@@ -22,7 +23,7 @@ SceneDocument parse(const std::string& text) { return parse_scene(text, "x.toml"
 
 TEST(Scene, MayBeEmpty) {
   const Scene scene = parse("").scene;
-  EXPECT_TRUE(scene.planes.empty());
+  EXPECT_TRUE(scene.objects.empty());
   EXPECT_EQ(scene.tip_radius, 0);
 }
 
@@ -69,13 +70,13 @@ radius = 0.01
   EXPECT_EQ(document.title, "T");
   EXPECT_EQ(document.about, "A.");
   EXPECT_EQ(s.tip_radius, 0.003);
-  EXPECT_LT((s.planes.at(0).normal - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
-  EXPECT_EQ(s.spheres.at(0).center, Vec3(1, 2, 3));
-  EXPECT_LT((s.boxes.at(0).pose * Vec3(0.05, 0, 0) - Vec3(1, 0.05, 0)).norm(), 1e-15);
-  EXPECT_EQ(s.joint_contacts.at(0).joint, 1);
-  EXPECT_EQ(s.joint_contacts.at(0).direction, 1);
-  EXPECT_EQ(s.joint_contacts.at(1).joint, 0);
-  EXPECT_EQ(s.joint_contacts.at(1).direction, -1);
+  EXPECT_LT((test::shape<Plane>(s).normal - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(test::object<Sphere>(s).pose.translation(), Vec3(1, 2, 3));
+  EXPECT_LT((test::object<Box>(s).pose * Vec3(0.05, 0, 0) - Vec3(1, 0.05, 0)).norm(), 1e-15);
+  EXPECT_EQ(test::shape<JointStop>(s, 0).joint, 1);
+  EXPECT_EQ(test::shape<JointStop>(s, 0).direction, 1);
+  EXPECT_EQ(test::shape<JointStop>(s, 1).joint, 0);
+  EXPECT_EQ(test::shape<JointStop>(s, 1).direction, -1);
   EXPECT_EQ(s.probes.at(0).link, 1);
   EXPECT_EQ(s.probes.at(0).from, Vec3(0.6, 0, 0)) << "moved with the link it is fixed to";
   EXPECT_EQ(s.probes.at(0).to, s.probes.at(0).from);
@@ -135,9 +136,7 @@ TEST(Scene, GivesAllThatHasASurfaceAMaterialOfTheSameKeys) {
                                  "[[box]]\nname = \"a\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\n"};
   for (const std::string& object : objects) {
     const Scene scene = parse(object + "stiffness = 1e6\n").scene;
-    for (const auto& plane : scene.planes) EXPECT_EQ(plane.material.stiffness, 1e6);
-    for (const auto& sphere : scene.spheres) EXPECT_EQ(sphere.material.stiffness, 1e6);
-    for (const auto& box : scene.boxes) EXPECT_EQ(box.material.stiffness, 1e6);
+    EXPECT_EQ(scene.objects.at(0).material.stiffness, 1e6);
     EXPECT_THAT(refusal([&] { parse(object); }), HasSubstr(".stiffness: missing")) << object;
     for (const char* wrong : {"0", "1.1e6", "nan", "true"}) {
       EXPECT_THAT(refusal([&] { parse(object + "stiffness = " + wrong + "\n"); }),
@@ -165,7 +164,7 @@ TEST(Scene, HoldsAtMost64ContactsAnd63ProbesBesidesTheTip) {
     }
     return text;
   };
-  EXPECT_EQ(parse(spheres(64) + probes(63)).scene.spheres.size(), 64u);
+  EXPECT_EQ(parse(spheres(64) + probes(63)).scene.objects.size(), 64u);
   EXPECT_THAT(refusal([&] { parse(spheres(65)); }), HasSubstr("65"));
   EXPECT_THAT(refusal([&] { parse(probes(64)); }), HasSubstr("64"));
 }
@@ -184,8 +183,8 @@ TEST(Scene, HasTheModelsOfItsMeshesEachOnce) {
   test::write_file(dir / "b.glb", "bytes of b");
   const SceneDocument read =
       parse_scene(mesh("a.glb") + mesh("b.glb") + mesh("a.glb"), "x.toml", dir / "", arm());
-  ASSERT_EQ(read.scene.meshes.size(), 3u);
-  EXPECT_EQ(read.scene.meshes[2].model, "a.glb");
+  ASSERT_EQ(read.scene.objects.size(), 3u);
+  EXPECT_EQ(test::shape<Mesh>(read.scene, 2).model, "a.glb");
   ASSERT_EQ(read.models.size(), 2u);
   EXPECT_EQ(read.models.at("b.glb").path, (dir / "b.glb").string());
   const SceneFiles files = files_of(read);

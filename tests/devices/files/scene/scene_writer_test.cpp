@@ -8,6 +8,7 @@
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/urdf_file.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/objects.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -25,45 +26,15 @@ void expect_same(const SceneDocument& first, const SceneDocument& second) {
   EXPECT_EQ(first.about, second.about);
   const Scene &a = first.scene, &b = second.scene;
   EXPECT_EQ(a.tip_radius, b.tip_radius);
-  ASSERT_EQ(a.planes.size(), b.planes.size());
-  for (std::size_t i = 0; i < a.planes.size(); ++i) {
-    EXPECT_EQ(a.planes[i].name, b.planes[i].name);
-    EXPECT_EQ(a.planes[i].point, b.planes[i].point);
-    EXPECT_EQ(a.planes[i].normal, b.planes[i].normal);
-    EXPECT_EQ(a.planes[i].material.stiffness, b.planes[i].material.stiffness);
-  }
-  ASSERT_EQ(a.spheres.size(), b.spheres.size());
-  for (std::size_t i = 0; i < a.spheres.size(); ++i) {
-    EXPECT_EQ(a.spheres[i].name, b.spheres[i].name);
-    EXPECT_EQ(a.spheres[i].center, b.spheres[i].center);
-    EXPECT_EQ(a.spheres[i].radius, b.spheres[i].radius);
-    EXPECT_EQ(a.spheres[i].material.stiffness, b.spheres[i].material.stiffness);
-  }
-  ASSERT_EQ(a.boxes.size(), b.boxes.size());
-  for (std::size_t i = 0; i < a.boxes.size(); ++i) {
-    EXPECT_EQ(a.boxes[i].name, b.boxes[i].name);
-    expect_same(a.boxes[i].pose, b.boxes[i].pose);
-    EXPECT_EQ(a.boxes[i].size, b.boxes[i].size);
-    EXPECT_EQ(a.boxes[i].material.stiffness, b.boxes[i].material.stiffness);
-  }
-  ASSERT_EQ(a.meshes.size(), b.meshes.size());
-  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
-    EXPECT_EQ(a.meshes[i].name, b.meshes[i].name);
-    expect_same(a.meshes[i].pose, b.meshes[i].pose);
-    EXPECT_EQ(a.meshes[i].scale, b.meshes[i].scale);
-    EXPECT_EQ(a.meshes[i].unit, b.meshes[i].unit);
-    EXPECT_EQ(a.meshes[i].y_up, b.meshes[i].y_up);
-    EXPECT_EQ(a.meshes[i].material.stiffness, b.meshes[i].material.stiffness);
-    EXPECT_EQ(*first.models.at(a.meshes[i].model).bytes,
-              *second.models.at(b.meshes[i].model).bytes);
-  }
-  ASSERT_EQ(a.joint_contacts.size(), b.joint_contacts.size());
-  for (std::size_t i = 0; i < a.joint_contacts.size(); ++i) {
-    EXPECT_EQ(a.joint_contacts[i].name, b.joint_contacts[i].name);
-    EXPECT_EQ(a.joint_contacts[i].joint, b.joint_contacts[i].joint);
-    EXPECT_EQ(a.joint_contacts[i].angle, b.joint_contacts[i].angle);
-    EXPECT_EQ(a.joint_contacts[i].direction, b.joint_contacts[i].direction);
-    EXPECT_EQ(a.joint_contacts[i].stiffness, b.joint_contacts[i].stiffness);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) {
+    Object object = b.objects[i];
+    if (auto* mesh = std::get_if<Mesh>(&object.shape)) {
+      const std::string model = std::get<Mesh>(a.objects[i].shape).model;
+      EXPECT_EQ(*first.models.at(model).bytes, *second.models.at(mesh->model).bytes);
+      mesh->model = model;
+    }
+    test::expect_same(a.objects[i], object);
   }
   ASSERT_EQ(a.probes.size(), b.probes.size());
   for (std::size_t i = 0; i < a.probes.size(); ++i) {
@@ -101,47 +72,53 @@ Pose random_pose(test::Random& random) {
   return pose;
 }
 
+Material random_material(test::Random& random) {
+  Material out{.stiffness = std::exp(random.between(-3, 9))};
+  if (random.between(0, 1) < 0.5) out.damping = random.between(0, 100);
+  if (random.between(0, 1) < 0.5) out.friction_static = random.between(0, 1);
+  if (random.between(0, 1) < 0.5) out.friction_kinetic = random.between(0, 1);
+  return out;
+}
+
 // As read from a file: normals are what normalizing leaves, rotations come from written angles.
 SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
   test::Random random(seed);
   const auto count = [&] { return static_cast<int>(random.between(0, 4)); };
-  const auto stiffness = [&] { return std::exp(random.between(-3, 9)); };
   SceneDocument out;
   out.title = odd_name(random);
   out.about = odd_name(random);
   Scene& scene = out.scene;
   scene.tip_radius = random.between(0, 0.01);
   for (int i = count(); i > 0; --i) {
-    scene.planes.push_back(
-        {odd_name(random), random.point(1), random.point(1).normalized(), stiffness()});
+    scene.add({odd_name(random), pose_at(random.point(1)), Plane{random.point(1).normalized()},
+               random_material(random)});
   }
   for (int i = count(); i > 0; --i) {
-    scene.spheres.push_back(
-        {odd_name(random), random.point(1), random.between(1e-4, 1), stiffness()});
+    scene.add({odd_name(random), pose_at(random.point(1)), Sphere{random.between(1e-4, 1)},
+               random_material(random)});
   }
   for (int i = count(); i > 0; --i) {
-    scene.boxes.push_back({odd_name(random), random_pose(random),
-                           Vec3::Constant(1.2) + random.point(1), stiffness()});
+    scene.add({odd_name(random), random_pose(random), Box{Vec3::Constant(1.2) + random.point(1)},
+               random_material(random)});
   }
   for (int i = count(); i > 0; --i) {
-    MeshObstacle mesh;
-    mesh.name = odd_name(random);
+    Object object{odd_name(random), random_pose(random), Mesh{}, random_material(random)};
+    Mesh& mesh = std::get<Mesh>(object.shape);
     // STL is taken for millimetres unless it says otherwise, all others for metres.
     mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7" +
                  (random.between(0, 1) < 0.5 ? ".stl" : ".glb");
     mesh.unit = std::array{1.0, 0.01, 0.001, 0.0254,
                            0.3048}[static_cast<std::size_t>(random.between(0, 4.999))];
     mesh.y_up = random.between(0, 1) < 0.5;
-    mesh.pose = random_pose(random);
     mesh.scale = random.between(1e-3, 5);
-    mesh.material.stiffness = stiffness();
     out.models[mesh.model].bytes = bytes("model " + std::to_string(i));
-    scene.meshes.push_back(mesh);
+    scene.add(object);
   }
   for (int i = count(); i > 0; --i) {
-    scene.joint_contacts.push_back({odd_name(random),
-                                    static_cast<int>(random.between(0, arm.dof() - 0.001)),
-                                    random.between(-3, 3), i % 2 == 0 ? 1.0 : -1.0, stiffness()});
+    scene.add({.name = odd_name(random),
+               .shape = JointStop{static_cast<int>(random.between(0, arm.dof() - 0.001)),
+                                  random.between(-3, 3), i % 2 == 0 ? 1.0 : -1.0},
+               .material = {std::exp(random.between(-3, 9))}});
   }
   for (int i = count(); i > 0; --i) {
     const Vec3 from = random.point(0.2);
@@ -205,9 +182,9 @@ TEST(SceneText, NamesTheSecondOfTwoJointsOfOneNameByItsNumber) {
   ArmDescription arm = test::random_arm(2, 1);
   arm.joints[1].name = arm.joints[0].name = "turn";
   SceneDocument document;
-  document.scene.joint_contacts.push_back({"stop", 1, 0.5, 1, 20});
+  document.scene.add({.name = "stop", .shape = JointStop{1, 0.5, 1}, .material = {20}});
   const Scene again = parse_scene(scene_text(document, arm), "again", "", arm).scene;
-  EXPECT_EQ(again.joint_contacts.at(0).joint, 1);
+  EXPECT_EQ(test::shape<JointStop>(again).joint, 1);
 }
 
 class SavedScene : public testing::Test {
@@ -221,16 +198,14 @@ class SavedScene : public testing::Test {
   SceneDocument with_mesh(const fs::path& model, const std::string& content) {
     test::write_file(model, content);
     SceneDocument document;
-    MeshObstacle& mesh = document.scene.meshes.emplace_back();
-    mesh.name = "gear";
-    mesh.model = model.string();
-    document.models[mesh.model] = {model.string(), bytes(content)};
+    document.scene.add({.name = "gear", .shape = Mesh{.model = model.string()}});
+    document.models[model.string()] = {model.string(), bytes(content)};
     return document;
   }
   // Where the first mesh's model is found when the scene is read again.
   std::string path_read_again() {
     const SceneDocument again = read_scene(file_, arm_);
-    return again.models.at(again.scene.meshes.at(0).model).path;
+    return again.models.at(test::shape<Mesh>(again.scene).model).path;
   }
 
   test::TempDir dir_;
@@ -252,7 +227,7 @@ TEST_F(SavedScene, IsReadBackAsItWas) {
 TEST_F(SavedScene, NamesModelsOfItsFolderRelativeToIt) {
   const fs::path model = folder_ / "parts/gear.glb";
   const SceneDocument saved = save_scene(with_mesh(model, "gear"), arm_, file_);
-  EXPECT_EQ(saved.scene.meshes[0].model, "parts/gear.glb");
+  EXPECT_EQ(test::shape<Mesh>(saved.scene).model, "parts/gear.glb");
   EXPECT_EQ(path_read_again(), model.string());
 }
 
@@ -266,7 +241,7 @@ TEST_F(SavedScene, TakesModelsFromElsewhereAlong) {
 
 TEST_F(SavedScene, CopiesAModelOnceHoweverOftenItIsThere) {
   SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
-  scene.scene.meshes.push_back(scene.scene.meshes[0]);
+  scene.scene.add(scene.scene.objects[0]);
   save_scene(scene, arm_, file_);
   save_scene(scene, arm_, folder_ / "again.toml");
   const auto models = std::count_if(
@@ -279,7 +254,7 @@ TEST_F(SavedScene, NeverOverwritesAnotherModel) {
   test::write_file(folder_ / "gear.glb", "somebody else's");
   test::write_file(folder_ / "gear-2.glb", "and this, too");
   const SceneDocument saved = save_scene(with_mesh(elsewhere_ / "gear.glb", "gear"), arm_, file_);
-  EXPECT_EQ(saved.scene.meshes[0].model, "gear-3.glb");
+  EXPECT_EQ(test::shape<Mesh>(saved.scene).model, "gear-3.glb");
   EXPECT_EQ(test::file_bytes(folder_ / "gear.glb"), "somebody else's");
   EXPECT_EQ(test::file_bytes(folder_ / "gear-2.glb"), "and this, too");
   EXPECT_EQ(test::file_bytes(folder_ / "gear-3.glb"), "gear");
@@ -288,12 +263,12 @@ TEST_F(SavedScene, NeverOverwritesAnotherModel) {
 TEST_F(SavedScene, TellsModelsOfOneNameApart) {
   SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
   const SceneDocument other = with_mesh(elsewhere_ / "deep/gear.glb", "another");
-  scene.scene.meshes.push_back(other.scene.meshes[0]);
+  scene.scene.add(other.scene.objects[0]);
   scene.models.insert(other.models.begin(), other.models.end());
   save_scene(scene, arm_, file_);
   const SceneDocument again = read_scene(file_, arm_);
   const auto bytes_of = [&](std::size_t i) {
-    return *again.models.at(again.scene.meshes.at(i).model).bytes;
+    return *again.models.at(test::shape<Mesh>(again.scene, i).model).bytes;
   };
   EXPECT_EQ(bytes_of(0), *bytes("gear"));
   EXPECT_EQ(bytes_of(1), *bytes("another"));
@@ -313,7 +288,7 @@ TEST_F(SavedScene, LeavesOutModelsThatNoMeshHas) {
 TEST_F(SavedScene, LeavesModelsOfSeveralFilesWhereTheyAre) {
   const fs::path model = elsewhere_ / "gear.gltf";
   const SceneDocument saved = save_scene(with_mesh(model, "{}"), arm_, file_);
-  EXPECT_EQ(saved.scene.meshes[0].model, model.string());
+  EXPECT_EQ(test::shape<Mesh>(saved.scene).model, model.string());
   EXPECT_FALSE(fs::exists(folder_ / "gear.gltf"));
 }
 
@@ -329,7 +304,7 @@ TEST_F(SavedScene, TakesAnObjAlongWithItsMaterialsAndPictures) {
   fs::create_symlink(dir_ / "key", elsewhere_ / "linked.png");
   const SceneDocument scene = with_mesh(elsewhere_ / "gear.obj", obj);
   const SceneDocument saved = save_scene(scene, arm_, file_);
-  EXPECT_EQ(saved.scene.meshes[0].model, "gear/gear.obj");
+  EXPECT_EQ(test::shape<Mesh>(saved.scene).model, "gear/gear.obj");
   EXPECT_EQ(test::file_bytes(folder_ / "gear/gear.obj"), obj);
   EXPECT_EQ(test::file_bytes(folder_ / "gear/gear.mtl"), test::file_bytes(elsewhere_ / "gear.mtl"));
   EXPECT_EQ(test::file_bytes(folder_ / "gear/maps/red.png"), "red");
@@ -337,9 +312,9 @@ TEST_F(SavedScene, TakesAnObjAlongWithItsMaterialsAndPictures) {
   EXPECT_FALSE(fs::exists(folder_ / "gear/linked.png"));
   EXPECT_FALSE(fs::exists(folder_ / "key"));
   // The same again is there already; another one of its name is not.
-  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "gear/gear.obj");
+  EXPECT_EQ(test::shape<Mesh>(save_scene(scene, arm_, file_).scene).model, "gear/gear.obj");
   test::write_file(folder_ / "gear/gear.mtl", "somebody else's");
-  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "gear-2/gear.obj");
+  EXPECT_EQ(test::shape<Mesh>(save_scene(scene, arm_, file_).scene).model, "gear-2/gear.obj");
   fs::remove_all(elsewhere_);
   EXPECT_EQ(path_read_again(), (folder_ / "gear-2/gear.obj").string());
 }
@@ -347,23 +322,23 @@ TEST_F(SavedScene, TakesAnObjAlongWithItsMaterialsAndPictures) {
 TEST_F(SavedScene, TakesAnObjAlongThatStandsAlone) {
   const SceneDocument saved =
       save_scene(with_mesh(elsewhere_ / "gear.OBJ", "v 0 0 0\n"), arm_, file_);
-  EXPECT_EQ(saved.scene.meshes[0].model, "gear.OBJ");
+  EXPECT_EQ(test::shape<Mesh>(saved.scene).model, "gear.OBJ");
   EXPECT_EQ(test::file_bytes(folder_ / "gear.OBJ"), "v 0 0 0\n");
 }
 
 TEST_F(SavedScene, LeavesNoPartOfAnObjBehindWhereItCannotBeWritten) {
   test::write_file(elsewhere_ / "gear.mtl", "newmtl a\n");
   SceneDocument scene = with_mesh(elsewhere_ / "gear.obj", "mtllib gear.mtl\n");
-  scene.scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
+  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // further than a file may say
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
   EXPECT_FALSE(fs::exists(folder_ / "gear"));
 }
 
 TEST_F(SavedScene, WritesModelsOutOfASessionBesideIt) {
   SceneDocument scene = with_mesh(elsewhere_ / "gear.glb", "gear");
-  scene.scene.meshes[0].model = "parts/wheel.glb";
+  test::shape<Mesh>(scene.scene).model = "parts/wheel.glb";
   scene.models = {{"parts/wheel.glb", {"", bytes("gear")}}};
-  EXPECT_EQ(save_scene(scene, arm_, file_).scene.meshes[0].model, "wheel.glb");
+  EXPECT_EQ(test::shape<Mesh>(save_scene(scene, arm_, file_).scene).model, "wheel.glb");
   EXPECT_EQ(test::file_bytes(folder_ / "wheel.glb"), "gear");
 }
 
@@ -375,7 +350,7 @@ TEST_F(SavedScene, LeavesEverythingAsItWasWhereItCannotBeWritten) {
               HasSubstr("is a folder"));
 
   test::write_file(file_, "title = \"before\"\n");
-  scene.scene.planes.push_back({"", Vec3(11, 0, 0)});  // further than a file may say
+  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // further than a file may say
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
   EXPECT_EQ(test::file_bytes(file_), "title = \"before\"\n");
   EXPECT_FALSE(fs::exists(folder_ / "gear.glb"));

@@ -1,0 +1,33 @@
+#include "core/touch/scene.h"
+
+#include <algorithm>
+
+namespace limpid {
+
+std::size_t Scene::add(Object object) {
+  const auto behind = std::ranges::upper_bound(objects, object.shape.index(), {},
+                                               [](const Object& o) { return o.shape.index(); });
+  return static_cast<std::size_t>(objects.insert(behind, std::move(object)) - objects.begin());
+}
+
+Pose pose_at(const Vec3& position) {
+  Pose pose = Pose::Identity();
+  pose.translation() = position;
+  return pose;
+}
+
+double stiffest_surface(const Scene& scene) {
+  double most = 0;
+  for (const Object& object : scene.objects) {
+    if (has_surface(object)) most = std::max(most, object.material.stiffness);
+  }
+  return most;
+}
+
+void set_surface_stiffness(Scene& scene, double stiffness) {
+  for (Object& object : scene.objects) {
+    if (has_surface(object)) object.material.stiffness = stiffness;
+  }
+}
+
+}  // namespace limpid
