@@ -7,7 +7,9 @@ namespace limpid {
 std::size_t Scene::add(Object object) {
   const auto behind = std::ranges::upper_bound(objects, object.shape.index(), {},
                                                [](const Object& o) { return o.shape.index(); });
-  return static_cast<std::size_t>(objects.insert(behind, std::move(object)) - objects.begin());
+  const auto place = static_cast<std::size_t>(behind - objects.begin());
+  objects.insert(behind, std::move(object));
+  return place;
 }
 
 Pose pose_at(const Vec3& position) {

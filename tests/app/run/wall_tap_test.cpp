@@ -87,7 +87,7 @@ TEST(WallTap, OfAnArmOfOneJointTurnsIt) {
 TEST(WallMeter, ThatSeesNoContactFindsNoWall) {
   const ArmDescription arm = test::omni();
   Tapped t = tap(arm, rest_pose(arm), {.wall = 1000, .press = 1}, predictive());
-  WallMeter meter(arm, {"", Vec3(0, 0, -5), Vec3::UnitZ(), {1000}}, 1e-3, 0);
+  WallMeter meter(arm, {"", pose_at(Vec3(0, 0, -5)), Plane{Vec3::UnitZ()}, {1000}}, 1e-3, 0);
   EXPECT_EQ(meter.felt(), 0);
   EXPECT_EQ(meter.rattle(), 0);
   meter.add(RowLayout(3), std::span(t.rows).first(static_cast<std::size_t>(RowLayout(3).stride())));

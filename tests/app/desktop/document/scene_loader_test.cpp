@@ -28,12 +28,13 @@ std::optional<Loaded> wait_for(SceneLoader& loader) {
 
 TEST(LoadModel, GivesItsPictureAndItsShape) {
   const LoadedModel loaded = load_model(table());
+  const Mesh& mesh = std::get<Mesh>(loaded.mesh.shape);
   EXPECT_EQ(loaded.mesh.name, "table");
   EXPECT_EQ(loaded.file.path, fs::absolute(table()).lexically_normal().string());
-  EXPECT_EQ(loaded.mesh.model, loaded.file.path);
+  EXPECT_EQ(mesh.model, loaded.file.path);
   EXPECT_EQ(loaded.mesh.material.stiffness, 600);
-  EXPECT_GT(loaded.mesh.shape->triangles(), 0u);
-  EXPECT_LE(loaded.mesh.shape->triangles(), loaded.model->indices.size() / 3);
+  EXPECT_GT(mesh.triangles->triangles(), 0u);
+  EXPECT_LE(mesh.triangles->triangles(), loaded.model->indices.size() / 3);
 }
 
 TEST(LoadModel, RefusesInOneLineThatNamesTheFile) {
