@@ -11,8 +11,8 @@ source=$(realpath "$(dirname "$0")/../..")
 release=${1:-}
 shift || true
 case $release in
-  12) suite=bookworm more=() ;;
-  13) suite=trixie more=(weston) ;;  # windows open on Wayland, too
+  12) suite=bookworm more=(mount) ;;
+  13) suite=trixie more=(mount weston) ;;  # windows open on Wayland, too
   aarch64) suite=trixie more=() ;;
   *) sed -n '2,8s/^# //p' "$0"; exit 2 ;;
 esac
@@ -32,11 +32,11 @@ if [ ! -f "$root.tar" ]; then
     "${LIMPID_MIRROR:-http://deb.debian.org/debian}"
   mv "$root.part.tar" "$root.tar"
 fi
-if [ ! -d "$root/limpid" ]; then
+if [ ! -d "$root/mnt/source" ]; then
   mkdir -p "$root"
   tar -x -f "$root.tar" -C "$root"
   cp -L /etc/resolv.conf "$root/etc/resolv.conf"
-  mkdir "$root/build" "$root/limpid"
+  mkdir "$root/build" "$root/mnt/source"
 fi
 
 # Runs a command there, with the sources, which cannot be written, and a build folder. What it
@@ -46,11 +46,11 @@ inside() {
     for each in dev sys; do mount --rbind /$each "$ROOT/$each"; done
     mount -t proc proc "$ROOT/proc"
     mount -t tmpfs -o mode=1777 tmp "$ROOT/dev/shm"
-    mount --bind "$SOURCE" "$ROOT/limpid"
-    mount -o remount,bind,ro "$ROOT/limpid"
-    mount --bind "$ROOT/build" "$ROOT/limpid/build"
+    mount --bind "$SOURCE" "$ROOT/mnt/source"
+    mount -o remount,bind,ro "$ROOT/mnt/source"
+    mount --bind "$ROOT/build" "$ROOT/mnt/source/build"
     exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb \
-      chroot "$ROOT" bash -euo pipefail -c "cd /limpid; $COMMAND"'
+      chroot "$ROOT" bash -euo pipefail -c "cd /mnt/source; $COMMAND"'
 }
 
 if [ "$release" = aarch64 ]; then

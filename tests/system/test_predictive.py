@@ -121,7 +121,7 @@ class Predictive(SystemTest):
         super().setUpClass()
         time = np.linspace(0, 0.5, 101)
         height = -0.034 - 0.014 * (1 - np.cos(8 * np.pi * time)) / 2
-        lines = [f"{t!r},{0.19 + 0.02 * t!r},{0.01 * t!r},{z!r}" for t, z in zip(time, height)]
+        lines = [f"{t!r},{0.19 + 0.02 * t!r},{0.01 * t!r},{z!r}" for t, z in zip(time.tolist(), height.tolist())]
         cls.taps = cls.directory / "taps.csv"
         cls.taps.write_text("time_s,x_m,y_m,z_m\n" + "\n".join(lines) + "\n")
         cls.smooth = cls.directory / "smooth.toml"

@@ -27,6 +27,7 @@ class Handle {
 
   // Whether closing worked; an identifier is closed once at most.
   bool close() { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
+  void leave_open() { id_ = H5I_INVALID_HID; }
   hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
 

@@ -182,7 +182,9 @@ void SessionFile::create(const SessionInfo& info) {
   hdf5::Scales scales;
   if (info.arm) scales = hdf5::create_scales(file_.get(), *info.arm, path_);
   for (const SessionLane& lane : lanes_) lane.attach(scales);
+  starting_ = true;
   check(H5Fstart_swmr_write(file_.get()) >= 0, path_, "cannot write");
+  starting_ = false;
   check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
 }
 
@@ -222,6 +224,12 @@ void SessionFile::close() {
 void SessionFile::abandon() {
   if (!file_) return;
   const hdf5::Quiet quiet;
+  if (starting_) {
+    // HDF5 1.14 crashes when it closes a file whose start failed. As it stays open, no other file
+    // gets its place on the disk, which HDF5 would take for the same one.
+    for (SessionLane& lane : lanes_) lane.abandon();
+    return file_.leave_open();
+  }
   void* descriptor = nullptr;
   const int null_device = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   if (H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor) >= 0 && null_device >= 0) {

@@ -59,6 +59,7 @@ class SessionFile {
   RowLayout layout_;
   std::vector<SessionLane> lanes_;
   hdf5::File file_;
+  bool starting_ = false;
 };
 
 }  // namespace limpid

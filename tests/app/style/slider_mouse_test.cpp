@@ -13,6 +13,9 @@ constexpr float kLeft = 100, kTop = 50, kWidth = 400, kTrack = 75;  // [px], of 
 
 class SliderMouse : public ImGuiFrames {
  protected:
+  // ImGui 1.90 lets no window be hovered before its third frame.
+  SliderMouse() { draw(), draw(); }
+
   void draw(float seconds = 0.02f) {
     frame(
         [&] {
