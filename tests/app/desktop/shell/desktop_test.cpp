@@ -755,8 +755,8 @@ TEST_F(ADesktop, TakesASceneInWhileARecordingPlays) {
   desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   EXPECT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(until([&] { return !document().loader().busy(); }));
-  EXPECT_TRUE(desktop->playback().on()) << "and goes on playing";
-  desktop->playback().close();
+  EXPECT_TRUE(desktop->playback.on()) << "and goes on playing";
+  desktop->playback.close();
   EXPECT_TRUE(std::ranges::any_of(document().scene().objects, has_shape<Mesh>));
 }
 
