@@ -5,6 +5,7 @@
 #include <numbers>
 
 namespace limpid {
+
 namespace {
 
 constexpr double kFieldOfView = 32 * std::numbers::pi / 180;  // vertical; calm perspective

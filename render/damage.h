@@ -1,4 +1,4 @@
-// What of a picture has to be drawn anew because it looks different than in the last frame.
+// Whether two states of the view can be told apart in a picture.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,14 @@
 #include <vector>
 
 #include "core/math/sizes.h"
+#include "render/view_state.h"
 
 namespace limpid {
 
+// Nothing is further off than `tolerance` [m], forces as long as their arrows.
+bool same_picture(const ViewState& a, const ViewState& b, double tolerance);
+
+// What of a picture has to be drawn anew because it looks different than in the last frame.
 using PixelArea = Eigen::AlignedBox2i;  // y up, the upper corner is the first pixel outside
 
 // Things are named in the same order in every frame; one that looks different than its predecessor

@@ -1,11 +1,78 @@
 #include "render/lit_pass.h"
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <string>
 
-#include "render/frustum.h"
+#include "render/camera.h"
+#include "render/gl/gl_names.h"
 
 namespace limpid {
+
+ShadowMap::ShadowMap(int size) : size_(std::max(0, size)) {
+  allocate(still_);
+  allocate(all_);
+}
+
+void ShadowMap::allocate(const Layer& layer) const {
+  const GLsizei edge = std::max(1, size_);
+  glBindTexture(GL_TEXTURE_2D, layer.depth);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, edge, edge, 0, GL_DEPTH_COMPONENT,
+               GL_UNSIGNED_INT, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  // Outside of the map everything is lit.
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const float lit[] = {1, 1, 1, 1};
+  glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
+  glBindTexture(GL_TEXTURE_2D, 0);
+
+  GLint before = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
+  glBindFramebuffer(GL_FRAMEBUFFER, layer.framebuffer);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, layer.depth, 0);
+  glDrawBuffer(GL_NONE);
+  glReadBuffer(GL_NONE);
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+}
+
+void ShadowMap::aim(const Bounds& box, const glm::vec3& to_light) {
+  const glm::vec3 center = to_glm(Vec3(box.center()));
+  const float radius = 0.5f * static_cast<float>(box.diagonal().norm());
+  const glm::mat4 view = glm::lookAt(center + 2.0f * radius * to_light, center, glm::vec3(0, 1, 0));
+  clip_ = glm::ortho(-radius, radius, -radius, radius, 0.5f * radius, 3.5f * radius) * view;
+  texel_ = 2 * radius / static_cast<float>(std::max(1, size_));
+}
+
+void ShadowMap::begin_still() const {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, still_.framebuffer);
+  glViewport(0, 0, std::max(1, size_), std::max(1, size_));
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void ShadowMap::begin_moving(const PixelArea& area) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, still_.framebuffer);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, all_.framebuffer);
+  glViewport(0, 0, std::max(1, size_), std::max(1, size_));
+  const Eigen::Vector2i from = area.min(), to = area.max();
+  glBlitFramebuffer(from.x(), from.y(), to.x(), to.y(), from.x(), from.y(), to.x(), to.y(),
+                    GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
+void ShadowMap::bind(GLuint unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_2D, all_.depth);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+glm::mat4 ShadowMap::lookup() const {
+  return glm::translate(glm::mat4(1), glm::vec3(0.5f)) * glm::scale(glm::mat4(1), glm::vec3(0.5f)) *
+         clip_;
+}
+
 namespace {
 
 constexpr GLuint kColorUnit = 0, kShadowUnit = 1, kSurfaceUnit = 2, kNormalUnit = 3,
@@ -121,6 +188,57 @@ void LitPass::draw_textured(const std::vector<Drawable>& list, const Links& link
       if (m.two_sided) glEnable(GL_CULL_FACE);
     }
   });
+}
+
+namespace {
+
+// How far each link of the ghost is from the proxy's, as the strength of its outline: at the same
+// place there is none, or it would surround the proxy.
+std::vector<float> outlines_of(const ArmPose& ghost, const ArmPose& proxy,
+                               double meters_per_pixel) {
+  std::vector<float> strengths(ghost.links.size(), 1.0f);
+  if (ghost.links.size() != proxy.links.size()) return strengths;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    const bool last = i + 1 == strengths.size();
+    const auto end = [&](const ArmPose& arm) {
+      return last ? arm.tip : Vec3(arm.links[i + 1].translation());
+    };
+    const Vec3 off = ghost.links[i].translation() - proxy.links[i].translation();
+    const double apart = std::max(off.norm(), (end(ghost) - end(proxy)).norm());
+    strengths[i] = static_cast<float>(std::clamp((apart / meters_per_pixel - 1) / 3, 0.0, 1.0));
+  }
+  return strengths;
+}
+
+}  // namespace
+
+Links links_of(const ArmPose& arm) {
+  Links out;
+  for (const Pose& pose : arm.links) {
+    if (!pose.matrix().allFinite()) return {};
+    out.push_back(to_glm(pose));
+  }
+  return out;
+}
+
+std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel) {
+  std::vector<Ghost> ghosts;
+  if (state.rerun) {
+    Links links = links_of(*state.rerun);
+    std::vector<float> clear(links.size(), 1.0f);
+    ghosts.push_back({std::move(links), palette::kRerun, std::move(clear)});
+  }
+  const auto add = [&](const ArmPose& arm, const ArmPose& over, const palette::Rgb& color) {
+    ghosts.push_back({links_of(arm), color, outlines_of(arm, over, meters_per_pixel)});
+  };
+  if (state.twin) {
+    add(state.twin->proxy, state.proxy, palette::of_twin(palette::kProxy, state.theme));
+    if (state.show_ghost) {
+      add(state.twin->device, state.device, palette::of_twin(palette::kDevice, state.theme));
+    }
+  }
+  if (state.show_ghost) add(state.device, state.proxy, palette::kDevice);
+  return ghosts;
 }
 
 }  // namespace limpid

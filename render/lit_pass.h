@@ -1,17 +1,53 @@
-// Solid surfaces in the scene's light.
+// What the key light sees: a depth picture of the scene from its side.
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
 #include <vector>
 
+#include "render/camera.h"
+#include "render/damage.h"
+#include "render/gl/gl_names.h"
 #include "render/gl/gpu_model.h"
 #include "render/gl/shader_program.h"
+#include "render/palette.h"
 #include "render/quality.h"
-#include "render/shadow_map.h"
+#include "render/view_state.h"
 
 namespace limpid {
 
+class ShadowMap {
+ public:
+  explicit ShadowMap(int size);  // edge in texels, 0: none
+
+  // Aims the light, given as the unit vector towards it, at a box of the world.
+  void aim(const Bounds& box, const glm::vec3& to_light);
+  // Casters are drawn with clip() * model: first, seldom, those that stay where they are, then in
+  // an area the others on a copy of that.
+  void begin_still() const;
+  void begin_moving(const PixelArea& area) const;
+  void bind(GLuint unit) const;
+
+  int size() const { return size_; }
+  const glm::mat4& clip() const { return clip_; }  // world to the map's clip space
+  glm::mat4 lookup() const;                        // world to 0..1 in the map
+  float texel() const { return texel_; }           // edge of one texel in the world [m]
+
+ private:
+  int size_;
+  struct Layer {
+    GlTexture depth;
+    GlFramebuffer framebuffer;
+  };
+  void allocate(const Layer& layer) const;
+
+  Layer still_, all_;
+  glm::mat4 clip_{1.0f};
+  float texel_ = 0;
+};
+
+// Solid surfaces in the scene's light.
 struct Drawable {
   std::shared_ptr<const GpuModel> model;
   glm::mat4 pose;  // in the frame of `link`
@@ -66,5 +102,17 @@ class LitPass {
   ShaderProgram plain_, textured_, matte_;
   GlTexture white_, flat_;
 };
+
+// The translucent arms of a picture: what there is besides the proxy.
+struct Ghost {
+  Links links;
+  palette::Rgb color;
+  std::vector<float> outline;  // of each link: how strong it is, 0 to 1
+};
+
+// Where each link is; none of an arm with a pose that is not finite.
+Links links_of(const ArmPose& arm);
+// In the order in which they are to be drawn. `meters_per_pixel` at the tips.
+std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel);
 
 }  // namespace limpid

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/gl/glm_door.h"
-#include "render/joint_colours.h"
+#include "render/gl/gl_names.h"
+#include "render/palette.h"
 
 namespace limpid {
 namespace {

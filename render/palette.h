@@ -1,8 +1,9 @@
 // One colour per thing, the same in the 3D view, the plots and the panels, safe for colour-blind
-// eyes (Okabe and Ito). Values are sRGB, 0 to 1.
+// eyes (Okabe and Ito). Values are sRGB, 0 to 1. And the light of the two themes.
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
 
 #include "render/theme.h"
 
@@ -34,3 +35,16 @@ constexpr Rgb of_twin(const Rgb& color, Theme theme) {
 }
 
 }  // namespace limpid::palette
+
+namespace limpid {
+
+// Light and background of a theme. Linear light; the backdrop's two colours are sRGB.
+struct Lighting {
+  glm::vec4 key, sky, earth, ground, top, bottom;
+  glm::vec4 outline;      // of what is highlighted, sRGB
+  glm::vec4 object_tint;  // of what can be touched, linear; w: how much
+};
+
+Lighting lighting_of(Theme theme);
+
+}  // namespace limpid

@@ -8,7 +8,7 @@
 #include "core/touch/scene.h"
 #include "render/camera.h"
 #include "render/model/model.h"
-#include "render/visual_picture.h"
+#include "render/view_state.h"
 
 namespace limpid {
 

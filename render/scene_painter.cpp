@@ -1,14 +1,17 @@
 #include "render/scene_painter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
-#include "render/gl/glm_door.h"
+#include "render/camera.h"
+#include "render/gl/gl_names.h"
 #include "render/gl/offscreen.h"
 #include "render/mesh_shapes.h"
 
 namespace limpid {
+
 namespace {
 
 // The uniform block of common.glsl, std140.
@@ -99,7 +102,7 @@ bool ScenePainter::too_many_triangles() const {
   return LitPass::in_view(meshes_, view_) + LitPass::in_view(world_, view_) > quality_.triangles;
 }
 
-void ScenePainter::begin_frame(const Mood& mood, const Camera& camera) {
+void ScenePainter::begin_frame(const Lighting& lighting, const Camera& camera) {
   lit_->shadow.aim(bounds_, kToLight);
   const glm::vec2 size(camera.width(), camera.height());
   seen_ = view_ = to_glm(Eigen::Matrix4d(camera.projection() * camera.view()));
@@ -109,12 +112,12 @@ void ScenePainter::begin_frame(const Mood& mood, const Camera& camera) {
                          lit_->shadow.lookup(),
                          glm::vec4(to_glm(camera.eye()), 1),
                          glm::vec4(kToLight, lit_->shadow.texel()),
-                         mood.key,
-                         mood.sky,
-                         mood.earth,
-                         mood.ground,
-                         mood.top,
-                         mood.bottom,
+                         lighting.key,
+                         lighting.sky,
+                         lighting.earth,
+                         lighting.ground,
+                         lighting.top,
+                         lighting.bottom,
                          glm::vec4(size, pixel_scale_ * static_cast<float>(quality_.scale), 0)};
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_);
   glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof block, &block);
@@ -133,7 +136,7 @@ void ScenePainter::draw_ground() const {
 }
 
 // Stencil 2 marks the arm: a ghost behind it stays hidden, one behind the scene shines through.
-void ScenePainter::draw_solid(const Mood& mood, const Links& proxy) {
+void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy) {
   lit_->shadow.bind(1);
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -144,7 +147,7 @@ void ScenePainter::draw_solid(const Mood& mood, const Links& proxy) {
   glStencilFunc(GL_ALWAYS, 0, 0xff);
   const bool cheap = !quality_.soft && !textured_world_;
   const LitPass::Look world{
-      .tint = mood.object_tint, .matte = cheap, .coarse = coarse_, .pixels = pixels_};
+      .tint = lighting.object_tint, .matte = cheap, .coarse = coarse_, .pixels = pixels_};
   lit_->draw_solid(world_, {}, seen_, world);
   lit_->draw_solid(meshes_, {}, seen_, {.coarse = coarse_, .pixels = pixels_});
   draw_ground();
@@ -159,21 +162,318 @@ void ScenePainter::draw_solid(const Mood& mood, const Links& proxy) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDisable(GL_STENCIL_TEST);
-  draw_outlines(mood);
+  draw_outlines(lighting);
 }
 
 // The inside of a slightly larger copy shows around the edge of what is highlighted.
-void ScenePainter::draw_outlines(const Mood& mood) const {
+void ScenePainter::draw_outlines(const Lighting& lighting) const {
   if (highlighted_.empty()) return;
   glCullFace(GL_FRONT);
   outline_.use();
-  outline_.set("tint", mood.outline);
+  outline_.set("tint", lighting.outline);
   outline_.set("width", 2.5f);
   each(highlighted_, {}, [&](const GpuModel& model, const glm::mat4& pose) {
     outline_.set("model", pose);
     model.draw(coarse_);
   });
   glCullFace(GL_BACK);
+}
+
+namespace {
+
+constexpr float kMargin = 6;      // of outlines and soft edges [px]
+constexpr float kSoftTexels = 8;  // how far a shadow's soft edge reaches
+constexpr float kLeastLight = 0.1f;
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
+
+std::array<glm::vec3, 8> corners_of(const Eigen::AlignedBox3f& box, const glm::mat4& pose) {
+  std::array<glm::vec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Eigen::Vector3f c = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
+    corners[i] = glm::vec3(pose * glm::vec4(c.x(), c.y(), c.z(), 1));
+  }
+  return corners;
+}
+
+// What lies between a body and the end of its shadow on the floor, which is the lowest there is.
+std::vector<glm::vec3> with_shadow(std::span<const glm::vec3> body, float floor, float soft) {
+  std::vector<glm::vec3> hull(body.begin(), body.end());
+  for (const glm::vec3& p : body) {
+    const float fall = std::max(0.0f, p.z - floor) / std::max(kLeastLight, kToLight.z);
+    const glm::vec3 end = p - fall * kToLight;
+    for (const glm::vec2 off :
+         {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(1)})
+      hull.push_back(end + glm::vec3(soft * off, 0));
+  }
+  return hull;
+}
+
+}  // namespace
+
+void ScenePainter::note(const Links& links, bool casts, Damage& damage) const {
+  const bool shadow = casts && quality_.shadow_size > 0;
+  const float soft = kSoftTexels * lit_->shadow.texel();
+  const auto add = [&](const GpuModel& model, const glm::mat4& pose) {
+    const auto body = corners_of(model.box(), pose);
+    if (shadow) {
+      damage.add(bytes_of(pose), with_shadow(body, ground_height_ - soft, soft),
+                 kMargin * pixel_scale_);
+    } else {
+      damage.add(bytes_of(pose), body, kMargin * pixel_scale_);
+    }
+  };
+  each(moving_, links, add);
+  if (!casts) return;
+  each(walls_, links, add);
+  each(probes_, links, add);
+}
+
+void ScenePainter::note(const Ghost& ghost, Damage& damage) const {
+  const auto& [links, color, outline] = ghost;
+  struct Look {
+    glm::mat4 pose;
+    palette::Rgb color;
+    float outline;
+  };
+  for (const Drawable& item : moving_) {
+    const auto link = static_cast<std::size_t>(item.link);
+    if (link >= links.size()) continue;
+    const glm::mat4 pose = links[link] * item.pose;
+    damage.add(bytes_of(Look{pose, color, link < outline.size() ? outline[link] : 0}),
+               corners_of(item.model->box(), pose), kMargin * pixel_scale_);
+  }
+}
+
+void ScenePainter::note(const Marks& marks, Damage& damage) const {
+  const Eigen::AlignedBox3f unit(Eigen::Vector3f(-1, -1, -1), Eigen::Vector3f(1, 1, 1));
+  for (const SolidMark& mark : marks.solids)
+    damage.add(bytes_of(mark), corners_of(unit, mark.place), 2);
+  for (const SolidMark& mark : marks.glass)
+    damage.add(bytes_of(mark), corners_of(unit, mark.place), 2);
+  for (const glm::mat4& place : marks.shades)
+    damage.add(bytes_of(place), corners_of(unit, place), 2);
+  for (const FlashMark& mark : marks.flashes)
+    damage.add(bytes_of(mark), corners_of(unit, mark.place), 2);
+}
+
+void ScenePainter::note(const LineBatch& lines, Damage& damage) const {
+  std::vector<glm::vec3> ends;
+  float widest = 0;
+  for (const LineBatch::Line& line : lines.lines()) {
+    ends.insert(ends.end(), {line.from, line.to});
+    widest = std::max(widest, line.width);
+  }
+  damage.add(std::as_bytes(std::span(lines.lines())), ends, pixel_scale_ * widest + 2);
+}
+
+void ScenePainter::draw_still_shadows() const {
+  lit_->shadow.begin_still();
+  const auto draw_one = [&](const GpuModel& model, const glm::mat4& pose) {
+    const glm::mat4 to_clip = lit_->shadow.clip() * pose;
+    if (!in_sight(model.box(), to_clip)) return;
+    depth_only_.set("model_to_clip", to_clip);
+    model.draw(true);  // a shadow's edge is not that sharp
+  };
+  each(base_, {}, draw_one);
+  each(world_, {}, draw_one);
+  glDisable(GL_CULL_FACE);  // meshes may be open sheets
+  each(meshes_, {}, draw_one);
+  glEnable(GL_CULL_FACE);
+}
+
+void ScenePainter::draw_shadows(const Links& proxy) {
+  if (quality_.shadow_size <= 0) return;
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 3.0f);
+  depth_only_.use();
+  if (!still_shadows_) {
+    draw_still_shadows();
+    shadow_damage_.spoil();
+    still_shadows_ = true;
+  }
+  const ShadowMap& map = lit_->shadow;
+  shadow_damage_.begin(map.clip(), map.size(), map.size());
+  each(moving_, proxy, [&](const GpuModel& model, const glm::mat4& pose) {
+    shadow_damage_.add(bytes_of(pose), corners_of(model.box(), pose), 2);
+  });
+  if (const PixelArea area = shadow_damage_.end(); !area.isEmpty()) {
+    map.begin_moving(area);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(area.min().x(), area.min().y(), area.sizes().x(), area.sizes().y());
+    const glm::mat4 clip = cropped(map.clip(), area, shadow_damage_.whole());
+    each(moving_, proxy, [&](const GpuModel& model, const glm::mat4& pose) {
+      if (!in_sight(model.box(), clip * pose)) return;
+      depth_only_.set("model_to_clip", map.clip() * pose);
+      model.draw(true);
+    });
+    glDisable(GL_SCISSOR_TEST);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+// Ghosts, glass, marks and lines: what explains the picture.
+
+namespace {
+
+glm::vec4 srgb(const palette::Rgb& c) { return {c[0], c[1], c[2], 1}; }
+
+}  // namespace
+
+void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
+                                    const Links& links, const palette::Rgb& color,
+                                    glm::vec2 alpha) const {
+  program.use();
+  program.set("tint", srgb(color));
+  program.set("alpha", alpha);
+  each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
+    program.set("model", pose);
+    model.draw();
+  });
+}
+
+// Around what of the ghost can be seen, and around what the scene hides of it.
+void ScenePainter::draw_ghost_outline(const Ghost& ghost, int mark) const {
+  const Links& links = ghost.links;
+  const palette::Rgb& color = ghost.color;
+  const std::vector<float>& outline = ghost.outline;
+  glCullFace(GL_FRONT);
+  outline_.use();
+  // With one sample a pixel a thinner line would come and go.
+  outline_.set("width", quality_.msaa > 1 ? 1.6f : 2.2f);
+  const auto draw = [&](float share) {
+    for (const Drawable& item : moving_) {
+      const auto link = static_cast<std::size_t>(item.link);
+      if (link >= outline.size() || link >= links.size() || !(outline[link] > 0)) continue;
+      outline_.set("tint", glm::vec4(color[0], color[1], color[2], share * outline[link]));
+      outline_.set("model", links[link] * item.pose);
+      item.model->draw(true);
+    }
+  };
+  glDepthMask(GL_FALSE);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  glStencilFunc(GL_NOTEQUAL, mark, 0xff);
+  draw(1.0f);
+  glDepthFunc(GL_GREATER);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+  glStencilFunc(GL_EQUAL, 0, 0xff);
+  draw(0.7f);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  glCullFace(GL_BACK);
+}
+
+void ScenePainter::draw_ghost(const Ghost& ghost, std::size_t number) {
+  const Links& links = ghost.links;
+  const palette::Rgb& color = ghost.color;
+  const int mark = 3 + static_cast<int>(number);
+  // A little behind its place, so that a proxy at the same place wins without flicker.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.0f, 8.0f);
+  // First its depth alone, so that only the outermost surface shows; a number in the stencil marks
+  // it.
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_ALWAYS, mark, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw_translucent(ghost_depth_, moving_, links, color, {});
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_BLEND);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  draw_translucent(ghost_, moving_, links, color, {0.36f, 1.0f});
+  // What the scene hides, faintly, each pixel once.
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glStencilFunc(GL_EQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+  draw_translucent(ghost_, moving_, links, color, {0.20f, 0.50f});
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  draw_ghost_outline(ghost, mark);
+  for (const GLenum off : {GL_BLEND, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL}) glDisable(off);
+}
+
+void ScenePainter::draw_glass(const Links& proxy) {
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  draw_translucent(ghost_, walls_, proxy, palette::kContact, {0.30f, 0.75f});
+  draw_translucent(ghost_, probes_, proxy, palette::kRerun, {0.10f, 0.55f});
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void ScenePainter::draw_solid_marks(const std::vector<SolidMark>& marks, glm::vec2 alpha) const {
+  ghost_.use();
+  ghost_.set("alpha", alpha);
+  for (const SolidMark& mark : marks) {
+    ghost_.set("tint", srgb(mark.color));
+    ghost_.set("model", mark.place);
+    switch (mark.shape) {
+      case SolidMark::Shape::ball: ball_.draw(); break;
+      case SolidMark::Shape::cone: cone_.draw(); break;
+      case SolidMark::Shape::tube: tube_.draw(); break;
+    }
+  }
+}
+
+void ScenePainter::draw_marks(const Marks& marks) {
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);  // through the table, faintly
+  draw_solid_marks(marks.solids, glm::vec2(0.45f));
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  flash_.use();
+  flash_.set("tint", srgb(palette::kContact));
+  for (const FlashMark& mark : marks.flashes) {
+    flash_.set("model", mark.place);
+    flash_.set("pulse", mark.pulse);
+    patch_.draw();
+  }
+  glEnable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  draw_solid_marks(marks.solids, glm::vec2(1.0f));
+  glDepthMask(GL_FALSE);
+  glDisable(GL_CULL_FACE);
+  draw_solid_marks(marks.glass, glm::vec2(0.16f, 0.60f));
+  glEnable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void ScenePainter::draw_lines(LineBatch& lines, bool on_top) {
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  if (on_top) glDisable(GL_DEPTH_TEST);
+  line_.use();
+  lines.draw();
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+// On the scene alone: what is marked in the stencil stands before it.
+void ScenePainter::draw_shades(const Marks& marks) const {
+  if (marks.shades.empty()) return;
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_EQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  shade_.use();
+  for (const glm::mat4& place : marks.shades) {
+    shade_.set("model", place);
+    shade_.set("strength", 0.62f * glm::length(glm::vec3(place[2])));
+    patch_.draw();
+  }
+  glDisable(GL_STENCIL_TEST);
+  glEnable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 }  // namespace limpid

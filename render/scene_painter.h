@@ -9,17 +9,14 @@
 
 #include "render/camera.h"
 #include "render/damage.h"
-#include "render/ghosts.h"
 #include "render/gl/gpu_model.h"
 #include "render/gl/line_batch.h"
 #include "render/gl/shader_program.h"
 #include "render/lit_pass.h"
 #include "render/marks.h"
-#include "render/mood.h"
 #include "render/palette.h"
 #include "render/quality.h"
 #include "render/scene_items.h"
-#include "render/shadow_map.h"
 
 namespace limpid {
 
@@ -42,7 +39,7 @@ class ScenePainter {
   void set_surroundings(const Surroundings& around);
 
   // What all passes share: camera, light, colours. First of all.
-  void begin_frame(const Mood& mood, const Camera& camera);
+  void begin_frame(const Lighting& lighting, const Camera& camera);
   // What of the arm may look different from frame to frame; `casts`: with its shadow.
   void note(const Links& links, bool casts, Damage& damage) const;
   void note(const Ghost& ghost, Damage& damage) const;
@@ -55,7 +52,7 @@ class ScenePainter {
   }
   void draw_shadows(const Links& proxy);
   // Proxy, base, scene, ground and backdrop.
-  void draw_solid(const Mood& mood, const Links& proxy);
+  void draw_solid(const Lighting& lighting, const Links& proxy);
   // Only its outermost surface shows; `number` tells the ghosts of a picture apart, from 0 on.
   void draw_ghost(const Ghost& ghost, std::size_t number);
   // Before any ghost.
@@ -74,7 +71,7 @@ class ScenePainter {
  private:
   bool too_many_triangles() const;
   void draw_still_shadows() const;
-  void draw_outlines(const Mood& mood) const;
+  void draw_outlines(const Lighting& lighting) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
   void draw_ghost_outline(const Ghost& ghost, int mark) const;

@@ -7,10 +7,10 @@
 #include <map>
 #include <optional>
 
-#include "render/ghosts.h"
+#include "render/damage.h"
 #include "render/gl/frame_target.h"
-#include "render/gl/glm_door.h"
-#include "render/same_picture.h"
+#include "render/gl/gl_names.h"
+#include "render/lit_pass.h"
 #include "render/scene_painter.h"
 
 namespace limpid {
@@ -208,7 +208,7 @@ bool SceneView::Impl::draw(DrawnSheet& sheet, const ViewState& wanted, const Cam
 PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, const Camera& eye,
                                  double scale) {
   const auto columns = static_cast<int>(eye.width()), rows = static_cast<int>(eye.height());
-  const Mood mood = mood_of(state.theme);
+  const Lighting lighting = lighting_of(state.theme);
   const Links proxy = links_of(state.proxy);
   for (LineBatch* lines : {&sheet.floor_lines, &sheet.trails, &sheet.lines_on_top}) lines->clear();
   if (state.show_grid) add_grid(surroundings.grid, state.theme, sheet.floor_lines);
@@ -219,7 +219,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   const double mpp = eye.meters_per_pixel(state.proxy.tip) / painter.pixel_scale();
   const std::vector<Ghost> ghosts = ghosts_of(state, mpp);
 
-  painter.begin_frame(mood, eye);
+  painter.begin_frame(lighting, eye);
   painter.draw_shadows(proxy);
   if (sheet.target.begin(columns, rows, painter.quality().msaa) ||
       sheet.still != Still{state.theme, state.show_grid})
@@ -236,7 +236,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
 
   painter.limit(changed, sheet.damage.whole());
   sheet.target.clear(area_of(changed));
-  painter.draw_solid(mood, proxy);
+  painter.draw_solid(lighting, proxy);
   painter.draw_shades(marks);
   painter.draw_lines(sheet.floor_lines, false);
   painter.draw_glass(proxy);

@@ -19,7 +19,6 @@
 #include "render/model/model.h"
 #include "render/quality.h"
 #include "render/view_state.h"
-#include "render/visual_picture.h"
 
 namespace limpid {
 

@@ -1,10 +1,23 @@
-// Light on dark or dark on light, for the picture and the panels alike.
+// Light on dark or dark on light, for the picture and the panels alike, and what the joints have in
+// each.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace limpid {
 
 enum class Theme : std::uint8_t { dark, light };
+
+// The joints' own colours, in the 3D view and in the plots: whatever somebody's eyes, the first
+// four are not mistaken for each other, nor for the proxy they belong to.
+
+// 0xRRGGBB, sRGB.
+constexpr std::array<unsigned, 7> joint_colours(Theme theme) {
+  using Seven = std::array<unsigned, 7>;
+  return theme == Theme::dark
+             ? Seven{0xC7F780, 0x8D6BFF, 0x2FA084, 0xFFB0C8, 0xA8763E, 0xEEF3FF, 0x7F93AD}
+             : Seven{0x6F7D12, 0x4A2FC8, 0x4A1F10, 0x1F8F74, 0xB0508F, 0x20263F, 0x8A6A5A};
+}
 
 }  // namespace limpid

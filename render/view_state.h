@@ -1,6 +1,7 @@
-// Everything one frame of the 3D view shows, as plain data in the device base frame, SI.
+// Something of the world that is only looked at.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,14 @@
 
 namespace limpid {
 
+// A vertex v of the model appears at pose * (scale * v).
+struct VisualPicture {
+  std::filesystem::path file;  // a model
+  Pose pose = Pose::Identity();
+  double scale = 1;
+};
+
+// Everything one frame of the 3D view shows, as plain data in the device base frame, SI.
 struct ArmPose {
   std::vector<Pose> links;  // one a moving link, base first; empty: the arm is not drawn
   Vec3 tip = Vec3::Zero();  // [m]

@@ -14,7 +14,7 @@
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/tick/safety_limits.h"
-#include "devices/files/scene/model_units.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/text_file.h"
 #include "render/model/model_file.h"
 

@@ -8,7 +8,6 @@
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
-#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/study/live.h"
 #include "core/realtime/realtime.h"
@@ -124,7 +123,7 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
   return lab;
 }
 
-int run_live(const ExperimentOptions& options) {
+int run_on_device(const ExperimentOptions& options) {
   const auto wanted = chosen(live_experiments(), options.name, ": not beside --live");
   prepare_out(options.out);
   LiveBench bench(options.live, options.input);
@@ -178,7 +177,7 @@ Command declare_experiment(CLI::App& app) {
   options->input.add_world(*command);
   options->input.add_parameters(*command);
   command->footer(experiment_help());
-  return [options] { return options->live.device ? run_live(*options) : run(*options); };
+  return [options] { return options->live.device ? run_on_device(*options) : run(*options); };
 }
 
 }  // namespace limpid

@@ -2,25 +2,115 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <thread>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
-#include "app/cli/findings_table.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
-#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
-#include "app/cli/prompt.h"
-#include "app/cli/rehearsal_table.h"
 #include "app/device/device_hub.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/rehearsal.h"
 #include "app/study/identification.h"
 #include "app/study/identify_report.h"
+#include "devices/identify/unlike_device.h"
 
 namespace limpid {
+
+void print(const Identification& identification) {
+  const Identified& found = identification.found;
+  fmt::print("{:<14}", "joint");
+  for (const FindingInfo& info : kFindings) {
+    fmt::print(" {:>22}", fmt::format("{} [{}]", info.label, info.unit));
+  }
+  fmt::print(" {:>10} {:>9}\n", "inertia was", "missed");
+  for (std::size_t j = 0; j < found.joints.size(); ++j) {
+    const JointFinding& joint = found.joints[j];
+    fmt::print("{:<14}", found.arm.joints[j].name);
+    for (const FindingInfo& info : kFindings) {
+      fmt::print(" {:>22}", text_of(joint.*info.field, info.per_unit));
+    }
+    fmt::print(" {:>11.3f} {:>7.1f} %\n", identification.inertia_in_file[j] / 1e-3,
+               100 * joint.residual / joint.torque);
+  }
+  fmt::print("delay          {} ms from a reading to the torque that answers it\n",
+             text_of(found.delay, 1e-3));
+  const ReadingTimes& timing = identification.bare.timing;
+  if (timing.rate > 0) {
+    fmt::print(
+        "readings       {:.0f} a second; between two: {:.2f} ms in the middle, {:.2f} ms at "
+        "99 %, {:.2f} ms at most\n",
+        timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
+  }
+  if (identification.torque_scale) {
+    fmt::print("motors         give {} times what they are told\n",
+               text_of(*identification.torque_scale, 1));
+  }
+}
+
+void print_drift(const Findings& last, const Identification& now) {
+  const std::vector<Drift> all = drift(last, now);
+  if (all.empty()) return;
+  const auto certain = std::ranges::count_if(all, &Drift::certain);
+  fmt::print("since {}: {}\n", last.when, certain == 0 ? "nothing has changed" : "changed are");
+  for (const Drift& d : all) {
+    if (!d.certain) continue;
+    fmt::print("  {:<30} {} -> {} {}\n", d.what, text_of(d.before, 1), text_of(d.now, 1), d.unit);
+  }
+}
+
+namespace {
+
+constexpr double kEta = 0.7;  // above eta_min of the fitted gains, 0.59
+
+Parameters suited(const ArmDescription& arm, CouplingKind kind, double encoder_step) {
+  Parameters p = fitted(arm);
+  p.kind = kind;
+  p.eta = kEta;
+  p.encoder_step = encoder_step;
+  p.velocity = VelocitySource::adaptive;
+  static_cast<CompensationSettings&>(p) = suggested_compensation(arm);
+  return p;
+}
+
+nlohmann::ordered_json as_json(const Rehearsal& r) {
+  return {{"slope", r.slope},   {"off", r.off},       {"friction", r.friction},
+          {"weight", r.weight}, {"energy", r.energy}, {"force", r.force}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unlikeness& bench,
+                                          const ArmDescription& guess,
+                                          const ArmDescription& found) {
+  nlohmann::ordered_json json{
+      {"eta", kEta}, {"delay", 1e-3 * bench.delay}, {"encoder_step", bench.encoder_step}};
+  fmt::print("\nin a coupling, eta {}: delay {} ms, encoder step {:.2g} rad\n", kEta, bench.delay,
+             bench.encoder_step);
+  fmt::print("{:<24} {:>20} {:>16} {:>18} {:>16} {:>10}\n", "", "drift [mrad/(N m)]",
+             "hand off [%]", "friction [mN m]", "weight [mN m]", "E_c [mJ]");
+  for (const CouplingKind kind : {CouplingKind::proposed, CouplingKind::predictive}) {
+    for (const bool after : {false, true}) {
+      const ArmDescription& believed = after ? found : guess;
+      const Rehearsal r =
+          rehearse(truth, bench, believed, suited(believed, kind, bench.encoder_step));
+      const char* const when = after ? "identified" : "as its file";
+      fmt::print("{:<11} {:<12} {:>20.2f} {:>16.0f} {:>18.1f} {:>16.1f} {:>10.2f}{}\n", name(kind),
+                 when, 1e3 * r.slope, 100 * r.off, 1e3 * r.friction, 1e3 * r.weight, 1e3 * r.energy,
+                 r.force ? "" : "   the force was held back");
+      json[name(kind)][after ? "identified" : "file"] = as_json(r);
+    }
+  }
+  fmt::print("hand off: its torque in free motion off the one that eta promises, of it\n");
+  return json;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -8,7 +8,6 @@
 
 #include "app/base/interrupt.h"
 #include "app/cli/progress.h"
-#include "app/cli/prompt.h"
 #include "app/live/rtkit.h"
 #include "app/run/own_world.h"
 #include "app/run/replay.h"

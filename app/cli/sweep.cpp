@@ -1,22 +1,43 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
-#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
-#include "app/cli/sweep_point.h"
+#include "app/study/record_point.h"
 #include "app/study/slurm.h"
 #include "app/study/sweep_figure.h"
 #include "app/study/sweep_map.h"
+#include "app/study/sweep_plan.h"
 #include "app/study/sweep_work.h"
 
 namespace limpid {
+
+void check_point(const SweepPlan& plan, std::uint64_t index) {
+  if (plan.boundary) throw UsageError("--open: a point of a boundary is many runs");
+  if (index < plan.points()) return;
+  throw UsageError(fmt::format("--open {}: is not allowed; allowed: a point from 0 to {}", index,
+                               plan.points() - 1));
+}
+
+int open_point(const SweepPlan& plan, std::uint64_t index, const std::filesystem::path& out) {
+  const std::filesystem::path file = point_file(out, index, {});
+  const auto recorded = record_point(plan, index, {}, file, interrupted);
+  if (!recorded) return 1;
+  fmt::print("{}recorded in {}\n", recorded->summary.text(), file.string());
+  std::fflush(stdout);
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return 0;
+  ::execl("/proc/self/exe", "limpid", "play", file.c_str(), nullptr);
+  return 0;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

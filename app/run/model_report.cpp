@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "devices/files/scene/model_units.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/text_file.h"
 #include "render/model/model_file.h"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/touch/triangle_mesh.h"
-#include "render/model/load_progress.h"
 #include "render/model/model.h"
 
 namespace limpid {

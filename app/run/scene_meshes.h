@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "devices/files/scene/scene_document.h"
-#include "render/model/load_progress.h"
 #include "render/model/model.h"
 
 namespace limpid {

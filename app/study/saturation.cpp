@@ -1,11 +1,10 @@
-#include "app/study/saturation.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/folders.h"
+#include "app/study/experiment.h"
 #include "app/study/signals.h"
 #include "app/study/tap_bench.h"
 #include "devices/files/urdf_file.h"

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "render/joint_colours.h"
 #include "render/theme.h"
 
 namespace limpid {

@@ -11,7 +11,7 @@
 #include "core/dynamics/arm.h"
 #include "core/tick/row.h"
 #include "core/touch/scene.h"
-#include "devices/files/scene/model_units.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/simulated/rig.h"
 #include "render/scene_view.h"
 #include "render/view_state.h"

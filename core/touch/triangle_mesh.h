@@ -1,4 +1,4 @@
-// A triangle mesh that can be asked, at 1 kHz, what is nearest and what lies between two points.
+// What edges of a mesh say about it: where triangles meet, and how many.
 #pragma once
 
 #include <atomic>
@@ -12,6 +12,19 @@
 #include "core/math/sizes.h"
 
 namespace limpid {
+
+// Vertices at the same place have one name: the number of the first of them. One that is not
+// finite is alone.
+std::vector<std::uint32_t> names_of(const std::vector<Eigen::Vector3f>& places);
+
+struct EdgeCount {
+  std::size_t open = 0;  // of one triangle only
+  std::size_t odd = 0;   // of more than two triangles, or of two that disagree
+};
+// `corners`: three names a triangle, each less than `names`.
+EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names);
+
+// A triangle mesh that can be asked, at 1 kHz, what is nearest and what lies between two points.
 
 // A place on a mesh.
 struct MeshPoint {

@@ -1,14 +1,18 @@
 #include "render/model/gltf_accessor.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "render/model/gltf_file.h"
-#include "render/model/gltf_meshopt.h"
 
 namespace limpid {
+
 namespace {
 
 constexpr std::size_t kMostElements = std::size_t{64} << 20;
@@ -193,6 +197,199 @@ std::uint32_t GltfAccessor::index(const Elements& e, std::size_t i) const {
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return read<std::uint32_t>(p);
     default: refuse("indices must be unsigned integers");
   }
+}
+
+namespace {
+
+// Not below zero, nor beyond what a file can hold.
+std::size_t number(const tinygltf::Value& object, const char* key) {
+  const auto& value = object.Get(key);
+  const double read = value.IsNumber() ? value.GetNumberAsDouble() : 0;
+  return read >= 0 && read < 4e9 ? static_cast<std::size_t>(read) : 0;
+}
+
+std::string word(const tinygltf::Value& object, const char* key) {
+  const auto& value = object.Get(key);
+  return value.IsString() ? value.Get<std::string>() : "";
+}
+
+// What stands in for numbers that compress better; false: unknown, or it does not fit.
+bool undo_filter(const std::string& filter, std::vector<unsigned char>& out, std::size_t count,
+                 std::size_t stride) {
+  if (filter.empty() || filter == "NONE") return true;
+  if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) {
+    meshopt_decodeFilterOct(out.data(), count, stride);
+  } else if (filter == "QUATERNION" && stride == 8) {
+    meshopt_decodeFilterQuat(out.data(), count, stride);
+  } else if (filter == "EXPONENTIAL" && stride % 4 == 0) {
+    meshopt_decodeFilterExp(out.data(), count, stride);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+const tinygltf::Value* meshopt_extension(const tinygltf::BufferView& view) {
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    const auto found = view.extensions.find(name);
+    if (found != view.extensions.end() && found->second.IsObject()) return &found->second;
+  }
+  return nullptr;
+}
+
+MeshoptSource meshopt_source(const tinygltf::Value& extension) {
+  return {static_cast<int>(number(extension, "buffer") & 0x7FFFFFFF),
+          number(extension, "byteOffset"), number(extension, "byteLength")};
+}
+
+std::vector<unsigned char> decode_meshopt(const tinygltf::Value& extension,
+                                          std::span<const unsigned char> bytes, std::size_t most) {
+  const std::size_t count = number(extension, "count"), stride = number(extension, "byteStride");
+  const std::string mode = word(extension, "mode");
+  if (count == 0 || stride == 0 || stride > 256 || count > most / stride) return {};
+  std::vector<unsigned char> out(count * stride);
+  int failed = 1;
+  // The library takes these conditions for granted.
+  if (mode == "ATTRIBUTES" && stride % 4 == 0) {
+    failed = meshopt_decodeVertexBuffer(out.data(), count, stride, bytes.data(), bytes.size());
+    if (failed == 0 && !undo_filter(word(extension, "filter"), out, count, stride)) failed = 1;
+  } else if (mode == "TRIANGLES" && count % 3 == 0 && (stride == 2 || stride == 4)) {
+    failed = meshopt_decodeIndexBuffer(out.data(), count, stride, bytes.data(), bytes.size());
+  } else if (mode == "INDICES" && (stride == 2 || stride == 4)) {
+    failed = meshopt_decodeIndexSequence(out.data(), count, stride, bytes.data(), bytes.size());
+  }
+  if (failed != 0) out.clear();
+  return out;
+}
+
+namespace {
+
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitive,
+                         std::size_t vertices, std::size_t most) {
+  Elements e;
+  std::size_t count = vertices;
+  if (primitive.indices >= 0) {
+    e = file.elements(primitive.indices);
+    if (e.components != 1) file.refuse("indices must be single numbers");
+    count = e.count;
+  }
+  const auto vertex = [&](std::size_t i) {
+    const std::uint32_t k =
+        primitive.indices >= 0 ? file.index(e, i) : static_cast<std::uint32_t>(i);
+    if (k >= vertices)
+      file.refuse("index " + std::to_string(k) + " is outside of the mesh's " +
+                  std::to_string(vertices) + " vertices");
+    return k;
+  };
+  const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+  const bool fan = primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+  if (!list && !fan && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
+    file.refuse("a mesh is drawn in the unknown mode " + std::to_string(primitive.mode));
+  if (list && count % 3 != 0) file.refuse("indices do not make whole triangles");
+  const std::size_t made = list ? count / 3 : count < 3 ? 0 : count - 2;
+  if (made > most) file.refuse("has more than 6 million triangles over all nodes");
+  Triangles out{{}, made};
+  out.corners.reserve(3 * made);
+  for (std::size_t i = 0; i < made; ++i) {
+    // In a strip every second triangle is turned over.
+    const std::size_t odd = i % 2;
+    const std::uint32_t a = vertex(list ? 3 * i : fan ? 0 : i);
+    const std::uint32_t b = vertex(list ? 3 * i + 1 : fan ? i + 1 : i + 1 + odd);
+    const std::uint32_t c = vertex(list ? 3 * i + 2 : fan ? i + 2 : i + 2 - odd);
+    if (a != b && b != c && c != a) out.corners.insert(out.corners.end(), {a, b, c});
+  }
+  return out;
+}
+
+const std::vector<std::uint32_t>& VertexUse::renumber(std::vector<std::uint32_t>& corners,
+                                                      std::size_t count) {
+  if (place_.size() < count) place_.resize(count, kUnused);
+  used_.clear();
+  for (std::uint32_t& corner : corners) {
+    std::uint32_t& place = place_[corner];
+    if (place == kUnused) {
+      place = static_cast<std::uint32_t>(used_.size());
+      used_.push_back(corner);
+    }
+    corner = place;
+  }
+  for (const std::uint32_t vertex : used_) place_[vertex] = kUnused;
+  return used_;
+}
+
+int attribute_of(const std::map<std::string, int>& attributes, const std::string& key) {
+  const auto found = attributes.find(key);
+  return found == attributes.end() ? -1 : found->second;
+}
+
+std::vector<Eigen::Vector3f> GltfRest::shifts(const tinygltf::Node& node,
+                                              const tinygltf::Primitive& primitive,
+                                              const char* attribute,
+                                              const std::vector<std::uint32_t>& used,
+                                              std::size_t count) {
+  const auto& mesh = file_.at(gltf_.meshes, node.mesh, "mesh");
+  const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
+  std::vector<Eigen::Vector3f> sum;
+  for (std::size_t k = 0; k < std::min(weights.size(), primitive.targets.size()); ++k) {
+    const int accessor = attribute_of(primitive.targets[k], attribute);
+    if (accessor < 0 || weights[k] == 0 || !std::isfinite(weights[k])) continue;
+    const Elements e = file_.elements(accessor);
+    if (e.count != count || e.components < 3)
+      file_.refuse(std::string("a morph target's ") + attribute + " does not match its mesh");
+    sum.resize(used.size(), Eigen::Vector3f::Zero());
+    for (std::size_t i = 0; i < used.size(); ++i)
+      sum[i] += static_cast<float>(weights[k]) * file_.element(e, used[i]).head<3>();
+  }
+  return sum;
+}
+
+std::vector<Eigen::Affine3f> GltfRest::joints(const tinygltf::Skin& skin) {
+  std::vector<Eigen::Affine3f> out;
+  Elements inverse;
+  if (skin.inverseBindMatrices >= 0) inverse = file_.elements(skin.inverseBindMatrices);
+  for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+    Eigen::Affine3d move = file_.at(nodes_, skin.joints[i], "node");
+    if (i < inverse.count) {
+      Eigen::Affine3d bind(file_.matrix(inverse, i).cast<double>());
+      bind.makeAffine();
+      move = move * bind;
+    }
+    out.emplace_back(move.cast<float>());
+    if (!out.back().matrix().allFinite()) file_.refuse("has a skin that is not finite");
+  }
+  return out;
+}
+
+std::vector<Eigen::Affine3f> GltfRest::moves(const tinygltf::Node& node,
+                                             const tinygltf::Primitive& primitive,
+                                             const std::vector<std::uint32_t>& used,
+                                             std::size_t count) {
+  const int which = attribute_of(primitive.attributes, "JOINTS_0");
+  const int how_much = attribute_of(primitive.attributes, "WEIGHTS_0");
+  if (node.skin < 0 || which < 0 || how_much < 0) return {};
+  const auto each = joints(file_.at(gltf_.skins, node.skin, "skin"));
+  const Elements joint = file_.elements(which), weight = file_.elements(how_much);
+  if (joint.count != count || weight.count != count || joint.components != 4 ||
+      weight.components != 4)
+    file_.refuse("JOINTS_0 and WEIGHTS_0 do not match POSITION");
+  std::vector<Eigen::Affine3f> out;
+  out.reserve(used.size());
+  for (const std::uint32_t i : used) {
+    const Eigen::Vector4f at = file_.element(joint, i), w = file_.element(weight, i);
+    Eigen::Matrix4f sum = Eigen::Matrix4f::Zero();
+    for (int k = 0; k < 4; ++k)
+      if (w[k] != 0) sum += w[k] * file_.at(each, static_cast<int>(at[k]), "joint").matrix();
+    // Weights add up to one, but for those that were rounded.
+    const float all = w.sum();
+    out.emplace_back(all > 1e-6f ? Eigen::Matrix4f(sum / all) : Eigen::Matrix4f::Identity());
+  }
+  return out;
 }
 
 }  // namespace limpid

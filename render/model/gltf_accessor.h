@@ -4,12 +4,15 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/math/sizes.h"
+#include "render/model/model.h"
 
 namespace limpid {
 
@@ -63,5 +66,75 @@ class GltfAccessor {
   std::map<int, std::vector<unsigned char>> views_;  // decompressed
   std::map<int, Elements> replaced_;                 // accessors
 };
+
+// Buffer views compressed with EXT_meshopt_compression.
+
+// What a compressed view says about itself; null: it is not compressed.
+const tinygltf::Value* meshopt_extension(const tinygltf::BufferView& view);
+
+// Where the compressed bytes lie.
+struct MeshoptSource {
+  int buffer = 0;
+  std::size_t offset = 0, length = 0;
+};
+MeshoptSource meshopt_source(const tinygltf::Value& extension);
+
+// The bytes of the view, or nothing for what cannot be decoded or has more than `most` bytes.
+std::vector<unsigned char> decode_meshopt(const tinygltf::Value& extension,
+                                          std::span<const unsigned char> bytes, std::size_t most);
+
+// From a glTF primitive's indices to plain triangles over the vertices it uses.
+struct Triangles {
+  std::vector<std::uint32_t> corners;  // three a triangle, strips and fans taken apart
+  std::size_t looked_at = 0;
+};
+
+// Triangles that name a vertex twice are left out. Throws std::runtime_error naming the file when
+// there are more than `most` to look at.
+Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitive,
+                         std::size_t vertices, std::size_t most);
+
+// Several primitives may share one long list of vertices, of which each uses a few.
+class VertexUse {
+ public:
+  // Which of `count` vertices are used, in order of use; `corners` become places in that list.
+  const std::vector<std::uint32_t>& renumber(std::vector<std::uint32_t>& corners,
+                                             std::size_t count);
+
+ private:
+  std::vector<std::uint32_t> place_, used_;
+};
+
+// Where vertices are while nothing moves: morphed by the default weights, and held by the joints of
+// a skin as the nodes stand.
+
+// Nodes' transforms in the scene, by their numbers.
+using NodePoses = std::vector<Eigen::Affine3d>;
+
+class GltfRest {
+ public:
+  GltfRest(const tinygltf::Model& gltf, GltfAccessor& file, const NodePoses& nodes)
+      : gltf_(gltf), file_(file), nodes_(nodes) {}
+
+  // Of the `used` vertices of a primitive: what is added to one attribute (POSITION, NORMAL).
+  // Empty: nothing. All of these throw std::runtime_error naming the file.
+  std::vector<Eigen::Vector3f> shifts(const tinygltf::Node& node,
+                                      const tinygltf::Primitive& primitive, const char* attribute,
+                                      const std::vector<std::uint32_t>& used, std::size_t count);
+  // ... and the transform of each into the scene. Empty: that of the node.
+  std::vector<Eigen::Affine3f> moves(const tinygltf::Node& node,
+                                     const tinygltf::Primitive& primitive,
+                                     const std::vector<std::uint32_t>& used, std::size_t count);
+
+ private:
+  std::vector<Eigen::Affine3f> joints(const tinygltf::Skin& skin);
+
+  const tinygltf::Model& gltf_;
+  GltfAccessor& file_;
+  const NodePoses& nodes_;
+};
+
+// The accessor of an attribute, -1 for none.
+int attribute_of(const std::map<std::string, int>& attributes, const std::string& key);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// The bytes of a glTF file, checked before and parsed by tinygltf.
+// The frame of a binary glTF file.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -12,6 +12,24 @@
 #include "render/model/companions.h"
 
 namespace limpid {
+
+// To a multiple of four.
+void fill_up(std::vector<unsigned char>& bytes, unsigned char filler);
+
+// A file of this JSON text and one buffer.
+std::vector<unsigned char> glb_bytes(const std::string& json,
+                                     const std::vector<unsigned char>& data);
+
+// A look through the JSON text of a glTF file before memory is spent on it.
+inline constexpr const char* kOldGltf =
+    "is glTF 1.0, which is not read; convert it to glTF 2.0 (gltf-pipeline does)";
+
+// How many buffers stand for the binary chunk (each would be a copy of it). Throws
+// std::runtime_error naming the file for what is no JSON object, nested deeper than 64, of more
+// than 8 million values or 1 million objects, or glTF 1.
+std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name);
+
+// The bytes of a glTF file, checked before and parsed by tinygltf.
 
 // The JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,

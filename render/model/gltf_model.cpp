@@ -7,8 +7,6 @@
 #include "render/model/gltf_draco.h"
 #include "render/model/gltf_file.h"
 #include "render/model/gltf_material.h"
-#include "render/model/gltf_rest.h"
-#include "render/model/gltf_triangles.h"
 #include "render/model/model_building.h"
 
 namespace limpid {

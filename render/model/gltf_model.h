@@ -14,7 +14,6 @@
 #include <span>
 #include <string>
 
-#include "render/model/load_progress.h"
 #include "render/model/model.h"
 
 namespace limpid {

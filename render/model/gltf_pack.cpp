@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "render/model/glb_bytes.h"
 #include "render/model/gltf_file.h"
 
 namespace limpid {

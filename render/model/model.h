@@ -1,9 +1,11 @@
-// A triangle mesh ready to be drawn or touched: one vertex list, cut into parts by material.
+// How far a load has come, and whether it is still wanted.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <compare>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,22 @@
 
 namespace limpid {
 
+// Either may be null.
+struct LoadProgress {
+  std::atomic<double>* part = nullptr;        // 0 to 1
+  const std::atomic<bool>* cancel = nullptr;  // asked several times a second
+};
+
+struct LoadCancelled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws LoadCancelled.
+inline void check_wanted(const LoadProgress& progress) {
+  if (progress.cancel && progress.cancel->load()) throw LoadCancelled("loading was cancelled");
+}
+
+// A triangle mesh ready to be drawn or touched: one vertex list, cut into parts by material.
 struct Vertex {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  // unit

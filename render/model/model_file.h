@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "render/model/load_progress.h"
 #include "render/model/model.h"
 
 namespace limpid {

@@ -20,6 +20,7 @@
 #include "render/model/companions.h"
 
 namespace limpid {
+
 namespace {
 
 namespace fs = std::filesystem;

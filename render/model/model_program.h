@@ -1,17 +1,42 @@
-// Models of other kinds than glTF are made glTF by a program of their own, limpid-model: what a
-// broken file does to the library that reads it stays there.
+// What the program that reads models may use up, by the size of what it reads.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "render/model/load_progress.h"
-#include "render/model/reader_limits.h"
+#include "render/model/model.h"
 
 namespace limpid {
 
+struct ReaderLimits {
+  std::size_t memory;  // [bytes] of addresses
+  unsigned seconds;    // of processor time
+};
+
+// `bytes`: of the model and of all the files that it refers to, as far as they are known. Text
+// takes most: a face of an OBJ of 8 bytes is some 400 bytes in the library that reads it.
+inline ReaderLimits reader_limits(std::size_t bytes) {
+  constexpr std::size_t kMost = std::size_t{8} << 30;
+  const std::size_t memory = (std::size_t{512} << 20) + 100 * std::min(bytes, kMost);
+  return {std::min(memory, kMost), 3 + static_cast<unsigned>(bytes >> 20)};
+}
+
+inline std::string too_much_memory(const ReaderLimits& limits) {
+  return "needs more than " + std::to_string(limits.memory >> 20) +
+         " MiB of memory to be read, which is all that a model of its size gets";
+}
+
+inline std::string too_long(const ReaderLimits& limits) {
+  return "takes more than " + std::to_string(limits.seconds) +
+         " s to be read, which is all that a model of its size gets";
+}
+
+// Models of other kinds than glTF are made glTF by a program of their own, limpid-model: what a
+// broken file does to the library that reads it stays there.
 struct ConvertedModel {
   std::vector<unsigned char> glb;
   std::vector<std::string> warnings;

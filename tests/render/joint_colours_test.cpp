@@ -1,11 +1,11 @@
 // Joints are told apart by people with normal and with colour-blind eyes.
-#include "render/joint_colours.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "render/theme.h"
 
 namespace limpid {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "render/ghosts.h"
 #include "render/gl/line_batch.h"
 #include "render/gl/offscreen.h"
+#include "render/lit_pass.h"
 
 namespace limpid {
 namespace {

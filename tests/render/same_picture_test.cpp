@@ -1,10 +1,10 @@
 // What alone makes a picture another one, and what does not.
-#include "render/same_picture.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+
+#include "render/damage.h"
 
 namespace limpid {
 namespace {

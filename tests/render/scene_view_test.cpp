@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "render/gl/offscreen.h"
-#include "render/joint_colours.h"
 #include "render/mesh_shapes.h"
+#include "render/theme.h"
 
 namespace limpid {
 namespace {

@@ -1,7 +1,5 @@
 // Pictures of links in glTF, written with y up as the format has it, and with z up as some makers
 // write them.
-#include "render/upright.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

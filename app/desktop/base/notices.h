@@ -1,12 +1,18 @@
-// What the window tells its user, for a while.
+// How a part of the window asks for what can be done in it.
 #pragma once
 
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <string>
+#include <string_view>
 
 namespace limpid {
 
+// Has a command run, by its id in the table of app/desktop/shell/commands.cpp.
+using Act = std::function<void(std::string_view id)>;
+
+// What the window tells its user, for a while.
 struct Notice {
   std::string text;
   bool bad = false;

@@ -1,5 +1,7 @@
-// What the window remembers from one start to the next.
+// Chosen plots in TOML files: [[plot]] with title, kind, across and channels.
 #pragma once
+
+#include <toml++/toml.h>
 
 #include <filesystem>
 #include <optional>
@@ -11,6 +13,13 @@
 #include "render/theme.h"
 
 namespace limpid {
+
+toml::array plots_toml(const std::vector<PlotChoice>& plots);
+// Those of the array "plot" of a table; without one the default. Errors: FileError naming `where`,
+// the plot, its key and what is allowed.
+std::vector<PlotChoice> plots_of(const toml::table& table, const std::string& where);
+
+// What the window remembers from one start to the next.
 
 // A second run beside the first, on the same hand, under settings of its own.
 struct TwinSettings {

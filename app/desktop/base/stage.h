@@ -7,7 +7,6 @@
 #include "app/plot/history.h"
 #include "app/plot/plot.h"
 #include "app/run/scene_meshes.h"
-#include "app/session/energy_account.h"
 #include "app/session/plot_choice.h"
 #include "app/session/trace_channels.h"
 #include "app/view/row_view.h"

@@ -12,6 +12,7 @@
 #include "devices/files/scene/scene_writer.h"
 
 namespace limpid {
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "devices/files/rpy.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/scene/scene_file.h"
-#include "devices/files/scene/scene_limits.h"
 #include "render/scene_items.h"
 
 namespace limpid {

@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/scene/scene_file.h"
-#include "devices/files/scene/scene_limits.h"
 #include "devices/files/text_file.h"
 #include "devices/files/urdf_file.h"
 #include "devices/files/urdf_visuals.h"

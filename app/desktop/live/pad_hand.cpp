@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "app/desktop/live/hand_goal.h"
-
 namespace limpid {
+
 namespace {
 
 constexpr double kRest = 0.15;         // of a stick's way: what a worn one is off by

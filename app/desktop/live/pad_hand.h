@@ -1,12 +1,24 @@
-// A hand led by a gamepad: the left stick moves it in the plane of the picture, triggers or the
-// right stick nearer and farther.
+// Where a hand may be asked to go.
 #pragma once
 
 #include <string>
 
 #include "app/live/live_loop.h"
+#include "core/dynamics/arm_description.h"
+#include "core/dynamics/inverse_kinematics.h"
 
 namespace limpid {
+
+// Held where the arm can follow.
+inline Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
+  const Vec3 base = arm.joints.front().origin.translation();
+  const double limit = 0.985 * reach(arm);
+  const Vec3 out = point - base;
+  return out.norm() > limit ? Vec3(base + out.normalized() * limit) : point;
+}
+
+// A hand led by a gamepad: the left stick moves it in the plane of the picture, triggers or the
+// right stick nearer and farther.
 
 // Sticks -1 to 1, right and down; triggers 0 to 1; buttons where an Xbox pad has them.
 struct PadReading {

@@ -8,7 +8,7 @@
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
 #include "app/style/palette.h"
-#include "app/style/parameter_slider.h"
+#include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
 

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "app/desktop/base/act.h"
+#include "app/desktop/base/notices.h"
 #include "app/plot/plot_frame.h"
 #include "app/run/analysis.h"
-#include "app/session/energy_account.h"
+#include "app/session/trace_channels.h"
 
 namespace limpid {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/desktop/base/notices.h"
-#include "app/desktop/widgets/picture_texture.h"
+#include "app/desktop/widgets/picture_shelf.h"
 #include "app/session/tasks.h"
 #include "app/study/experiment.h"
 

@@ -9,7 +9,7 @@
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
-#include "app/style/tooltip.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {

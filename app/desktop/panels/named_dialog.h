@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/desktop/base/named_texts.h"
+#include "app/desktop/base/window_layout.h"
 
 namespace limpid {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/base/act.h"
 #include "app/desktop/base/notices.h"
 #include "app/desktop/base/settings.h"
 #include "app/desktop/document/scene_loader.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "app/style/parameter_slider.h"
+#include "app/style/sliders.h"
 
 namespace limpid {
 

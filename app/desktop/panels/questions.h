@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/desktop/base/act.h"
+#include "app/desktop/base/notices.h"
 #include "devices/files/urdf_file.h"
 
 namespace limpid {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "app/desktop/widgets/widgets.h"
-#include "app/style/number_slider.h"
 #include "app/style/palette.h"
+#include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
 

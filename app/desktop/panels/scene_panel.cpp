@@ -2,16 +2,282 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "app/desktop/panels/object_signs.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
+#include "app/style/sliders.h"
 #include "app/style/theme.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/scene_document.h"
 
 namespace limpid {
+
+namespace {
+
+using namespace scene_limits;
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
+
+// Three numbers side by side, dragged or typed after a double click.
+bool drag3(const char* label, Vec3& values, double speed, double least, double most,
+           const char* format, const char* help) {
+  ImGui::TextUnformatted(label);
+  tooltip(help);
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
+                         &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
+              const char* help = "Forward, left and up from the arm's base.") {
+  Vec3 millimetres = 1e3 * pose.translation();
+  if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
+             "%.1f", help)) {
+    return false;
+  }
+  pose.translation() = 1e-3 * millimetres;
+  return true;
+}
+
+bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
+  const bool changed = value_slider(info, value, usual);
+  tooltip(help);
+  return changed;
+}
+
+ParameterInfo slider_of(const MaterialKey& each) {
+  constexpr double kAboveZero = 1e-3;  // the least where zero is not allowed
+  return {.key = each.key,
+          .label = each.label,
+          .field = &Parameters::eta,
+          .unit = *each.range.unit != '\0' ? each.range.unit : "-",
+          .minimum = each.range.exclusive_minimum ? kAboveZero : each.range.minimum,
+          .maximum = each.range.maximum,
+          .slider_minimum = each.slider_minimum,
+          .slider_maximum = each.slider_maximum,
+          .logarithmic = each.logarithmic,
+          .live = true,
+          .meaning = ""};
+}
+
+// What stands before a control, on its line.
+void caption(const char* text, const char* help) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  tooltip(help);
+  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+  ImGui::SetNextItemWidth(-1);
+}
+
+bool choose_material(Material& material) {
+  bool changed = false;
+  caption("Material", "A usual one, to begin with; what it is made of stands below.");
+  const UsualMaterial* const present = usual_material(material);
+  if (!ImGui::BeginCombo("##material", present ? present->name : "its own")) return false;
+  for (const UsualMaterial& each : kUsualMaterials) {
+    if (!ImGui::Selectable(each.name, &each == present)) continue;
+    material = each.material;
+    changed = true;
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+// What was changed; nothing, as a rule.
+std::string_view edit_material(Material& material) {
+  std::string_view what;
+  if (choose_material(material)) what = "material";
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double usual = Material{}.*each.field;
+    if (slider(material.*each.field, slider_of(each), usual, each.meaning)) what = each.key;
+  }
+  return what;
+}
+
+bool joint_stiffness(double& value) {
+  const MaterialKey& of_material = kMaterialKeys.front();
+  ParameterInfo info = slider_of(of_material);
+  info.unit = "N m/rad";
+  info.slider_minimum = 0.1;
+  info.slider_maximum = 1e3;
+  return slider(value, info, JointStop::kUsualStiffness, of_material.meaning);
+}
+
+// How the numbers of the model's file are meant.
+bool choose_axes(Mesh& mesh) {
+  bool changed = false;
+  caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
+  const ModelUnit* const present = model_unit(mesh.unit);
+  if (ImGui::BeginCombo("##unit", present ? present->name : "")) {
+    for (const ModelUnit& each : kModelUnits) {
+      if (!ImGui::Selectable(each.name, &each == present)) continue;
+      mesh.unit = each.metres;
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
+  caption("Axis up", "Which of the file's axes points up when nothing is turned.");
+  int axis = mesh.y_up ? 0 : 1;
+  if (ImGui::Combo("##up", &axis, "y\0z\0")) {
+    mesh.y_up = axis == 0;
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool drag_number(const char* label, double& value, double speed, double least, double most,
+                 const char* format, const char* help) {
+  caption(label, help);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
+                        &most, format, ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {
+  draw_name(document, place);
+  arm_ = &arm;
+  if (const auto& model = document.editor().models()[place]; model && model != measured_) {
+    measured_ = model;
+    extent_ = model->bounds().sizes().maxCoeff();
+  }
+  Object object = document.scene().objects[place];
+  const std::string what(
+      std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  if (!what.empty() && document.may_edit()) document.editor().set(place, std::move(object), what);
+}
+
+void ObjectEditor::draw_name(Document& document, std::size_t place) {
+  const std::string& present = document.scene().objects[place].name;
+  if (name_of_ != present) name_ = name_of_ = present;
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputText("##name", &name_);
+  if (ImGui::IsItemDeactivated()) {
+    if (document.may_edit()) document.editor().rename(place, name_);
+    name_of_.clear();
+  }
+  tooltip("Its name");
+}
+
+bool ObjectEditor::edit_rotation(Pose& pose) {
+  if (pose.linear() != turned_) {
+    turned_ = pose.linear();
+    degrees_ = (rpy_of(turned_) / kDegree * 1e6).array().round() / 1e6 + 0.0;  // no -0
+  }
+  if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
+             "About the fixed axes x, y and z, one after the other.")) {
+    return false;
+  }
+  turned_ = settled(rotation(degrees_ * kDegree));
+  pose.linear() = turned_;
+  return true;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through it.")) {
+    what = "place";
+  }
+  if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f", "Out of the material.")) {
+    what = "normal";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Centre x, y, z [mm]")) {
+    what = "place";
+  }
+  double radius = 1e3 * sphere.radius;
+  if (drag_number("Radius", radius, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", "Of the ball")) {
+    sphere.radius = 1e-3 * radius;
+    what = "radius";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Box& box) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
+  Vec3 size = 1e3 * box.size;
+  if (drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
+    box.size = 1e-3 * size;
+    what = "size";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
+  double millimetres = 1e3 * mesh.size() * extent_;
+  if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
+                  "1: as large as its file says.")) {
+    what = "scale";
+  }
+  if (drag_number("Largest extent", millimetres, kMillimetreSpeed, 0.1, 1e5, "%.1f mm",
+                  "Sets the scale.") &&
+      extent_ > 0) {
+    mesh.scale = 1e-3 * millimetres / (mesh.unit * extent_);
+    what = "scale";
+  }
+  if (choose_axes(mesh)) what = "axes";
+  read_out("triangles", fmt::format("{}", mesh.triangles->triangles()), {}, mesh.model.c_str());
+  const std::string health = mesh.triangles->health().text();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());
+  ImGui::PopTextWrapPos();
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
+  std::string_view what;
+  if (joint_stiffness(object.material.stiffness)) what = "stiffness";
+  const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
+  if (ImGui::BeginCombo("joint", name(stop.joint).c_str())) {
+    for (int i = 0; i < arm_->dof(); ++i) {
+      if (ImGui::Selectable(fmt::format("{}##{}", name(i), i).c_str(), i == stop.joint)) {
+        stop.joint = i;
+        what = "joint";
+      }
+    }
+    ImGui::EndCombo();
+  }
+  double angle = stop.angle / kDegree;
+  if (drag_number("Angle", angle, kDegreeSpeed, -360, 360, "%.1f\xC2\xB0", "Where it stops")) {
+    stop.angle = angle * kDegree;
+    what = "angle";
+  }
+  bool above = stop.direction > 0;
+  if (ImGui::Checkbox("stops what goes above", &above)) {
+    stop.direction = above ? 1 : -1;
+    what = "side";
+  }
+  tooltip("Otherwise it stops what goes below the angle.");
+  return what;
+}
+
 namespace {
 
 void draw_title(const SceneDocument& document) {

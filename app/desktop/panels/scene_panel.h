@@ -1,14 +1,45 @@
-// The scene's objects: which there are, and what can be done with them.
+// What can be changed about one object of the scene.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
-#include "app/desktop/base/act.h"
-#include "app/desktop/panels/object_editor.h"
+#include "app/desktop/base/notices.h"
+#include "app/desktop/document/document.h"
 
 namespace limpid {
 
+// A number with its label before it: dragged, or typed after a double click. True if it changed.
+bool drag_number(const char* label, double& value, double speed, double least, double most,
+                 const char* format, const char* help);
+
+class ObjectEditor {
+ public:
+  void draw(Document& document, std::size_t place, const ArmDescription& arm);
+
+ private:
+  void draw_name(Document& document, std::size_t place);
+  // Each says what was changed, "" for nothing.
+  std::string_view edit(Object& object, Plane& plane);
+  std::string_view edit(Object& object, Sphere& sphere);
+  std::string_view edit(Object& object, Box& box);
+  std::string_view edit(Object& object, Mesh& mesh);
+  std::string_view edit(Object& object, JointStop& stop);
+  bool edit_rotation(Pose& pose);
+
+  std::string name_;            // being typed
+  std::string name_of_;         // the object's it is
+  Mat3 turned_ = Mat3::Zero();  // the rotation that `degrees_` stand for
+  Vec3 degrees_ = Vec3::Zero();
+  std::shared_ptr<const Model> measured_;  // a large one takes a while
+  double extent_ = 0;                      // its largest [m]
+  const ArmDescription* arm_ = nullptr;    // while drawing
+};
+
+// The scene's objects: which there are, and what can be done with them.
 class ScenePanel {
  public:
   using AddObject = std::function<void(Object)>;

@@ -1,7 +1,7 @@
 // The bar below: recording, playback, and what the plots show.
 #pragma once
 
-#include "app/desktop/base/act.h"
+#include "app/desktop/base/notices.h"
 #include "app/desktop/live/live_session.h"
 #include "app/desktop/playback/playback.h"
 

@@ -10,7 +10,7 @@
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/widgets/modal.h"
-#include "app/style/tooltip.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {

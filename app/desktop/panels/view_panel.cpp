@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "app/desktop/base/picture_signs.h"
-#include "app/desktop/live/hand_goal.h"
+#include "app/desktop/live/pad_hand.h"
 #include "app/desktop/panels/object_signs.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"

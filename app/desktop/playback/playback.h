@@ -5,7 +5,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/playback/played_session.h"
-#include "app/session/video_request.h"
+#include "app/session/film_process.h"
 
 namespace limpid {
 

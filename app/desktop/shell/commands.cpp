@@ -11,7 +11,7 @@
 #include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
-#include "app/style/number_slider.h"
+#include "app/style/sliders.h"
 #include "app/style/theme.h"
 
 namespace limpid {

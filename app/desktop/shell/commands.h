@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/desktop/shell/focus.h"
-#include "app/desktop/shell/key_input.h"
+#include "app/desktop/shell/input.h"
 
 namespace limpid {
 

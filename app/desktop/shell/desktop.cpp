@@ -8,11 +8,84 @@
 #include <chrono>
 #include <utility>
 
+#include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
+#include "app/desktop/base/window_layout.h"
 #include "core/tick/arming.h"
 
 namespace limpid {
+
+std::span<const double> Shown::row() const {
+  return playback_.on() ? playback_.shown()->player().row() : live_.row();
+}
+
+std::span<const double> Shown::twin_row() const {
+  return playback_.on() ? playback_.shown()->twin_row() : live_.twin_row();
+}
+
+void Shown::look(Camera::View view) {
+  automatic_ = false;
+  camera.look(view);
+}
+
+void Shown::reset_view() {
+  automatic_ = true;
+  camera.reset(stage().picture.bounds());
+}
+
+void Shown::follow_story() {
+  const StoryStep* step = playback_.on() ? playback_.shown()->step() : nullptr;
+  if (step == step_) return;
+  step_ = step;
+  if (step == nullptr) return reset_view();
+  playback_.shown()->stage().name_runs({step->names[0], step->names[1], true});
+  const StoryCamera aim = camera_in(playback_.shown()->steps(), *step);
+  reset_view();
+  if (!aim.of && aim.view == Camera::View::iso) return;
+  look(aim.view);
+  camera.frame(aim.of.value_or(stage().picture.bounds()));
+}
+
+int Shown::quality_level() const {
+  if (settings_.picture_quality == "high") return 0;
+  if (settings_.picture_quality == "medium") return 2;
+  if (settings_.picture_quality == "low") return Quality::kLowest;
+  return automatic_quality.level();
+}
+
+PlotLayout::PlotLayout(Settings& settings, Notices& notices, OpenDialog& dialog)
+    : layouts(data_dir() / "assets/layouts.toml", user_config_dir() / "layouts.toml"),
+      settings_(settings),
+      notices_(notices),
+      dialog_(dialog) {}
+
+void PlotLayout::add() {
+  std::vector<PlotChoice>& plots = settings_.plot_choices;
+  if (plots.empty() || !plots.back().channels.empty()) plots.emplace_back();
+  choose(plots.size() - 1);
+}
+
+void PlotLayout::choose(std::size_t plot) {
+  chosen_ = plot;
+  settings_.show_plots = true;
+  dialog_.open("plot");
+}
+
+void PlotLayout::remove(std::size_t plot) {
+  std::vector<PlotChoice>& plots = settings_.plot_choices;
+  if (plot < plots.size()) plots.erase(plots.begin() + static_cast<std::ptrdiff_t>(plot));
+  if (dialog_.name() == "plot") dialog_.close();
+}
+
+void PlotLayout::use(const std::string& name) {
+  const NamedTexts::Entry* layout = layouts.find(name);
+  if (layout == nullptr) return;
+  if (dialog_.name() == "plot") dialog_.close();
+  apply_layout(settings_, layout->text, name);
+  notices_.say(fmt::format("Layout: {}.", name));
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,26 +1,86 @@
-// What the window's program is made of. Panels, dialogs and commands work on the parts themselves;
-// here is what needs several of them.
+// What is on screen: the recording that is played, or else the loop, and how it is looked at.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "app/desktop/base/notices.h"
+#include "app/desktop/base/settings.h"
+#include "app/desktop/base/window_layout.h"
 #include "app/desktop/document/document.h"
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/live/identify_controller.h"
+#include "app/desktop/live/live_session.h"
 #include "app/desktop/panels/over_view.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/focus.h"
 #include "app/desktop/shell/pads.h"
-#include "app/desktop/shell/plot_layout.h"
-#include "app/desktop/shell/shown.h"
 #include "app/desktop/shell/tuning.h"
 #include "app/desktop/shell/world.h"
 #include "app/desktop/sweep/sweep_controller.h"
+#include "render/camera.h"
+#include "render/quality.h"
 
 namespace limpid {
+
+class Shown {
+ public:
+  Shown(const Settings& settings, Playback& playback, LiveSession& live)
+      : settings_(settings), playback_(playback), live_(live) {}
+
+  Stage& stage() { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
+  const Stage& stage() const { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
+  std::span<const double> row() const;       // empty before the first
+  std::span<const double> twin_row() const;  // empty without a twin
+
+  // The view is chosen for the window's size until somebody chooses one.
+  bool automatic_view() const { return automatic_; }
+  void keep_view() { automatic_ = false; }
+  void look(Camera::View view);
+  void reset_view();
+  // Once a frame: from where a story's step wants to be looked at, and what it calls the runs.
+  void follow_story();
+  void leave_story() { step_ = nullptr; }  // the next step looks anew
+
+  int quality_level() const;  // of Quality, as the settings want it
+
+  Camera camera;
+  AutoQuality automatic_quality;
+
+ private:
+  const Settings& settings_;
+  Playback& playback_;
+  LiveSession& live_;
+  bool automatic_ = true;
+  const StoryStep* step_ = nullptr;  // that the camera knows
+};
+
+// Which plots the window shows, one after the other or as a layout that has a name.
+class PlotLayout {
+ public:
+  PlotLayout(Settings& settings, Notices& notices, OpenDialog& dialog);
+
+  // A new plot, or another one in its place, is chosen in a dialog.
+  void add();
+  void choose(std::size_t plot);
+  std::size_t chosen() const { return chosen_; }
+  void remove(std::size_t plot);
+  void use(const std::string& name);  // a layout
+
+  NamedTexts layouts;
+
+ private:
+  Settings& settings_;
+  Notices& notices_;
+  OpenDialog& dialog_;
+  std::size_t chosen_ = 0;
+};
+
+// What the window's program is made of. Panels, dialogs and commands work on the parts themselves;
+// here is what needs several of them.
 
 // What commands ask of the system's window, for who has it.
 struct WindowRequests {

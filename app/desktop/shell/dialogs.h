@@ -1,4 +1,4 @@
-// What opens over the window: one table of dialogs.
+// What there is to read: the window behind it goes on.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,16 @@
 #include <vector>
 
 #include "app/desktop/base/notices.h"
-#include "app/desktop/widgets/guard.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {
 
+// While `open`; closing it clears that.
+void draw_help(bool& open);
+void draw_about(bool& open);
+
+// What opens over the window: one table of dialogs.
 class Desktop;
 
 // What throws becomes a notice, but not the same one in every frame.

@@ -10,7 +10,6 @@
 #include "app/desktop/panels/recorded_panel.h"
 #include "app/desktop/panels/transport.h"
 #include "app/desktop/panels/twin_panel.h"
-#include "app/desktop/widgets/panel_edges.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
 

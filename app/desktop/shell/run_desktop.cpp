@@ -12,9 +12,9 @@
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/frame.h"
-#include "app/desktop/shell/lost_display.h"
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
+#include "app/desktop/shell/window.h"
 #include "app/live/rtkit.h"
 #include "core/realtime/realtime.h"
 

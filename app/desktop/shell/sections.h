@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/desktop/base/act.h"
+#include "app/desktop/base/notices.h"
 
 namespace limpid {
 

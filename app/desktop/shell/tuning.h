@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "app/desktop/base/named_texts.h"
 #include "app/desktop/base/settings.h"
+#include "app/desktop/base/window_layout.h"
 #include "app/desktop/live/device_controller.h"
 #include "app/desktop/playback/playback.h"
 #include "app/run/analysis.h"

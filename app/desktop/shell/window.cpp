@@ -1,6 +1,7 @@
 #include "app/desktop/shell/window.h"
 
 #include <backends/imgui_impl_glfw.h>
+#include <dlfcn.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -14,15 +15,68 @@
 
 #include "app/base/window_system.h"
 #include "app/desktop/shell/icon.h"
-#include "app/desktop/shell/mouse_input.h"
+#include "app/desktop/shell/input.h"
 #include "app/desktop/shell/pacing.h"
-#include "app/desktop/shell/work_area.h"
 #include "app/style/imgui_gl.h"
 #include "app/style/imgui_input.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 
 namespace limpid {
+
+namespace {
+
+// X11's handler is told of nothing but the display.
+std::function<void()>& what_to_do() {
+  static std::function<void()> leave;
+  return leave;
+}
+
+int leave_once(void*) {
+  if (const auto leave = std::exchange(what_to_do(), nullptr)) leave();
+  return 0;
+}
+
+}  // namespace
+
+void when_display_is_lost(std::function<void()> leave) {
+  // Looked up in what GLFW has loaded: Wayland's has none of it.
+  using Handler = int (*)(void*);
+  using Set = Handler (*)(Handler);
+  const auto set = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "XSetIOErrorHandler"));
+  if (set == nullptr) return;
+  what_to_do() = std::move(leave);
+  set(leave_once);
+}
+
+WorkArea work_area() {
+  WorkArea area;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return area;
+  glfwGetMonitorWorkarea(monitor, &area.x, &area.y, &area.width, &area.height);
+  float scale = 1, vertical = 1;
+  glfwGetMonitorContentScale(monitor, &scale, &vertical);
+  (on_wayland() ? area.density : area.scale) = scale;  // Wayland enlarges windows itself
+  return area;
+}
+
+void move_into(const WorkArea& area, GLFWwindow* window) {
+  int left = 0, top = 0, right = 0, bottom = 0, x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowFrameSize(window, &left, &top, &right, &bottom);
+  if (!on_wayland()) glfwGetWindowPos(window, &x, &y);
+  glfwGetWindowSize(window, &width, &height);
+  const int fit_width = std::min(width, area.width - left - right);
+  const int fit_height = std::min(height, area.height - top - bottom);
+  if (fit_width != width || fit_height != height) glfwSetWindowSize(window, fit_width, fit_height);
+  if (on_wayland()) return;
+  const auto held = [](int at, int low, int high) {
+    return std::clamp(at, low, std::max(low, high));
+  };
+  const int fit_x = held(x, area.x + left, area.x + area.width - right - fit_width);
+  const int fit_y = held(y, area.y + top, area.y + area.height - bottom - fit_height);
+  if (fit_x != x || fit_y != y) glfwSetWindowPos(window, fit_x, fit_y);
+}
+
 namespace {
 
 constexpr auto kFrame = std::chrono::microseconds(16667);

@@ -1,14 +1,46 @@
-// The window of the operating system with OpenGL and ImGui in it.
+// The display that goes while the program runs.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "app/desktop/shell/key_input.h"
+#include "app/desktop/shell/input.h"
 #include "render/theme.h"
 
+namespace limpid {
+
+// X11's library ends the program when its display is gone, where `leave` is called first, once, on
+// the thread that used the display: what is to be kept is kept there, without drawing anything.
+// Does nothing where the window is not X11's. After the window is there.
+void when_display_is_lost(std::function<void()> leave);
+
+}  // namespace limpid
+
+// Where windows may be on the screen.
+struct GLFWwindow;
+
+namespace limpid {
+
+inline constexpr int kLeastWidth = 900, kLeastHeight = 560;  // of a window
+
+// The screen without the desktop's bars.
+struct WorkArea {
+  int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
+  float scale = 1;    // of the screen
+  float density = 1;  // pixels for each of the window's units
+};
+
+// Of the first screen.
+WorkArea work_area();
+
+// Inside of the area with the frame that the desktop drew round the window.
+void move_into(const WorkArea& area, GLFWwindow* window);
+
+}  // namespace limpid
+// The window of the operating system with OpenGL and ImGui in it.
 struct GLFWwindow;
 
 namespace limpid {

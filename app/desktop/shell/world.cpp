@@ -14,7 +14,7 @@
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/dynamics/inverse_kinematics.h"
-#include "devices/files/scene/model_units.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/urdf_file.h"

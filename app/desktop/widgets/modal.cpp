@@ -1,12 +1,25 @@
 #include "app/desktop/widgets/modal.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <imgui.h>
 #include <imgui_internal.h>
 
 #include <string>
 
 #include "app/style/imgui_input.h"
+
+namespace limpid {
+
+UiStack::UiStack() : fonts_(ImGui::GetCurrentContext()->FontStack.Size) {}
+
+void UiStack::unwind() const {
+  while (ImGui::GetCurrentContext()->FontStack.Size > fonts_) ImGui::PopFont();
+  ImGui::ErrorCheckEndFrameRecover(nullptr);
+}
+
+}  // namespace limpid
+
+#define GLFW_INCLUDE_NONE
 
 namespace limpid {
 namespace {

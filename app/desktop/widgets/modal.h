@@ -1,11 +1,38 @@
-// Dialogs: how they open and close, and where that is clicked.
+// What throws in a frame becomes a notice, and the next frame comes.
 #pragma once
 
 #include <imgui.h>
 
+#include <exception>
 #include <optional>
+#include <utility>
 
 namespace limpid {
+
+// Closes whatever ImGui windows, groups and styles an exception left open.
+class UiStack {
+ public:
+  UiStack();
+  void unwind() const;
+
+ private:
+  int fonts_;
+};
+
+// Does `work`; `complain(what)` hears of an exception. Drawing may be left in the middle, if it
+// began outside of other ImGui windows.
+template <class Work, class Complain>
+void guarded(Complain&& complain, Work&& work) {
+  const UiStack before;
+  try {
+    std::forward<Work>(work)();
+  } catch (const std::exception& e) {
+    before.unwind();
+    complain(e.what());
+  }
+}
+
+// Dialogs: how they open and close, and where that is clicked.
 
 // One that asks something: what is behind it is dimmed and waits. To be called in every frame,
 // outside of other windows. True while the dialog is to be drawn; it pairs with ImGui::EndPopup()

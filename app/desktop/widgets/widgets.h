@@ -1,4 +1,4 @@
-// Small things that panels are made of.
+// What lies at the edges of panels.
 #pragma once
 
 #include <imgui.h>
@@ -6,9 +6,18 @@
 #include <string>
 
 #include "app/plot/plot_frame.h"
-#include "app/style/tooltip.h"
+#include "app/style/words.h"
 
 namespace limpid {
+
+// A border between panels that can be dragged: changes `size` by the mouse's motion along one axis,
+// in `direction`, between `least` and `most` [px at scale 1].
+void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,
+              double least, double most);
+// A small tab at the view's edge that folds a panel away, or brings it back.
+void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted);
+
+// Small things that panels are made of.
 
 // A panel's frame without a title bar; pairs with ImGui::End().
 void begin_panel(const char* name, ScreenRect rect);

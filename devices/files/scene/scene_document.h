@@ -1,14 +1,70 @@
-// A scene as its file has it: what can be touched, and all that goes with it.
+// What a scene may hold: for its file, and for whoever edits it.
 #pragma once
 
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "core/touch/scene.h"
 #include "devices/files/scene_files.h"
+#include "devices/files/toml_reader.h"
 
+namespace limpid::scene_limits {
+
+inline constexpr std::size_t kMostContacts = 64;
+inline constexpr std::size_t kMostProbes = 64;                        // with the tip
+inline constexpr std::size_t kLargestModel = std::size_t{512} << 20;  // [bytes]
+
+inline constexpr Range kPosition{-10, 10, false, "m"};
+inline constexpr Range kAngle{-100, 100, false, "rad"};
+inline constexpr Range kLength{0, 10, true, "m"};
+inline constexpr Range kRadius{0, 1, false, "m"};
+inline constexpr Range kStiffness{0, 1e6, true, "N/m"};
+inline constexpr Range kDamping{0, 1000, false, "N s/m"};
+inline constexpr Range kFriction{0, 1, false, ""};
+inline constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
+inline constexpr Range kScale{0, 1e4, true, ""};
+inline constexpr Range kDirection{-1e6, 1e6, false, ""};
+
+}  // namespace limpid::scene_limits
 namespace limpid {
+
+// The units that a model's coordinates may be in.
+struct ModelUnit {
+  const char* name;  // in scene files
+  double metres;
+};
+
+inline constexpr std::array kModelUnits{ModelUnit{"m", 1}, ModelUnit{"cm", 0.01},
+                                        ModelUnit{"mm", 0.001}, ModelUnit{"in", 0.0254},
+                                        ModelUnit{"ft", 0.3048}};
+
+// Null for what is none of them.
+inline const ModelUnit* model_unit(double metres) {
+  for (const ModelUnit& each : kModelUnits) {
+    if (each.metres == metres) return &each;
+  }
+  return nullptr;
+}
+
+// The suffix of a file in small letters, with its dot.
+inline std::string small_suffix(const std::filesystem::path& file) {
+  std::string suffix = file.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return suffix;
+}
+
+// Where a scene does not say the unit [m]: STL knows none, but what makes such files thinks in
+// millimetres.
+inline double usual_unit(const std::filesystem::path& file) {
+  return small_suffix(file) == ".stl" ? 0.001 : 1;
+}
+
+// A scene as its file has it: what can be touched, and all that goes with it.
 
 // Of any kind that is read.
 struct ModelFile {

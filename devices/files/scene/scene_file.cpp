@@ -8,8 +8,7 @@
 
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
-#include "devices/files/scene/model_units.h"
-#include "devices/files/scene/scene_limits.h"
+#include "devices/files/scene/scene_document.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 

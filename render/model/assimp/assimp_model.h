@@ -1,8 +1,8 @@
-// STL, OBJ, PLY and Collada models, read by assimp. It trusts files in places, so only a program of
-// its own does this: limpid-model.
+// Materials as assimp has them, with the files of the pictures they use.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,8 +10,46 @@
 #include "render/model/assimp/assimp_files.h"
 #include "render/model/model.h"
 
+struct aiMaterial;
+struct aiScene;
+
 namespace limpid {
 
+// A material as the vertices and the part of a model take it.
+struct AssimpMaterial {
+  Finish finish;
+  Eigen::Vector3f color = Vertex{}.color;  // linear
+  float opacity = 1;
+  bool plain = true;  // the file says nothing about it
+};
+
+class AssimpMaterials {
+ public:
+  // All of these outlive this.
+  AssimpMaterials(const aiScene& scene, const std::string& kind, AssimpFiles& files)
+      : scene_(scene), kind_(kind), files_(files) {}
+
+  const AssimpMaterial& at(unsigned index);
+  // Encoded as they came; Finish::color is a number in this list.
+  const std::vector<std::vector<unsigned char>>& pictures() const { return pictures_; }
+
+ private:
+  AssimpMaterial read(const aiMaterial& from);
+  int picture(const std::string& file);
+
+  const aiScene& scene_;
+  const std::string& kind_;
+  AssimpFiles& files_;
+  std::map<unsigned, AssimpMaterial> known_;
+  std::map<std::string, int> numbers_;  // of pictures, by their files
+  std::vector<std::vector<unsigned char>> pictures_;
+};
+
+}  // namespace limpid
+namespace limpid {
+
+// STL, OBJ, PLY and Collada models, read by assimp. It trusts files in places, so only a program of
+// its own does this: limpid-model.
 struct AssimpModel {
   Model model;                                       // without images
   std::vector<std::vector<unsigned char>> pictures;  // encoded; Finish::color is a number in it

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "render/model/glb_bytes.h"
+#include "render/model/gltf_file.h"
 
 namespace limpid {
 namespace {

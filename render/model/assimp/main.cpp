@@ -21,11 +21,10 @@
 
 #include "core/base/descriptor.h"
 #include "core/base/sandbox.h"
-#include "render/model/assimp/assimp_guard.h"
+#include "render/model/assimp/assimp_files.h"
 #include "render/model/assimp/assimp_model.h"
 #include "render/model/assimp/glb_writer.h"
-#include "render/model/assimp/readable.h"
-#include "render/model/reader_limits.h"
+#include "render/model/model_program.h"
 
 namespace {
 

@@ -1,9 +1,8 @@
-#include "app/session/energy_account.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "app/session/trace_channels.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {

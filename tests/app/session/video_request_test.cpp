@@ -1,9 +1,8 @@
-#include "app/session/video_request.h"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
 
+#include "app/session/film_process.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "app/style/parameter_slider.h"
+#include "app/style/sliders.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "app/style/palette.h"
-#include "app/style/parameter_slider.h"
+#include "app/style/sliders.h"
 
 namespace limpid {
 namespace {

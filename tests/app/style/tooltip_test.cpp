@@ -1,8 +1,7 @@
-#include "app/style/tooltip.h"
-
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
+#include "app/style/words.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <set>
 
-#include "app/style/number_slider.h"
+#include "app/style/sliders.h"
 
 namespace limpid {
 namespace {

@@ -1,11 +1,10 @@
 // Friction against its law, written down once more, and against its balance of energy.
-#include "core/touch/friction.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <array>
 
+#include "core/touch/wall_force.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

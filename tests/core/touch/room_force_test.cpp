@@ -1,11 +1,10 @@
 // The force of grooves and corners over a tick against the work that their potential loses.
-#include "core/touch/room_force.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 
+#include "core/touch/contact_solve.h"
 #include "core/touch/wall_force.h"
 #include "tests/support/meshes.h"
 

@@ -1,5 +1,3 @@
-#include "app/desktop/base/named_texts.h"
-
 #include "app/base/folders.h"
 #include "app/desktop/base/window_layout.h"
 #include "devices/files/text_file.h"

@@ -1,6 +1,6 @@
-#include "app/desktop/document/undo_history.h"
-
 #include <gtest/gtest.h>
+
+#include "app/desktop/document/document.h"
 
 namespace limpid {
 namespace {

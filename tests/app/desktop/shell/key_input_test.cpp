@@ -1,7 +1,6 @@
-#include "app/desktop/shell/key_input.h"
-
 #include <string>
 
+#include "app/desktop/shell/input.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

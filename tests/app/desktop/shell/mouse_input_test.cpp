@@ -1,5 +1,4 @@
-#include "app/desktop/shell/mouse_input.h"
-
+#include "app/desktop/shell/input.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

@@ -1,10 +1,9 @@
-#include "app/desktop/widgets/guard.h"
-
 #include <imgui.h>
 
 #include <stdexcept>
 #include <string>
 
+#include "app/desktop/widgets/modal.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

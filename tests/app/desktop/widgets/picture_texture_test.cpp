@@ -1,6 +1,6 @@
-#include "app/desktop/widgets/picture_texture.h"
-
 #include <gtest/gtest.h>
+
+#include "app/desktop/widgets/picture_shelf.h"
 
 namespace limpid {
 namespace {

@@ -1,8 +1,8 @@
-#include "render/mood.h"
+#include "render/palette.h"
 
 namespace limpid {
 
-Mood mood_of(Theme theme) {
+Lighting lighting_of(Theme theme) {
   if (theme == Theme::dark)
     return {{1.75, 1.70, 1.62, 0},      {0.46, 0.49, 0.55, 0},     {0.23, 0.22, 0.21, 0},
             {0.020, 0.022, 0.026, 0},   {0.205, 0.220, 0.245, 1},  {0.085, 0.092, 0.105, 1},
