@@ -14,7 +14,7 @@
 // `well`: the device is there, its newest reading is fresh, it reports no fault and the hand on it,
 // and nobody has cut the force. Once that is false, nothing moves on: begin with a new check. When
 // check.done(), the torque is zero for good, and the device may be trusted if check.passed(); then
-// let remember_check (device_book.h) store it. While it runs, the panel shows axis() and
+// let remember_check (device_store.h) store it. While it runs, the panel shows axis() and
 // what_to_do(stage()); afterwards explain(verdict) of axis().
 #pragma once
 
