@@ -163,9 +163,6 @@ void StreamFile::finish() {
   checked(avio_closep(&file_->pb));
 }
 
-}  // namespace limpid
-
-namespace limpid {
 namespace {
 
 using Options = std::initializer_list<std::pair<const char*, std::string>>;
@@ -293,9 +290,6 @@ bool GifFile::finish(const std::filesystem::path& gif, const std::atomic<bool>& 
   out.finish();
   return true;
 }
-
-}  // namespace limpid
-namespace limpid {
 
 namespace {
 

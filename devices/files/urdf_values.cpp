@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tinyxml.h>
+#include <urdf_model/model.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,7 +1,6 @@
-// Numbers in the attributes of a URDF.
+// What a URDF says in numbers: attributes, turns, what moves an arm, what is missing and what is
+// Limpid's own.
 #pragma once
-
-#include <urdf_model/model.h>
 
 #include <Eigen/Core>
 #include <charconv>
@@ -13,6 +12,12 @@
 #include <vector>
 
 #include "core/dynamics/arm_description.h"
+
+class TiXmlElement;
+
+namespace urdf {
+class ModelInterface;
+}
 
 namespace limpid {
 
@@ -57,30 +62,18 @@ struct UrdfPlaces {
   void warn_link(const std::string& name, const std::string& what);
 };
 
-}  // namespace limpid
-
 // The part of a URDF that moves an arm.
-class TiXmlElement;
-
-namespace limpid {
 
 // Links with their inertia and joints, as a URDF of its own: whatever else there is cannot trouble
 // its reader. What the format asks for and real files leave out is filled in: limits of nothing but
 // zeros are none, and slides without limits are held still, with a warning.
 std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places);
 
-}  // namespace limpid
 // Rotations of a URDF, the same to the last bit on every processor.
-class TiXmlElement;
-
-namespace limpid {
 
 // urdfdom asks the system's mathematical library for them (see core/math/elementary.h): those of
 // joints and of centres of mass are put into the model once more.
 void set_turns(const TiXmlElement& robot, urdf::ModelInterface& model);
-
-}  // namespace limpid
-namespace limpid {
 
 // What a URDF may leave out and an arm cannot do without: masses that only count as frames, efforts
 // of 0.
@@ -93,8 +86,6 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places);
 // An effort of 0 says nothing: it becomes twice what holds the arm stretched out level.
 void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 
-}  // namespace limpid
-
 // What a URDF says of an arm beyond its format, in elements <limpid> of the robot:
 //
 //     <limpid tip="LINK" gravity="0 0 -9.81" delay="0.002">
@@ -104,9 +95,6 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 // gravity [m/s^2] in the base's frame, as the arm stands; delay [s] of the device that the arm was
 // identified from; springs in N m/rad and N m, of slides in N/m and N: the joint is pulled by
 // -(stiffness x + offset). Of what is said twice the last one holds.
-class TiXmlElement;
-
-namespace limpid {
 
 // The link that it names as its tip; empty: none.
 std::string own_tip(const TiXmlElement& robot);

@@ -9,6 +9,8 @@
 #include "core/dynamics/arm_description.h"
 #include "devices/files/urdf_values.h"
 
+class TiXmlElement;
+
 namespace limpid {
 
 // Resolves names as ROS does. `package://NAME/path` is looked for in the packages of that name: by
@@ -31,12 +33,7 @@ class MeshFinder {
   std::map<std::string, std::vector<std::filesystem::path>> packages_;
 };
 
-}  // namespace limpid
-
 // What the links of a URDF look like.
-class TiXmlElement;
-
-namespace limpid {
 
 // By the link's name, each in the link's own frame.
 using LinkShapes = std::map<std::string, std::vector<Visual>>;
@@ -46,9 +43,6 @@ LinkShapes urdf_visuals(const TiXmlElement& robot, MeshFinder& meshes, UrdfPlace
 
 // The shapes of <collision>, without those that cannot be read.
 LinkShapes urdf_collisions(const TiXmlElement& robot, MeshFinder& meshes);
-
-}  // namespace limpid
-namespace limpid {
 
 // The shapes that stand for an arm's links where its makers look for collisions.
 

@@ -120,9 +120,6 @@ void KeyInput::take(const Event& event, int last) {
   }
 }
 
-}  // namespace limpid
-namespace limpid {
-
 namespace {
 
 constexpr auto kDoubleClick = std::chrono::milliseconds(300);

@@ -10,6 +10,8 @@
 #include "app/desktop/shell/input.h"
 #include "render/theme.h"
 
+struct GLFWwindow;
+
 namespace limpid {
 
 // X11's library ends the program when its display is gone, where `leave` is called first, once, on
@@ -17,12 +19,7 @@ namespace limpid {
 // Does nothing where the window is not X11's. After the window is there.
 void when_display_is_lost(std::function<void()> leave);
 
-}  // namespace limpid
-
 // Where windows may be on the screen.
-struct GLFWwindow;
-
-namespace limpid {
 
 inline constexpr int kLeastWidth = 900, kLeastHeight = 560;  // of a window
 
@@ -39,11 +36,7 @@ WorkArea work_area();
 // Inside of the area with the frame that the desktop drew round the window.
 void move_into(const WorkArea& area, GLFWwindow* window);
 
-}  // namespace limpid
 // The window of the operating system with OpenGL and ImGui in it.
-struct GLFWwindow;
-
-namespace limpid {
 
 // What became of a picture that was to be saved.
 struct SavedPicture {

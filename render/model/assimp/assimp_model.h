@@ -45,9 +45,6 @@ class AssimpMaterials {
   std::vector<std::vector<unsigned char>> pictures_;
 };
 
-}  // namespace limpid
-namespace limpid {
-
 // STL, OBJ, PLY and Collada models, read by assimp. It trusts files in places, so only a program of
 // its own does this: limpid-model.
 struct AssimpModel {
