@@ -142,7 +142,7 @@ void StorySettings::into(RunPlan& plan) const {
   };
   plan.parameters = began_[kMainLane];
   plan.changes = rows(kMainLane);
-  plan.beside = {Lane{began_[kTwinLane], rows(kTwinLane)}};
+  plan.beside.push_back({began_[kTwinLane], rows(kTwinLane)});
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // The firmware of a paddle with one joint, without its board: what comes over USB, what the encoder
 // and the switches say, and what the motor gets. Speaks Limpid's open protocol, version 1
-// (devices/hid/protocols/raw_protocol.h). Plain C without memory of its own; the same source runs
+// (devices/hid/raw_protocol.h). Plain C without memory of its own; the same source runs
 // on the board and in Limpid's tests.
 //
 // Times are microseconds since it was switched on. Nothing here may be called from two places at

@@ -1,6 +1,6 @@
 """A haptic device that is a program: Limpid finds it by its socket and drives it as one on USB.
 
-Standard library only. The reports are those of devices/hid/protocols/raw_protocol.h, without an id.
+Standard library only. The reports are those of devices/hid/raw_protocol.h, without an id.
 A hand may be on what your program moves, so exchange() gives no torque once the connection has
 ended or no command came for 10 ms. Call it about every millisecond and apply what it returns, also
 while nobody is connected. Run as a program, it plays joints that springs hold:

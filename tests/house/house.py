@@ -172,7 +172,7 @@ def inexact_functions(root: Path) -> list[str]:
 
 def pages(root: Path) -> list[str]:
     """Texts for people, those of rooms as well."""
-    own = [page for room in ROOMS for page in (root / room).rglob("README.md")]
+    own = [page for room in (*ROOMS, "assets") for page in (root / room).rglob("README.md")]
     return ["README.md", "CONTRIBUTING.md", *(str(page.relative_to(root)) for page in own)]
 
 
@@ -183,8 +183,13 @@ def named_files_that_are_missing(root: Path, page: str) -> list[str]:
     return [
         f"{page}: {name} is no file of the tree"
         for name in named
-        if "NAME" not in name and not any(root.glob(name))
+        if "NAME" not in name and not any(map(_holds_a_file, root.glob(name)))
     ]
+
+
+def _holds_a_file(path: Path) -> bool:
+    """Git keeps no empty folders, so a tree that was just cloned has none."""
+    return path.is_file() or any(inner.is_file() for inner in path.rglob("*"))
 
 
 def table(arrows: Arrows) -> str:

@@ -125,6 +125,12 @@ class ARuleIsSeenBroken(unittest.TestCase):
         broken = house.named_files_that_are_missing(self.root, "page.md")
         self.assertEqual(broken, ["page.md: core/gone.h is no file of the tree"])
 
+    def test_a_page_that_names_an_empty_folder(self) -> None:
+        (self.root / "core/gone").mkdir()
+        self.write("page.md", "`core/gone` and `core/`")
+        broken = house.named_files_that_are_missing(self.root, "page.md")
+        self.assertEqual(broken, ["page.md: core/gone is no file of the tree"])
+
     def test_a_header_without_guard(self) -> None:
         self.write("core/none.h", "// #pragma twice\n")
         self.assert_broken_once("core/none.h")

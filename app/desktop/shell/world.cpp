@@ -413,7 +413,7 @@ void World::start_recording() {
   plan.document.toml = d_.document.toml();
   plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
   plan.parameters = d_.settings.parameters;
-  if (d_.settings.twin.on) plan.beside = {Lane{d_.settings.twin.parameters, {}}};
+  if (d_.settings.twin.on) plan.beside.push_back({d_.settings.twin.parameters, {}});
   hand_scene_over(true);
   d_.live.record(plan, sessions_dir());
 }

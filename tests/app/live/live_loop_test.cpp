@@ -168,7 +168,7 @@ TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
   loop.set(controls);
   let_live(loop, 50);
   plan.parameters = controls.parameters;
-  plan.beside = {Lane{controls.twin_parameters, {}}};
+  plan.beside.push_back({controls.twin_parameters, {}});
   loop.record(std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters, false,
                                          Recorder::kLiveRoom, plan.twin()));
   let_live(loop, 300);
@@ -215,7 +215,7 @@ TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
   loop.set(controls);
   let_live(loop, 50);
   plan.parameters = controls.parameters;
-  plan.beside = {Lane{controls.twin_parameters, {}}};
+  plan.beside.push_back({controls.twin_parameters, {}});
   auto recorder = std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters,
                                              false, Recorder::kLiveRoom, plan.twin());
   controls.twin_parameters.k_vc = 7;

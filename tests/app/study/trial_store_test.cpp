@@ -27,7 +27,7 @@ RunPlan rich_plan() {
   plan.hand_torque = {0.1, 0.2, 0.3};
   plan.force = {true, false};
   plan.start = rest_at(plan.arm, plan.hand.position.front());
-  plan.beside = {Lane{plan.parameters, {{20, "coupling.eta = 3.0"}}, plan.start}};
+  plan.beside.push_back({plan.parameters, {{20, "coupling.eta = 3.0"}}, plan.start});
   return plan;
 }
 
