@@ -107,7 +107,10 @@ std::string part_name(ColumnWidth width, int part) {
   constexpr std::array kAxes{"x", "y", "z"};
   const char* axis = kAxes[static_cast<std::size_t>(part % 3)];
   switch (width) {
-    case ColumnWidth::one: return "";
+    case ColumnWidth::one:
+    case ColumnWidth::if_bodies: return "";
+    case ColumnWidth::poses: return fmt::format("body {} {}", part / 7 + 1, part % 7);
+    case ColumnWidth::velocities: return fmt::format("body {} {}", part / 6 + 1, part % 6);
     case ColumnWidth::three: return axis;
     case ColumnWidth::dof: return "joint " + std::to_string(part + 1);
     case ColumnWidth::contacts: return "contact " + std::to_string(part / 3 + 1) + " " + axis;

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/math/sizes.h"
+#include "core/touch/body.h"
 
 namespace limpid {
 
@@ -50,6 +51,14 @@ enum class Column : std::uint8_t {
   contact_force,
   compensation_torque,
   energy_compensation,
+  body_pose,
+  body_velocity,
+  energy_to_objects,
+  energy_objects,
+  objects_gain,
+  objects_awake,
+  objects_sweeps,
+  magnet,
   wake_latency,
   compute,
   count_,
@@ -60,7 +69,8 @@ inline constexpr int kColumns = static_cast<int>(Column::count_);
 // Contacts that a row has room for: the hardest, if there are more.
 inline constexpr int kRowContacts = 4;
 
-enum class ColumnWidth : std::uint8_t { one, three, dof, contacts };  // x, y, z of each contact
+// Contacts: x, y, z of each. Those of bodies are only there where something moves.
+enum class ColumnWidth : std::uint8_t { one, three, dof, contacts, poses, velocities, if_bodies };
 
 struct ColumnInfo {
   Column column;
@@ -138,15 +148,30 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "for weight, springs and friction of the device, beside tau1"},
     {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
      "what of E_c the motors gave for weight, springs and friction of the device"},
+    {Column::body_pose, "/objects/pose", ColumnWidth::poses, "m",
+     "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z [-]"},
+    {Column::body_velocity, "/objects/velocity", ColumnWidth::velocities, "m/s",
+     "of each body: x, y, z of its centre of mass's velocity, and of its angular velocity [rad/s]"},
+    {Column::energy_to_objects, "/energy/to_objects", ColumnWidth::if_bodies, "J",
+     "what the proxy has given to bodies"},
+    {Column::energy_objects, "/energy/objects", ColumnWidth::if_bodies, "J",
+     "of bodies: kinetic energy, weight, and what contacts and springs among them store"},
+    {Column::objects_gain, "/energy/objects_gain", ColumnWidth::if_bodies, "J",
+     "what bodies have beyond what they had and were given; less than 0 while they lose some"},
+    {Column::objects_awake, "/objects/awake", ColumnWidth::if_bodies, "-", "bodies that move"},
+    {Column::objects_sweeps, "/objects/sweeps", ColumnWidth::if_bodies, "-",
+     "over all contacts, until a tick's forces were found"},
+    {Column::magnet, "/objects/held", ColumnWidth::if_bodies, "-",
+     "number of the body that the magnet holds, from 1 on; 0 none"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
 }};
 
-// Where each column lies in a row of an arm with n joints.
+// Where each column lies in a row of an arm with n joints, in a scene with so many bodies.
 class RowLayout {
  public:
-  explicit constexpr RowLayout(int dof) : dof_(dof) {
+  explicit constexpr RowLayout(int dof, int bodies = 0) : dof_(dof), bodies_(bodies) {
     int at = 0;
     for (const ColumnInfo& info : kColumnInfo) {
       offset_[static_cast<std::size_t>(info.column)] = at;
@@ -156,6 +181,7 @@ class RowLayout {
   }
 
   constexpr int dof() const { return dof_; }
+  constexpr int bodies() const { return bodies_; }
   constexpr int stride() const { return stride_; }  // doubles per row
   constexpr int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
   constexpr int width(Column c) const {
@@ -164,6 +190,9 @@ class RowLayout {
       case ColumnWidth::three: return 3;
       case ColumnWidth::dof: return dof_;
       case ColumnWidth::contacts: return 3 * kRowContacts;
+      case ColumnWidth::poses: return 7 * bodies_;
+      case ColumnWidth::velocities: return 6 * bodies_;
+      case ColumnWidth::if_bodies: return bodies_ > 0 ? 1 : 0;
     }
     return 0;
   }
@@ -181,11 +210,12 @@ class RowLayout {
 
  private:
   int dof_;
+  int bodies_;
   int stride_ = 0;
   std::array<int, kColumns> offset_{};
 };
 
 // Largest row there is, for storage of fixed size.
-inline constexpr int kMaxStride = RowLayout(kMaxDof).stride();
+inline constexpr int kMaxStride = RowLayout(kMaxDof, kMostBodies).stride();
 
 }  // namespace limpid

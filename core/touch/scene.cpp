@@ -18,6 +18,11 @@ Pose pose_at(const Vec3& position) {
   return pose;
 }
 
+int count_bodies(const Scene& scene) {
+  return static_cast<int>(std::ranges::count_if(
+      scene.objects, [](const Object& object) { return object.body.has_value(); }));
+}
+
 double stiffest_surface(const Scene& scene) {
   double most = 0;
   for (const Object& object : scene.objects) {

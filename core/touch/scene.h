@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "core/math/sizes.h"
+#include "core/touch/body.h"
 
 namespace limpid {
 
@@ -38,6 +40,20 @@ struct Sphere {
 struct Box {
   Vec3 size = Vec3::Constant(0.1);  // full edge lengths [m]
   friend bool operator==(const Box&, const Box&) = default;
+};
+
+// Around the z axis, the middle at the origin.
+struct Cylinder {
+  double radius = 0.02;  // [m]
+  double length = 0.05;  // from face to face [m]
+  friend bool operator==(const Cylinder&, const Cylinder&) = default;
+};
+
+// A cylinder between two half balls.
+struct Capsule {
+  double radius = 0.02;  // [m]
+  double length = 0.05;  // between the balls' centres [m]
+  friend bool operator==(const Capsule&, const Capsule&) = default;
 };
 
 // A model of triangles. Its points are stood(pose) * (size() * p).
@@ -73,11 +89,21 @@ struct JointStop {
 
 using Shape = std::variant<Plane, Sphere, Box, Mesh, JointStop>;
 
+// A body made of several shapes: one of them, in the body's frame.
+struct BodyPart {
+  Pose pose = Pose::Identity();  // [m]
+  Shape shape{};                 // Sphere, Box, Cylinder or Capsule
+};
+
 struct Object {
   std::string name{};
-  Pose pose = Pose::Identity();  // [m]
+  Pose pose = Pose::Identity();  // [m]; of a body where it starts
   Shape shape{};
   Material material{};  // of a joint's stop the stiffness alone, in [N m/rad]
+  // It moves. Then its shape is a Sphere, Box, Cylinder, Capsule or Mesh; of a mesh other bodies and
+  // what stands still meet the convex hull, the tip the mesh itself.
+  std::optional<Body> body{};
+  std::vector<BodyPart> parts{};  // of a body, besides its shape
 };
 
 template <class S>
@@ -101,6 +127,8 @@ struct Scene {
   // Of one shape together, in the order of Shape: a file keeps no other, and contacts follow it.
   std::vector<Object> objects;
   std::vector<Probe> probes;  // besides the tip
+  Vec3 gravity{0, 0, -9.81};  // of bodies [m/s^2]
+  std::vector<BodySpring> springs;
 
   // Puts it behind the others of its shape; returns its place.
   std::size_t add(Object object);
@@ -109,6 +137,8 @@ struct Scene {
 // A pose that only shifts [m].
 Pose pose_at(const Vec3& position);
 
+// How many of its objects move.
+int count_bodies(const Scene& scene);
 // Of all surfaces; 0 without any [N/m].
 double stiffest_surface(const Scene& scene);
 void set_surface_stiffness(Scene& scene, double stiffness);
