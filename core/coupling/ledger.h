@@ -46,10 +46,11 @@ class Ledger {
 
   // The tick just ended: the reading y after it, where the device is thought to be (x), a safe
   // lower bound b_lo of the device's damping. q: the encoders' step; a reading that does not change
-  // says nothing. sent(d): the torque that was sent d ticks before the last one [N m].
+  // says nothing. sent(d): the torque that was sent d ticks before the last one [N m]. `given`: by
+  // the proxy to what moves in its world, which has an account of its own [J].
   template <class Sent>
-  void add(const Vec<N>& y, const Vec<N>& x, const Sent& sent, const Vec<N>& b_lo, double q,
-           double T) {
+  void add(const Vec<N>& y, const Vec<N>& x, const Sent& sent, const Vec<N>& b_lo, double given,
+           double q, double T) {
     dy_ = y - y_;
     y_ = y;
     const Vec<N> now = y + (x - y).cwiseMin(q / 2).cwiseMax(-q / 2);
@@ -63,7 +64,7 @@ class Ledger {
       damped += b_lo[i] * dy_[i] * dy_[i] / (n * T);
       n = 0;
     }
-    for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_);
+    for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_) - given;
     on_its_way_ = 0;
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }

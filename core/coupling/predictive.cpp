@@ -11,6 +11,8 @@ constexpr double kMostDamping = 0.34;
 // limit from being the last.
 constexpr double kStillPulled = 0.02;
 // What a hand may push unforeseen in a tick, and the most that changes of the device's velocity.
+constexpr int kMostTurns = 10;       // between bodies and the rest
+constexpr double kSameForce = 1e-6;  // after which nothing more is to be found [N]
 constexpr double kPushed = 4e-4, kSurprise = 0.5;  // [N s], [rad/s]
 
 template <int N>
@@ -34,6 +36,13 @@ double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
 template <int N>
 double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
+}
+
+// Over the last tick, to bodies [J].
+template <int N>
+double given_to(const Proxy<N>& proxy) {
+  const World* world = proxy.contacts().world();
+  return world != nullptr ? world->given() : 0;
 }
 
 }  // namespace
@@ -180,7 +189,8 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   ledger_.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
-    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, in.encoder_step, elapsed_);
+    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given_to(proxy),
+                in.encoder_step, elapsed_);
     network_.advance(ledger_.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger_.dx()));
   }
@@ -290,18 +300,31 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
                                           Motion<N>& motion) {
   contacts_.prepare(answer, T);
   Motion<N> found = resumed ? last_ : motion;
-  bool settled = both.solve(contacts_, T, found);
+  bool settled = solve_with_bodies(both, T, found);
   if (!settled && resumed) {
     found = answer.solve(right);
     if (contacts_.any()) contacts_.solve(answer, T, found);
-    settled = both.solve(contacts_, T, found);
+    contacts_.prepare(answer, T);
+    settled = solve_with_bodies(both, T, found);
   }
   if (!settled) {
     both.stand_still(contacts_, T, found);
+    contacts_.push_bodies();
     ++unsettled_;
     solved_ = TickSolve::stood_still;
   }
   motion = last_ = found;
+}
+
+// Bodies of the scene are solved in turn with the rest: each time they get the forces that were
+// found, and answer with where they then go.
+template <int N>
+bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found) {
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    if (!both.solve(contacts_, T, found)) return false;
+    if (contacts_.push_bodies() < kSameForce) return true;
+  }
+  return false;
 }
 
 template <int N>

@@ -37,6 +37,7 @@ class PredictiveLaw::Of {
   double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
+  bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
   void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                const Proxy<N>& proxy, double surprise);
 

@@ -16,7 +16,7 @@ constexpr double kLeastForLaw = 0.1;
 
 template <int N>
 Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
-    : layout_(arm.dof()),
+    : layout_(arm.dof(), count_bodies(scene)),
       arm_(arm),
       arm_damping_(of_joints<N>(arm, &Joint::damping)),
       arm_limit_(of_joints<N>(arm, &Joint::effort)),
@@ -44,6 +44,10 @@ template <int N>
 void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   const Vec<N> zero = Vec<N>::Zero(start.x1.size());
   proxy_.place(start.x2, start.v2, p.inertia_ratio);
+  if (World* world = proxy_.contacts().world(); world != nullptr && !world->read(start.world)) {
+    world->reset();
+  }
+  to_bodies_ = 0;
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
   compensation_.start(p);
@@ -104,6 +108,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   x2_ = proxy_.x();
   v2_ = proxy_.v();
   kinetic_ = proxy_.kinetic_energy();
+  write_bodies(row);
   const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   const LawInput<N> now{in.measured,    v1,
@@ -227,8 +232,32 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::energy_compensation, books_.compensation);
   set(Column::proxy_kinetic, kinetic_);
   set(Column::contact_potential, potential_);
-  set(Column::contact_gain, books_.contact_gain(potential_, first_potential_));
+  set(Column::contact_gain, books_.contact_gain(potential_, first_potential_, to_bodies_));
   write_contacts(row);
+  if (const World* world = proxy_.contacts().world()) {
+    set(Column::energy_objects, world->energy());
+    set(Column::objects_gain, world->gain());
+    set(Column::objects_awake, world->awake());
+    set(Column::objects_sweeps, world->sweeps());
+  }
+}
+
+// Where bodies are now: the law will have moved them when the rest of the row is written.
+template <int N>
+void Tick<N>::write_bodies(std::span<double> row) {
+  const World* world = proxy_.contacts().world();
+  if (world == nullptr) return;
+  auto pose = layout_.in(row, Column::body_pose).begin();
+  auto velocity = layout_.in(row, Column::body_velocity).begin();
+  for (int i = 0; i < world->count(); ++i) {
+    const Eigen::Quaterniond turned(world->pose(i).linear());
+    pose = std::copy_n(world->center(i).data(), 3, pose);
+    for (const double part : {turned.w(), turned.x(), turned.y(), turned.z()}) *pose++ = part;
+    velocity = std::copy_n(world->speed(i).data(), 3, velocity);
+    velocity = std::copy_n(world->spin(i).data(), 3, velocity);
+  }
+  to_bodies_ = world->all_given();
+  layout_.in(row, Column::energy_to_objects)[0] = to_bodies_;
 }
 
 template <int N>

@@ -40,8 +40,8 @@ struct EnergyBooks {
   // A contact is a spring: what it gave and still stores comes to nothing while it lasts. Making
   // and breaking it within a tick, and slipping, leave something over.
   void add_contact(const Vec<N>& f2, const Vec<N>& dx2) { contact += f2.dot(dx2); }
-  double contact_gain(double stored, double stored_at_first) const {
-    return contact + stored - stored_at_first;
+  double contact_gain(double stored, double stored_at_first, double given) const {
+    return contact + stored - stored_at_first + given;
   }
 };
 
@@ -68,6 +68,7 @@ struct Start {
   bool armed = true;  // at full force from the first tick on; not where motors are guarded
   // What the human may still be given by laws that account for it; they start with no more [J].
   double reserve = std::numeric_limits<double>::infinity();
+  std::span<const double> world{};  // of all bodies, see World::write(); empty: as the scene has it
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
@@ -119,6 +120,7 @@ class Tick {
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
   void write_contacts(std::span<double> row) const;
+  void write_bodies(std::span<double> row);
 
   RowLayout layout_;
   Arm<N> arm_;
@@ -140,6 +142,7 @@ class Tick {
   // At the present tick's start, for the row:
   Vec<N> x2_, v2_, f1_hat_, command_, loads_;
   double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
+  double to_bodies_ = 0;  // given to what moves in the scene, since the start [J]
   // Of the last tick, for the books and for the delayed terms of (1):
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;

@@ -173,8 +173,12 @@ template <int N>
 void ContactSolve<N>::collect(Contacts<N>& contacts, const Arm<N>& arm,
                               const typename Arm<N>::Frames& f, const Vec<N>& u, double T) {
   count_ = 0;
+  world_ = contacts.world();
   for (Contact<N>& c : contacts.list()) {
-    const double deeper = T * c.gradient.dot(u);
+    double deeper = T * c.gradient.dot(u);
+    if (c.body != BodyContact::kStill) {
+      deeper += T * c.normal.dot(world_->velocity(world_->end_at(c.body, c.point)));
+    }
     const bool near = c.depth > -kNear || c.depth + 2 * deeper > 0;
     const bool served = c.gradient.squaredNorm() > kLeastLever * kLeastLever;
     if (near && served && (count_ < kMost || c.depth > std::ranges::min(depths_)))
@@ -200,6 +204,10 @@ void ContactSolve<N>::add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& ar
   row.radius = friction_radius(c.material, row.before.slipping);
   row.g[0] = -c.gradient;
   row.push.x() = row.before.push.x();
+  if (c.body != BodyContact::kStill) {
+    row.frame = frame_of(c.normal);
+    on_body(row, contacts.world(), c.body, c.point);
+  }
   if (row.radius == 0 || c.normal.isZero(0)) return;
   row.axes = 3;
   row.frame = frame_of(c.normal);
@@ -224,6 +232,22 @@ void ContactSolve<N>::add(MeshContact<N>& c, Contacts<N>& contacts) {
   for (int i = 0; i < 3; ++i) row.g[static_cast<std::size_t>(i)] = c.J.row(i).transpose();
   row.push = row.before.push;
   if (row.radius > 0) row.friction = -friction_stiffness(c.material) * row.before.anchor;
+  if (c.body != BodyContact::kStill) on_body(row, contacts.world(), c.body, c.center);
+}
+
+// The other side of the row moves as well.
+template <int N>
+void ContactSolve<N>::on_body(Row& row, World* world, int body, const Vec3& point) {
+  row.world = world;
+  row.end = world->end_at(body, point);
+}
+
+template <int N>
+Vec3 ContactSolve<N>::of_body(const Row& row) {
+  Vec3 v = Vec3::Zero();
+  if (row.world != nullptr) v = row.frame.transpose() * row.world->velocity(row.end);
+  if (row.axes == 1) v.tail<2>().setZero();
+  return v;
 }
 
 template <int N>
@@ -235,6 +259,10 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
       row.W(static_cast<int>(i), static_cast<int>(j)) = row.g[i].dot(row.Z[j].u);
     }
   }
+  if (row.world != nullptr) {
+    row.W_body = row.frame.transpose() * row.world->answer(row.end) * row.frame;
+    row.W += row.W_body;
+  }
   set_damping(row, answer, T);
   row.known = true;
 }
@@ -242,15 +270,20 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
 template <int N>
 void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, double T) {
   Vec<N> direction = row.g[0];
+  Vec3 along = Vec3::UnitX();
   if (row.mesh != nullptr) {
     const FreeSpace& space = row.mesh->touch.space();
-    const Vec3 along = !row.push.isZero(0) ? Vec3(row.push.normalized())
+    along = !row.push.isZero(0) ? Vec3(row.push.normalized())
                        : row.mesh->rank == 0 && space.count() > 0
                            ? space.normal(0)
                            : Vec3(row.mesh->direction.col(0));
     direction = row.mesh->J.transpose() * along;
   }
-  const double mass = 1 / direction.dot(answer.inertia->solve(direction));
+  double mass = 1 / direction.dot(answer.inertia->solve(direction));
+  if (row.world != nullptr) {
+    const double give = along.dot(row.W_body * along);
+    mass = 1 / (1 / mass + give / (BodyMotion::kTheta * T));
+  }
   const double jump = answer.jump * direction.norm();
   const double own = wall_damping(row.material.stiffness, mass, T, answer.damping, jump);
   row.B = std::min(own + row.material.damping, answer.most_damping * mass / T);
@@ -264,7 +297,11 @@ Vec3 ContactSolve<N>::speed(const Row& row, const Vec<N>& u) {
 }
 
 template <int N>
-void ContactSolve<N>::apply(const Row& row, const Vec3& change, Motion<N>& motion) {
+void ContactSolve<N>::apply(Row& row, const Vec3& change, Motion<N>& motion) {
+  if (row.world != nullptr) {
+    row.world->push(row.end, -(row.frame * change));
+    row.on_body += change;
+  }
   for (int i = 0; i < row.axes; ++i) {
     if (change[i] != 0) motion.add(change[i], row.Z[static_cast<std::size_t>(i)]);
   }
@@ -273,10 +310,11 @@ void ContactSolve<N>::apply(const Row& row, const Vec3& change, Motion<N>& motio
 template <int N>
 double ContactSolve<N>::push_wall(Row& row, double T, Motion<N>& motion) {
   const double c = T * row.W(0, 0);
-  const double a = -T * row.g[0].dot(motion.u) + c * row.push.x();
+  const double v = row.g[0].dot(motion.u) - of_body(row).x();
+  const double a = -T * v + c * row.push.x();
   const double F = wall_force({row.material.stiffness, row.B, T, row.wall->depth, a, c});
   const double change = F - row.push.x();
-  motion.add(change, row.Z[0]);
+  apply(row, change * Vec3::UnitX(), motion);
   row.push.x() = F;
   return std::abs(change) + rub(row, T, Vec3::UnitX(), F, motion);
 }
@@ -284,7 +322,7 @@ double ContactSolve<N>::push_wall(Row& row, double T, Motion<N>& motion) {
 template <int N>
 double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   const Vec3 before = row.push;
-  const Vec3 a = T * (speed(row, motion.u) - row.W * before);
+  const Vec3 a = T * (speed(row, motion.u) - of_body(row) - row.W * before);
   room_force(row.mesh->touch, {row.material.stiffness, row.B, T, row.mesh->center, a, T * row.W},
              row.push);
   const Vec3 change = row.push - before;
@@ -294,16 +332,29 @@ double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   return change.norm() + rub(row, T, normal, force, motion);
 }
 
-// Of a wall or a room without friction, for a motion v along the row's axes. Returns how the push
-// answers v.
+// Of a wall or a room without friction, for a motion v along the row's axes, without what the force
+// does to a body that it belongs to. Returns how the push answers v.
 template <int N>
 Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
   Mat3 slope = Mat3::Zero();
+  const double K = row.material.stiffness;
   if (row.wall != nullptr) {
-    const WallPush F =
-        wall_push({row.material.stiffness, row.B, T, row.wall->depth, -T * v.x(), 0});
+    const double a = -T * v.x(), c = T * row.W_body(0, 0);
+    WallPush F = wall_push({K, row.B, T, row.wall->depth, a, 0});
+    if (c > 0) {
+      F.force = wall_force({K, row.B, T, row.wall->depth, a, c});
+      const double on_D = wall_push({K, row.B, T, row.wall->depth, a - c * F.force, 0}).slope;
+      F.slope = on_D / (1 + c * on_D);
+    }
     row.push = F.force * Vec3::UnitX();
     slope(0, 0) = -T * F.slope;
+  } else if (row.world != nullptr) {
+    const RoomTick tick{K, row.B, T, row.mesh->center, T * v, T * row.W_body};
+    room_force(row.mesh->touch, tick, row.push);
+    Mat3 on_D;
+    room_push(row.mesh->touch,
+              {K, row.B, T, row.mesh->center, T * (v + row.W_body * row.push), Mat3::Zero()}, on_D);
+    slope = T * (Mat3::Identity() - T * on_D * row.W_body).inverse() * on_D;
   } else {
     Mat3 on_D;
     row.push =
@@ -326,13 +377,18 @@ void ContactSolve<N>::rub(Row& row, double T, const Vec3& v, Mat3& slope) {
   const Vec3 anchor =
       row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor) : row.before.anchor;
   const double K_t = friction_stiffness(row.material);
-  const Vec2 wanted = -K_t * (across.transpose() * (anchor + T * v));
+  const Mat2 W = across.transpose() * row.W_body * across;
+  const Mat2 stick = Mat2::Identity() + K_t * T * W;
+  const Vec3 free = v + row.W_body * row.push;
+  const Vec2 wanted = -K_t * (stick.inverse() * (across.transpose() * (anchor + T * free)));
   const double most = row.radius * force, size = wanted.norm();
-  Mat2 on_v = -K_t * T * Mat2::Identity();
+  Mat2 on_v = -K_t * T * stick.inverse();
   Vec2 l = wanted;
   if (size > most) {
     const Vec2 along = wanted / size;
-    l = most * along;
+    l = row.world != nullptr
+            ? friction_force(K_t, most, across.transpose() * anchor, T, across.transpose() * free, W)
+            : Vec2(most * along);
     on_v = most / size * (on_v - along * (along.transpose() * on_v));
     slope += across * (row.radius * along) * (normal.transpose() * slope).eval();
   }
@@ -343,15 +399,42 @@ void ContactSolve<N>::rub(Row& row, double T, const Vec3& v, Mat3& slope) {
 template <int N>
 void ContactSolve<N>::prepare(const ContactAnswer<N>& answer, double T) {
   for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    if (row.world != nullptr) {
+      row.W_body = row.frame.transpose() * row.world->answer(row.end) * row.frame;
+      row.body_free = of_body(row) + row.W_body * row.on_body;
+    }
     set_damping(row, answer, T);
   }
+}
+
+template <int N>
+double ContactSolve<N>::push_bodies() {
+  if (world_ == nullptr) return 0;
+  double most = 0;
+  const std::span<Row> rows(rows_.data(), static_cast<std::size_t>(count_));
+  for (Row& row : rows) {
+    if (row.world == nullptr) continue;
+    const Vec3 change = row.push + row.friction - row.on_body;
+    row.world->push(row.end, -(row.frame * change));
+    row.on_body += change;
+    most = std::max(most, change.norm());
+  }
+  for (int i = 0; i < kMostSweeps; ++i) {
+    const double change = world_->sweep(true);
+    most = std::max(most, change);
+    if (change < kSettled) break;
+  }
+  for (Row& row : rows) {
+    if (row.world != nullptr) row.body_free = of_body(row) + row.W_body * row.on_body;
+  }
+  return most;
 }
 
 template <int N>
 Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
   if (slope != nullptr) slope->setZero();
   for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
-    const Vec3 v = speed(row, u);
+    const Vec3 v = speed(row, u) - row.body_free;
     Mat3 on_v = push(row, T, v);
     rub(row, T, v, on_v);
     if (slope == nullptr || on_v.isZero(0)) continue;
@@ -375,7 +458,7 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
   const auto across = frame.template rightCols<2>();
   const Vec3 before = row.friction;
   const Mat2 W = across.transpose() * row.W * across;
-  const Vec2 b = across.transpose() * (speed(row, motion.u) - row.W * before);
+  const Vec2 b = across.transpose() * (speed(row, motion.u) - of_body(row) - row.W * before);
   const Vec3 anchor =
       row.wall != nullptr ? Vec3(row.frame.transpose() * row.before.anchor) : row.before.anchor;
   const Vec2 l = friction_force(friction_stiffness(row.material), row.radius * force,
@@ -391,12 +474,13 @@ template <int N>
 bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
   if (row.known || !row.push.isZero(0) || !row.friction.isZero(0)) return false;
   if (row.wall != nullptr) {
-    return row.wall->depth <= 0 && row.wall->depth - T * row.g[0].dot(u) <= 0;
+    const double v = row.g[0].dot(u) - of_body(row).x();
+    return row.wall->depth <= 0 && row.wall->depth - T * v <= 0;
   }
   if (row.mesh->touch.held() || row.mesh->rank > 0) return false;
   Vec3 x;
   FreeSpace::Active by;
-  return row.mesh->touch.space().project(row.mesh->center + T * speed(row, u), x, by) &&
+  return row.mesh->touch.space().project(row.mesh->center + T * (speed(row, u) - of_body(row)), x, by) &&
          by.count == 0;
 }
 
@@ -421,7 +505,9 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
       most = std::max(most, row.push.norm());
       settled_ = settled_ && change < kSettled * std::max(1.0, most);
     }
-    if (count_ == 1 && rows_[0].radius == 0) {
+    if (world_ != nullptr) {
+      settled_ = world_->sweep(true) < kSettled * std::max(1.0, most) && settled_;
+    } else if (count_ == 1 && rows_[0].radius == 0) {
       settled_ = true;
       ++sweeps_;
       return;
@@ -441,6 +527,13 @@ Vec<N> ContactSolve<N>::f2(Eigen::Index n) const {
 
 template <int N>
 void ContactSolve<N>::finish(Contacts<N>& contacts) const {
+  if (world_ != nullptr) {
+    world_->settle();
+    for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+      if (row.world != nullptr) world_->book(row.end, -(row.frame * row.on_body));
+    }
+    world_->finish();
+  }
   contacts.forget();  // those that are gone as well
   const auto keep = [&](std::size_t id, const Row& row) {
     const double force = row.push.norm(), rubs = row.friction.norm();

@@ -75,6 +75,9 @@ class ContactSolve {
   void solve(const ContactAnswer<N>& answer, double T, Motion<N>& motion);
   // The same as functions of the proxy's motion, for solves of one's own. First, after collect():
   void prepare(const ContactAnswer<N>& answer, double T);
+  // Bodies of the scene get the forces of the last push() and settle among themselves; returns by
+  // how much that changed a force on one of them [N]. push() then goes by where they are.
+  double push_bodies();
   // then the torque [N m] of the forces over a tick in which the proxy moves with the mean velocity
   // u [rad/s]; f2() and finish() are of the last one. `slope`: how it answers u [N m s/rad], on the
   // piece of the forces' laws that holds; null: nobody asks.
@@ -106,6 +109,12 @@ class ContactSolve {
     bool known = false;            // Z and W are
     Vec3 push = Vec3::Zero();      // along the axes, without friction [N]
     Vec3 friction = Vec3::Zero();  // [N]
+    // Of a body's surface:
+    World* world = nullptr;
+    World::End end;
+    Mat3 W_body = Mat3::Zero();    // along the axes [m/(N s)]
+    Vec3 on_body = Vec3::Zero();   // force that it has had so far, less its sign [N]
+    Vec3 body_free = Vec3::Zero(); // its velocity without that, along the axes [m/s]
 
     void clear() {
       wall = nullptr;
@@ -117,9 +126,16 @@ class ContactSolve {
       known = false;
       push.setZero();
       friction.setZero();
+      world = nullptr;
+      end = {};
+      W_body.setZero();
+      on_body.setZero();
+      body_free.setZero();
     }
   };
   Row& next_row(double depth);
+  static void on_body(Row& row, World* world, int body, const Vec3& point);
+  static Vec3 of_body(const Row& row);  // its velocity along the row's axes [m/s]
   void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
            const typename Arm<N>::Frames& f);
   void add(MeshContact<N>& c, Contacts<N>& contacts);
@@ -128,7 +144,7 @@ class ContactSolve {
   static Mat3 push(Row& row, double T, const Vec3& v);
   static void rub(Row& row, double T, const Vec3& v, Mat3& slope);
   static Vec3 speed(const Row& row, const Vec<N>& u);
-  static void apply(const Row& row, const Vec3& change, Motion<N>& motion);
+  static void apply(Row& row, const Vec3& change, Motion<N>& motion);
   static double push_wall(Row& row, double T, Motion<N>& motion);
   static double push_mesh(Row& row, double T, Motion<N>& motion);
   static double rub(Row& row, double T, const Vec3& normal, double force, Motion<N>& motion);
@@ -136,6 +152,7 @@ class ContactSolve {
 
   std::array<Row, kMost> rows_;
   std::array<double, kMost> depths_{};
+  World* world_ = nullptr;
   int count_ = 0;
   int sweeps_ = 0;
   bool settled_ = true;

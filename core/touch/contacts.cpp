@@ -11,6 +11,8 @@ constexpr double kReach = 0.02;
 // Balls in a capsule's place: this many radii apart, but no more than so many.
 constexpr double kSpacing = 0.75;
 constexpr int kMostBalls = 24;
+// A body that is nearer than this does not sleep [m].
+constexpr double kWakes = 5e-3;
 
 }  // namespace
 
@@ -20,28 +22,42 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
   const Vec3 tip = arm.tip.translation();
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
   probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
-  for (const Object& object : scene.objects) {
-    std::visit(
-        [&]<class S>(const S& shape) {
-          if constexpr (std::is_same_v<S, JointStop>) {
-            stops_.push_back({shape, {.stiffness = object.material.stiffness}});
-          } else if constexpr (!std::is_same_v<S, Mesh>) {
-            solids_.push_back({shape, object.pose, object.material});
-          }
-        },
-        object.shape);
+  if (count_bodies(scene) > 0) world_ = std::make_unique<World>(scene);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const int body = world_ ? world_->body_of(i) : BodyContact::kStill;
+    if (const auto* stop = std::get_if<JointStop>(&object.shape)) {
+      stops_.push_back({*stop, {.stiffness = object.material.stiffness}});
+      continue;
+    }
+    add_solid(object.shape, Pose::Identity(), object, body);
+    for (const BodyPart& part : object.parts) add_solid(part.shape, part.pose, object, body);
   }
   Contact<N> empty;
   empty.gradient = Vec<N>::Zero(arm.dof());
   contacts_.assign(solids_.size() * probes_.size() + stops_.size(), empty);
-  for (const Object& object : scene.objects) {
-    if (has_shape<Mesh>(object)) add_mesh_contacts(object, arm);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!has_shape<Mesh>(scene.objects[i])) continue;
+    const int body = world_ ? world_->body_of(i) : BodyContact::kStill;
+    add_mesh_contacts(scene.objects[i], body, arm);
   }
   memories_.resize(contacts_.size() + meshes_.size());
 }
 
 template <int N>
-void Contacts<N>::add_mesh_contacts(const Object& mesh, const ArmDescription& arm) {
+void Contacts<N>::add_solid(const Shape& shape, const Pose& in_object, const Object& object,
+                            int body) {
+  std::visit(
+      [&]<class S>(const S& solid) {
+        if constexpr (!std::is_same_v<S, JointStop> && !std::is_same_v<S, Mesh>) {
+          solids_.push_back({solid, object.pose * in_object, object.material, body, in_object});
+        }
+      },
+      shape);
+}
+
+template <int N>
+void Contacts<N>::add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm) {
   for (const Probe& probe : probes_) {
     const double length = (probe.to - probe.from).norm();
     const double apart = std::max(kSpacing * probe.radius, length / (kMostBalls - 1));
@@ -51,6 +67,7 @@ void Contacts<N>::add_mesh_contacts(const Object& mesh, const ArmDescription& ar
       MeshContact<N> contact(mesh, probe.radius, arm.dof());
       contact.id = contacts_.size() + meshes_.size();
       contact.link = probe.link;
+      contact.body = body;
       contact.on_link = probe.from + part * (probe.to - probe.from);
       meshes_.push_back(std::move(contact));
     }
@@ -71,6 +88,7 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
 
 template <int N>
 void Contacts<N>::take_over(const Contacts& other) {
+  if (world_ && other.world_) world_->take_over(*other.world_);
   for (MeshContact<N>& mine : meshes_) {
     for (const MeshContact<N>& theirs : other.meshes_) {
       if (!mine.touch.same_surface(theirs.touch) || mine.link != theirs.link ||
@@ -104,6 +122,7 @@ void Contacts<N>::add(const Contact<N>& found, const Arm<N>& arm,
 template <int N>
 void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x,
                        double T) {
+  if (world_) follow_bodies();
   count_ = 0;
   std::size_t id = 0;
   for (const Probe& probe : probes_) {
@@ -115,7 +134,8 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
       const Surface s = distance_to(shape, solid.pose, point);
       const double depth = probe.radius - s.distance;
       if (depth > -kReach) {
-        add({depth, {}, solid.material, point, s.normal, probe.link, id}, arm, f);
+        add({depth, {}, solid.material, point, s.normal, probe.link, id, solid.body}, arm, f);
+        if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
       }
       ++id;
     };
@@ -141,8 +161,39 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     // Planes that are right in the middle of the tick take and give alike over it.
     contact.touch.follow(contact.center + 0.5 * (contact.center - before), T);
     look(contact, arm, f);
+    if (contact.body != BodyContact::kStill && contact.touch.near()) world_->touch(contact.body);
   }
   potential_ = stored();
+  if (world_ && T > 0) world_->begin(T);
+}
+
+template <int N>
+void Contacts<N>::follow_bodies() {
+  for (Solid& solid : solids_) {
+    if (solid.body != BodyContact::kStill) solid.pose = world_->pose(solid.body) * solid.in_body;
+  }
+  for (MeshContact<N>& contact : meshes_) {
+    if (contact.body != BodyContact::kStill) contact.touch.move(world_->pose(contact.body));
+  }
+}
+
+template <int N>
+void Contacts<N>::step_bodies() {
+  if (!world_) return;
+  const auto push = [&](int body, const Vec3& point, const Vec3& force) {
+    if (body != BodyContact::kStill) world_->push(world_->end_at(body, point), force);
+  };
+  const auto book = [&](int body, const Vec3& point, const Vec3& force) {
+    if (body != BodyContact::kStill) world_->book(world_->end_at(body, point), force);
+  };
+  const auto all = [&](const auto& each) {
+    for (const Contact<N>& c : list()) each(c.body, c.point, -c.force * c.normal);
+    for (const MeshContact<N>& c : meshes_) each(c.body, c.center, -c.force);
+  };
+  all(push);
+  world_->settle();
+  all(book);
+  world_->finish();
 }
 
 // Who pushes on the centre where it now is.

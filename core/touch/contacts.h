@@ -10,6 +10,7 @@
 #include "core/math/solve.h"
 #include "core/touch/mesh_touch.h"
 #include "core/touch/scene.h"
+#include "core/touch/world.h"
 
 namespace limpid {
 
@@ -21,11 +22,16 @@ struct Surface {
 Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point);
 Surface distance_to(const Sphere& sphere, const Pose& pose, const Vec3& point);
 Surface distance_to(const Box& box, const Pose& pose, const Vec3& point);
+Surface distance_to(const Cylinder& cylinder, const Pose& pose, const Vec3& point);
+Surface distance_to(const Capsule& capsule, const Pose& pose, const Vec3& point);
 
 // The point of the segment from-to nearest to a shape.
 Vec3 nearest_on_segment(const Plane& plane, const Pose& pose, const Vec3& from, const Vec3& to);
 Vec3 nearest_on_segment(const Sphere& sphere, const Pose& pose, const Vec3& from, const Vec3& to);
 Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Cylinder& cylinder, const Pose& pose, const Vec3& from,
+                        const Vec3& to);
+Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& from, const Vec3& to);
 
 // One possible contact, linear in the configuration around x2: penetration
 // d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
@@ -38,6 +44,7 @@ struct Contact {
   Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
   int link = 0;                // that touches
   std::size_t id = 0;          // the same as long as the scene is
+  int body = BodyContact::kStill;  // whose surface it is
   bool touching = false;
   double force = 0;              // over the last tick [N] or [N m]
   Vec3 friction = Vec3::Zero();  // the same, along the surface [N]
@@ -66,6 +73,7 @@ struct MeshContact {
   MeshTouch touch;
   int link = 0;                 // index
   std::size_t id = 0;           // among all contacts
+  int body = BodyContact::kStill;
   Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
   Material material;
   Vec3 center = Vec3::Zero();         // [m]
@@ -132,15 +140,23 @@ class Contacts {
   std::size_t forces(std::span<ContactForce> into) const;
   // Of all surfaces [N/m].
   double stiffest() const { return stiffest_; }
+  // What moves of the scene; null: nothing.
+  World* world() { return world_.get(); }
+  const World* world() const { return world_.get(); }
+  // For laws that do not solve for bodies: they get the forces that push() found, and step after.
+  void step_bodies();
+
   // Of all springs as they were found, those of friction too [J].
   double potential() const { return potential_; }
 
  private:
   // Objects as a tick wants them.
   struct Solid {
-    std::variant<Plane, Sphere, Box> shape;  // those that distance_to() knows
+    std::variant<Plane, Sphere, Box, Cylinder, Capsule> shape;  // those that distance_to() knows
     Pose pose;
     Material material;
+    int body = BodyContact::kStill;
+    Pose in_body = Pose::Identity();
   };
   struct Stop {
     JointStop at;
@@ -149,9 +165,12 @@ class Contacts {
 
   double stored() const;
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
-  void add_mesh_contacts(const Object& mesh, const ArmDescription& arm);
+  void add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   static void aim(MeshContact<N>& contact);
+
+  void add_solid(const Shape& shape, const Pose& in_object, const Object& object, int body);
+  void follow_bodies();
 
   std::vector<Probe> probes_;  // the tip first
   std::vector<Solid> solids_;
@@ -160,6 +179,7 @@ class Contacts {
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
   std::vector<ContactMemory> memories_;  // by id
+  std::unique_ptr<World> world_;
   double potential_ = 0;
   double stiffest_ = 0;
 };

@@ -147,6 +147,7 @@ MeshTouch::MeshTouch(const Mesh& mesh, const Pose& pose, double radius)
     : shape_(mesh.triangles),
       closed_(shape_->health().closed()),
       pose_(mesh.stood(pose)),
+      in_object_(mesh.stood(Pose::Identity())),
       scale_(mesh.size()),
       radius_(radius),
       skin_(kSkin * shape_->radius()),

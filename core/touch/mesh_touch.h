@@ -68,6 +68,8 @@ class MeshTouch {
   void place(const Vec3& c);
   // To c [m] within a tick of length T [s].
   void follow(const Vec3& c, double T);
+  // The mesh's object is there now; where the ball may be goes with it.
+  void move(const Pose& object) { pose_ = object * in_object_; }
   // Of the same mesh, place, scale and radius.
   bool same_surface(const MeshTouch& other) const;
   // Takes over where another one of the same surface is.
@@ -100,7 +102,7 @@ class MeshTouch {
 
   std::shared_ptr<const TriangleMesh> shape_;
   bool closed_;
-  Pose pose_;
+  Pose pose_, in_object_;
   double scale_, radius_;
 
   // In mesh units, around its middle:

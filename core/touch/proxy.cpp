@@ -98,6 +98,7 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
     if (!contacts_->reconsider(vbar_, T, round >= kRounds)) break;
   }
   step(T, vbar_, f_);
+  contacts_->step_bodies();
 }
 
 template <int N>

@@ -87,7 +87,7 @@ struct JointStop {
   friend bool operator==(const JointStop&, const JointStop&) = default;
 };
 
-using Shape = std::variant<Plane, Sphere, Box, Mesh, JointStop>;
+using Shape = std::variant<Plane, Sphere, Box, Cylinder, Capsule, Mesh, JointStop>;
 
 // A body made of several shapes: one of them, in the body's frame.
 struct BodyPart {

@@ -160,7 +160,8 @@ void Rig::start(const Parameters& p, const RigStart& start) {
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
         of->tick.start(
-            p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve});
+            p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve,
+                start.world});
         of->begin_at(start, start.target);
       },
       of_);
@@ -171,7 +172,7 @@ void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
   std::visit(
       [&](auto& of) {
         of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat, true,
-                            scratch.reserve});
+                            scratch.reserve, scratch.world});
         of->begin_at(scratch, target);
       },
       of_);
@@ -189,6 +190,8 @@ void Rig::present(RigStart& into) const {
         into.target = of->input.hand.target;
         into.armed = of->tick.force().armed();
         into.reserve = of->tick.reserve();
+        into.world.clear();
+        if (const World* world = of->tick.proxy().contacts().world()) world->write(into.world);
       },
       of_);
 }

@@ -286,7 +286,7 @@ TEST(EnergyBooks, FindThatASpringGaveBackWhatItStored) {
   for (int i = 0; i < 3; ++i) {
     const double middle = (depths[i] + depths[i + 1]) / 2;
     books.add_contact(one(-K * middle), one(depths[i + 1] - depths[i]));
-    EXPECT_NEAR(books.contact_gain(stored(depths[i + 1]), stored(depths[0])), 0, 1e-16);
+    EXPECT_NEAR(books.contact_gain(stored(depths[i + 1]), stored(depths[0]), 0), 0, 1e-16);
   }
   EXPECT_NEAR(books.contact, K * (0.02 * 0.02 - 0.01 * 0.01) / 2, 1e-16);
 }

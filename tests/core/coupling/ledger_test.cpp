@@ -29,7 +29,7 @@ class LedgerOfJoints : public testing::TestWithParam<int> {
   // A tick under this torque, sent for it.
   void add(const Any& y, const Any& x, const Any& tau, const Any& b_lo, double q) {
     ledger_.add(
-        y, x, [&](int) { return tau; }, b_lo, q, T);
+        y, x, [&](int) { return tau; }, b_lo, 0, q, T);
   }
   int n() const { return GetParam(); }
   Random random_{41};
@@ -181,7 +181,7 @@ TEST_P(LedgerOfJoints, CutsAllTorqueByWhatWasGivenAndByWhatIsOnItsWay) {
     sent.insert(sent.begin(), 2e-4 / dx.squaredNorm() * (k % 7 == 0 ? -0.3 : 1.0) * dx);
     y += dx;
     ledger_.add(
-        y, y, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, none, 0, T);
+        y, y, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, none, 0, 0, T);
     double coming = 0;
     least = kCap;
     for (std::size_t d = 0; d <= kMost; ++d) {
@@ -215,7 +215,7 @@ TEST_P(LedgerOfJoints, CountsTheLeastOfTheAccountsOfEveryDelayThatIsPossible) {
     sent.insert(sent.begin(), random_.vector(n(), 0.2));
     const Any next = y_ + random_.vector(n(), 1e-3);
     ledger_.add(
-        next, next, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, Any::Zero(n()), 0, T);
+        next, next, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, Any::Zero(n()), 0, 0, T);
     ledger_.settle(kE0, 0);
     double least = kCap;
     for (std::size_t d = kLeast; d <= kMost; ++d) {

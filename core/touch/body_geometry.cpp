@@ -1,0 +1,430 @@
+#include "core/touch/body_geometry.h"
+
+#include <btBulletCollisionCommon.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/touch/triangle_mesh.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kNear = 1e-3;     // points further apart than this are none [m]
+constexpr double kMargin = 1e-4;   // Bullet rounds edges by so much, where it does [m]
+constexpr double kWide = 10;       // half the edge of what stands for a plane [m]
+constexpr int kPointsOfPair = 4;   // that Bullet keeps
+
+btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+btTransform to_bullet(const Pose& pose) {
+  const Mat3& R = pose.linear();
+  return btTransform(btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0),
+                                 R(2, 1), R(2, 2)),
+                     to_bullet(Vec3(pose.translation())));
+}
+
+// A plane is a large block below it: of faces and edges Bullet finds all points at once.
+Pose block_below(const Plane& plane, const Pose& pose) {
+  Pose block = Pose::Identity();
+  block.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).matrix();
+  block.translation() = pose.translation() - kWide * plane.normal;
+  return block;
+}
+
+}  // namespace
+
+struct BodyGeometry::Inside {
+  // One convex part of an object, or one that stands still.
+  struct Solid {
+    int body = BodyContact::kStill;
+    int object = 0;
+    Pose in_object = Pose::Identity();
+    std::unique_ptr<btCollisionShape> shape;
+    std::unique_ptr<btTriangleMesh> triangles;
+    btCollisionObject at;
+    btVector3 low, high;  // box around it, a little larger
+    double least = 0;     // its smallest extent [m]
+  };
+  struct Pair {
+    Solid *a, *b;
+    btCollisionAlgorithm* algorithm = nullptr;
+    btPersistentManifold* manifold = nullptr;
+  };
+
+  explicit Inside(const Scene& scene);
+  ~Inside();
+  void add(const Scene& scene, std::size_t object, int body);
+  void add_part(const Shape& shape, const Pose& in_object, int object, int body);
+  void pair(Solid& a, Solid& b);
+  static void bound(Solid& solid);
+  static bool overlap(const Solid& a, const Solid& b);
+  void meet(Pair& pair);
+  void take(Pair& pair);
+  BodyContact* fresh(const Pair& pair, double depth);
+  bool allowed(const Pair& pair) const;
+
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher;
+  btDispatcherInfo info;
+  std::vector<std::unique_ptr<Solid>> solids;
+  std::vector<std::vector<Solid*>> of_body;
+  std::vector<std::array<int, 2>> apart;  // bodies that hang together do not touch
+  std::vector<Pair> pairs;
+  std::vector<BodyContact> pool;
+  std::vector<BodyContact*> free_ones, points;
+  bool full = false;
+
+  static btDefaultCollisionConstructionInfo sizes() {
+    btDefaultCollisionConstructionInfo info;
+    info.m_defaultMaxPersistentManifoldPoolSize = 8192;
+    info.m_defaultMaxCollisionAlgorithmPoolSize = 16384;
+    return info;
+  }
+};
+
+BodyGeometry::Inside::Inside(const Scene& scene)
+    : configuration(sizes()), dispatcher(&configuration), pool(kMost) {
+  configuration.setConvexConvexMultipointIterations(4, 4);
+  info.m_dispatchFunc = btDispatcherInfo::DISPATCH_DISCRETE;
+  int body = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].body) add(scene, i, body++);
+  }
+  of_body.resize(static_cast<std::size_t>(body));
+  for (const auto& solid : solids) {
+    of_body[static_cast<std::size_t>(solid->body)].push_back(solid.get());
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].body) add(scene, i, BodyContact::kStill);
+  }
+  const auto number = [&](const std::string& name) {
+    int n = 0;
+    for (const Object& object : scene.objects) {
+      if (!object.body) continue;
+      if (object.name == name) return n;
+      ++n;
+    }
+    return BodyContact::kStill;
+  };
+  int n = 0;
+  for (const Object& object : scene.objects) {
+    if (!object.body) continue;
+    if (object.body->joint && !object.body->joint->to.empty()) {
+      apart.push_back({n, number(object.body->joint->to)});
+    }
+    ++n;
+  }
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    for (std::size_t j = i + 1; j < solids.size(); ++j) {
+      if (solids[i]->body != BodyContact::kStill && solids[i]->body != solids[j]->body) {
+        pair(*solids[i], *solids[j]);
+      }
+    }
+  }
+  free_ones.reserve(kMost);
+  points.reserve(kMost);
+  for (auto c = pool.rbegin(); c != pool.rend(); ++c) free_ones.push_back(&*c);
+}
+
+BodyGeometry::Inside::~Inside() {
+  for (Pair& p : pairs) {
+    p.algorithm->~btCollisionAlgorithm();
+    dispatcher.freeCollisionAlgorithm(p.algorithm);
+  }
+}
+
+void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body) {
+  const Object& o = scene.objects[object];
+  const auto number = static_cast<int>(object);
+  const std::size_t before = solids.size();
+  add_part(o.shape, Pose::Identity(), number, body);
+  for (const BodyPart& part : o.parts) add_part(part.shape, part.pose, number, body);
+  for (std::size_t i = before; i < solids.size(); ++i) {
+    Solid& solid = *solids[i];
+    const auto* plane = std::get_if<Plane>(&o.shape);
+    solid.at.setWorldTransform(
+        to_bullet(plane != nullptr ? block_below(*plane, o.pose) : o.pose * solid.in_object));
+    bound(solid);
+  }
+}
+
+void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, int object,
+                                    int body) {
+  auto solid = std::make_unique<Solid>();
+  solid->body = body;
+  solid->object = object;
+  solid->in_object = in_object;
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
+    solid->least = box->size.minCoeff();
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    solid->shape = std::make_unique<btSphereShape>(sphere->radius);
+    solid->least = 2 * sphere->radius;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    const double r = cylinder->radius;
+    solid->shape = std::make_unique<btCylinderShapeZ>(btVector3(r, r, cylinder->length / 2));
+    solid->shape->setMargin(std::min(kMargin, 0.1 * std::min(r, cylinder->length)));
+    solid->least = std::min(2 * r, cylinder->length);
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    solid->shape = std::make_unique<btCapsuleShapeZ>(capsule->radius, capsule->length);
+    solid->least = 2 * capsule->radius;
+  } else if (std::holds_alternative<Plane>(shape)) {
+    solid->shape = std::make_unique<btBoxShape>(btVector3(kWide, kWide, kWide));
+    solid->least = 1;
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape); mesh != nullptr && mesh->triangles) {
+    solid->in_object = mesh->stood(Pose::Identity());
+    const TriangleMesh& triangles = *mesh->triangles;
+    const auto corners = [&](std::size_t t) {
+      std::array<btVector3, 3> all;
+      std::ranges::transform(triangles.corners(t), all.begin(), [&](const Vec3& corner) {
+        return to_bullet(Vec3(mesh->size() * (corner + triangles.middle())));
+      });
+      return all;
+    };
+    if (body == BodyContact::kStill) {
+      solid->triangles = std::make_unique<btTriangleMesh>();
+      for (std::size_t t = 0; t < triangles.triangles(); ++t) {
+        const auto at = corners(t);
+        solid->triangles->addTriangle(at[0], at[1], at[2]);
+      }
+      solid->shape = std::make_unique<btBvhTriangleMeshShape>(solid->triangles.get(), true);
+    } else {
+      auto hull = std::make_unique<btConvexHullShape>();
+      for (std::size_t t = 0; t < triangles.triangles(); ++t) {
+        for (const btVector3& corner : corners(t)) hull->addPoint(corner, false);
+      }
+      hull->optimizeConvexHull();
+      hull->recalcLocalAabb();
+      solid->shape = std::move(hull);
+    }
+    solid->shape->setMargin(kMargin);
+    btVector3 low, high;
+    solid->shape->getAabb(btTransform::getIdentity(), low, high);
+    const btVector3 size = high - low;
+    solid->least = std::min({size.x(), size.y(), size.z()});
+  } else {
+    return;  // a joint's stop is nowhere in space
+  }
+  solid->at.setCollisionShape(solid->shape.get());
+  solids.push_back(std::move(solid));
+}
+
+// Made for every pair at once, so that no tick has to.
+void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
+  Pair p{&a, &b};
+  if (!allowed(p)) return;
+  const btCollisionObjectWrapper on_a(nullptr, a.shape.get(), &a.at, a.at.getWorldTransform(), -1,
+                                      -1);
+  const btCollisionObjectWrapper on_b(nullptr, b.shape.get(), &b.at, b.at.getWorldTransform(), -1,
+                                      -1);
+  p.algorithm = dispatcher.findAlgorithm(&on_a, &on_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+  // It takes the memory for its points when it is first used.
+  btManifoldResult result(&on_a, &on_b);
+  p.algorithm->processCollision(&on_a, &on_b, info, &result);
+  btManifoldArray all;
+  p.algorithm->getAllContactManifolds(all);
+  if (all.size() != 1) throw std::logic_error("a pair of shapes without a place for its contacts");
+  p.manifold = all[0];
+  p.manifold->clearManifold();
+  const double near = std::min(kNear, 0.1 * std::min(a.least, b.least));
+  p.manifold->setContactBreakingThreshold(near);
+  p.manifold->setContactProcessingThreshold(near);
+  pairs.push_back(p);
+}
+
+bool BodyGeometry::Inside::allowed(const Pair& pair) const {
+  return std::ranges::none_of(apart, [&](const std::array<int, 2>& two) {
+    return (two[0] == pair.a->body && two[1] == pair.b->body) ||
+           (two[1] == pair.a->body && two[0] == pair.b->body);
+  });
+}
+
+void BodyGeometry::Inside::bound(Solid& solid) {
+  solid.shape->getAabb(solid.at.getWorldTransform(), solid.low, solid.high);
+  const btVector3 more(kNear, kNear, kNear);
+  solid.low -= more;
+  solid.high += more;
+}
+
+bool BodyGeometry::Inside::overlap(const Solid& a, const Solid& b) {
+  return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() &&
+         b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
+}
+
+void BodyGeometry::Inside::meet(Pair& p) {
+  const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
+                                      p.a->at.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
+                                      p.b->at.getWorldTransform(), -1, -1);
+  btManifoldResult result(&on_a, &on_b);
+  result.setPersistentManifold(p.manifold);
+  p.algorithm->processCollision(&on_a, &on_b, info, &result);
+  result.refreshContactPoints();
+}
+
+BodyContact* BodyGeometry::Inside::fresh(const Pair& p, double depth) {
+  if (free_ones.empty()) {
+    full = true;
+    return nullptr;
+  }
+  BodyContact* c = free_ones.back();
+  free_ones.pop_back();
+  *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
+  c->rest = std::max(0.0, depth);
+  c->used = true;
+  return c;
+}
+
+void BodyGeometry::Inside::take(Pair& p) {
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    btManifoldPoint& point = p.manifold->getContactPoint(i);
+    auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
+    if (c == nullptr) {
+      c = fresh(p, -point.getDistance());
+      if (c == nullptr) continue;
+      point.m_userPersistentData = c;
+    }
+    // Bullet may have taken the pair the other way round.
+    const bool turned = p.manifold->getBody0() != &p.a->at;
+    c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
+    c->point = 0.5 * (from_bullet(point.getPositionWorldOnA()) +
+                      from_bullet(point.getPositionWorldOnB()));
+    c->depth = -point.getDistance();
+    c->seen = true;
+    if (points.size() < kMost) points.push_back(c);
+  }
+}
+
+BodyGeometry::BodyGeometry(const Scene& scene) : in_(std::make_unique<Inside>(scene)) {}
+BodyGeometry::~BodyGeometry() = default;
+BodyGeometry::BodyGeometry(BodyGeometry&&) noexcept = default;
+BodyGeometry& BodyGeometry::operator=(BodyGeometry&&) noexcept = default;
+
+void BodyGeometry::place(int body, const Pose& pose) {
+  for (Inside::Solid* solid : in_->of_body[static_cast<std::size_t>(body)]) {
+    solid->at.setWorldTransform(to_bullet(pose * solid->in_object));
+    Inside::bound(*solid);
+  }
+}
+
+void BodyGeometry::search(std::span<const std::uint8_t> awake) {
+  Inside& in = *in_;
+  in.points.clear();
+  in.full = false;
+  for (BodyContact& c : in.pool) c.seen = false;
+  const auto moves = [&](const Inside::Solid& s) {
+    return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
+  };
+  for (Inside::Pair& p : in.pairs) {
+    if (moves(*p.a) || moves(*p.b)) {
+      if (Inside::overlap(*p.a, *p.b)) {
+        in.meet(p);
+      } else if (p.manifold->getNumContacts() > 0) {
+        p.manifold->clearManifold();
+      }
+    }
+    in.take(p);
+  }
+  for (BodyContact& c : in.pool) {
+    if (!c.used || c.seen) continue;
+    c.used = false;
+    in.free_ones.push_back(&c);
+  }
+}
+
+std::span<BodyContact* const> BodyGeometry::points() const { return in_->points; }
+bool BodyGeometry::full() const { return in_->full; }
+
+bool BodyGeometry::near(int a, int b) const {
+  for (const Inside::Solid* one : in_->of_body[static_cast<std::size_t>(a)]) {
+    for (const Inside::Solid* two : in_->of_body[static_cast<std::size_t>(b)]) {
+      if (Inside::overlap(*one, *two)) return true;
+    }
+  }
+  return false;
+}
+
+void BodyGeometry::forget() {
+  for (Inside::Pair& p : in_->pairs) p.manifold->clearManifold();
+  in_->points.clear();
+  in_->free_ones.clear();
+  for (auto c = in_->pool.rbegin(); c != in_->pool.rend(); ++c) {
+    *c = {};
+    in_->free_ones.push_back(&*c);
+  }
+}
+
+namespace {
+
+// Of a point, in the file.
+constexpr std::size_t kNumbers = 29;
+
+void put(std::vector<double>& into, const btVector3& v) {
+  for (int i = 0; i < 3; ++i) into.push_back(v[i]);
+}
+void put(std::vector<double>& into, const Vec3& v) {
+  for (const double x : v) into.push_back(x);
+}
+
+}  // namespace
+
+void BodyGeometry::write(std::vector<double>& into) const {
+  const auto& pairs = in_->pairs;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const btPersistentManifold& m = *pairs[k].manifold;
+    for (int i = 0; i < m.getNumContacts(); ++i) {
+      const btManifoldPoint& point = m.getContactPoint(i);
+      const auto* c = static_cast<const BodyContact*>(point.m_userPersistentData);
+      if (c == nullptr) continue;
+      into.push_back(static_cast<double>(k));
+      put(into, point.m_localPointA);
+      put(into, point.m_localPointB);
+      put(into, point.m_normalWorldOnB);
+      put(into, point.m_positionWorldOnA);
+      put(into, point.m_positionWorldOnB);
+      into.push_back(point.m_distance1);
+      into.push_back(point.m_lifeTime);
+      into.push_back(m.getBody0() != &pairs[k].a->at ? 1 : 0);
+      into.push_back(c->rest);
+      into.push_back(c->force);
+      put(into, c->friction);
+      put(into, c->anchor);
+      into.push_back(c->slipping ? 1 : 0);
+      into.push_back(c->lost);
+    }
+  }
+}
+
+std::span<const double> BodyGeometry::read(std::span<const double> from) {
+  forget();
+  const auto vector = [](std::span<const double> at) { return btVector3(at[0], at[1], at[2]); };
+  for (; from.size() >= kNumbers; from = from.subspan(kNumbers)) {
+    const double pair = from[0];
+    if (!(pair >= 0 && pair < static_cast<double>(in_->pairs.size()))) break;
+    Inside::Pair& p = in_->pairs[static_cast<std::size_t>(pair)];
+    if (p.manifold->getNumContacts() == kPointsOfPair) break;
+    btManifoldPoint point(vector(from.subspan(1)), vector(from.subspan(4)), vector(from.subspan(7)),
+                          from[16]);
+    point.m_positionWorldOnA = vector(from.subspan(10));
+    point.m_positionWorldOnB = vector(from.subspan(13));
+    point.m_lifeTime = static_cast<int>(from[17]);
+    const bool turned = from[18] != 0;
+    p.manifold->setBodies(turned ? &p.b->at : &p.a->at, turned ? &p.a->at : &p.b->at);
+    const int at = p.manifold->addManifoldPoint(point);
+    BodyContact* c = in_->fresh(p, from[19]);
+    if (c == nullptr) break;
+    c->force = from[20];
+    c->friction = Vec3(from[21], from[22], from[23]);
+    c->anchor = Vec3(from[24], from[25], from[26]);
+    c->slipping = from[27] != 0;
+    c->lost = from[28];
+    p.manifold->getContactPoint(at).m_userPersistentData = c;
+  }
+  return from;
+}
+
+}  // namespace limpid

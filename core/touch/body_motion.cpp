@@ -1,0 +1,217 @@
+#include "core/touch/body_motion.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/elementary.h"
+
+namespace limpid {
+namespace {
+
+Mat3 skew(const Vec3& v) {
+  Mat3 S;
+  S << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return S;
+}
+
+Mat3 turn(const Vec3& axis, double angle) {
+  const SineCosine at = sine_cosine(angle);
+  const Mat3 K = skew(axis);
+  return Mat3::Identity() + at.sine * K + (1 - at.cosine) * K * K;
+}
+
+// Turned by the constant angular velocity of the midpoint rule (Cayley): by 2 atan(|d|/2) about d.
+Mat3 cayley(const Vec3& d) {
+  const Mat3 K = skew(d);
+  return Mat3::Identity() + (K + 0.5 * K * K) / (1 + 0.25 * d.squaredNorm());
+}
+
+// The nearest rotation, of what is one up to rounding: one step of Newton's method.
+Mat3 rotation_again(const Mat3& R) {
+  return 1.5 * R - 0.5 * R * (R.transpose() * R);
+}
+
+}  // namespace
+
+BodyMotion::BodyMotion(const Object& object) : start_(object.pose) {
+  const MassProperties own = mass_properties(object);
+  m_ = own.mass;
+  c_ = own.center;
+  I_ = own.inertia;
+  inverse_ = I_.inverse();
+  if (object.body->joint && object.body->joint->kind != BodyJoint::Kind::ball &&
+      object.body->joint->to.empty()) {
+    joint_ = *object.body->joint;
+    kind_ = joint_.kind == BodyJoint::Kind::slider ? Kind::slider : Kind::hinge;
+    pivot_ = start_ * joint_.point;
+    potential_ = JointPotential(joint_.force);
+    reflected_ = m_;
+    if (kind_ == Kind::hinge) {
+      const Vec3 axis = start_.linear().transpose() * joint_.axis;
+      const Vec3 arm = joint_.axis.cross(start_ * c_ - pivot_);
+      reflected_ = axis.dot(I_ * axis) + m_ * arm.squaredNorm();
+    }
+  }
+  reset();
+}
+
+void BodyMotion::reset() {
+  pose_ = start_;
+  v_.setZero();
+  w_.setZero();
+  s_ = sd_ = 0;
+  place();
+  u_.setZero();
+  o_.setZero();
+  U_ = 0;
+}
+
+// What follows from the joint, or from the object's pose.
+void BodyMotion::place() {
+  if (kind_ == Kind::slider) {
+    pose_.linear() = start_.linear();
+    pose_.translation() = start_.translation() + s_ * joint_.axis;
+  } else if (kind_ == Kind::hinge) {
+    const Mat3 R = turn(joint_.axis, s_);
+    pose_.linear() = R * start_.linear();
+    pose_.translation() = pivot_ + R * (start_.translation() - pivot_);
+  }
+  p_ = pose_ * c_;
+}
+
+void BodyMotion::begin(double T, const Vec3& gravity, bool pushed) {
+  theta_ = pushed ? kTheta : 0.5;
+  if (kind_ != Kind::free) {
+    const double M = reflected_ / (theta_ * T);
+    a_ = 1 / (M + joint_.damping);
+    U_ = a_ * M * sd_;
+    S_v_ = joint_.axis;
+    S_w_.setZero();
+    if (kind_ == Kind::hinge) {
+      S_w_ = joint_.axis;
+      S_v_ = joint_.axis.cross(p_ - pivot_ + 0.5 * T * sd_ * joint_.axis.cross(p_ - pivot_));
+      const Vec3 c = start_ * c_ - pivot_;  // at s = 0
+      const Vec3 along = joint_.axis * joint_.axis.dot(c);
+      potential_.add_weight(-m_ * gravity.dot(c - along),
+                            -m_ * gravity.dot(joint_.axis.cross(c)));
+    } else {
+      potential_.add_weight(m_ * gravity.dot(joint_.axis));
+    }
+    u_ = S_v_ * U_;
+    o_ = S_w_ * U_;
+    return;
+  }
+  im_ = theta_ * T / m_;
+  u_ = v_ + theta_ * T * gravity;
+  const Mat3& R = pose_.linear();
+  const Vec3 middle = w_ + 0.5 * T * (inverse_ * (I_ * w_).cross(w_));
+  const Mat3 A = (I_ / (theta_ * T) - skew(I_ * middle)).inverse();
+  o_ = R * (A * (I_ * w_)) / (theta_ * T);
+  Ai_ = R * A * R.transpose();
+}
+
+BodyMotion::Lever BodyMotion::lever(const Vec3& point, double T) const {
+  const Vec3 arm = point - p_;
+  return arm + 0.5 * T * spin().cross(arm);
+}
+
+Mat3 BodyMotion::answer(const Lever& at) const {
+  if (kind_ != Kind::free) {
+    const Vec3 j = S_v_ + S_w_.cross(at);
+    return a_ * j * j.transpose();
+  }
+  const Mat3 K = skew(at);
+  return im_ * Mat3::Identity() - K * Ai_ * K;
+}
+
+void BodyMotion::push(const Lever& at, const Vec3& force) {
+  if (kind_ != Kind::free) {
+    push_joint((S_v_ + S_w_.cross(at)).dot(force));
+    return;
+  }
+  u_ += im_ * force;
+  o_ += Ai_ * at.cross(force);
+}
+
+void BodyMotion::push_joint(double force) {
+  U_ += a_ * force;
+  u_ = S_v_ * U_;
+  o_ = S_w_ * U_;
+}
+
+void BodyMotion::finish(double T) {
+  if (kind_ != Kind::free) {
+    s_ += T * U_;
+    sd_ += (U_ - sd_) / theta_;
+    place();
+    return;
+  }
+  const Mat3 R = pose_.linear();
+  const Vec3 own = R.transpose() * o_;
+  p_ += T * u_;
+  pose_.linear() = rotation_again(R * cayley(T * own));
+  pose_.translation() = p_ - pose_.linear() * c_;
+  v_ += (u_ - v_) / theta_;
+  w_ += (own - w_) / theta_;
+}
+
+void BodyMotion::halt() {
+  v_.setZero();
+  w_.setZero();
+  u_.setZero();
+  o_.setZero();
+  sd_ = U_ = 0;
+}
+
+Vec3 BodyMotion::speed() const {
+  if (kind_ == Kind::slider) return sd_ * joint_.axis;
+  if (kind_ == Kind::hinge) return sd_ * joint_.axis.cross(p_ - pivot_);
+  return v_;
+}
+
+Vec3 BodyMotion::spin() const {
+  if (kind_ == Kind::slider) return Vec3::Zero();
+  if (kind_ == Kind::hinge) return sd_ * joint_.axis;
+  return pose_.linear() * w_;
+}
+
+double BodyMotion::kinetic() const {
+  if (kind_ != Kind::free) return 0.5 * reflected_ * sd_ * sd_;
+  return 0.5 * m_ * v_.squaredNorm() + 0.5 * w_.dot(I_ * w_);
+}
+
+double BodyMotion::weight_energy(const Vec3& gravity) const {
+  return kind_ == Kind::free ? -m_ * gravity.dot(p_) : 0;  // else in the potential
+}
+
+void BodyMotion::write(std::span<double, kNumbers> into) const {
+  const Mat3 R = pose_.linear();  // one after another, as they are not in a pose
+  auto* to = into.data();
+  to = std::copy_n(p_.data(), 3, to);
+  to = std::copy_n(R.data(), 9, to);
+  to = std::copy_n(v_.data(), 3, to);
+  to = std::copy_n(w_.data(), 3, to);
+  *to++ = s_;
+  *to = sd_;
+}
+
+void BodyMotion::read(std::span<const double, kNumbers> from) {
+  const auto* at = from.data();
+  p_ = Vec3(at[0], at[1], at[2]);
+  pose_.linear() = Eigen::Map<const Mat3>(at + 3);
+  pose_.translation() = p_ - pose_.linear() * c_;
+  v_ = Vec3(at[12], at[13], at[14]);
+  w_ = Vec3(at[15], at[16], at[17]);
+  s_ = at[18];
+  sd_ = at[19];
+  if (kind_ != Kind::free) place();
+}
+
+bool BodyMotion::alike(const BodyMotion& other) const {
+  return kind_ == other.kind_ && m_ == other.m_ && c_ == other.c_ && I_ == other.I_ &&
+         joint_.axis == other.joint_.axis && pivot_ == other.pivot_ &&
+         start_.matrix() == other.start_.matrix();
+}
+
+}  // namespace limpid

@@ -1,0 +1,564 @@
+#include "core/touch/world.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/math/elementary.h"
+#include "core/touch/wall_force.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kZeta = 0.7;        // of a contact's damper, where nothing is said
+constexpr double kEnough = 1e-8;     // change of a force of what the arm touches [N],
+constexpr double kEnoughElse = 1e-5; // and of all others
+constexpr int kMostSweeps = 30, kMostSweepsElse = 10;
+constexpr double kFade = 0.05;    // s in which a depth that was there at the start goes
+constexpr double kSlow = 1e-3;    // what is slower is at rest [m/s]
+constexpr double kQuiet = 0.5;    // s of rest, after which it sleeps
+constexpr double kGone = 20;      // further off than this nobody looks for it [m]
+constexpr double kHingeArm = 0.01;  // of the two points that make a hinge between bodies [m]
+
+double damping_ratio(double restitution) {
+  if (restitution <= 0) return kZeta;
+  const double log = logarithm(restitution);
+  return std::min(kZeta, -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log));
+}
+
+}  // namespace
+
+World::World(const Scene& scene) : geometry_(scene), gravity_(scene.gravity) {
+  for (const Object& object : scene.objects) {
+    of_objects_.push_back(object.material);
+    body_of_.push_back(object.body ? count() : BodyContact::kStill);
+    if (!object.body) continue;
+    bodies_.emplace_back(object);
+    names_.push_back(object.name);
+    of_bodies_.push_back(*object.body);
+    materials_.push_back(object.material);
+    if (bodies_.back().on_joint()) joints_.push_back({.body = count() - 1});
+  }
+  const std::size_t n = bodies_.size();
+  awake_.assign(n, 1);
+  pushed_.assign(n, 0);
+  touched_.assign(n, 0);
+  held_.assign(n, 0);
+  quiet_.assign(n, 0);
+  parent_.assign(n, 0);
+  rows_.resize(BodyGeometry::kMost);
+  add_links(scene);
+  reset();
+}
+
+int World::number(const std::string& name) const {
+  const auto found = std::ranges::find(names_, name);
+  return found == names_.end() ? BodyContact::kStill : static_cast<int>(found - names_.begin());
+}
+
+void World::add_links(const Scene& scene) {
+  for (int i = 0; i < count(); ++i) {
+    if (bodies_[at(i)].on_joint() || !of_bodies_[at(i)].joint) continue;
+    const BodyJoint& joint = *of_bodies_[at(i)].joint;
+    if (joint.kind == BodyJoint::Kind::ball) add_link(i, joint, joint.point);
+    if (joint.kind != BodyJoint::Kind::hinge) continue;
+    const Vec3 axis = bodies_[at(i)].pose().linear().transpose() * joint.axis;
+    add_link(i, joint, joint.point + kHingeArm * axis);
+    add_link(i, joint, joint.point - kHingeArm * axis);
+  }
+  for (const BodySpring& spring : scene.springs) {
+    Link link;
+    link.spring = true;
+    link.a = number(spring.between[0]);
+    link.b = number(spring.between[1]);
+    link.on_a = spring.points[0];
+    link.on_b = spring.points[1];
+    if (link.a == BodyContact::kStill) {
+      std::swap(link.a, link.b);
+      std::swap(link.on_a, link.on_b);
+    }
+    if (link.a == BodyContact::kStill) continue;  // between what stands still
+    link.length = spring.length;
+    link.K = spring.stiffness;
+    link.B = spring.damping;
+    link.breaks_at = spring.breaks_at;
+    links_.push_back(link);
+  }
+}
+
+void World::add_link(int body, const BodyJoint& joint, const Vec3& point) {
+  Link link;
+  link.a = body;
+  link.b = number(joint.to);
+  link.on_a = point;
+  const Vec3 there = bodies_[at(body)].pose() * point;
+  link.on_b = link.b == BodyContact::kStill ? there : bodies_[at(link.b)].pose().inverse() * there;
+  link.K = of_bodies_[at(body)].contact_stiffness;
+  links_.push_back(link);
+}
+
+void World::reset() {
+  for (BodyMotion& body : bodies_) body.reset();
+  std::ranges::fill(awake_, 1);
+  std::ranges::fill(pushed_, 0);
+  std::ranges::fill(quiet_, 0);
+  for (JointRow& row : joints_) row = {.body = row.body};
+  for (Link& link : links_) {
+    link.force.setZero();
+    link.broken = false;
+  }
+  geometry_.forget();
+  for (int i = 0; i < count(); ++i) geometry_.place(i, pose(i));
+  count_ = 0;
+  fresh_ = true;
+  given_ = given_now_ = all_given_ = energy_ = first_energy_ = gain_ = 0;
+}
+
+void World::take_over(const World& other) {
+  std::array<double, BodyMotion::kNumbers> numbers{};
+  for (int i = 0; i < count(); ++i) {
+    const int theirs = other.number(names_[at(i)]);
+    if (theirs == BodyContact::kStill || !bodies_[at(i)].alike(other.bodies_[at(theirs)])) continue;
+    other.bodies_[at(theirs)].write(numbers);
+    bodies_[at(i)].read(numbers);
+    geometry_.place(i, pose(i));
+  }
+}
+
+void World::touch(int body) {
+  touched_[at(body)] = 1;
+  awake_[at(body)] = 1;
+  quiet_[at(body)] = 0;
+}
+
+Vec3 World::place(int body, const Vec3& own) const {
+  return body == BodyContact::kStill ? own : Vec3(pose(body) * own);
+}
+
+void World::begin(double T) {
+  T_ = T;
+  sweeps_ = 0;
+  wake_neighbours();
+  geometry_.search(awake_);
+  for (int i = 0; i < count(); ++i) {
+    if (moves(i)) bodies_[at(i)].begin(T, gravity_, pushed_[at(i)] != 0);
+  }
+  std::ranges::fill(pushed_, 0);
+  find_islands();
+  count_ = 0;
+  for (BodyContact* contact : geometry_.points()) {
+    if (begin_row(*contact)) ++count_;
+  }
+  for (Link& link : links_) begin_link(link);
+  for (JointRow& row : joints_) {
+    if (moves(row.body)) {
+      bodies_[at(row.body)].push_joint(row.potential + row.stop + row.friction);
+    }
+  }
+  take_stock();
+}
+
+// What moves wakes what it comes near to, and what hangs on it.
+void World::wake_neighbours() {
+  const auto quick = [&](int i) { return moves(i) && quiet_[at(i)] == 0; };
+  const auto wake = [&](int i) {
+    awake_[at(i)] = 1;
+    quiet_[at(i)] = 0;
+  };
+  for (const Link& link : links_) {
+    if (link.b == BodyContact::kStill || link.broken) continue;
+    if (quick(link.a) && !moves(link.b)) wake(link.b);
+    if (quick(link.b) && !moves(link.a)) wake(link.a);
+  }
+  for (int i = 0; i < count(); ++i) {
+    if (moves(i)) continue;
+    for (int j = 0; j < count(); ++j) {
+      if (j == i || !quick(j) || !geometry_.near(i, j)) continue;
+      wake(i);
+      break;
+    }
+  }
+}
+
+int World::root(int body) {
+  while (parent_[at(body)] != body) {
+    parent_[at(body)] = parent_[at(parent_[at(body)])];
+    body = parent_[at(body)];
+  }
+  return body;
+}
+
+void World::join(int a, int b) {
+  if (!moves(a) || !moves(b)) return;
+  const int one = root(a), two = root(b);
+  parent_[at(std::max(one, two))] = std::min(one, two);
+}
+
+void World::find_islands() {
+  for (int i = 0; i < count(); ++i) parent_[at(i)] = i;
+  for (const BodyContact* c : geometry_.points()) join(c->a, c->b);
+  for (const Link& link : links_) {
+    if (!link.broken) join(link.a, link.b);
+  }
+  // That of the whole island.
+  for (int i = 0; i < count(); ++i) {
+    if (touched_[at(i)] != 0) touched_[at(root(i))] = 1;
+  }
+}
+
+bool World::in_turn(int a, int b, bool touched) {
+  const int body = moves(a) ? a : b;
+  return moves(body) && (touched_[at(root(body))] != 0) == touched;
+}
+
+double World::stiffness(const BodyContact& contact) const {
+  const double one = of_bodies_[at(contact.a)].contact_stiffness;
+  return contact.b == BodyContact::kStill
+             ? one
+             : std::min(one, of_bodies_[at(contact.b)].contact_stiffness);
+}
+
+bool World::begin_row(BodyContact& contact) {
+  if (!moves(contact.a) && !moves(contact.b)) return false;
+  Row& row = rows_[count_];
+  row.contact = &contact;
+  row.a = end_at(contact.a, contact.point);
+  row.b = end_at(contact.b, contact.point);
+  row.K = stiffness(contact);
+  // A depth that nobody pressed in goes, as fast as the contact's damper pays for it.
+  if (contact.rest > 0) {
+    contact.rest = std::min(contact.rest, std::max(0.0, contact.depth));
+    const double d = std::max(0.0, contact.depth - contact.rest);
+    const double paid = std::sqrt(d * d + 2 * std::max(0.0, contact.lost) / row.K) - d;
+    contact.rest -= std::min(paid, contact.rest * std::min(1.0, T_ / kFade));
+  }
+  row.depth = contact.depth - contact.rest;
+  row.frame.col(0) = contact.normal;
+  row.frame.col(1) = contact.normal.unitOrthogonal();
+  row.frame.col(2) = contact.normal.cross(row.frame.col(1));
+  row.W = row.frame.transpose() * (answer(row.a) + answer(row.b)) * row.frame;
+  const Material& one = of_objects_[static_cast<std::size_t>(contact.object_a)];
+  const Material& two = of_objects_[static_cast<std::size_t>(contact.object_b)];
+  const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
+  const double still = std::max(one.friction_static, two.friction_static);
+  row.radius = contact.slipping ? kinetic : std::max(still, kinetic);
+  const auto of = [&](int body) {
+    return body == BodyContact::kStill ? 0.0 : of_bodies_[at(body)].restitution;
+  };
+  const double m_eff = BodyMotion::kTheta * T_ / row.W(0, 0);
+  row.B = 2 * damping_ratio(std::max(of(contact.a), of(contact.b))) * std::sqrt(row.K * m_eff);
+  // First the memory is turned to where the contact now is: a force that no row has would be work
+  // from nowhere.
+  row.force = contact.force;
+  row.friction = row.frame.rightCols<2>().transpose() * contact.friction;
+  row.anchor = row.frame.rightCols<2>().transpose() * contact.anchor;
+  if (row.radius == 0) row.friction.setZero();
+  apply(row.a, row.b,
+        row.force * contact.normal + row.frame.rightCols<2>() * row.friction);
+  return true;
+}
+
+void World::begin_link(Link& link) {
+  if (link.broken || (!moves(link.a) && !moves(link.b))) return;
+  const Vec3 on_a = place(link.a, link.on_a), on_b = place(link.b, link.on_b);
+  link.end_a = end_at(link.a, on_a);
+  link.end_b = end_at(link.b, on_b);
+  link.stretch = on_a - on_b;
+  const Mat3 W = answer(link.end_a) + answer(link.end_b);
+  if (link.spring) {
+    const double length = link.stretch.norm();
+    link.along = length > 0 ? Vec3(link.stretch / length) : Vec3(Vec3::UnitZ());
+    const double k = link.K * T_ / 2 + link.B;
+    link.c = link.along.dot(W * link.along);
+    link.give = k / (1 + k * link.c) * (link.along * link.along.transpose());
+    link.force = link.along * link.along.dot(link.force);
+  } else {
+    const double m_eff = 3 * BodyMotion::kTheta * T_ / W.trace();
+    link.B = 2 * kZeta * std::sqrt(link.K * m_eff);
+    const double k = link.K * T_ / 2 + link.B;
+    link.give = k * (Mat3::Identity() + k * W).inverse();
+  }
+  apply(link.end_a, link.end_b, link.force);
+}
+
+World::End World::end_at(int body, const Vec3& point) const {
+  if (!moves(body)) return {};
+  return {body, bodies_[at(body)].lever(point, T_)};
+}
+
+Vec3 World::velocity(const End& end) const {
+  if (end.body == BodyContact::kStill) return Vec3::Zero();
+  return bodies_[at(end.body)].velocity(end.lever);
+}
+
+Mat3 World::answer(const End& end) const {
+  if (end.body == BodyContact::kStill) return Mat3::Zero();
+  return bodies_[at(end.body)].answer(end.lever);
+}
+
+void World::push(const End& end, const Vec3& force) {
+  if (end.body == BodyContact::kStill) return;
+  bodies_[at(end.body)].push(end.lever, force);
+  pushed_[at(end.body)] = 1;
+}
+
+void World::apply(const End& a, const End& b, const Vec3& force) {
+  if (force.isZero(0)) return;
+  push(a, force);
+  push(b, -force);
+}
+
+double World::sweep(bool touched) {
+  double most = 0;
+  for (JointRow& row : joints_) {
+    if (in_turn(row.body, BodyContact::kStill, touched)) most = std::max(most, sweep(row));
+  }
+  for (Link& link : links_) {
+    if (!link.broken && in_turn(link.a, link.b, touched)) most = std::max(most, sweep(link));
+  }
+  for (Row& row : std::span(rows_.data(), count_)) {
+    if (in_turn(row.contact->a, row.contact->b, touched)) most = std::max(most, sweep(row));
+  }
+  return most;
+}
+
+double World::sweep(Row& row) {
+  const Vec3 v = row.frame.transpose() * (velocity(row.a) - velocity(row.b));
+  const double c = T_ * row.W(0, 0);
+  const double F = wall_force({row.K, row.B, T_, row.depth, -T_ * v.x() + c * row.force, c});
+  const double change = F - row.force;
+  row.force = F;
+  apply(row.a, row.b, change * row.frame.col(0));
+  if (row.radius == 0) return std::abs(change);
+  const auto across = row.frame.rightCols<2>();
+  const Mat2 W = row.W.bottomRightCorner<2, 2>();
+  const Vec2 b = across.transpose() * (velocity(row.a) - velocity(row.b)) - W * row.friction;
+  const Vec2 l = friction_force(row.K, row.radius * F, row.anchor, T_, b, W);
+  const Vec2 more = l - row.friction;
+  row.friction = l;
+  apply(row.a, row.b, across * more);
+  return std::abs(change) + more.norm();
+}
+
+double World::sweep(Link& link) {
+  const Vec3 v = velocity(link.end_a) - velocity(link.end_b);
+  Vec3 f;
+  if (link.spring) {
+    const double k = link.K * T_ / 2 + link.B, before = link.along.dot(link.force);
+    const double v0 = link.along.dot(v) - link.c * before;
+    f = -(link.K * (link.stretch.norm() - link.length) + k * v0) / (1 + k * link.c) * link.along;
+  } else {
+    const Mat3 W = answer(link.end_a) + answer(link.end_b);
+    const double k = link.K * T_ / 2 + link.B;
+    f = -link.give * (link.K / k * link.stretch + v - W * link.force);
+  }
+  const Vec3 change = f - link.force;
+  link.force = f;
+  apply(link.end_a, link.end_b, change);
+  return change.norm();
+}
+
+double World::sweep(JointRow& row) {
+  BodyMotion& body = bodies_[at(row.body)];
+  const BodyJoint& joint = body.of_joint();
+  const double w = body.joint_answer(), c = T_ * w;
+  double change = 0;
+  const auto set = [&](double& force, double to) {
+    body.push_joint(to - force);
+    change += std::abs(to - force);
+    force = to;
+  };
+  if (body.potential().any()) {
+    double F = row.potential;
+    body.potential().over_a_tick(body.joint(), T_ * (body.joint_speed() - w * row.potential), c, F);
+    set(row.potential, F);
+  }
+  const double s = body.joint();
+  const bool up = joint.high - s < s - joint.low;  // the nearer stop
+  const double depth = up ? s - joint.high : joint.low - s;
+  if (std::isfinite(depth) || row.stop != 0) {
+    const double m_eff = BodyMotion::kTheta * T_ / w;
+    const double B =
+        2 * damping_ratio(joint.stop_restitution) * std::sqrt(joint.stop_stiffness * m_eff);
+    const double sign = up ? -1 : 1;
+    const double deeper = -sign * T_ * (body.joint_speed() - w * row.stop);
+    set(row.stop, sign * wall_force({joint.stop_stiffness, B, T_, depth, deeper, c}));
+  }
+  if (joint.friction > 0) {
+    const double K = joint.stop_stiffness;
+    const double free = body.joint_speed() - w * row.friction;
+    const double l = -K * (row.anchor + T_ * free) / (1 + K * c);
+    set(row.friction, std::clamp(l, -joint.friction, joint.friction));
+  }
+  pushed_[at(row.body)] |= row.stop != 0 || row.friction != 0;
+  return change;
+}
+
+void World::settle(bool touched, double enough, int most) {
+  for (int i = 0; i < most; ++i) {
+    ++sweeps_;
+    if (sweep(touched) <= enough) break;
+  }
+}
+
+void World::book(const End& end, const Vec3& force) {
+  given_now_ += T_ * force.dot(velocity(end));
+}
+
+void World::end_rows() {
+  for (const Row& row : std::span(rows_.data(), count_)) {
+    BodyContact& c = *row.contact;
+    c.force = row.force;
+    c.friction = row.frame.rightCols<2>() * row.friction;
+    c.anchor = -c.friction / row.K;
+    c.slipping =
+        row.force > 0 && row.radius > 0 && row.friction.norm() >= row.radius * row.force * (1 - 1e-9);
+    const double D = -T_ * row.frame.col(0).dot(velocity(row.a) - velocity(row.b));
+    const double before = std::max(0.0, row.depth), after = std::max(0.0, row.depth + D);
+    c.lost = row.force * D - 0.5 * row.K * (after * after - before * before);
+  }
+  for (Link& link : links_) {
+    if (link.force.norm() > link.breaks_at) {
+      link.broken = true;
+      link.force.setZero();
+    }
+  }
+  for (JointRow& row : joints_) {
+    row.anchor = -row.friction / bodies_[at(row.body)].of_joint().stop_stiffness;
+  }
+}
+
+void World::settle() {
+  settle(true, kEnough, kMostSweeps);
+  settle(false, kEnoughElse, kMostSweepsElse);
+}
+
+void World::finish() {
+  given_ = given_now_;
+  all_given_ += given_now_;
+  given_now_ = 0;
+  end_rows();
+  for (int i = 0; i < count(); ++i) {
+    if (!moves(i)) continue;
+    BodyMotion& body = bodies_[at(i)];
+    body.finish(T_);
+    if (!body.finite()) body.reset();
+    geometry_.place(i, pose(i));
+  }
+  fall_asleep();
+  std::ranges::fill(touched_, 0);
+}
+
+// An island sleeps once all of it has been at rest for a while.
+void World::fall_asleep() {
+  const auto long_enough = static_cast<int>(kQuiet / T_);
+  for (int i = 0; i < count(); ++i) {
+    if (!moves(i)) continue;
+    const BodyMotion& body = bodies_[at(i)];
+    const bool slow = body.speed().norm() < kSlow && body.spin().norm() * 0.05 < kSlow;
+    const bool gone = body.center().norm() > kGone;
+    quiet_[at(i)] = slow || gone ? quiet_[at(i)] + 1 : 0;
+    if (gone) quiet_[at(i)] = long_enough;
+  }
+  std::ranges::fill(held_, 1);  // by root: all of it is quiet
+  for (int i = 0; i < count(); ++i) {
+    if (moves(i) && (quiet_[at(i)] < long_enough || touched_[at(root(i))] != 0)) {
+      held_[at(root(i))] = 0;
+    }
+  }
+  for (int i = 0; i < count(); ++i) {
+    if (!moves(i) || held_[at(root(i))] == 0) continue;
+    parent_[at(i)] = root(i);
+  }
+  for (int i = 0; i < count(); ++i) {
+    if (!moves(i) || held_[at(parent_[at(i)])] == 0) continue;
+    bodies_[at(i)].halt();
+    awake_[at(i)] = 2;
+  }
+  for (std::uint8_t& awake : awake_) awake = awake == 2 ? 0 : awake;
+}
+
+void World::take_stock() {
+  double E = 0;
+  for (const BodyMotion& body : bodies_) {
+    E += body.kinetic() + body.weight_energy(gravity_);
+    if (body.on_joint()) E += body.potential().energy(body.joint());
+  }
+  for (const BodyContact* c : geometry_.points()) {
+    const double d = std::max(0.0, c->depth - c->rest), K = stiffness(*c);
+    const Vec3 across = c->anchor - c->normal * c->normal.dot(c->anchor);
+    E += 0.5 * K * (d * d + across.squaredNorm());
+  }
+  for (const Link& link : links_) {
+    if (link.broken) continue;
+    const double x = (place(link.a, link.on_a) - place(link.b, link.on_b)).norm();
+    E += 0.5 * link.K * (x - link.length) * (x - link.length);
+  }
+  for (const JointRow& row : joints_) {
+    const BodyMotion& body = bodies_[at(row.body)];
+    const BodyJoint& joint = body.of_joint();
+    const double d =
+        std::max({0.0, joint.low - body.joint(), body.joint() - joint.high});
+    E += 0.5 * joint.stop_stiffness * (d * d + row.anchor * row.anchor);
+  }
+  energy_ = E;
+  if (fresh_) first_energy_ = E;
+  fresh_ = false;
+  gain_ = E - first_energy_ - all_given_;
+}
+
+int World::awake() const {
+  return static_cast<int>(std::ranges::count_if(awake_, [](auto a) { return a != 0; }));
+}
+
+void World::write(std::vector<double>& into) const {
+  std::array<double, BodyMotion::kNumbers> numbers{};
+  into.push_back(count());
+  into.push_back(static_cast<double>(links_.size()));
+  for (int i = 0; i < count(); ++i) {
+    bodies_[at(i)].write(numbers);
+    into.insert(into.end(), numbers.begin(), numbers.end());
+    for (const int n : {int{awake_[at(i)]}, int{pushed_[at(i)]}, quiet_[at(i)]}) into.push_back(n);
+  }
+  for (const JointRow& row : joints_) {
+    into.insert(into.end(), {row.potential, row.stop, row.friction, row.anchor});
+  }
+  for (const Link& link : links_) {
+    into.insert(into.end(), {link.force.x(), link.force.y(), link.force.z(),
+                             link.broken ? 1.0 : 0.0});
+  }
+  geometry_.write(into);
+}
+
+bool World::read(std::span<const double> from) {
+  constexpr std::size_t kBody = BodyMotion::kNumbers + 3, kJoint = 4, kLink = 4;
+  const std::size_t own =
+      2 + kBody * bodies_.size() + kJoint * joints_.size() + kLink * links_.size();
+  if (from.size() < own || from[0] != count() || from[1] != static_cast<double>(links_.size()) ||
+      !std::ranges::all_of(from, [](double x) { return std::isfinite(x); })) {
+    return false;
+  }
+  reset();
+  from = from.subspan(2);
+  for (int i = 0; i < count(); ++i, from = from.subspan(kBody)) {
+    bodies_[at(i)].read(from.first<BodyMotion::kNumbers>());
+    awake_[at(i)] = from[BodyMotion::kNumbers] != 0 ? 1 : 0;
+    pushed_[at(i)] = from[BodyMotion::kNumbers + 1] != 0 ? 1 : 0;
+    quiet_[at(i)] = static_cast<int>(from[BodyMotion::kNumbers + 2]);
+    geometry_.place(i, pose(i));
+  }
+  for (JointRow& row : joints_) {
+    row = {row.body, from[0], from[1], from[2], from[3]};
+    from = from.subspan(kJoint);
+  }
+  for (Link& link : links_) {
+    link.force = Vec3(from[0], from[1], from[2]);
+    link.broken = from[3] != 0;
+    from = from.subspan(kLink);
+  }
+  geometry_.read(from);
+  return true;
+}
+
+}  // namespace limpid

@@ -1,0 +1,156 @@
+// All that moves in a scene besides the arm, and what holds it together.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/touch/body_geometry.h"
+#include "core/touch/body_motion.h"
+
+namespace limpid {
+
+// Free bodies, bodies on joints, springs and contacts among them and with what stands still. Over a
+// tick all of them are solved together with whatever the arm touches: a row, which is a force
+// between two sides, asks both for their velocity without it and for what it adds to it. With
+// converged sweeps, the change of kinetic energy, weight and all that rows store is at most what
+// the arm gave, whatever masses, stiffnesses and the tick are.
+//
+// A tick: touch() what the arm is near to, begin(), then velocity(), answer() and push() of the
+// arm's rows between sweep()s, settle(), book() of each of them, and finish(). Allocates nothing after it was
+// made.
+class World {
+ public:
+  // Every mesh of the scene has its shape.
+  explicit World(const Scene& scene);
+
+  int count() const { return static_cast<int>(bodies_.size()); }
+  void reset();  // as the scene has it
+  // Takes over where bodies of the same name, mass and joint are in another scene.
+  void take_over(const World& other);
+
+  // The arm is near to it: it wakes up, and its rows are solved with the arm's.
+  void touch(int body);
+  void begin(double T);
+
+  // A place on a body, as a row's end; of what is asleep or none: it stands still.
+  struct End {
+    int body = BodyContact::kStill;
+    BodyMotion::Lever lever = Vec3::Zero();
+  };
+  End end_at(int body, const Vec3& point) const;
+  Vec3 velocity(const End& end) const;  // mean over the tick [m/s]
+  Mat3 answer(const End& end) const;    // to a force there [m/(N s)]
+  void push(const End& end, const Vec3& force);
+  // Once over the rows of what the arm touches and what hangs together with it, or of all others;
+  // returns the largest change of a force [N].
+  double sweep(bool touched);
+  // What the arm's row at this end gave, by its force on it over the whole tick [N].
+  void book(const End& end, const Vec3& force);
+  // Sweeps until nothing changes any more.
+  void settle();
+  void finish();
+
+  const Pose& pose(int body) const { return bodies_[at(body)].pose(); }
+  const Vec3& center(int body) const { return bodies_[at(body)].center(); }
+  Vec3 speed(int body) const { return bodies_[at(body)].speed(); }
+  Vec3 spin(int body) const { return bodies_[at(body)].spin(); }
+  double joint(int body) const { return bodies_[at(body)].joint(); }
+  // Of the body in the scene that moves, or none: as World counts them.
+  int body_of(std::size_t object) const { return body_of_[object]; }
+  bool magnetic(int body) const { return of_bodies_[at(body)].magnet; }
+
+  double given() const { return given_; }   // by the arm over the last tick [J]
+  double energy() const { return energy_; }  // then: kinetic, weight and stored [J]
+  // At the start of the last tick, beyond what there was at first and what the arm gave [J].
+  double gain() const { return gain_; }
+  double all_given() const { return all_given_; }  // by the arm since the start [J]
+  int awake() const;
+  int sweeps() const { return sweeps_; }  // of the last tick
+
+  // All that is kept from tick to tick: appended to `into`, and taken from there again. False: these
+  // numbers are of another scene.
+  void write(std::vector<double>& into) const;
+  bool read(std::span<const double> from);
+  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 29;
+
+ private:
+  // A contact's force over a tick.
+  struct Row {
+    BodyContact* contact = nullptr;
+    End a, b;
+    Material material;  // the harder one's damping and friction are the pair's
+    double K = 0, B = 0, depth = 0, radius = 0;
+    Mat3 frame, W;  // columns: normal, two tangents; W in the frame
+    double force = 0;
+    Eigen::Vector2d friction, anchor;
+  };
+  // A point of one body held to a point of another or of the world: a ball joint, or a spring with
+  // a length.
+  struct Link {
+    int a = 0, b = BodyContact::kStill;
+    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // in their objects' frames; of the world: in it [m]
+    double length = 0, K = 0, B = 0;
+    double breaks_at = std::numeric_limits<double>::infinity();
+    bool spring = false;   // else a joint
+    bool broken = false;
+    Vec3 force = Vec3::Zero();  // on a [N]
+    // Of the tick:
+    End end_a, end_b;
+    Vec3 stretch = Vec3::Zero(), along = Vec3::Zero();
+    Mat3 give = Mat3::Zero();  // force that a stretch's velocity without it makes
+    double c = 0;
+  };
+  struct JointRow {
+    int body = 0;
+    double potential = 0, stop = 0, friction = 0;  // forces along it [N] or [N m]
+    double anchor = 0;                             // of friction [m] or [rad]
+  };
+
+  static std::size_t at(int body) { return static_cast<std::size_t>(body); }
+  bool moves(int body) const { return body != BodyContact::kStill && awake_[at(body)] != 0; }
+  void add_links(const Scene& scene);
+  void add_link(int body, const BodyJoint& joint, const Vec3& point);
+  int number(const std::string& name) const;
+  void wake_neighbours();
+  void find_islands();
+  int root(int body);
+  void join(int a, int b);
+  bool in_turn(int a, int b, bool touched);
+  bool begin_row(BodyContact& contact);
+  void begin_link(Link& link);
+  Vec3 place(int body, const Vec3& own) const;
+  double stiffness(const BodyContact& contact) const;
+  void apply(const End& a, const End& b, const Vec3& force);
+  double sweep(Row& row);
+  double sweep(Link& link);
+  double sweep(JointRow& row);
+  void settle(bool touched, double enough, int most);
+  void end_rows();
+  void fall_asleep();
+  void take_stock();
+
+  std::vector<BodyMotion> bodies_;
+  std::vector<std::string> names_;
+  std::vector<Material> materials_;
+  std::vector<Body> of_bodies_;
+  std::vector<std::uint8_t> awake_, pushed_, touched_, held_;
+  std::vector<int> quiet_;        // ticks
+  std::vector<int> parent_;       // of islands
+  std::vector<int> body_of_;      // by object
+  std::vector<Material> of_objects_;
+  BodyGeometry geometry_;
+  Vec3 gravity_;
+  std::vector<Row> rows_;
+  std::size_t count_ = 0;
+  std::vector<Link> links_;
+  std::vector<JointRow> joints_;
+  double T_ = 1e-3;
+  bool fresh_ = true;  // first_energy_ is to be taken
+  double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;
+  int sweeps_ = 0;
+};
+
+}  // namespace limpid
