@@ -22,6 +22,7 @@ struct HandInput {
   Vec3 target = Vec3::Zero();        // [m]
   double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
   std::span<const double> torque{};  // pushed on the joints besides [N m]; empty: none
+  bool magnet = false;               // picks up what it may
 };
 
 // What it is; does not change while it is connected.

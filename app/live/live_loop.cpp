@@ -178,7 +178,8 @@ void LiveLoop::tick(const TickTiming& timing) {
     parameters_ = controls.parameters;
     if (recording_to_ != nullptr) recording_to_->changed(parameters_);
   }
-  const HandInput hand = hand_input(controls);
+  HandInput hand = hand_input(controls);
+  hand.magnet = controls.magnet;
   follow_recorder(hand.target);
   const RigInput input = rig_input(timing, hand);
   if (!in_place_) twin_.step(controls.twin, controls.twin_parameters, *rig_, input, of_twin_);

@@ -24,6 +24,7 @@ struct Controls {
   SafetyLimits limits;       // of a guarded device
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
+  bool magnet = false;       // picks up what it may
   std::uint32_t resets = 0;  // start over whenever this counts on
   bool twin = false;         // a second run beside it; not beside a device in the arm's place
   Parameters twin_parameters;

@@ -109,6 +109,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   v2_ = proxy_.v();
   kinetic_ = proxy_.kinetic_energy();
   write_bodies(row);
+  proxy_.contacts().want_magnet(in.magnet);
   const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   const LawInput<N> now{in.measured,    v1,
@@ -239,6 +240,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
     set(Column::objects_gain, world->gain());
     set(Column::objects_awake, world->awake());
     set(Column::objects_sweeps, world->sweeps());
+    set(Column::magnet, world->magnet().body + 1);
   }
 }
 

@@ -57,6 +57,7 @@ struct Reading {
   double dt = 0;    // the same as it really passed [s]; 0: as long as it should be
   // That the motors gave since, where it is known to differ from what was sent [N m].
   std::optional<Vec<N>> acted{};
+  bool magnet = false;  // the tip picks up what it may
 };
 
 // Where a loop starts.

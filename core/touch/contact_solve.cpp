@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <limits>
 
 #include "core/touch/wall_force.h"
 
@@ -174,6 +175,7 @@ void ContactSolve<N>::collect(Contacts<N>& contacts, const Arm<N>& arm,
                               const typename Arm<N>::Frames& f, const Vec<N>& u, double T) {
   count_ = 0;
   world_ = contacts.world();
+  if (contacts.magnet().on) add(contacts.magnet(), *world_);
   for (Contact<N>& c : contacts.list()) {
     double deeper = T * c.gradient.dot(u);
     if (c.body != BodyContact::kStill) {
@@ -235,6 +237,18 @@ void ContactSolve<N>::add(MeshContact<N>& c, Contacts<N>& contacts) {
   if (c.body != BodyContact::kStill) on_body(row, contacts.world(), c.body, c.center);
 }
 
+// It may not be thrown out by deeper contacts.
+template <int N>
+void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, World& world) {
+  Row& row = next_row(std::numeric_limits<double>::infinity());
+  row.magnet = &magnet;
+  row.material = magnet.material;
+  row.axes = 3;
+  for (int i = 0; i < 3; ++i) row.g[static_cast<std::size_t>(i)] = magnet.J.row(i).transpose();
+  row.push = world.magnet().force;
+  on_body(row, &world, magnet.body, magnet.at);
+}
+
 // The other side of the row moves as well.
 template <int N>
 void ContactSolve<N>::on_body(Row& row, World* world, int body, const Vec3& point) {
@@ -271,7 +285,10 @@ template <int N>
 void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, double T) {
   Vec<N> direction = row.g[0];
   Vec3 along = Vec3::UnitX();
-  if (row.mesh != nullptr) {
+  if (row.magnet != nullptr && !row.magnet->stretch.isZero(0)) {
+    along = row.magnet->stretch.normalized();
+    direction = row.magnet->J.transpose() * along;
+  } else if (row.mesh != nullptr) {
     const FreeSpace& space = row.mesh->touch.space();
     along = !row.push.isZero(0) ? Vec3(row.push.normalized())
                        : row.mesh->rank == 0 && space.count() > 0
@@ -319,6 +336,19 @@ double ContactSolve<N>::push_wall(Row& row, double T, Motion<N>& motion) {
   return std::abs(change) + rub(row, T, Vec3::UnitX(), F, motion);
 }
 
+// f = -(K x + (K T/2 + B) v): spring and damper at the middle of the tick.
+template <int N>
+double ContactSolve<N>::push_magnet(Row& row, double T, Motion<N>& motion) {
+  const Vec3 before = row.push;
+  const Vec3 v0 = speed(row, motion.u) - of_body(row) - row.W * before;
+  const double K = row.material.stiffness, k = K * T / 2 + row.B;
+  const Mat3 stiff = Mat3::Identity() + k * row.W;
+  row.push = -(stiff.inverse() * (K * row.magnet->stretch + k * v0));
+  const Vec3 change = row.push - before;
+  apply(row, change, motion);
+  return change.norm();
+}
+
 template <int N>
 double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   const Vec3 before = row.push;
@@ -348,6 +378,10 @@ Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
     }
     row.push = F.force * Vec3::UnitX();
     slope(0, 0) = -T * F.slope;
+  } else if (row.magnet != nullptr) {
+    const double k = K * T / 2 + row.B;
+    slope = -k * (Mat3::Identity() + k * row.W_body).inverse();
+    row.push = slope / k * (K * row.magnet->stretch + k * v);
   } else if (row.world != nullptr) {
     const RoomTick tick{K, row.B, T, row.mesh->center, T * v, T * row.W_body};
     room_force(row.mesh->touch, tick, row.push);
@@ -472,7 +506,9 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
 // Nothing happens there, whatever the other contacts do by themselves.
 template <int N>
 bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
-  if (row.known || !row.push.isZero(0) || !row.friction.isZero(0)) return false;
+  if (row.known || row.magnet != nullptr || !row.push.isZero(0) || !row.friction.isZero(0)) {
+    return false;
+  }
   if (row.wall != nullptr) {
     const double v = row.g[0].dot(u) - of_body(row).x();
     return row.wall->depth <= 0 && row.wall->depth - T * v <= 0;
@@ -500,8 +536,9 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
     for (Row& row : rows) {
       if (apart(row, T, motion.u)) continue;
       if (!row.known) learn(row, answer, T);
-      const double change =
-          row.wall != nullptr ? push_wall(row, T, motion) : push_mesh(row, T, motion);
+      const double change = row.wall != nullptr     ? push_wall(row, T, motion)
+                            : row.magnet != nullptr ? push_magnet(row, T, motion)
+                                                    : push_mesh(row, T, motion);
       most = std::max(most, row.push.norm());
       settled_ = settled_ && change < kSettled * std::max(1.0, most);
     }
@@ -549,6 +586,9 @@ void ContactSolve<N>::finish(Contacts<N>& contacts) const {
       row.wall->force = row.push.x();
       row.wall->friction = row.frame * row.friction;
       keep(row.wall->id, row);
+    } else if (row.magnet != nullptr) {
+      row.magnet->force = row.push;
+      world_->pulled(row.push);
     } else {
       row.mesh->force = row.push + row.friction;
       keep(row.mesh->id, row);

@@ -95,8 +95,10 @@ class ContactSolve {
   // One contact: forces along the axes of a frame. A wall's is its normal and two tangents; without
   // friction only the first is used. A mesh's is the world's.
   struct Row {
+    // What pushes: one of these.
     Contact<N>* wall = nullptr;
     MeshContact<N>* mesh = nullptr;
+    typename Contacts<N>::Magnet* magnet = nullptr;
     Material material;
     ContactMemory before;
     int axes = 1;
@@ -119,6 +121,7 @@ class ContactSolve {
     void clear() {
       wall = nullptr;
       mesh = nullptr;
+      magnet = nullptr;
       axes = 1;
       radius = B = 0;
       frame.setIdentity();
@@ -139,6 +142,7 @@ class ContactSolve {
   void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
            const typename Arm<N>::Frames& f);
   void add(MeshContact<N>& c, Contacts<N>& contacts);
+  void add(typename Contacts<N>::Magnet& magnet, World& world);
   static void learn(Row& row, const ContactAnswer<N>& answer, double T);
   static void set_damping(Row& row, const ContactAnswer<N>& answer, double T);
   static Mat3 push(Row& row, double T, const Vec3& v);
@@ -146,6 +150,7 @@ class ContactSolve {
   static Vec3 speed(const Row& row, const Vec<N>& u);
   static void apply(Row& row, const Vec3& change, Motion<N>& motion);
   static double push_wall(Row& row, double T, Motion<N>& motion);
+  static double push_magnet(Row& row, double T, Motion<N>& motion);
   static double push_mesh(Row& row, double T, Motion<N>& motion);
   static double rub(Row& row, double T, const Vec3& normal, double force, Motion<N>& motion);
   static bool apart(const Row& row, double T, const Vec<N>& u);

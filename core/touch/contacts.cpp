@@ -13,6 +13,8 @@ constexpr double kSpacing = 0.75;
 constexpr int kMostBalls = 24;
 // A body that is nearer than this does not sleep [m].
 constexpr double kWakes = 5e-3;
+// The tip's magnet reaches so far [m].
+constexpr double kPicksUp = 5e-3;
 
 }  // namespace
 
@@ -23,6 +25,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
   probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
   if (count_bodies(scene) > 0) world_ = std::make_unique<World>(scene);
+  magnet_.J = Jacobian<N>::Zero(3, arm.dof());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     const int body = world_ ? world_->body_of(i) : BodyContact::kStill;
@@ -30,6 +33,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
       stops_.push_back({*stop, {.stiffness = object.material.stiffness}});
       continue;
     }
+    if (body != BodyContact::kStill) of_bodies_.push_back(object.material);
     add_solid(object.shape, Pose::Identity(), object, body);
     for (const BodyPart& part : object.parts) add_solid(part.shape, part.pose, object, body);
   }
@@ -76,6 +80,7 @@ void Contacts<N>::add_mesh_contacts(const Object& mesh, int body, const ArmDescr
 
 template <int N>
 void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x) {
+  magnet_.on = false;
   for (MeshContact<N>& contact : meshes_) {
     contact.center = Arm<N>::point(f, contact.link, contact.on_link);
     contact.touch.place(contact.center);
@@ -163,8 +168,37 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     look(contact, arm, f);
     if (contact.body != BodyContact::kStill && contact.touch.near()) world_->touch(contact.body);
   }
+  if (world_ && T > 0) look_for_magnet(arm, f);
   potential_ = stored();
   if (world_ && T > 0) world_->begin(T);
+}
+
+// The magnet takes the nearest body that may be picked up, where the tip then is.
+template <int N>
+void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Frames& f) {
+  World& world = *world_;
+  if (!magnet_wanted_) world.let_go();
+  const Vec3 tip = Arm<N>::point(f, probes_[0].link, probes_[0].from);
+  if (magnet_wanted_ && world.magnet().body == BodyContact::kStill && !world.magnet().spent) {
+    const Contact<N>* nearest = nullptr;
+    for (const Contact<N>& c : list()) {
+      if (c.id >= solids_.size() || c.body == BodyContact::kStill) continue;  // not the tip
+      if (c.depth > -kPicksUp && world.magnetic(c.body) &&
+          (nearest == nullptr || c.depth > nearest->depth)) {
+        nearest = &c;
+      }
+    }
+    if (nearest != nullptr) world.attach(nearest->body, tip);
+  }
+  magnet_.force.setZero();
+  magnet_.on = world.magnet().body != BodyContact::kStill;
+  if (!magnet_.on) return;
+  magnet_.body = world.magnet().body;
+  world.touch(magnet_.body);
+  magnet_.at = world.magnet_point();
+  magnet_.stretch = tip - magnet_.at;
+  magnet_.material = of_bodies_[static_cast<std::size_t>(magnet_.body)];
+  arm.point_jacobian(f, probes_[0].link, tip, magnet_.J);
 }
 
 template <int N>
@@ -189,10 +223,12 @@ void Contacts<N>::step_bodies() {
   const auto all = [&](const auto& each) {
     for (const Contact<N>& c : list()) each(c.body, c.point, -c.force * c.normal);
     for (const MeshContact<N>& c : meshes_) each(c.body, c.center, -c.force);
+    if (magnet_.on) each(magnet_.body, magnet_.at, -magnet_.force);
   };
   all(push);
   world_->settle();
   all(book);
+  if (magnet_.on) world_->pulled(magnet_.force);
   world_->finish();
 }
 
@@ -242,12 +278,21 @@ void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const ContactShare<N>& 
       spring(c.material, c.depth[i], gradient);
     }
   }
+  for (int i = 0; magnet_.on && i < 3; ++i) {
+    const Vec<N> gradient = magnet_.J.row(i).transpose();
+    spring(magnet_.material, magnet_.stretch[i], gradient);
+  }
 }
 
 template <int N>
 bool Contacts<N>::push(const Vec<N>& vbar, double T, Vec<N>& f2) {
   f2 = Vec<N>::Zero(vbar.size());
   bool settled = true;
+  if (magnet_.on) {
+    const double K = magnet_.material.stiffness;
+    magnet_.force = -K * (magnet_.stretch + 0.5 * T * (magnet_.J * vbar));
+    f2.noalias() += magnet_.J.transpose() * magnet_.force;
+  }
   for (Contact<N>& c : std::span(contacts_.data(), count_)) {
     const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar);
     c.force = c.touching ? c.material.stiffness * depth : 0;
@@ -317,6 +362,7 @@ std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
 
 template <int N>
 bool Contacts<N>::engaged() const {
+  if (magnet_.on) return true;
   const auto pushed = [&](const auto& c) { return !memories_[c.id].push.isZero(0); };
   return std::ranges::any_of(list(), [&](const auto& c) { return c.depth > 0 || pushed(c); }) ||
          std::ranges::any_of(meshes_, [&](const auto& c) { return c.rank > 0 || pushed(c); });
@@ -325,6 +371,7 @@ bool Contacts<N>::engaged() const {
 template <int N>
 double Contacts<N>::stored() const {
   double U = 0;
+  if (magnet_.on) U += 0.5 * magnet_.material.stiffness * magnet_.stretch.squaredNorm();
   const auto friction = [&](const auto& c) {
     const Vec3& anchor = memories_[c.id].anchor;
     return 0.5 * friction_stiffness(c.material) * anchor.squaredNorm();

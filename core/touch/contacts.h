@@ -143,6 +143,21 @@ class Contacts {
   // What moves of the scene; null: nothing.
   World* world() { return world_.get(); }
   const World* world() const { return world_.get(); }
+  // From the next find() on the tip holds what it may and is near to, or lets go of it.
+  void want_magnet(bool on) { magnet_wanted_ = on; }
+  // That holds something, over the tick: a spring from the tip to a point of a body.
+  struct Magnet {
+    bool on = false;
+    int body = BodyContact::kStill;
+    Vec3 at = Vec3::Zero();       // that point [m]
+    Vec3 stretch = Vec3::Zero();  // of the spring: from there to the tip [m]
+    Material material;
+    Jacobian<N> J;                  // of the tip
+    Vec3 force = Vec3::Zero();      // on the tip, over the last tick [N]
+  };
+  Magnet& magnet() { return magnet_; }
+  const Magnet& magnet() const { return magnet_; }
+
   // For laws that do not solve for bodies: they get the forces that push() found, and step after.
   void step_bodies();
 
@@ -171,6 +186,7 @@ class Contacts {
 
   void add_solid(const Shape& shape, const Pose& in_object, const Object& object, int body);
   void follow_bodies();
+  void look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Frames& f);
 
   std::vector<Probe> probes_;  // the tip first
   std::vector<Solid> solids_;
@@ -180,6 +196,9 @@ class Contacts {
   std::vector<MeshContact<N>> meshes_;
   std::vector<ContactMemory> memories_;  // by id
   std::unique_ptr<World> world_;
+  std::vector<Material> of_bodies_;
+  bool magnet_wanted_ = false;
+  Magnet magnet_;
   double potential_ = 0;
   double stiffest_ = 0;
 };

@@ -108,6 +108,7 @@ void World::reset() {
     link.force.setZero();
     link.broken = false;
   }
+  let_go();
   geometry_.forget();
   for (int i = 0; i < count(); ++i) geometry_.place(i, pose(i));
   count_ = 0;
@@ -130,6 +131,18 @@ void World::touch(int body) {
   touched_[at(body)] = 1;
   awake_[at(body)] = 1;
   quiet_[at(body)] = 0;
+}
+
+void World::attach(int body, const Vec3& tip) {
+  magnet_ = {body, pose(body).inverse() * tip};
+  touch(body);
+}
+
+void World::pulled(const Vec3& force) {
+  magnet_.force = force;
+  if (!(force.norm() > Magnet::kBreaks)) return;
+  let_go();
+  magnet_.spent = true;
 }
 
 Vec3 World::place(int body, const Vec3& own) const {
@@ -516,6 +529,9 @@ void World::write(std::vector<double>& into) const {
   std::array<double, BodyMotion::kNumbers> numbers{};
   into.push_back(count());
   into.push_back(static_cast<double>(links_.size()));
+  into.insert(into.end(), {double(magnet_.body), magnet_.point.x(), magnet_.point.y(),
+                           magnet_.point.z(), magnet_.force.x(), magnet_.force.y(),
+                           magnet_.force.z(), magnet_.spent ? 1.0 : 0.0});
   for (int i = 0; i < count(); ++i) {
     bodies_[at(i)].write(numbers);
     into.insert(into.end(), numbers.begin(), numbers.end());
@@ -532,15 +548,20 @@ void World::write(std::vector<double>& into) const {
 }
 
 bool World::read(std::span<const double> from) {
-  constexpr std::size_t kBody = BodyMotion::kNumbers + 3, kJoint = 4, kLink = 4;
+  constexpr std::size_t kMagnet = 8, kBody = BodyMotion::kNumbers + 3, kJoint = 4, kLink = 4;
   const std::size_t own =
-      2 + kBody * bodies_.size() + kJoint * joints_.size() + kLink * links_.size();
+      2 + kMagnet + kBody * bodies_.size() + kJoint * joints_.size() + kLink * links_.size();
   if (from.size() < own || from[0] != count() || from[1] != static_cast<double>(links_.size()) ||
       !std::ranges::all_of(from, [](double x) { return std::isfinite(x); })) {
     return false;
   }
   reset();
   from = from.subspan(2);
+  if (from[0] >= 0 && from[0] < count()) magnet_.body = static_cast<int>(from[0]);
+  magnet_.point = Vec3(from[1], from[2], from[3]);
+  magnet_.force = Vec3(from[4], from[5], from[6]);
+  magnet_.spent = from[7] != 0;
+  from = from.subspan(kMagnet);
   for (int i = 0; i < count(); ++i, from = from.subspan(kBody)) {
     bodies_[at(i)].read(from.first<BodyMotion::kNumbers>());
     awake_[at(i)] = from[BodyMotion::kNumbers] != 0 ? 1 : 0;

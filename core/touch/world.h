@@ -47,6 +47,20 @@ class World {
   // Once over the rows of what the arm touches and what hangs together with it, or of all others;
   // returns the largest change of a force [N].
   double sweep(bool touched);
+  // What the tip holds as if by a magnet: a spring without length from the tip to a point of it.
+  struct Magnet {
+    static constexpr double kBreaks = 5;  // [N]
+    int body = BodyContact::kStill;       // none
+    Vec3 point = Vec3::Zero();            // in the object's frame [m]
+    Vec3 force = Vec3::Zero();            // on the tip [N]
+    bool spent = false;                   // it broke: it has to be switched off first
+  };
+  const Magnet& magnet() const { return magnet_; }
+  void attach(int body, const Vec3& tip);
+  void let_go() { magnet_ = {}; }
+  Vec3 magnet_point() const { return place(magnet_.body, magnet_.point); }  // [m]
+  void pulled(const Vec3& force);  // by the magnet, over the tick [N]
+
   // What the arm's row at this end gave, by its force on it over the whole tick [N].
   void book(const End& end, const Vec3& force);
   // Sweeps until nothing changes any more.
@@ -147,6 +161,7 @@ class World {
   std::size_t count_ = 0;
   std::vector<Link> links_;
   std::vector<JointRow> joints_;
+  Magnet magnet_;
   double T_ = 1e-3;
   bool fresh_ = true;  // first_energy_ is to be taken
   double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;

@@ -39,18 +39,20 @@ std::string printable(std::string text) {
 struct Csv {
   const std::string& where;
   int line = 0;
+  bool magnet = false;  // the fifth column
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw FileError(fmt::format("{}:{}: {}", where, line, printable(why)));
   }
 
-  void check_header(std::string_view text) const {
+  void read_header(std::string_view text) {
     std::string_view rest = text;
     for (const std::string_view wanted : kHeader) {
       if (take_field(rest) != wanted) {
         refuse(fmt::format("header \"{:.60}\"; needed: time_s,x_m,y_m,z_m", trimmed(text)));
       }
     }
+    magnet = take_field(rest) == "magnet";
   }
 
   double number(std::string_view field, std::string_view column, double limit) const {
@@ -78,6 +80,10 @@ struct Csv {
     path.time.push_back(row[0]);
     path.position.emplace_back(row[1], row[2], row[3]);
     path.grip.push_back(1);
+    if (!magnet) return;
+    const double on = number(take_field(text), "magnet", 1);
+    if (on != 0 && on != 1) refuse(fmt::format("magnet: {} is not allowed; allowed: 0 or 1", on));
+    path.magnet.push_back(on == 1);
   }
 };
 
@@ -130,18 +136,23 @@ Vec3 HandPath::at(double t) const {
          h * s * r * (r * velocity[i] - s * velocity[i + 1]);
 }
 
-double HandPath::grip_at(double t) const {
-  return t > time.front() ? grip[before(time, t)] : grip.front();
-}
 
 Vec3 HandPath::sample(std::size_t k, double T) const {
   if (tick == T) return position[std::min(k, position.size() - 1)];
   return at(static_cast<double>(k) * T);
 }
 
-double HandPath::grip_sample(std::size_t k, double T) const {
-  if (tick == T) return grip[std::min(k, grip.size() - 1)];
-  return grip_at(static_cast<double>(k) * T);
+// The sample that holds at the k-th tick.
+std::size_t HandPath::row(std::size_t k, double T) const {
+  if (tick == T) return std::min(k, time.size() - 1);
+  const double t = static_cast<double>(k) * T;
+  return t > time.front() ? before(time, t) : 0;
+}
+
+double HandPath::grip_sample(std::size_t k, double T) const { return grip[row(k, T)]; }
+
+bool HandPath::magnet_sample(std::size_t k, double T) const {
+  return !magnet.empty() && magnet[row(k, T)];
 }
 
 HandPath hand_of(const Session& session, const std::string& where) {
@@ -170,6 +181,9 @@ HandPath hand_of(const Session& session, const std::string& where) {
     path.time.push_back(session.at(k, Column::time)[0]);
     path.position.emplace_back(target[0], target[1], target[2]);
     path.grip.push_back(grip);
+    if (session.layout().bodies() > 0) {
+      path.magnet.push_back(session.at(k, Column::magnet)[0] > 0);
+    }
   }
   start_at_zero(path);
   find_velocities(path);
@@ -203,7 +217,7 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
     rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
     ++csv.line;
     if (csv.line == 1) {
-      csv.check_header(line);
+      csv.read_header(line);
     } else if (!trimmed(line).empty()) {
       csv.add_row(line, path);
     }

@@ -20,6 +20,7 @@ struct HandPath {
   std::vector<Vec3> position;  // N [m]
   std::vector<Vec3> velocity;  // N, of the cubic at the samples [m/s]
   std::vector<double> grip;    // N, 1 the hand holds, 0 it let go [-]
+  std::vector<bool> magnet;    // N, whether it picks up; empty: never
   std::string source;          // the file, for people
   double tick = 0;             // T of the session it came from [s]; 0 from CSV
 
@@ -28,15 +29,19 @@ struct HandPath {
     return tick > 0 ? tick * static_cast<double>(time.size()) : time.back();
   }
 
-  Vec3 at(double t) const;         // t [s] from the first sample; a sample at its time, exactly
-  double grip_at(double t) const;  // held from sample to sample
+  Vec3 at(double t) const;  // t [s] from the first sample; a sample at its time, exactly
 
   // The k-th tick of a loop with tick T: the recorded row itself where the session's tick is T.
   Vec3 sample(std::size_t k, double T) const;
-  double grip_sample(std::size_t k, double T) const;
+  double grip_sample(std::size_t k, double T) const;  // held from sample to sample
+  bool magnet_sample(std::size_t k, double T) const;
+
+ private:
+  std::size_t row(std::size_t k, double T) const;
 };
 
-// CSV with the header `time_s,x_m,y_m,z_m[,...]` (further columns are ignored), or a session
+// CSV with the header `time_s,x_m,y_m,z_m[,magnet][,...]` (magnet: 0 or 1, from that sample on;
+// further columns are ignored), or a session
 // (.h5, .h5.part). Errors: FileError "FILE:LINE: ..." for a wrong header, fewer than 2 samples,
 // anything that is not a finite number, time that does not increase, a point beyond 10 m.
 HandPath read_hand(const std::filesystem::path& file);
