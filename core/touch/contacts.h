@@ -21,11 +21,16 @@ struct Surface {
 Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point);
 Surface distance_to(const Sphere& sphere, const Pose& pose, const Vec3& point);
 Surface distance_to(const Box& box, const Pose& pose, const Vec3& point);
+Surface distance_to(const Cylinder& cylinder, const Pose& pose, const Vec3& point);
+Surface distance_to(const Capsule& capsule, const Pose& pose, const Vec3& point);
 
 // The point of the segment from-to nearest to a shape.
 Vec3 nearest_on_segment(const Plane& plane, const Pose& pose, const Vec3& from, const Vec3& to);
 Vec3 nearest_on_segment(const Sphere& sphere, const Pose& pose, const Vec3& from, const Vec3& to);
 Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, const Vec3& to);
+Vec3 nearest_on_segment(const Cylinder& cylinder, const Pose& pose, const Vec3& from,
+                        const Vec3& to);
+Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& from, const Vec3& to);
 
 // One possible contact, linear in the configuration around x2: penetration
 // d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
@@ -138,7 +143,7 @@ class Contacts {
  private:
   // Objects as a tick wants them.
   struct Solid {
-    std::variant<Plane, Sphere, Box> shape;  // those that distance_to() knows
+    std::variant<Plane, Sphere, Box, Cylinder, Capsule> shape;  // those that distance_to() knows
     Pose pose;
     Material material;
   };
