@@ -1,6 +1,7 @@
 // What edges of a mesh say about it: where triangles meet, and how many.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -68,6 +69,10 @@ class TriangleMesh {
   bool behind(const Vec3& at) const noexcept;
 
   std::size_t triangles() const { return indices_.size() / 3; }
+  std::array<Vec3, 3> corners(std::size_t triangle) const {
+    const auto i = static_cast<std::uint32_t>(triangle);
+    return {corner(i, 0), corner(i, 1), corner(i, 2)};
+  }
   const Vec3& middle() const { return middle_; }
   double radius() const { return radius_; }  // of a ball around the middle that holds it
   const MeshHealth& health() const { return health_; }
