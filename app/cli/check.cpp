@@ -136,10 +136,14 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
   CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
   report.facts.push_back(
-      fmt::format("to touch     {} planes, {} spheres, {} boxes, {} models, {} stops of joints",
+      fmt::format("to touch     {} planes, {} spheres, {} boxes, {} cylinders, {} capsules, {} "
+                  "models, {} stops "
+                  "of joints",
                   std::ranges::count_if(objects, has_shape<Plane>),
                   std::ranges::count_if(objects, has_shape<Sphere>),
                   std::ranges::count_if(objects, has_shape<Box>),
+                  std::ranges::count_if(objects, has_shape<Cylinder>),
+                  std::ranges::count_if(objects, has_shape<Capsule>),
                   std::ranges::count_if(objects, has_shape<Mesh>),
                   std::ranges::count_if(objects, has_shape<JointStop>)));
   for (std::size_t i = 0; i < objects.size(); ++i) {

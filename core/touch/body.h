@@ -31,9 +31,9 @@ struct BodyJoint {
   enum class Kind : std::uint8_t { slider, hinge, ball };
 
   Kind kind = Kind::slider;
-  std::string to;              // another body's name; empty: the world
-  Vec3 axis = Vec3::UnitZ();   // unit, of a slider or a hinge, at the start, in the world
-  Vec3 point = Vec3::Zero();   // of a hinge or a ball, in the body's frame [m]
+  std::string to;             // another body's name; empty: the world
+  Vec3 axis = Vec3::UnitZ();  // unit, of a slider or a hinge, at the start, in the world
+  Vec3 point = Vec3::Zero();  // of a hinge or a ball, in the body's frame [m]
   // Where it stops [m] or [rad]; 0 is the pose at the start.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -62,9 +62,9 @@ struct BodySpring {
   std::array<std::string, 2> between;  // names; the second may be empty: the world
   // Where it holds, each in its body's frame [m].
   std::array<Vec3, 2> points{Vec3::Zero(), Vec3::Zero()};
-  double length = 0;                                            // at rest [m]
-  double stiffness = 100;                                       // [N/m]
-  double damping = 0;                                           // [N s/m]
+  double length = 0;                                           // at rest [m]
+  double stiffness = 100;                                      // [N/m]
+  double damping = 0;                                          // [N s/m]
   double breaks_at = std::numeric_limits<double>::infinity();  // [N]
 };
 

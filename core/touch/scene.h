@@ -100,8 +100,8 @@ struct Object {
   Pose pose = Pose::Identity();  // [m]; of a body where it starts
   Shape shape{};
   Material material{};  // of a joint's stop the stiffness alone, in [N m/rad]
-  // It moves. Then its shape is a Sphere, Box, Cylinder, Capsule or Mesh; of a mesh other bodies and
-  // what stands still meet the convex hull, the tip the mesh itself.
+  // It moves. Then its shape is a Sphere, Box, Cylinder, Capsule or Mesh; of a mesh other bodies
+  // and what stands still meet the convex hull, the tip the mesh itself.
   std::optional<Body> body{};
   std::vector<BodyPart> parts{};  // of a body, besides its shape
 };

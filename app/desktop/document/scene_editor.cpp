@@ -25,6 +25,18 @@ Bounds bounds(const Sphere& sphere, const Pose& pose, const Model*) {
 Bounds bounds(const Box& box, const Pose& pose, const Model*) {
   return moved(Bounds(Vec3(-box.size / 2), Vec3(box.size / 2)), pose);
 }
+Bounds bounds(const Cylinder& cylinder, const Pose& pose, const Model*) {
+  // A disc reaches as far along an axis as that is in its plane.
+  const Vec3 axis = pose.linear().col(2);
+  const Vec3 half = cylinder.length / 2 * axis.cwiseAbs() +
+                    cylinder.radius * (1 - axis.array().square()).max(0).sqrt().matrix();
+  return {pose.translation() - half, pose.translation() + half};
+}
+Bounds bounds(const Capsule& capsule, const Pose& pose, const Model*) {
+  const Vec3 half =
+      capsule.length / 2 * pose.linear().col(2).cwiseAbs() + Vec3::Constant(capsule.radius);
+  return {pose.translation() - half, pose.translation() + half};
+}
 Bounds bounds(const Mesh& mesh, const Pose& pose, const Model* model) {
   if (model == nullptr) return {};
   return moved(model->bounds(), Eigen::Affine3d(mesh.stood(pose)) * Eigen::Scaling(mesh.size()));

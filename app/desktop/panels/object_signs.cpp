@@ -1,5 +1,6 @@
 #include "app/desktop/panels/object_signs.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "app/style/theme.h"
@@ -62,6 +63,29 @@ void outline(const Box& box, const Pose& pose, const Camera&, Pen& pen) {
   }
 }
 
+// What cylinder and capsule have in common: two rings and four lines between them.
+void outline_tube(double radius, double length, const Pose& pose, Pen& pen) {
+  const Vec3 u = radius * pose.linear().col(0), v = radius * pose.linear().col(1);
+  const Vec3 up = length / 2 * pose.linear().col(2), middle = pose.translation();
+  pen.circle(middle + up, u, v);
+  pen.circle(middle - up, u, v);
+  for (const Vec3& side : {u, v, Vec3(-u), Vec3(-v)}) {
+    pen.line(middle + side + up, middle + side - up);
+  }
+}
+
+void outline(const Cylinder& cylinder, const Pose& pose, const Camera&, Pen& pen) {
+  outline_tube(cylinder.radius, cylinder.length, pose, pen);
+}
+
+void outline(const Capsule& capsule, const Pose& pose, const Camera& camera, Pen& pen) {
+  outline_tube(capsule.radius, capsule.length, pose, pen);
+  for (const double end : {-0.5, 0.5}) {
+    const Vec3 middle = pose.translation() + end * capsule.length * pose.linear().col(2);
+    pen.circle(middle, capsule.radius * camera.right(), capsule.radius * camera.up());
+  }
+}
+
 void outline(const Mesh&, const Pose&, const Camera&, Pen&) {}
 void outline(const JointStop&, const Pose&, const Camera&, Pen&) {}
 
@@ -87,6 +111,25 @@ void icon(const Box&, const Icon& i) {
   i.draw->AddRect({x - i.r, y - i.r}, {x + i.r, y + i.r}, i.ink, 0, 0, i.thick);
 }
 
+void icon(const Cylinder&, const Icon& i) {
+  const auto [x, y] = i.middle;
+  const float r = 0.75f * i.r;
+  for (int corner = 0; corner < 16; ++corner) {
+    const float angle = static_cast<float>(corner) * std::numbers::pi_v<float> / 8;
+    i.draw->PathLineTo({x + r * std::cos(angle), y + (0.3f * std::sin(angle) - 0.7f) * i.r});
+  }
+  i.draw->PathStroke(i.ink, ImDrawFlags_Closed, i.thick);
+  i.draw->AddLine({x - r, y - 0.7f * i.r}, {x - r, y + 0.7f * i.r}, i.ink, i.thick);
+  i.draw->AddLine({x + r, y - 0.7f * i.r}, {x + r, y + 0.7f * i.r}, i.ink, i.thick);
+  i.draw->AddLine({x - r, y + 0.7f * i.r}, {x + r, y + 0.7f * i.r}, i.ink, i.thick);
+}
+
+void icon(const Capsule&, const Icon& i) {
+  const auto [x, y] = i.middle;
+  const float r = 0.5f * i.r;
+  i.draw->AddRect({x - r, y - i.r}, {x + r, y + i.r}, i.ink, r, 0, i.thick);
+}
+
 void icon(const Mesh&, const Icon& i) {
   const auto [x, y] = i.middle;
   const float r = i.r;
@@ -103,6 +146,8 @@ void icon(const JointStop&, const Icon& i) {
 const char* name(const Plane&) { return "plane"; }
 const char* name(const Sphere&) { return "sphere"; }
 const char* name(const Box&) { return "box"; }
+const char* name(const Cylinder&) { return "cylinder"; }
+const char* name(const Capsule&) { return "capsule"; }
 const char* name(const Mesh&) { return "mesh"; }
 const char* name(const JointStop&) { return "joint stop"; }
 
@@ -115,6 +160,8 @@ const char* shape_name(const Shape& shape) {
 std::vector<NewObject> new_objects() {
   return {{"Ball", {.name = "ball", .shape = Sphere{.radius = 0.02}}},
           {"Block", {.name = "block", .shape = Box{.size = Vec3::Constant(0.04)}}},
+          {"Cylinder", {.name = "cylinder", .shape = Cylinder{.radius = 0.02, .length = 0.04}}},
+          {"Capsule", {.name = "capsule", .shape = Capsule{.radius = 0.01, .length = 0.04}}},
           {"Plane", {.name = "plane", .shape = Plane{}}},
           {"Joint stop",
            {.name = "stop",

@@ -23,8 +23,8 @@ std::vector<NewObject> new_objects();
 // A small picture of a shape into the window that is being drawn, of half a width r [px].
 void draw_icon(const Shape& shape, ImVec2 middle, float r, ImU32 ink);
 
-// Where a selected plane, sphere or box is, as lines over the view; others have a picture that
-// shows it.
+// Where a selected object is, as lines over the view; meshes and stops of joints have a picture
+// that shows it.
 void draw_outline(const Object& object, const Camera& camera, ScreenRect view, ImDrawList& list);
 
 }  // namespace limpid

@@ -152,6 +152,17 @@ bool drag_number(const char* label, double& value, double speed, double least, d
   return changed;
 }
 
+namespace {
+
+bool drag_length(const char* label, double& value, const char* help) {
+  double millimetres = 1e3 * value;
+  if (!drag_number(label, millimetres, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", help)) return false;
+  value = 1e-3 * millimetres;
+  return true;
+}
+
+}  // namespace
+
 void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {
   draw_name(document, place);
   arm_ = &arm;
@@ -207,11 +218,7 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
   if (position(object.pose, "Centre x, y, z [mm]")) {
     what = "place";
   }
-  double radius = 1e3 * sphere.radius;
-  if (drag_number("Radius", radius, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", "Of the ball")) {
-    sphere.radius = 1e-3 * radius;
-    what = "radius";
-  }
+  if (drag_length("Radius", sphere.radius, "Of the ball")) what = "radius";
   return what;
 }
 
@@ -224,6 +231,24 @@ std::string_view ObjectEditor::edit(Object& object, Box& box) {
     box.size = 1e-3 * size;
     what = "size";
   }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Cylinder& cylinder) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
+  if (drag_length("Radius", cylinder.radius, "Of its faces")) what = "radius";
+  if (drag_length("Length", cylinder.length, "From face to face")) what = "length";
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Capsule& capsule) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (edit_rotation(object.pose)) what = "rotation";
+  if (drag_length("Radius", capsule.radius, "Of its round ends")) what = "radius";
+  if (drag_length("Length", capsule.length, "Between the middles of its ends")) what = "length";
   return what;
 }
 

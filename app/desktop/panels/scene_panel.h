@@ -26,6 +26,8 @@ class ObjectEditor {
   std::string_view edit(Object& object, Plane& plane);
   std::string_view edit(Object& object, Sphere& sphere);
   std::string_view edit(Object& object, Box& box);
+  std::string_view edit(Object& object, Cylinder& cylinder);
+  std::string_view edit(Object& object, Capsule& capsule);
   std::string_view edit(Object& object, Mesh& mesh);
   std::string_view edit(Object& object, JointStop& stop);
   bool edit_rotation(Pose& pose);

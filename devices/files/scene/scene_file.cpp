@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
 using namespace scene_limits;
 
-Pose pose(const TomlTable& t, const Vec3& position) {
+Pose pose(const TomlTable& t, const Vec3& position, const char* key = "rpy") {
   Pose p = pose_at(position);
-  if (const auto rpy = t.vector("rpy", kAngle)) p.linear() = rotation(*rpy);
+  if (const auto rpy = t.vector(key, kAngle)) p.linear() = rotation(*rpy);
   return p;
 }
 
@@ -85,8 +85,8 @@ class Text {
   void put(const char* key, const Vec3& value) { line(key, vector(value)); }
   void put(const char* key, int value) { line(key, std::to_string(value)); }
   void put_position(const char* key, const Pose& pose) { put(key, Vec3(pose.translation())); }
-  void put_rotation(const Pose& pose) {
-    if (pose.linear() != Mat3::Identity()) put("rpy", rpy_of(pose.linear()));
+  void put_rotation(const Pose& pose, const char* key = "rpy") {
+    if (pose.linear() != Mat3::Identity()) put(key, rpy_of(pose.linear()));
   }
   // Of what may be left out.
   void put_place(const Pose& pose, double scale) {
@@ -200,6 +200,47 @@ void write(const Object& object, const Box& box, const ArmDescription&, Text& te
 void hold(Object&, Box& box) {
   for (double& edge : box.size) hold(edge, kLength, Box{}.size.x());
 }
+
+// Cylinders and capsules alike.
+template <class S>
+void read_tube(const TomlTable& t, Object& object, S& tube) {
+  allow_with_common(t, {"radius", "length", "position", "rotation"});
+  object.pose = pose(t, point(t, "position"), "rotation");
+  tube.radius = t.need(t.number("radius", kLength), "radius");
+  tube.length = t.need(t.number("length", kLength), "length");
+}
+
+template <class S>
+void write_tube(const Object& object, const S& tube, Text& text) {
+  text.put("radius", tube.radius);
+  text.put("length", tube.length);
+  text.put_position("position", object.pose);
+  text.put_rotation(object.pose, "rotation");
+}
+
+template <class S>
+void hold_tube(S& tube) {
+  hold(tube.radius, kLength, S{}.radius);
+  hold(tube.length, kLength, S{}.length);
+}
+
+const char* table_of(const Cylinder&) { return "cylinder"; }
+void read(const TomlTable& t, const ArmDescription&, Object& object, Cylinder& cylinder) {
+  read_tube(t, object, cylinder);
+}
+void write(const Object& object, const Cylinder& cylinder, const ArmDescription&, Text& text) {
+  write_tube(object, cylinder, text);
+}
+void hold(Object&, Cylinder& cylinder) { hold_tube(cylinder); }
+
+const char* table_of(const Capsule&) { return "capsule"; }
+void read(const TomlTable& t, const ArmDescription&, Object& object, Capsule& capsule) {
+  read_tube(t, object, capsule);
+}
+void write(const Object& object, const Capsule& capsule, const ArmDescription&, Text& text) {
+  write_tube(object, capsule, text);
+}
+void hold(Object&, Capsule& capsule) { hold_tube(capsule); }
 
 const char* table_of(const Mesh&) { return "mesh"; }
 
@@ -388,8 +429,7 @@ void check_counts(const Scene& scene, const std::string& where) {
   const std::size_t contacts = scene.objects.size();
   if (contacts > kMostContacts) {
     throw FileError(
-        fmt::format("{}: {} planes, spheres, boxes, meshes and joint contacts; at most {}", where,
-                    contacts, kMostContacts));
+        fmt::format("{}: {} objects to touch; at most {}", where, contacts, kMostContacts));
   }
   if (scene.probes.size() + 1 > kMostProbes) {
     throw FileError(fmt::format("{}: {} probes; at most {} besides the tip", where,

@@ -27,6 +27,14 @@
 //     rpy = [0.0, 0.0, 0.5]        # optional; roll, pitch, yaw as in URDF
 //     stiffness = 600.0
 //
+//     [[cylinder]]                 # around its z axis; a [[capsule]] has the same keys
+//     name = "post"
+//     radius = 0.02
+//     length = 0.05                # from face to face; of a capsule between its ends' centres
+//     position = [0.2, 0.0, 0.0]   # of its middle
+//     rotation = [0.0, 0.0, 0.5]   # optional; as rpy
+//     stiffness = 600.0
+//
 //     [[mesh]]                     # a model of triangles
 //     name = "gear"
 //     file = "gear.glb"            # or .gltf, .stl, .obj, .ply, .dae; from the scene file's folder

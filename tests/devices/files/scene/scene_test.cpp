@@ -169,6 +169,29 @@ TEST(Scene, HoldsAtMost64ContactsAnd63ProbesBesidesTheTip) {
   EXPECT_THAT(refusal([&] { parse(probes(64)); }), HasSubstr("64"));
 }
 
+TEST(Scene, ReadsCylindersAndCapsulesThatStandStill) {
+  for (const std::string kind : {"cylinder", "capsule"}) {
+    const std::string text = "[[" + kind +
+                             "]]\nname = \"c\"\nradius = 0.02\nlength = 0.06\n"
+                             "position = [1, 2, 3]\nrotation = [0, 1.5707963267948966, 0]\n"
+                             "stiffness = 300\n";
+    const Scene scene = parse(text).scene;
+    const Object& found = scene.objects.at(0);
+    EXPECT_EQ(has_shape<Cylinder>(found), kind == "cylinder");
+    EXPECT_TRUE(found.shape == Shape(Cylinder{0.02, 0.06}) ||
+                found.shape == Shape(Capsule{0.02, 0.06}));
+    EXPECT_LT((found.pose * Vec3(0, 0, 0.03) - Vec3(1.03, 2, 3)).norm(), 1e-15);
+    EXPECT_EQ(found.material.stiffness, 300);
+    const SceneDocument again = parse(scene_text(parse(text), arm()));
+    test::expect_same(again.scene.objects.at(0), found);
+    for (const char* key : {"radius", "length"}) {
+      std::string wrong = text;
+      wrong.insert(wrong.find(key) + std::string(key).size() + 3, "-");
+      EXPECT_THAT(refusal([&] { parse(wrong); }), HasSubstr(kind + "." + key));
+    }
+  }
+}
+
 TEST(Scene, LeavesOutRelativeFilesOfATextWithoutAFolder) {
   EXPECT_TRUE(parse_scene("[[visual]]\nfile = \"a.glb\"\n", "session", "", arm()).visuals.empty());
 }
