@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "core/dynamics/arm_description.h"
 #include "core/tick/arming.h"
@@ -38,6 +39,8 @@ struct RigStart {
   bool armed = true;               // at full force at once; a guarded device never is
   // What laws that account for it may still give the hand; they start with no more [J].
   double reserve = std::numeric_limits<double>::infinity();
+  // Of all bodies, as the loop keeps them; empty: as the scene has them.
+  std::vector<double> world{};
 };
 
 // What a rig's arm can touch, ready to be taken in by a running loop.
