@@ -10,7 +10,7 @@
 #include <span>
 
 #include "core/math/sizes.h"
-#include "core/touch/body.h"
+#include "core/touch/scene.h"
 
 namespace limpid {
 
@@ -71,6 +71,9 @@ inline constexpr int kRowContacts = 4;
 
 // Contacts: x, y, z of each. Those of bodies are only there where something moves.
 enum class ColumnWidth : std::uint8_t { one, three, dof, contacts, poses, velocities, if_bodies };
+
+// Numbers of each body in its columns: a place and a quaternion, and two velocities.
+inline constexpr int kPoseNumbers = 7, kVelocityNumbers = 6;
 
 struct ColumnInfo {
   Column column;
@@ -149,7 +152,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
      "what of E_c the motors gave for weight, springs and friction of the device"},
     {Column::body_pose, "/objects/pose", ColumnWidth::poses, "m",
-     "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z [-]"},
+     "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z "
+     "[-]"},
     {Column::body_velocity, "/objects/velocity", ColumnWidth::velocities, "m/s",
      "of each body: x, y, z of its centre of mass's velocity, and of its angular velocity [rad/s]"},
     {Column::energy_to_objects, "/energy/to_objects", ColumnWidth::if_bodies, "J",
@@ -183,6 +187,7 @@ class RowLayout {
   constexpr int dof() const { return dof_; }
   constexpr int bodies() const { return bodies_; }
   constexpr int stride() const { return stride_; }  // doubles per row
+  constexpr bool has(Column c) const { return width(c) > 0; }
   constexpr int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
   constexpr int width(Column c) const {
     switch (kColumnInfo[static_cast<std::size_t>(c)].width) {
@@ -190,8 +195,8 @@ class RowLayout {
       case ColumnWidth::three: return 3;
       case ColumnWidth::dof: return dof_;
       case ColumnWidth::contacts: return 3 * kRowContacts;
-      case ColumnWidth::poses: return 7 * bodies_;
-      case ColumnWidth::velocities: return 6 * bodies_;
+      case ColumnWidth::poses: return kPoseNumbers * bodies_;
+      case ColumnWidth::velocities: return kVelocityNumbers * bodies_;
       case ColumnWidth::if_bodies: return bodies_ > 0 ? 1 : 0;
     }
     return 0;
@@ -214,6 +219,11 @@ class RowLayout {
   int stride_ = 0;
   std::array<int, kColumns> offset_{};
 };
+
+// Of an arm with so many joints in this scene.
+inline RowLayout row_layout(int dof, const Scene& scene) {
+  return RowLayout(dof, count_bodies(scene));
+}
 
 // Largest row there is, for storage of fixed size.
 inline constexpr int kMaxStride = RowLayout(kMaxDof, kMostBodies).stride();

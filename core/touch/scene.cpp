@@ -1,6 +1,7 @@
 #include "core/touch/scene.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace limpid {
 
@@ -21,6 +22,41 @@ Pose pose_at(const Vec3& position) {
 int count_bodies(const Scene& scene) {
   return static_cast<int>(std::ranges::count_if(
       scene.objects, [](const Object& object) { return object.body.has_value(); }));
+}
+
+std::vector<std::string> body_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects) {
+    if (!object.body) continue;
+    names.push_back(object.name.empty() ? "object " + std::to_string(names.size() + 1)
+                                        : object.name);
+  }
+  return names;
+}
+
+namespace {
+
+// [m^3]; of what is no solid 0.
+struct Volume {
+  double operator()(const Sphere& s) const {
+    return 4.0 / 3 * std::numbers::pi * s.radius * s.radius * s.radius;
+  }
+  double operator()(const Box& b) const { return b.size.prod(); }
+  double operator()(const auto&) const { return 0; }
+};
+
+}  // namespace
+
+Vec3 center_of_mass(const Object& object) {
+  if (object.body && object.body->center) return *object.body->center;
+  double volume = std::visit(Volume{}, object.shape);
+  Vec3 moment = Vec3::Zero();  // [m^4]
+  for (const BodyPart& part : object.parts) {
+    const double of_part = std::visit(Volume{}, part.shape);
+    volume += of_part;
+    moment += of_part * part.pose.translation();
+  }
+  return volume > 0 ? Vec3(moment / volume) : Vec3::Zero();
 }
 
 double stiffest_surface(const Scene& scene) {

@@ -27,6 +27,9 @@ inline constexpr const char* kJointTypes = "joint_types";  // attribute of the r
 inline constexpr const char* kSlidingType = "prismatic";   // URDF's words
 inline constexpr const char* kTurningType = "revolute";
 inline constexpr const char* kEventSettingPath = "/events/setting";
+inline constexpr const char* kWorldPath = "/objects/state";
+inline constexpr std::size_t kMostWorld = 100'000;  // numbers
+inline constexpr const char* kBodyNames = "names";  // attribute of what is said of each body
 
 // What a row reads as that was announced but never written, in recordings of the first edition: a
 // not-a-number that no arithmetic makes.
@@ -58,8 +61,11 @@ struct SessionInfo {
   std::shared_ptr<const ArmDescription> arm;
   std::vector<bool>
       slides;  // of each joint, as far as the file says; empty: none is known to slide
+  std::vector<std::string> bodies;  // what the objects that move are called, in the rows' order
   // All parameters at row 0 of a second run on the same hand (TOML); none: there is one run.
   std::optional<std::string> twin;
+
+  RowLayout layout() const { return RowLayout(dof, static_cast<int>(bodies.size())); }
 };
 
 // A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.
@@ -75,6 +81,9 @@ struct Session {
   RowLayout layout{3};
   std::vector<double> rows;  // N x layout.stride(), row-major
   std::vector<SettingChange> changes;
+  // All that the loop keeps of its bodies at the first row, as RigStart has it. Empty: they begin
+  // as the scene has them, or it is not known.
+  std::vector<double> world;
   // The second run on the same hand, as a session of its own: as many rows, its own parameters and
   // changes, the same world. Null: there is one run.
   std::shared_ptr<const Session> twin;
@@ -104,6 +113,9 @@ class SessionWriter {
   // Any whole number of rows. Of a twin both runs get as many.
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
+  // What the loop keeps of bodies at the first row, at most kMostWorld numbers; at most once, and
+  // before that row. Of a session without bodies nothing is kept.
+  void append_world(std::span<const double> world, std::size_t lane = kMainLane);
   void close();                        // flush, close, rename
   std::uint64_t rows_written() const;  // handed over so far
   const std::filesystem::path& part() const;

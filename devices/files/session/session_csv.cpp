@@ -4,12 +4,15 @@
 #include <fmt/os.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "devices/files/session/derived_columns.h"
+#include "devices/files/session/session_source.h"
 #include "devices/files/session/session_units.h"
 
 namespace limpid {
@@ -25,6 +28,25 @@ std::string with_unit(const std::string& name, std::string unit) {
   if (unit == "-") return name;
   for (char& c : unit) c = c == ' ' || c == '/' ? '_' : c;
   return name + "_" + unit;
+}
+
+// What a body is called, without what means something in such a file.
+std::string plain_body(std::string name) {
+  for (char& c : name) {
+    const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0;
+    if (!kept) c = '_';
+  }
+  return name;
+}
+
+// "/objects/pose" of a die becomes "objects_die_x_m" to "objects_die_qz", its velocity
+// "objects_die_vx_m_s" to "objects_die_wz_rad_s".
+std::string body_column_name(bool velocity, int part, const std::string& body,
+                             const std::string& unit) {
+  constexpr std::array kPose{"x", "y", "z", "qw", "qx", "qy", "qz"};
+  constexpr std::array kVelocity{"vx", "vy", "vz", "wx", "wy", "wz"};
+  const auto i = static_cast<std::size_t>(part);
+  return with_unit(fmt::format("objects_{}_{}", body, velocity ? kVelocity[i] : kPose[i]), unit);
 }
 
 // "/device/position" of joint 2 in rad becomes "device_position_2_rad".
@@ -46,6 +68,13 @@ class Table {
       : run_(run),
         units_(run.layout, slides(run, arm)),
         row_(static_cast<std::size_t>(run.layout.stride())) {
+    for (const std::string& body : run.info.bodies) {
+      std::string name = plain_body(body);
+      if (std::ranges::find(bodies_, name) != bodies_.end()) {
+        name += fmt::format("_{}", bodies_.size() + 1);
+      }
+      bodies_.push_back(std::move(name));
+    }
     if (arm != nullptr) derived_.emplace(*arm);
   }
 
@@ -54,8 +83,8 @@ class Table {
       const int width = run_.layout.width(info.column);
       const std::vector<std::string> units = units_.units(info);
       for (int i = 0; i < width; ++i) {
-        const std::string& unit = units[units.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-        names.push_back(before + column_name(info, width, i, unit));
+        const std::string& unit = units[static_cast<std::size_t>(i) % units.size()];
+        names.push_back(before + name_of(info, width, i, unit));
       }
     }
     if (!derived_) return;
@@ -84,6 +113,12 @@ class Table {
   }
 
  private:
+  std::string name_of(const ColumnInfo& info, int width, int i, const std::string& unit) const {
+    const int each = static_cast<int>(of_each_body(info));
+    if (each == 0) return column_name(info, width, i, unit);
+    const std::string& body = bodies_[static_cast<std::size_t>(i / each)];
+    return body_column_name(info.width == ColumnWidth::velocities, i % each, body, unit);
+  }
   static std::vector<bool> slides(const Session& run, const ArmDescription* arm) {
     return arm != nullptr ? slides_of(*arm) : run.info.slides;
   }
@@ -92,6 +127,7 @@ class Table {
   SessionUnits units_;
   std::optional<DerivedColumns> derived_;
   std::vector<double> row_;
+  std::vector<std::string> bodies_;  // as names of columns, each its own
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 #include <ctime>
 #include <stdexcept>
+#include <string>
 
 #include "core/dynamics/arm_description.h"
 #include "devices/files/atomic_file.h"
@@ -38,6 +39,11 @@ constexpr const char* kConventions =
     "/contact/point is not a number. /check is for the program: sums that show damage, and what "
     "the units' rounding took. Whoever changes a dataset deletes /check.";
 
+constexpr const char* kBodyConventions =
+    " /objects has what moves, one object behind the other as the attribute names says: its place "
+    "is that of its centre of mass, its rotation a quaternion w, x, y, z from its own frame to "
+    "that of the root link.";
+
 void write_arm(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
   std::vector<std::string> types;
   for (const bool slide : info.slides) types.emplace_back(slide ? kSlidingType : kTurningType);
@@ -62,7 +68,9 @@ void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem
   hdf5::write_text(root, "created", info.created.empty() ? now() : info.created, file);
   hdf5::write_text(root, "app_version", info.app_version, file);
   hdf5::write_text(root, "build", info.build, file);
-  hdf5::write_text(root, "conventions", kConventions, file);
+  const bool bodies = !info.bodies.empty();
+  hdf5::write_text(root, "conventions",
+                   std::string(kConventions) + (bodies ? kBodyConventions : ""), file);
   hdf5::write_text(root, "source", info.source, file);
   hdf5::write_text(root, "config", info.config, file);
   hdf5::write_text(root, "device_urdf", info.device_urdf, file);
@@ -137,7 +145,7 @@ hdf5::Properties placed_within_pages() {
 }  // namespace
 
 SessionFile::SessionFile(std::filesystem::path path, const SessionInfo& about)
-    : path_(std::move(path)), layout_(about.dof) {
+    : path_(std::move(path)), layout_(about.layout()) {
   SessionInfo info = about;
   if (info.arm) info.slides = slides_of(*info.arm);
   lanes_.emplace_back(path_, info);
@@ -206,6 +214,15 @@ void SessionFile::append(const SettingChange& change, std::size_t lane) {
   }
   if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
   lanes_.at(lane).append(change);
+}
+
+void SessionFile::append_world(std::span<const double> world, std::size_t lane) {
+  if (world.size() > kMostWorld) {
+    throw FileError(fmt::format("{}: {}: {} numbers, at most {} are kept", path_.string(),
+                                kWorldPath, world.size(), kMostWorld));
+  }
+  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  guarded([&] { lanes_.at(lane).append_world(world); });
 }
 
 void SessionFile::close() {

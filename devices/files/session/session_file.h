@@ -46,6 +46,7 @@ class SessionFile {
 
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
+  void append_world(std::span<const double> world, std::size_t lane);
   void close();  // writes what is pending and closes for good
   std::uint64_t rows() const { return lanes_.front().rows(); }
 

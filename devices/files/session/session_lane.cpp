@@ -56,35 +56,34 @@ void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimensi
   check(H5DSattach_scale(dataset.get(), scale.get(), dimension) >= 0, file, "cannot write");
 }
 
-Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
-                       hsize_t chunk, std::optional<double> fill) {
+Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, hsize_t chunk,
+                       std::optional<double> fill) {
   const Properties creation(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_fill_time(creation.get(), fill ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
   if (fill) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &*fill);
-  const std::array<hsize_t, 2> none{0, width};
-  const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
-  const std::array<hsize_t, 2> chunks{chunk, width};
-  const Dataspace space(H5Screate_simple(rank, none.data(), unlimited.data()));
+  const std::array<hsize_t, 3> none{0, row.width, row.each_body};
+  const std::array<hsize_t, 3> unlimited{H5S_UNLIMITED, row.width, row.each_body};
+  const std::array<hsize_t, 3> chunks{chunk, row.width, row.each_body};
+  const Dataspace space(H5Screate_simple(row.rank, none.data(), unlimited.data()));
   const Properties links(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(links.get(), 1);
-  H5Pset_chunk(creation.get(), rank, chunks.data());
+  H5Pset_chunk(creation.get(), row.rank, chunks.data());
   return Dataset(
       H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
 }
 
-void append_to(const Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row, hid_t type,
                const void* data, const std::filesystem::path& file) {
-  const std::array<hsize_t, 2> extent{from + count, width};
-  const std::array<hsize_t, 2> start{from, 0};
-  const std::array<hsize_t, 2> block{count, width};
+  const std::array<hsize_t, 3> extent{from + count, row.width, row.each_body};
+  const std::array<hsize_t, 3> start{from, 0, 0};
+  const std::array<hsize_t, 3> block{count, row.width, row.each_body};
   check(H5Dset_extent(dataset.get(), extent.data()) >= 0, file, "cannot write");
   if (data == nullptr) {
     check(H5Dflush(dataset.get()) >= 0, file, "cannot write");
     return;
   }
   const Dataspace in_file(H5Dget_space(dataset.get()));
-  const int rank = H5Sget_simple_extent_ndims(in_file.get());
-  const Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
+  const Dataspace in_memory(H5Screate_simple(row.rank, block.data(), nullptr));
   check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                             nullptr) >= 0 &&
             H5Dwrite(dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, data) >= 0 &&
@@ -107,6 +106,10 @@ constexpr std::uint64_t kMostRows = 4096;  // at once: more would not stay in th
 constexpr std::uint64_t kBlocksPerChunk = 16;
 constexpr hsize_t kEventChunk = 64;
 constexpr hsize_t kSumChunk = 64;
+constexpr hsize_t kWorldChunk = 1024;
+
+constexpr hdf5::RowShape kOne;
+constexpr hdf5::RowShape table(hsize_t width) { return {2, width}; }
 
 hdf5::Datatype setting_type() {
   hdf5::Datatype type(H5Tcopy(H5T_C_S1));
@@ -122,6 +125,8 @@ std::optional<double> mostly(Column column) {
   switch (column) {
     case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
     case Column::contact_force:
+    case Column::body_velocity:  // they sleep
+    case Column::magnet:
     case Column::compensation_torque:
     case Column::energy_compensation: return 0.0;
     default: return std::nullopt;
@@ -143,7 +148,8 @@ std::uint64_t rows_of_block(double tick) {
 
 SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info)
     : path_(std::move(path)),
-      layout_(info.dof),
+      layout_(info.layout()),
+      bodies_(info.bodies),
       block_rows_(rows_of_block(info.tick)),
       most_rows_(std::max(block_rows_, kMostRows)),
       pending_(std::make_unique_for_overwrite<double[]>(
@@ -153,7 +159,10 @@ SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info)
 
 void SessionLane::create(hid_t group) {
   create_device(group);
-  for (const ColumnInfo& column : kColumnInfo) create_column(group, column);
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (layout_.has(column.column)) create_column(group, column);
+  }
+  if (layout_.bodies() > 0) create_world(group);
   if (deriver_) create_derived(group);
   if (!units_.scaled().empty()) create_rounding(group);
   create_events(group);
@@ -169,14 +178,21 @@ void SessionLane::create_device(hid_t group) {
   check(static_cast<bool>(device), path_, "cannot write");
 }
 
+hdf5::RowShape SessionLane::shape(const ColumnInfo& column) const {
+  const auto width = static_cast<hsize_t>(layout_.width(column.column));
+  const hsize_t each = of_each_body(column);
+  if (each > 0) return {3, width / each, each};
+  const bool single = column.width == ColumnWidth::one || column.width == ColumnWidth::if_bodies;
+  return single ? kOne : table(width);  // N x 1 for a single joint
+}
+
 void SessionLane::create_column(hid_t group, const ColumnInfo& column) {
   hdf5::Dataset& dataset = columns_[column_index(column.column)];
   dataset =
       create_growing(group, within_group(column.path), column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE,
-                     column.width == ColumnWidth::one ? 1 : 2,  // N x 1 for a single joint
-                     static_cast<hsize_t>(layout_.width(column.column)),
-                     kBlocksPerChunk * block_rows_, mostly(column.column));
+                     shape(column), kBlocksPerChunk * block_rows_, mostly(column.column));
   check(static_cast<bool>(dataset), path_, "cannot write");
+  if (of_each_body(column) > 0) hdf5::write_texts(dataset.get(), kBodyNames, bodies_, path_);
   const std::vector<std::string> units = units_.units(column);
   if (units.size() == 1) {
     hdf5::write_text(dataset.get(), "unit", units.front(), path_);
@@ -189,7 +205,7 @@ void SessionLane::create_column(hid_t group, const ColumnInfo& column) {
 void SessionLane::create_derived(hid_t group) {
   for (std::size_t i = 0; i < kDerived; ++i) {
     const DerivedInfo& info = kDerivedInfo[i];
-    derived_columns_[i] = create_growing(group, within_group(info.path), H5T_IEEE_F64LE, 2, 3,
+    derived_columns_[i] = create_growing(group, within_group(info.path), H5T_IEEE_F64LE, table(3),
                                          kBlocksPerChunk * block_rows_,
                                          i == kTotalForce ? std::optional(0.0) : std::nullopt);
     check(static_cast<bool>(derived_columns_[i]), path_, "cannot write");
@@ -199,8 +215,8 @@ void SessionLane::create_derived(hid_t group) {
 }
 
 void SessionLane::create_rounding(hid_t group) {
-  rounding_column_ = create_growing(group, within_group(kRoundingPath), H5T_STD_I8LE, 2,
-                                    units_.scaled().size(), kBlocksPerChunk * block_rows_);
+  rounding_column_ = create_growing(group, within_group(kRoundingPath), H5T_STD_I8LE,
+                                    table(units_.scaled().size()), kBlocksPerChunk * block_rows_);
   check(static_cast<bool>(rounding_column_), path_, "cannot write");
   hdf5::write_text(rounding_column_.get(), "unit", "-", path_);
   hdf5::write_text(rounding_column_.get(), "what",
@@ -213,7 +229,7 @@ void SessionLane::attach(const hdf5::Scales& scales) const {
   const hdf5::Dataset& time = columns_[column_index(Column::time)];
   hdf5::make_scale(time, "time", path_);
   for (const ColumnInfo& column : kColumnInfo) {
-    if (column.column == Column::time) continue;
+    if (column.column == Column::time || !layout_.has(column.column)) continue;
     const hdf5::Dataset& dataset = columns_[column_index(column.column)];
     hdf5::attach_scale(dataset, time, 0, path_);
     if (column.width == ColumnWidth::dof && scales.joint) {
@@ -232,9 +248,9 @@ void SessionLane::attach(const hdf5::Scales& scales) const {
 
 void SessionLane::create_events(hid_t group) {
   const hdf5::Datatype text = setting_type();
-  event_row_ = create_growing(group, within_group(kEventRowPath), H5T_STD_U64LE, 1, 1, kEventChunk);
+  event_row_ = create_growing(group, within_group(kEventRowPath), H5T_STD_U64LE, kOne, kEventChunk);
   event_setting_ =
-      create_growing(group, within_group(kEventSettingPath), text.get(), 1, 1, kEventChunk);
+      create_growing(group, within_group(kEventSettingPath), text.get(), kOne, kEventChunk);
   check(event_row_ && event_setting_, path_, "cannot write");
   hdf5::write_text(event_row_.get(), "unit", "-", path_);
   hdf5::write_text(event_row_.get(), "what", "row from which the setting holds", path_);
@@ -242,13 +258,28 @@ void SessionLane::create_events(hid_t group) {
   hdf5::write_text(event_setting_.get(), "what", "parameter that changed: key = value", path_);
 }
 
+void SessionLane::create_world(hid_t group) {
+  world_ = create_growing(group, within_group(kWorldPath), H5T_IEEE_F64LE, kOne, kWorldChunk);
+  check(static_cast<bool>(world_), path_, "cannot write");
+  hdf5::write_text(world_.get(), "unit", "-", path_);
+  hdf5::write_text(world_.get(), "what",
+                   "what the loop keeps of objects that move, at the first row: for the program, "
+                   "which begins there again",
+                   path_);
+}
+
+void SessionLane::append_world(std::span<const double> world) {
+  if (!world_ || world.empty()) return;
+  append_to(world_, 0, world.size(), kOne, H5T_NATIVE_DOUBLE, world.data(), path_);
+}
+
 void SessionLane::create_check(hid_t group) {
   const auto rows = static_cast<std::int64_t>(block_rows_);
-  sums_ =
-      create_growing(group, within_group(kCheckPath), H5T_STD_U64LE, 2, kSummedColumns, kSumChunk);
+  sums_ = create_growing(group, within_group(kCheckPath), H5T_STD_U64LE,
+                         table(count_summed(layout_)), kSumChunk);
   check(static_cast<bool>(sums_), path_, "cannot write");
   hdf5::write_scalar(sums_.get(), kCheckRows, H5T_STD_I64LE, H5T_NATIVE_INT64, &rows, path_);
-  hdf5::write_text(sums_.get(), kCheckColumns, check_columns(), path_);
+  hdf5::write_text(sums_.get(), kCheckColumns, check_columns(layout_), path_);
   hdf5::write_text(sums_.get(), "unit", "-", path_);
   hdf5::write_text(sums_.get(), "what", "checksum of each column over so many rows", path_);
 }
@@ -302,7 +333,7 @@ void SessionLane::flush() {
   write_rounding();
   write_derived();
   for (auto column = kColumnInfo.rbegin(); column != kColumnInfo.rend(); ++column) {
-    write_column(*column);
+    if (layout_.has(column->column)) write_column(*column);
   }
   write_check();
   flushed_rows_ += pending_rows_;
@@ -319,11 +350,13 @@ void SessionLane::write_check() {
   for (std::uint64_t from = 0; from < pending_rows_; from += block_rows_) {
     const auto of_block = column_sums(columns, from, std::min(block_rows_, pending_rows_ - from));
     for (std::size_t i = 0; i < kColumns; ++i) {
-      if (summed(kColumnInfo[i])) sums.push_back(of_block[i]);
+      if (summed(layout_, kColumnInfo[i])) sums.push_back(of_block[i]);
     }
   }
-  const std::uint64_t blocks = sums.size() / kSummedColumns;
-  append_to(sums_, flushed_sums_, blocks, kSummedColumns, H5T_NATIVE_UINT64, sums.data(), path_);
+  const std::size_t summed_columns = count_summed(layout_);
+  const std::uint64_t blocks = sums.size() / summed_columns;
+  append_to(sums_, flushed_sums_, blocks, table(summed_columns), H5T_NATIVE_UINT64, sums.data(),
+            path_);
   flushed_sums_ += blocks;
 }
 
@@ -367,15 +400,15 @@ void SessionLane::write_derived() {
   if (!deriver_) return;
   for (std::size_t i = 0; i < kDerived; ++i) {
     const bool nothing = i == kTotalForce && nothing_but(derived_[i], 0.0);
-    append_to(derived_columns_[i], flushed_rows_, pending_rows_, 3, H5T_NATIVE_DOUBLE,
+    append_to(derived_columns_[i], flushed_rows_, pending_rows_, table(3), H5T_NATIVE_DOUBLE,
               nothing ? nullptr : derived_[i].data(), path_);
   }
 }
 
 void SessionLane::write_rounding() {
   if (units_.scaled().empty()) return;
-  append_to(rounding_column_, flushed_rows_, pending_rows_, units_.scaled().size(), H5T_NATIVE_INT8,
-            rounding_.data(), path_);
+  append_to(rounding_column_, flushed_rows_, pending_rows_, table(units_.scaled().size()),
+            H5T_NATIVE_INT8, rounding_.data(), path_);
 }
 
 void SessionLane::write_column(const ColumnInfo& column) {
@@ -389,7 +422,7 @@ void SessionLane::write_column(const ColumnInfo& column) {
   const void* data = column.byte ? static_cast<const void*>(bytes_.data()) : numbers.data();
   const std::optional<double> fill = mostly(column.column);
   if (fill && nothing_but(numbers, *fill)) data = nullptr;
-  append_to(columns_[column_index(column.column)], flushed_rows_, pending_rows_, width,
+  append_to(columns_[column_index(column.column)], flushed_rows_, pending_rows_, shape(column),
             column.byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, data, path_);
 }
 
@@ -403,8 +436,9 @@ void SessionLane::write_changes() {
     settings.resize(rows.size() * kSettingLength, '\0');
   }
   const hdf5::Datatype text = setting_type();
-  append_to(event_setting_, flushed_changes_, rows.size(), 1, text.get(), settings.data(), path_);
-  append_to(event_row_, flushed_changes_, rows.size(), 1, H5T_NATIVE_UINT64, rows.data(), path_);
+  append_to(event_setting_, flushed_changes_, rows.size(), kOne, text.get(), settings.data(),
+            path_);
+  append_to(event_row_, flushed_changes_, rows.size(), kOne, H5T_NATIVE_UINT64, rows.data(), path_);
   flushed_changes_ += rows.size();
   changes_.clear();
 }
@@ -412,7 +446,7 @@ void SessionLane::write_changes() {
 void SessionLane::close() {
   for (hdf5::Dataset& column : columns_) check(column.close(), path_, "cannot write");
   for (hdf5::Dataset& column : derived_columns_) check(column.close(), path_, "cannot write");
-  check(rounding_column_.close(), path_, "cannot write");
+  check(rounding_column_.close() && world_.close(), path_, "cannot write");
   check(event_row_.close() && event_setting_.close() && sums_.close(), path_, "cannot write");
 }
 
@@ -420,6 +454,7 @@ void SessionLane::abandon() {
   for (hdf5::Dataset& column : columns_) column.close();
   for (hdf5::Dataset& column : derived_columns_) column.close();
   rounding_column_.close();
+  world_.close();
   event_row_.close();
   event_setting_.close();
   sums_.close();

@@ -35,15 +35,23 @@ void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimensi
 
 namespace limpid::hdf5 {
 
-// A list of rank 1, or a table of rank 2 with rows of `width`; invalid if it cannot be created.
-// `fill`: what rows read as that are announced and never written; none: as anything.
-Dataset create_growing(hid_t file, const char* path, hid_t type, int rank, hsize_t width,
-                       hsize_t chunk, std::optional<double> fill = std::nullopt);
+// What one row of a dataset is: a single number (rank 1), so many (rank 2), or so many of each of
+// some bodies (rank 3).
+struct RowShape {
+  int rank = 1;
+  hsize_t width = 1;
+  hsize_t each_body = 1;  // of rank 3; `width` counts bodies then
+};
+
+// A list or table of such rows; invalid if it cannot be created. `fill`: what rows read as that are
+// announced and never written; none: as anything.
+Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, hsize_t chunk,
+                       std::optional<double> fill = std::nullopt);
 
 // Appends `count` rows behind the first `from` and flushes them; without data they are what the
 // dataset is filled with. Errors: FileError naming `file`; asked for at once, as closing any handle
 // makes HDF5 forget them.
-void append_to(const Dataset& dataset, hsize_t from, hsize_t count, hsize_t width, hid_t type,
+void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row, hid_t type,
                const void* data, const std::filesystem::path& file);
 
 }  // namespace limpid::hdf5
@@ -75,6 +83,7 @@ class SessionLane {
   // `rows` is left with those that were not taken.
   bool take(std::span<const double>& rows);
   void append(SettingChange change) { changes_.push_back(std::move(change)); }
+  void append_world(std::span<const double> world);  // written at once
   void flush();
   void close();    // after a flush
   void abandon();  // without one
@@ -86,6 +95,8 @@ class SessionLane {
   void create_derived(hid_t group);
   void create_rounding(hid_t group);
   void create_events(hid_t group);
+  void create_world(hid_t group);
+  hdf5::RowShape shape(const ColumnInfo& column) const;
   void create_check(hid_t group);
   double* pending(Column column) const;
   void sort_in(std::span<const double> rows);
@@ -99,6 +110,7 @@ class SessionLane {
 
   std::filesystem::path path_;
   RowLayout layout_;
+  std::vector<std::string> bodies_;
   std::uint64_t block_rows_;
   std::uint64_t most_rows_;  // that are written at once: whole blocks
   std::uint64_t flushed_rows_ = 0;
@@ -115,6 +127,7 @@ class SessionLane {
   std::array<hdf5::Dataset, kColumns> columns_;
   std::array<hdf5::Dataset, kDerived> derived_columns_;
   hdf5::Dataset rounding_column_;
+  hdf5::Dataset world_;
   hdf5::Dataset event_row_;
   hdf5::Dataset event_setting_;
   hdf5::Dataset sums_;

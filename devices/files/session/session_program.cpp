@@ -44,6 +44,7 @@ namespace {
 
 void put_run(Writer& to, const Session& run) {
   to.list(std::span<const double>(run.rows));
+  to.list(std::span<const double>(run.world));
   to.number<std::uint64_t>(run.changes.size());
   for (const SettingChange& change : run.changes) {
     to.number(change.row);
@@ -52,11 +53,13 @@ void put_run(Writer& to, const Session& run) {
 }
 
 void take_run(Reader& from, Session& run) {
-  run.layout = RowLayout(run.info.dof);
+  run.layout = run.info.layout();
   run.rows = from.list<std::vector<double>>();
   if (run.rows.size() % static_cast<std::size_t>(run.layout.stride()) != 0) {
     throw Broken("rows that are not whole");
   }
+  run.world = from.list<std::vector<double>>();
+  if (run.world.size() > kMostWorld) throw Broken("more of bodies than there can be");
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();
@@ -91,6 +94,8 @@ void put_session(Writer& to, const Session& session) {
   }
   to.list(std::span<const unsigned char>(
       std::vector<unsigned char>(info.slides.begin(), info.slides.end())));
+  to.number<std::uint64_t>(info.bodies.size());
+  for (const std::string& name : info.bodies) to.text(name);
   put_run(to, session);
   to.number<std::uint8_t>(session.twin != nullptr);
   if (session.twin == nullptr) return;
@@ -120,6 +125,9 @@ Session take_session(Reader& from) {
     throw Broken("joints that the arm does not have");
   }
   for (const unsigned char slide : slides) info.slides.push_back(slide != 0);
+  const std::size_t bodies = from.taken(sizeof(std::uint64_t));
+  if (bodies > kMostBodies) throw Broken("more bodies than there can be");
+  for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
   take_run(from, session);
   if (from.number<std::uint8_t>() == 0) return session;
   Session twin;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -101,9 +102,15 @@ std::optional<double> default_of(Column column) {
     case Column::contact_gain:
     case Column::compensation_torque:
     case Column::energy_compensation:
+    case Column::objects_sweeps:
+    case Column::magnet:
     case Column::energy_ledger: return 0.0;
-    // What the human was given, and that nothing touched, is not known.
+    // What the human and objects were given, and that nothing touched, is not known.
     case Column::energy_port:
+    case Column::energy_to_objects:
+    case Column::energy_objects:
+    case Column::objects_gain:
+    case Column::objects_awake:
     case Column::contact_point:
     case Column::contact_force: return std::numeric_limits<double>::quiet_NaN();
     default: return std::nullopt;
@@ -151,6 +158,32 @@ std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
   return slides;
 }
 
+// Of all objects that move, as many as there are poses of.
+std::vector<std::string> read_bodies(hid_t root, const fs::path& file) {
+  const char* path = kColumnInfo[column_index(Column::body_pose)].path;
+  if (!hdf5::has(root, path, file)) return {};
+  const hdf5::Dataset poses = hdf5::open_dataset(root, path, file);
+  const hdf5::Dataspace space(H5Dget_space(poses.get()));
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  std::array<hsize_t, 3> extent{};
+  if (rank == 3) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
+  if (rank != 3 || extent[1] > kMostBodies || extent[2] != kPoseNumbers) {
+    refuse(file, fmt::format("{}: {} dimensions, {} x {} wide; needed: N x bodies x {}, of at most "
+                             "{} bodies",
+                             path, rank, extent[1], extent[2], kPoseNumbers, kMostBodies));
+  }
+  std::vector<std::string> names;
+  if (H5Aexists(poses.get(), kBodyNames) > 0) {
+    names = hdf5::read_texts(poses.get(), kBodyNames, kMostBodies, file);
+    if (names.size() != extent[1]) {
+      refuse(file, fmt::format("{}: {} names; needed: {}, one of each body", path, names.size(),
+                               extent[1]));
+    }
+  }
+  while (names.size() < extent[1]) names.push_back(fmt::format("object {}", names.size() + 1));
+  return names;
+}
+
 SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
   const std::string format = hdf5::read_text(root, "format", file);
   if (format != kSessionFormat) {
@@ -178,6 +211,7 @@ SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
   if (H5Aexists(root, "build") > 0) info.build = hdf5::read_text(root, "build", file);
   if (version > 1) info.slides = read_slides(root, info.dof, file);
   info.models = read_models(root, file, claims);
+  info.bodies = read_bodies(root, file);
   return info;
 }
 
@@ -231,6 +265,7 @@ void read_rows(hid_t root, Session& session, const fs::path& file, hdf5::Claims&
   std::vector<Source> sources;
   std::vector<Column> columns;
   for (const ColumnInfo& column : kColumnInfo) {
+    if (!session.layout.has(column.column)) continue;
     if (!hdf5::has(root, column.path, file)) {
       if (default_of(column.column)) continue;
       refuse(file, fmt::format("{}: missing", column.path));
@@ -319,10 +354,29 @@ void shorten(Session& session, std::size_t rows) {
   std::erase_if(session.changes, [rows](const SettingChange& c) { return c.row > rows; });
 }
 
+void read_world(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
+  if (session.layout.bodies() == 0 || !hdf5::has(group, kWorldPath, file)) return;
+  const Source source = open_source(group, kWorldPath, 1, file);
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  if (H5Tget_class(type.get()) != H5T_FLOAT || H5Tget_size(type.get()) != 8) {
+    refuse(file, fmt::format("{}: of another type; needed: float64", kWorldPath));
+  }
+  if (source.rows > kMostWorld) {
+    refuse(file, fmt::format("{}: {} numbers; allowed: {}", kWorldPath, source.rows, kMostWorld));
+  }
+  claims.stored(source.dataset);
+  claims.take(source.rows, sizeof(double), source.path);
+  session.world.resize(source.rows);
+  if (session.world.empty() || read_block(source, 0, source.rows, session.world.data())) return;
+  if (!is_leftover(file)) refuse(file, fmt::format("{}: cannot be read", kWorldPath));
+  session.world.clear();
+}
+
 // One run: at the file's root, or in the twin's group. A leftover's rows that are not whole stay
 // away.
 void read_run(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
   read_rows(group, session, file, claims);
+  read_world(group, session, file, claims);
   const CheckedRows checked = checked_rows(group, session, file);
   if (is_leftover(file)) {
     session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
@@ -378,7 +432,7 @@ Session read_session_here(const fs::path& file) {
   Session session;
   hdf5::Claims claims(file);
   session.info = read_info(opened.get(), file, claims);
-  session.layout = RowLayout(session.info.dof);
+  session.layout = session.info.layout();
   try {
     read_run(opened.get(), session, file, claims);
     if (const hdf5::Group twin = twin_group(opened.get(), file)) {

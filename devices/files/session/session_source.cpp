@@ -63,10 +63,15 @@ std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::
   return sums;
 }
 
-std::string check_columns() {
+std::size_t count_summed(const RowLayout& layout) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      kColumnInfo, [&](const ColumnInfo& column) { return summed(layout, column); }));
+}
+
+std::string check_columns(const RowLayout& layout) {
   std::string paths;
   for (const ColumnInfo& column : kColumnInfo) {
-    if (summed(column)) paths += std::string(column.path) + "\n";
+    if (summed(layout, column)) paths += std::string(column.path) + "\n";
   }
   return paths;
 }
@@ -113,25 +118,32 @@ void refuse(const std::filesystem::path& file, const std::string& why) {
   throw FileError(fmt::format("{}: {}", file.string(), why));
 }
 
-Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file) {
-  Source source{hdf5::open_dataset(root, path, file), path, 0, width};
+Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file,
+                   hsize_t each_body) {
+  Source source{hdf5::open_dataset(root, path, file), path, 0, width, each_body};
   const hdf5::Dataspace space(H5Dget_space(source.dataset.get()));
   const int rank = H5Sget_simple_extent_ndims(space.get());
+  std::array<hsize_t, 3> extent{0, 1, 1};
+  if (rank >= 1 && rank <= 3) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
+  source.rows = extent[0];
+  if (each_body > 0) {
+    const hsize_t bodies = width / each_body;
+    if (rank == 3 && extent[1] == bodies && extent[2] == each_body) return source;
+    refuse(file, fmt::format("{}: {} dimensions, {} x {} wide; needed: N x {} x {}", path, rank,
+                             extent[1], extent[2], bodies, each_body));
+  }
   const bool table = rank == 2;
-  std::array<hsize_t, 2> extent{0, 1};
-  if (rank >= 1 && rank <= 2) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
   if (!(table || (rank == 1 && width == 1)) || extent[1] != width) {
     refuse(file, fmt::format("{}: {} dimensions, {} wide; needed: N x {}", path, rank,
                              table ? extent[1] : 1, width));
   }
-  source.rows = extent[0];
   return source;
 }
 
 Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
                    const std::filesystem::path& file) {
-  Source source =
-      open_source(root, column.path, static_cast<hsize_t>(layout.width(column.column)), file);
+  Source source = open_source(root, column.path, static_cast<hsize_t>(layout.width(column.column)),
+                              file, of_each_body(column));
   const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
   const std::size_t size = H5Tget_size(type.get());
   const bool number = H5Tget_class(type.get()) == H5T_FLOAT && (size == 8 || size == 4);
@@ -147,8 +159,9 @@ namespace {
 
 bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void* out) {
   const hdf5::Dataspace in_file(H5Dget_space(source.dataset.get()));
-  const std::array<hsize_t, 2> start{from, 0};
-  const std::array<hsize_t, 2> block{count, source.width};
+  const hsize_t each = source.each_body;
+  const std::array<hsize_t, 3> start{from, 0, 0};
+  const std::array<hsize_t, 3> block{count, each > 0 ? source.width / each : source.width, each};
   // Of the file's rank: HDF5 goes through other shapes number by number.
   const int rank = H5Sget_simple_extent_ndims(in_file.get());
   const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));

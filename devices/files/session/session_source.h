@@ -2,9 +2,9 @@
 // were damaged since: a sum over each column, for every block of rows that is written at once.
 //
 // /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
-// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all but
-// those of the timing, in which equal runs differ. The sums are over what the file holds. Sessions
-// of other programs, and of the first edition, have none.
+// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all that
+// the file has but those of the timing, in which equal runs differ. The sums are over what the file
+// holds. Sessions of other programs, and of the first edition, have none.
 #pragma once
 
 #include <algorithm>
@@ -42,13 +42,12 @@ std::array<std::uint64_t, kColumns> column_sums(const AllColumns& columns, std::
                                                 std::uint64_t count);
 
 // Whether a recording that is written now has sums of it.
-constexpr bool summed(const ColumnInfo& column) {
-  return !std::string_view(column.path).starts_with("/timing/");
+inline bool summed(const RowLayout& layout, const ColumnInfo& column) {
+  return layout.has(column.column) && !std::string_view(column.path).starts_with("/timing/");
 }
-inline constexpr auto kSummedColumns =
-    static_cast<std::size_t>(std::ranges::count_if(kColumnInfo, summed));
-// Their paths in the order of their sums, a line each.
-std::string check_columns();
+// How many those are, and their paths in the order of their sums, a line each.
+std::size_t count_summed(const RowLayout& layout);
+std::string check_columns(const RowLayout& layout);
 
 // How many rows from the first are as they were recorded, and why the next one is not. The rows are
 // still in the file's units.
@@ -61,13 +60,23 @@ CheckedRows checked_rows(hid_t root, const Session& session, const std::filesyst
 
 // The datasets of a session file, opened with distrust.
 
-// One dataset with its shape checked: rows, or rows x width.
+// One dataset with its shape checked: rows, rows x width, or rows x bodies x what each has.
 struct Source {
   hdf5::Dataset dataset;
   std::string path;
   hsize_t rows = 0;
-  hsize_t width = 1;
+  hsize_t width = 1;      // numbers in a row
+  hsize_t each_body = 0;  // and of each body; 0: rank 1 or 2
 };
+
+// How many numbers of each body a column has; 0 of one that is not made of bodies.
+constexpr hsize_t of_each_body(const ColumnInfo& column) {
+  switch (column.width) {
+    case ColumnWidth::poses: return kPoseNumbers;
+    case ColumnWidth::velocities: return kVelocityNumbers;
+    default: return 0;
+  }
+}
 
 // A recording that is running or was killed.
 inline bool is_leftover(const std::filesystem::path& file) { return file.extension() == ".part"; }
@@ -75,10 +84,12 @@ inline bool is_leftover(const std::filesystem::path& file) { return file.extensi
 // Throws FileError "FILE: WHY".
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
 
-// `root`: the file's, or a twin's group. Paths begin with "/" either way.
+// `root`: the file's, or a twin's group. Paths begin with "/" either way. What is said of bodies,
+// `each_body` numbers of each, is of rank 3.
 // Errors: FileError for what open_dataset() refuses, or is of another shape (or, for a column,
 // type).
-Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file);
+Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file,
+                   hsize_t each_body = 0);
 Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout,
                    const std::filesystem::path& file);
 

@@ -47,6 +47,10 @@ SessionUnits::SessionUnits(const RowLayout& layout, const std::vector<bool>& sli
 }
 
 std::vector<std::string> SessionUnits::units(const ColumnInfo& column) const {
+  if (column.width == ColumnWidth::poses) return {"m", "m", "m", "-", "-", "-", "-"};
+  if (column.width == ColumnWidth::velocities) {
+    return {"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s"};
+  }
   if (column.width != ColumnWidth::dof || scaled_.empty()) return {column.unit};
   std::vector<std::string> units;
   for (const bool slide : slides_) {

@@ -34,7 +34,8 @@ class SessionUnits {
   };
   const std::vector<Scaled>& scaled() const { return scaled_; }
 
-  // The file's unit of each part of a column; one where all have the same.
+  // The file's unit of each part of a column; one where all have the same, and those of one body
+  // where all bodies have the same.
   std::vector<std::string> units(const ColumnInfo& column) const;
 
   // Of a row's number: as the file has it, and how many doubles further on it lies than what

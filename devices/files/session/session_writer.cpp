@@ -42,6 +42,10 @@ void check_session_info(const SessionInfo& info, const fs::path& file) {
   if (info.dof < 1 || info.dof > kMaxDof) {
     throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
   }
+  if (info.bodies.size() > kMostBodies) {
+    throw FileError(fmt::format("{}: {} objects that move; allowed: 0 to {}", file.string(),
+                                info.bodies.size(), kMostBodies));
+  }
 }
 
 WriteLock::WriteLock(const fs::path& file, Make make)
@@ -108,6 +112,9 @@ void SessionWriter::append(std::span<const double> rows, std::size_t lane) {
 void SessionWriter::append(const SettingChange& change, std::size_t lane) {
   file_->session->append(change, lane);
 }
+void SessionWriter::append_world(std::span<const double> world, std::size_t lane) {
+  file_->session->append_world(world, lane);
+}
 std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
 const fs::path& SessionWriter::part() const { return file_->part; }
 
@@ -134,6 +141,7 @@ Recovered recover_session(const fs::path& part, bool force) {
     info.arm = recorded_arm(info);
     SessionFile file(copy, info);
     const auto copy_run = [&file](const Session& run, std::size_t lane) {
+      file.append_world(run.world, lane);
       for (const SettingChange& change : run.changes) file.append(change, lane);
       file.append(run.rows, lane);
     };

@@ -72,6 +72,7 @@ TEST(DamagedSession, SaysWhichRowsAreScrambled) {
 void extend(const fs::path& file, hsize_t rows) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   for (const ColumnInfo& column : kColumnInfo) {
+    if (!RowLayout(3).has(column.column)) continue;
     const hid_t data = H5Dopen2(opened, column.path, H5P_DEFAULT);
     const hid_t space = H5Dget_space(data);
     std::array<hsize_t, 2> extent{};
@@ -97,7 +98,7 @@ TEST(DamagedSession, DoesNotTakeRowsForRealThatWereNeverWritten) {
 
 TEST(DamagedSession, IsNoticedByASingleNumberThatIsAnother) {
   for (const ColumnInfo& column : kColumnInfo) {
-    if (!summed(column)) continue;  // how long ticks took
+    if (!summed(RowLayout(3), column)) continue;  // how long ticks took
     const test::TempDir dir;
     test::write_sample(dir / "a.h5", 1200);
     {
@@ -330,6 +331,7 @@ TEST(ForeignSession, MustNotClaimMoreThanItHolds) {
     for (const ColumnInfo& column : kColumnInfo) {
       std::vector<hsize_t> shape{hsize_t{1} << 40};
       const auto width = static_cast<hsize_t>(RowLayout(3).width(column.column));
+      if (width == 0) continue;
       if (width > 1) shape.push_back(width);
       vandal.dataset(column.path, column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE, shape);
     }
