@@ -1,0 +1,264 @@
+#include "core/touch/world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/dynamics/random.h"
+#include "tests/support/built_in.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double T = 1e-3;
+
+Object body(std::string name, Shape shape, double mass, const Vec3& at, double friction = 0.5) {
+  Object o;
+  o.name = std::move(name);
+  o.shape = std::move(shape);
+  o.pose = pose_at(at);
+  o.material = {2000, 0, friction, friction};
+  o.body = Body{};
+  o.body->mass = mass;
+  return o;
+}
+
+Object floor_at(double z) {
+  Object o;
+  o.name = "floor";
+  o.shape = Plane{};
+  o.pose = pose_at({0, 0, z});
+  return o;
+}
+
+Mat3 turned(double angle, const Vec3& about) {
+  return Eigen::AngleAxisd(angle, about.normalized()).matrix();
+}
+
+// Runs it and returns the most that its energy ever grew.
+double run(World& world, int ticks) {
+  double most = 0;
+  for (int k = 0; k < ticks; ++k) {
+    world.begin(T);
+    world.settle();
+    world.finish();
+    most = std::max(most, world.gain());
+  }
+  return most;
+}
+
+std::vector<double> state(const World& world) {
+  std::vector<double> all;
+  world.write(all);
+  return all;
+}
+
+TEST(World, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
+  Scene scene;
+  scene.gravity.setZero();
+  const Vec3 size(0.03, 0.05, 0.01);
+  scene.add(body("slab", Box{size}, 0.05, {0.1, -0.2, 0.3}));
+  World world(scene);
+  std::vector<double> numbers = state(world);
+  const Vec3 spin(12, 15, -10);
+  std::copy_n(spin.data(), 3, numbers.begin() + 10 + 15);
+  ASSERT_TRUE(world.read(numbers));
+  const Vec3 squares = size.cwiseProduct(size);
+  const Vec3 I = 0.05 / 12 * Vec3(squares.y() + squares.z(), squares.z() + squares.x(),
+                                  squares.x() + squares.y());
+  const auto momentum = [&] {
+    const Mat3& R = world.pose(0).linear();
+    return Vec3(R * I.cwiseProduct(R.transpose() * world.spin(0)));
+  };
+  const Vec3 at_first = momentum();
+  run(world, 10000);
+  const double energy = 0.5 * spin.dot(I.cwiseProduct(spin));
+  EXPECT_NEAR(world.energy(), energy, 1e-9 * energy);
+  EXPECT_LT((momentum() - at_first).norm(), 2e-4 * at_first.norm());
+  EXPECT_LT((world.center(0) - Vec3(0.1, -0.2, 0.3)).norm(), 1e-15);
+}
+
+TEST(World, AFreeBodyFallsAsTheMidpointRuleSays) {
+  Scene scene;
+  scene.gravity = {0.3, -1, -9.81};
+  scene.add(body("ball", Sphere{0.02}, 0.05, {0, 0, 1}));
+  World world(scene);
+  run(world, 400);
+  EXPECT_LT((world.center(0) - (Vec3(0, 0, 1) + 0.08 * scene.gravity)).norm(), 1e-13);
+  EXPECT_LT((world.speed(0) - 0.4 * scene.gravity).norm(), 1e-13);
+}
+
+TEST(World, APendulumKeepsItsEnergyAndItsPeriod) {
+  Scene scene;
+  Object rod = body("rod", Box{{0.01, 0.01, 0.1}}, 0.05, {0, 0, -0.05});
+  BodyJoint& joint = rod.body->joint.emplace();
+  joint.kind = BodyJoint::Kind::hinge;
+  joint.axis = Vec3::UnitY();
+  joint.point = {0, 0, 0.05};
+  scene.add(rod);
+  World world(scene);
+  std::vector<double> numbers = state(world);
+  numbers[10 + 18] = 0.02;  // a small swing [rad]
+  ASSERT_TRUE(world.read(numbers));
+  EXPECT_LT(run(world, 20000), 1e-12);
+  EXPECT_GT(world.gain(), -1e-12);
+  // From one crossing to the next but one, by straight lines in between.
+  std::vector<double> crossings;
+  double before = world.joint(0);
+  for (int k = 0; crossings.size() < 21; ++k) {
+    run(world, 1);
+    const double now = world.joint(0);
+    if (before < 0 && now >= 0) crossings.push_back(T * (k + before / (before - now)));
+    before = now;
+  }
+  const double I = 0.05 / 12 * (0.01 * 0.01 + 0.1 * 0.1) + 0.05 * 0.05 * 0.05;
+  const double period = 2 * M_PI * std::sqrt(I / (0.05 * 9.81 * 0.05));
+  EXPECT_NEAR((crossings.back() - crossings.front()) / 20, period, 1e-4 * period);
+}
+
+TEST(World, ABlockSlidesAsCoulombSays) {
+  for (const double friction : {0.2, 0.5}) {
+    Scene scene;
+    const double slope = 0.35;  // rad: tan 0.365
+    scene.gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
+    scene.add(floor_at(0));
+    scene.add(body("block", Box{{0.04, 0.04, 0.01}}, 0.1, {0, 0, 0.00499}, friction));
+    World world(scene);
+    run(world, 500);
+    const double pull = std::sin(slope) - friction * std::cos(slope);
+    EXPECT_NEAR(world.center(0).x(), std::max(0.0, 0.5 * 9.81 * pull * 0.25), 1e-3) << friction;
+  }
+}
+
+TEST(World, WhatRestsSinksByItsWeightOverItsContactsStiffness) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("die", Box{Vec3::Constant(0.03)}, 0.05, {0, 0, 0.015}));
+  World world(scene);
+  run(world, 400);
+  EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / (4 * 20000), 1e-7);
+}
+
+TEST(World, MakesNoEnergyWhateverFallsOnWhatever) {
+  Random random(7);
+  const std::array<Shape, 4> shapes{Box{{0.03, 0.02, 0.04}}, Sphere{0.015}, Cylinder{0.012, 0.03},
+                                    Capsule{0.01, 0.02}};
+  for (int trial = 0; trial < 8; ++trial) {
+    Scene scene;
+    scene.add(floor_at(0));
+    for (int i = 0; i < 5; ++i) {
+      const double mass = std::exp(random.uniform(std::log(0.0005), std::log(0.5)));
+      Object o = body("body " + std::to_string(i), shapes[static_cast<std::size_t>((i + trial) % 4)],
+                      mass, {0.005 * i, 0.003 * i, 0.03 + 0.05 * i}, 0.3);
+      o.pose.linear() = turned(random.uniform(-3, 3), Vec3(1, 2, random.uniform(-1, 1)));
+      o.body->contact_stiffness = std::exp(random.uniform(std::log(3000.0), std::log(50000.0)));
+      scene.add(o);
+    }
+    World world(scene);
+    EXPECT_LT(run(world, 2500), 1e-6) << trial;
+    for (int i = 0; i < 5; ++i) EXPECT_GT(world.center(i).z(), 0.004) << trial << " " << i;
+  }
+}
+
+TEST(World, GoesToSleepAndIsWokenByWhatFallsOnIt) {
+  Scene scene;
+  scene.add(floor_at(0));
+  for (int i = 0; i < 3; ++i) {
+    scene.add(body("block " + std::to_string(i), Box{Vec3::Constant(0.03)}, 0.02,
+                   {0, 0, 0.015 + 0.03 * i}));
+  }
+  scene.add(body("far", Box{Vec3::Constant(0.03)}, 0.02, {0.2, 0, 0.015}));
+  scene.add(body("falling", Sphere{0.01}, 0.02, {0, 0.001, 3}));
+  World world(scene);
+  run(world, 700);
+  EXPECT_EQ(world.awake(), 1);
+  const std::vector<double> asleep = state(world);
+  run(world, 10);
+  const std::vector<double> later = state(world);
+  EXPECT_TRUE(std::equal(asleep.begin() + 10, asleep.begin() + 10 + 4 * 23, later.begin() + 10));
+  run(world, 150);  // it hits at 0.77 s
+  EXPECT_EQ(world.awake(), 4);
+}
+
+TEST(World, GoesOnFromItsNumbersBitForBit) {
+  Scene scene;
+  scene.add(floor_at(0));
+  for (int i = 0; i < 6; ++i) {
+    Object o = body("domino " + std::to_string(i), Box{{0.008, 0.025, 0.05}}, 0.02,
+                    {0.025 * i, 0, 0.0255});
+    if (i == 0) o.pose.linear() = turned(0.25, Vec3::UnitY());
+    scene.add(o);
+  }
+  Object on_string = body("bob", Sphere{0.01}, 0.02, {0, 0.1, 0.1});
+  on_string.body->joint = BodyJoint{.kind = BodyJoint::Kind::ball, .point = {0.05, 0, 0}};
+  scene.add(on_string);
+  World one(scene), other(scene);
+  run(one, 250);  // the third is falling
+  ASSERT_TRUE(other.read(state(one)));
+  run(one, 500);
+  run(other, 500);
+  const std::vector<double> a = state(one), b = state(other);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(a, b);
+}
+
+TEST(World, RefusesNumbersOfAnotherScene) {
+  Scene scene;
+  scene.add(body("a", Sphere{0.01}, 0.02, {0, 0, 1}));
+  World one(scene);
+  std::vector<double> numbers = state(one);
+  scene.add(body("b", Sphere{0.01}, 0.02, {0, 0, 2}));
+  World two(scene);
+  EXPECT_FALSE(two.read(numbers));
+  EXPECT_FALSE(two.read({}));
+  numbers[20] = std::nan("");
+  EXPECT_FALSE(one.read(numbers));
+}
+
+// A force F of the arm on a body is answered within the tick by T F / (2 m) at the middle.
+TEST(World, AnswersAForceWithItsMass) {
+  Scene scene;
+  scene.gravity.setZero();
+  scene.add(body("ball", Sphere{0.02}, 0.05, {0, 0, 0}));
+  World world(scene);
+  world.touch(0);
+  world.begin(T);
+  const World::End end = world.end_at(0, {0, 0, 0.02});
+  world.push(end, {0, 0, -2});
+  EXPECT_NEAR(world.velocity(end).z(), -2 * T / (2 * 0.05), 1e-15);
+  EXPECT_NEAR(world.answer(end)(2, 2), T / (2 * 0.05), 1e-15);
+  world.settle();
+  world.book(end, {0, 0, -2});
+  world.finish();
+  EXPECT_NEAR(world.given(), 0.5 * 0.05 * world.speed(0).squaredNorm(), 1e-15);
+}
+
+TEST(World, AKeyClicksWhereItsTableSays) {
+  Scene scene;
+  Object key = body("key", Box{{0.012, 0.012, 0.006}}, 0.002, {0, 0, 0});
+  BodyJoint& joint = key.body->joint.emplace();
+  joint.axis = -Vec3::UnitZ();
+  joint.low = 0;
+  joint.high = 0.0096;
+  joint.force.travel = {{0, 0.5}, {0.002, 0.9}, {0.006, 0.1}, {0.0096, 0.9}};
+  scene.add(key);
+  World world(scene);
+  // Pressed with 0.6 N it stops where the table says so, with 1.2 N at the end.
+  const double weight = 0.002 * 9.81;
+  for (const auto& [force, rest] : {std::pair{0.6, 0.0005 * (0.1 + weight) / 0.1},
+                                    std::pair{1.2, 0.0096 + (0.3 + weight) / 20000}}) {
+    for (int k = 0; k < 3000; ++k) {
+      world.touch(0);
+      world.begin(T);
+      // A damper that is no part of it brings it to rest.
+      const World::End end = world.end_at(0, world.center(0));
+      world.push(end, {0, 0, -force - 0.5 * world.speed(0).z()});
+      world.settle();
+      world.finish();
+    }
+    EXPECT_NEAR(world.joint(0), rest, 2e-6) << force;
+  }
+}
+
+}  // namespace
+}  // namespace limpid::test
