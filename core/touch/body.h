@@ -24,6 +24,7 @@ struct JointForce {
   // Force against s, over s, straight between the points; outside as at the ends. [m, N] or
   // [rad, N m].
   std::vector<std::array<double, 2>> travel;
+  friend bool operator==(const JointForce&, const JointForce&) = default;
 };
 
 // How a body hangs on another one or on the world.
@@ -42,6 +43,7 @@ struct BodyJoint {
   double damping = 0;             // [N s/m] or [N m s/rad]
   double friction = 0;            // dry [N] or [N m]
   JointForce force;
+  friend bool operator==(const BodyJoint&, const BodyJoint&) = default;
 };
 
 // Mass and what goes with it.
@@ -55,6 +57,7 @@ struct Body {
   double restitution = 0;            // in contacts with them [-]
   bool magnet = false;               // the device's button or a key picks it up
   std::optional<BodyJoint> joint;
+  friend bool operator==(const Body&, const Body&) = default;
 };
 
 // A spring and damper between two bodies, or a body and the world.
@@ -66,6 +69,7 @@ struct BodySpring {
   double stiffness = 100;                                      // [N/m]
   double damping = 0;                                          // [N s/m]
   double breaks_at = std::numeric_limits<double>::infinity();  // [N]
+  friend bool operator==(const BodySpring&, const BodySpring&) = default;
 };
 
 }  // namespace limpid

@@ -6,8 +6,10 @@
 namespace limpid {
 
 std::size_t Scene::add(Object object) {
-  const auto behind = std::ranges::upper_bound(objects, object.shape.index(), {},
-                                               [](const Object& o) { return o.shape.index(); });
+  const auto order = [](const Object& o) {
+    return o.body ? std::variant_size_v<Shape> : o.shape.index();
+  };
+  const auto behind = std::ranges::upper_bound(objects, order(object), {}, order);
   const auto place = static_cast<std::size_t>(behind - objects.begin());
   objects.insert(behind, std::move(object));
   return place;

@@ -124,13 +124,14 @@ struct Probe {
 
 struct Scene {
   double tip_radius = 0;  // [m]; the tip is always a probe
-  // Of one shape together, in the order of Shape: a file keeps no other, and contacts follow it.
+  // What stands still first, of one shape together, in the order of Shape; then what moves, as it
+  // came: a file keeps no other order, and contacts follow it.
   std::vector<Object> objects;
   std::vector<Probe> probes;  // besides the tip
   Vec3 gravity{0, 0, -9.81};  // of bodies [m/s^2]
   std::vector<BodySpring> springs;
 
-  // Puts it behind the others of its shape; returns its place.
+  // Puts it behind the others of its shape, or behind all if it moves; returns its place.
   std::size_t add(Object object);
 };
 

@@ -25,6 +25,20 @@ std::optional<double> number_in(const toml::node& node, const Range& range) {
   return inside && x <= range.maximum ? std::optional(x) : std::nullopt;
 }
 
+// Of just so many.
+std::optional<std::vector<double>> list_in(const toml::node& node, std::size_t count,
+                                              const Range& range) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != count) return std::nullopt;
+  std::vector<double> all;
+  for (const toml::node& each : *list) {
+    const auto x = number_in(each, range);
+    if (!x) return std::nullopt;
+    all.push_back(*x);
+  }
+  return all;
+}
+
 // Edit distance: the fewest letters to insert, drop or change.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -137,18 +151,65 @@ std::vector<std::string> TomlTable::texts(const char* key) const {
 }
 
 std::optional<Vec3> TomlTable::vector(const char* key, const Range& each) const {
+  const auto list = numbers(key, 3, each);
+  return list ? std::optional(Vec3(list->data())) : std::nullopt;
+}
+
+std::optional<std::vector<double>> TomlTable::numbers(const char* key, std::size_t count,
+                                                      const Range& each) const {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
-  const toml::array* list = node->as_array();
-  Vec3 v;
-  bool good = list != nullptr && list->size() == 3;
-  for (std::size_t i = 0; good && i < 3; ++i) {
-    const auto x = number_in(*list->get(i), each);
-    good = x.has_value();
-    if (good) v[static_cast<Eigen::Index>(i)] = *x;
+  auto list = list_in(*node, count, each);
+  if (!list) refuse(key, fmt::format("a list of {}, each {}", count, allowed_text(each)));
+  return list;
+}
+
+std::optional<std::vector<std::vector<double>>> TomlTable::lists(const char* key, std::size_t count,
+                                                                 const Range& each) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* rows = node->as_array();
+  const std::string allowed =
+      fmt::format("a list of lists of {}, each {}", count, allowed_text(each));
+  if (rows == nullptr) refuse(key, allowed);
+  std::vector<std::vector<double>> all;
+  for (const toml::node& row : *rows) {
+    auto list = list_in(row, count, each);
+    if (!list) refuse(key, allowed);
+    all.push_back(*std::move(list));
   }
-  if (!good) refuse(key, fmt::format("a list of 3, each {}", allowed_text(each)));
-  return v;
+  return all;
+}
+
+std::optional<std::vector<Vec3>> TomlTable::vectors(const char* key, const Range& each) const {
+  const auto rows = lists(key, 3, each);
+  if (!rows) return std::nullopt;
+  std::vector<Vec3> all;
+  for (const std::vector<double>& row : *rows) all.emplace_back(row.data());
+  return all;
+}
+
+std::optional<std::vector<std::array<double, 2>>> TomlTable::pairs(const char* key,
+                                                                   const Range& each) const {
+  const auto rows = lists(key, 2, each);
+  if (!rows) return std::nullopt;
+  std::vector<std::array<double, 2>> all;
+  for (const std::vector<double>& row : *rows) all.push_back({row[0], row[1]});
+  return all;
+}
+
+std::optional<bool> TomlTable::flag(const char* key) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_boolean()) refuse(key, "true, false");
+  return *node->value<bool>();
+}
+
+std::optional<TomlTable> TomlTable::table(const char* key) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_table()) refuse(key, fmt::format("a table under [{}]", full(key)));
+  return TomlTable(*node->as_table(), where_, full(key));
 }
 
 std::vector<TomlTable> TomlTable::tables(const char* key) const {
@@ -166,9 +227,13 @@ std::vector<TomlTable> TomlTable::tables(const char* key) const {
 }
 
 void TomlTable::refuse(const char* key, const std::string& allowed) const {
-  const toml::node& node = *find(key);
+  refuse_as(key, found_text(*find(key)), allowed);
+}
+
+void TomlTable::refuse_as(const char* key, const std::string& found,
+                          const std::string& allowed) const {
   throw FileError(fmt::format("{}:{}: {}: {} is not allowed; allowed: {}", where_,
-                              node.source().begin.line, full(key), found_text(node), allowed));
+                              find(key)->source().begin.line, full(key), found, allowed));
 }
 
 void TomlTable::refuse_missing(const char* key) const {

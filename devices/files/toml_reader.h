@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -57,8 +58,15 @@ class TomlTable {
   std::optional<std::uint64_t> count(const char* key, std::uint64_t least,
                                      std::uint64_t most) const;
   std::vector<std::string> texts(const char* key) const;  // a list of text; empty without the key
+  std::optional<bool> flag(const char* key) const;
   std::optional<Vec3> vector(const char* key, const Range& each) const;
-  std::vector<TomlTable> tables(const char* key) const;  // of [[key]]
+  std::optional<std::vector<Vec3>> vectors(const char* key, const Range& each) const;
+  // A list of just so many numbers.
+  std::optional<std::vector<double>> numbers(const char* key, std::size_t count,
+                                             const Range& each) const;
+  std::optional<std::vector<std::array<double, 2>>> pairs(const char* key, const Range& each) const;
+  std::optional<TomlTable> table(const char* key) const;  // under [key], or { ... }
+  std::vector<TomlTable> tables(const char* key) const;   // of [[key]]
   const toml::node* find(const char* key) const { return table_.get(key); }
 
   template <class T>
@@ -68,10 +76,16 @@ class TomlTable {
   }
 
   [[noreturn]] void refuse(const char* key, const std::string& allowed) const;
+  // For what was found in words of its own.
+  [[noreturn]] void refuse_as(const char* key, const std::string& found,
+                              const std::string& allowed) const;
   [[noreturn]] void refuse_missing(const char* key) const;
 
  private:
   std::string full(std::string_view key) const;
+  // Lists of `count` numbers each.
+  std::optional<std::vector<std::vector<double>>> lists(const char* key, std::size_t count,
+                                                        const Range& each) const;
 
   const toml::table& table_;
   std::string where_;

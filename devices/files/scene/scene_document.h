@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +29,21 @@ inline constexpr Range kDamping{0, 1000, false, "N s/m"};
 inline constexpr Range kFriction{0, 1, false, ""};
 inline constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
 inline constexpr Range kScale{0, 1e4, true, ""};
+// Of what moves.
+inline constexpr std::size_t kMostSprings = 128;
+inline constexpr double kForever = std::numeric_limits<double>::infinity();
+inline constexpr Range kGravity{-100, 100, false, "m/s^2"};
+inline constexpr Range kMass{1e-6, 100, false, "kg"};
+inline constexpr Range kDensity{0, 1e5, true, "kg/m^3"};
+inline constexpr Range kInertia{0, 1000, true, "kg m^2"};
+inline constexpr Range kTravel{-100, 100, false, "m or rad"};
+inline constexpr Range kTravelPoint{-1000, 1000, false, ""};
+inline constexpr Range kEndless{-kForever, kForever, false, "m or rad"};
+inline constexpr Range kPeriod{0, 100, true, "m or rad"};
+inline constexpr Range kJointForce{0, 1000, false, "N or N m"};
+inline constexpr Range kJointSpring{0, 1e6, false, "N/m or N m/rad"};
+inline constexpr Range kSpringLength{0, 10, false, "m"};
+inline constexpr Range kBreaking{0, kForever, true, "N"};
 inline constexpr Range kDirection{-1e6, 1e6, false, ""};
 
 }  // namespace limpid::scene_limits
@@ -85,7 +101,9 @@ struct SceneDocument {
   std::string about;  // one sentence for people
   std::vector<SceneVisual> visuals;
   std::map<std::string, ModelFile> models;  // by Mesh::model
-  std::string toml;                         // the text it came from
+  // Of bodies whose mass waits for their mesh to be built, by name: settle_masses() [kg/m^3].
+  std::map<std::string, double> densities;
+  std::string toml;  // the text it came from
 };
 
 // The models that its meshes have, as a recording keeps them; not others that may be left.

@@ -7,8 +7,11 @@
 #include <cmath>
 
 #include "devices/files/rpy.h"
+#include "devices/files/scene/body_file.h"
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_document.h"
+#include "devices/files/scene/scene_reading.h"
+#include "devices/files/scene/scene_text.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -20,17 +23,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestScene = 1 << 20;  // [bytes]
 using namespace scene_limits;
 
-Pose pose(const TomlTable& t, const Vec3& position, const char* key = "rpy") {
-  Pose p = pose_at(position);
-  if (const auto rpy = t.vector(key, kAngle)) p.linear() = rotation(*rpy);
-  return p;
-}
-
 Pose optional_pose(const TomlTable& t) {
-  return pose(t, t.vector("position", kPosition).value_or(Vec3::Zero()));
+  return pose_of(t, t.vector("position", kPosition).value_or(Vec3::Zero()), "rpy");
 }
 
-Vec3 point(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
 // These keys, and those of everything that has a surface.
 void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
   keys.insert(keys.begin(), "name");
@@ -38,107 +34,7 @@ void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
   t.allow_only(keys);
 }
 
-Material material(const TomlTable& t) {
-  Material out;
-  for (const MaterialKey& each : kMaterialKeys) {
-    const auto value = t.number(each.key, each.range);
-    out.*each.field = each.required ? t.need(value, each.key) : value.value_or(out.*each.field);
-  }
-  return out;
-}
-std::string name(const TomlTable& t) { return t.need(t.text("name"), "name"); }
-
-std::string number(double x) {
-  std::string text = fmt::format("{}", x);
-  if (text.find_first_of(".ein") == std::string::npos) text += ".0";
-  return text;
-}
-
-std::string vector(const Vec3& v) {
-  return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += {'\\', c};
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (byte < 0x20 || byte == 0x7f) {
-      out += fmt::format("\\u{:04X}", byte);
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-class Text {
- public:
-  void table(const char* kind) {
-    text_ += fmt::format("{}[[{}]]\n", text_.empty() ? "" : "\n", kind);
-  }
-  void put(const char* key, const std::string& value) { line(key, quoted(value)); }
-  void put(const char* key, double value) { line(key, number(value)); }
-  void put(const char* key, const Vec3& value) { line(key, vector(value)); }
-  void put(const char* key, int value) { line(key, std::to_string(value)); }
-  void put_position(const char* key, const Pose& pose) { put(key, Vec3(pose.translation())); }
-  void put_rotation(const Pose& pose, const char* key = "rpy") {
-    if (pose.linear() != Mat3::Identity()) put(key, rpy_of(pose.linear()));
-  }
-  // Of what may be left out.
-  void put_place(const Pose& pose, double scale) {
-    if (!pose.translation().isZero(0)) put_position("position", pose);
-    put_rotation(pose);
-    if (scale != 1) put("scale", scale);
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  void line(const char* key, const std::string& value) {
-    text_ += fmt::format("{} = {}\n", key, value);
-  }
-  std::string text_;
-};
-
-void put_material(Text& text, const Material& material) {
-  for (const MaterialKey& each : kMaterialKeys) {
-    const double value = material.*each.field;
-    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
-  }
-}
-
 void hold(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
-
-std::string model_file(const TomlTable& t) {
-  const std::string file = t.need(t.text("file"), "file");
-  constexpr std::array kKinds{".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"};
-  if (std::ranges::find(kKinds, small_suffix(file)) == kKinds.end()) {
-    t.refuse("file", fmt::format("a model ({})", fmt::join(kKinds, ", ")));
-  }
-  return file;
-}
-
-fs::path model_path(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
-  const fs::path absolute = fs::absolute(base_dir / file).lexically_normal();
-  std::error_code error;
-  if (const std::string why = why_not_found(absolute, ""); !why.empty()) {
-    throw FileError(fmt::format("{}: {}", absolute.string(), why));
-  }
-  if (!fs::is_regular_file(absolute, error)) {
-    t.refuse("file", fmt::format("a file that exists; there is no {}", absolute.string()));
-  }
-  return absolute;
-}
-
-ModelFile read_model(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
-  const fs::path path = model_path(t, file, base_dir);
-  const std::string bytes = read_text(path, kLargestModel);
-  return {path.string(),
-          std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
-}
 
 // What a shape is in a file: how its tables are called, what is read from one besides name and
 // material, what is written to one, and what a shape is held within.
@@ -150,10 +46,10 @@ void read(const TomlTable& t, const ArmDescription&, Object& object, Plane& plan
   if (!(plane.normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
   // One that is unit already stays as it is: what was written is read back to the last bit.
   if (!(std::abs(plane.normal.squaredNorm() - 1) < 1e-15)) plane.normal.normalize();
-  object.pose = pose_at(point(t, "point"));
+  object.pose = pose_at(point_of(t, "point"));
 }
 
-void write(const Object& object, const Plane& plane, const ArmDescription&, Text& text) {
+void write(const Object& object, const Plane& plane, const ArmDescription&, SceneText& text) {
   text.put_position("point", object.pose);
   text.put("normal", plane.normal);
 }
@@ -169,17 +65,17 @@ const char* table_of(const Sphere&) { return "sphere"; }
 
 void read(const TomlTable& t, const ArmDescription&, Object& object, Sphere& sphere) {
   allow_with_common(t, {"center", "radius"});
-  object.pose = pose_at(point(t, "center"));
+  object.pose = pose_at(point_of(t, "center"));
   sphere.radius = t.need(t.number("radius", kLength), "radius");
 }
 
-void write(const Object& object, const Sphere& sphere, const ArmDescription&, Text& text) {
+void write(const Object& object, const Sphere& sphere, const ArmDescription&, SceneText& text) {
   text.put_position("center", object.pose);
   text.put("radius", sphere.radius);
 }
 
 void hold(Object& object, Sphere& sphere) {
-  object.pose.linear().setIdentity();
+  if (!object.body) object.pose.linear().setIdentity();
   hold(sphere.radius, kLength, Sphere{}.radius);
 }
 
@@ -187,11 +83,11 @@ const char* table_of(const Box&) { return "box"; }
 
 void read(const TomlTable& t, const ArmDescription&, Object& object, Box& box) {
   allow_with_common(t, {"center", "size", "rpy"});
-  object.pose = pose(t, point(t, "center"));
+  object.pose = pose_of(t, point_of(t, "center"), "rpy");
   box.size = t.need(t.vector("size", kLength), "size");
 }
 
-void write(const Object& object, const Box& box, const ArmDescription&, Text& text) {
+void write(const Object& object, const Box& box, const ArmDescription&, SceneText& text) {
   text.put_position("center", object.pose);
   text.put("size", box.size);
   text.put_rotation(object.pose);
@@ -205,13 +101,13 @@ void hold(Object&, Box& box) {
 template <class S>
 void read_tube(const TomlTable& t, Object& object, S& tube) {
   allow_with_common(t, {"radius", "length", "position", "rotation"});
-  object.pose = pose(t, point(t, "position"), "rotation");
+  object.pose = pose_of(t, point_of(t, "position"), "rotation");
   tube.radius = t.need(t.number("radius", kLength), "radius");
   tube.length = t.need(t.number("length", kLength), "length");
 }
 
 template <class S>
-void write_tube(const Object& object, const S& tube, Text& text) {
+void write_tube(const Object& object, const S& tube, SceneText& text) {
   text.put("radius", tube.radius);
   text.put("length", tube.length);
   text.put_position("position", object.pose);
@@ -228,7 +124,7 @@ const char* table_of(const Cylinder&) { return "cylinder"; }
 void read(const TomlTable& t, const ArmDescription&, Object& object, Cylinder& cylinder) {
   read_tube(t, object, cylinder);
 }
-void write(const Object& object, const Cylinder& cylinder, const ArmDescription&, Text& text) {
+void write(const Object& object, const Cylinder& cylinder, const ArmDescription&, SceneText& text) {
   write_tube(object, cylinder, text);
 }
 void hold(Object&, Cylinder& cylinder) { hold_tube(cylinder); }
@@ -237,41 +133,22 @@ const char* table_of(const Capsule&) { return "capsule"; }
 void read(const TomlTable& t, const ArmDescription&, Object& object, Capsule& capsule) {
   read_tube(t, object, capsule);
 }
-void write(const Object& object, const Capsule& capsule, const ArmDescription&, Text& text) {
+void write(const Object& object, const Capsule& capsule, const ArmDescription&, SceneText& text) {
   write_tube(object, capsule, text);
 }
 void hold(Object&, Capsule& capsule) { hold_tube(capsule); }
 
 const char* table_of(const Mesh&) { return "mesh"; }
 
-double unit(const TomlTable& t, const std::string& file) {
-  const auto wanted = t.text("unit");
-  if (!wanted) return usual_unit(file);
-  std::vector<std::string> names;
-  for (const ModelUnit& each : kModelUnits) {
-    if (each.name == *wanted) return each.metres;
-    names.push_back(fmt::format("\"{}\"", each.name));
-  }
-  t.refuse("unit", fmt::format("{}", fmt::join(names, ", ")));
-}
-
 void read(const TomlTable& t, const ArmDescription&, Object& object, Mesh& mesh) {
   allow_with_common(t, {"file", "position", "rpy", "scale", "unit", "up"});
-  mesh.model = model_file(t);
+  read_model_keys(t, mesh);
   object.pose = optional_pose(t);
-  mesh.scale = t.number("scale", kScale).value_or(1);
-  mesh.unit = unit(t, mesh.model);
-  const std::string up = t.text("up").value_or("z");
-  if (up != "y" && up != "z") t.refuse("up", "\"y\", \"z\"");
-  mesh.y_up = up == "y";
 }
 
-void write(const Object& object, const Mesh& mesh, const ArmDescription&, Text& text) {
-  text.put("file", mesh.model);
+void write(const Object& object, const Mesh& mesh, const ArmDescription&, SceneText& text) {
+  put_model(text, mesh);
   text.put_place(object.pose, mesh.scale);
-  const ModelUnit* const known = model_unit(mesh.unit);
-  if (known && mesh.unit != usual_unit(mesh.model)) text.put("unit", std::string(known->name));
-  if (mesh.y_up) text.put("up", std::string("y"));
 }
 
 void hold(Object&, Mesh& mesh) {
@@ -308,7 +185,7 @@ void read(const TomlTable& t, const ArmDescription& arm, Object& object, JointSt
   object.material = {.stiffness = t.need(t.number("stiffness", kJointStiffness), "stiffness")};
 }
 
-void put_joint(Text& text, const JointStop& stop, const ArmDescription& arm) {
+void put_joint(SceneText& text, const JointStop& stop, const ArmDescription& arm) {
   const auto named = [&](const Joint& joint) {
     return joint.name == arm.joints[static_cast<std::size_t>(stop.joint)].name;
   };
@@ -320,7 +197,8 @@ void put_joint(Text& text, const JointStop& stop, const ArmDescription& arm) {
   }
 }
 
-void write(const Object& object, const JointStop& stop, const ArmDescription& arm, Text& text) {
+void write(const Object& object, const JointStop& stop, const ArmDescription& arm,
+           SceneText& text) {
   put_joint(text, stop, arm);
   text.put("angle", stop.angle);
   text.put("side", std::string(stop.direction > 0 ? "above" : "below"));
@@ -351,13 +229,10 @@ void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path&
     for (const TomlTable& each : t.tables(table_of(shape))) {
       Object& object = out.scene.objects.emplace_back(Object{.shape = shape});
       std::visit([&](auto& s) { read(each, arm, object, s); }, object.shape);
-      object.name = name(each);
-      if (has_surface(object)) object.material = material(each);
+      object.name = name_of(each);
+      if (has_surface(object)) object.material = material_of(each, true);
       const auto* mesh = std::get_if<Mesh>(&object.shape);
-      if (mesh == nullptr || out.models.contains(mesh->model)) continue;
-      const auto known = files.find(mesh->model);
-      out.models[mesh->model] = known != files.end() ? ModelFile{"", known->second}
-                                                     : read_model(each, mesh->model, base_dir);
+      if (mesh != nullptr) take_model(each, *mesh, base_dir, files, out);
     }
   }
 }
@@ -377,9 +252,9 @@ const NamedFrame& named_frame(const TomlTable& t, const ArmDescription& arm) {
 Probe probe(const TomlTable& t, const ArmDescription& arm) {
   t.allow_only({"name", "link", "from", "to", "radius"});
   const NamedFrame& at = named_frame(t, arm);
-  const Vec3 from = point(t, "from");
+  const Vec3 from = point_of(t, "from");
   const Vec3 to = t.vector("to", kPosition).value_or(from);
-  return {name(t), at.link, at.origin * from, at.origin * to,
+  return {name_of(t), at.link, at.origin * from, at.origin * to,
           t.need(t.number("radius", kRadius), "radius")};
 }
 
@@ -395,7 +270,7 @@ const NamedFrame& frame(const Probe& probe, const ArmDescription& arm) {
   throw FileError(fmt::format("probe {}: its link has no name", probe.name));
 }
 
-void put_probe(Text& text, const Probe& probe, const ArmDescription& arm) {
+void put_probe(SceneText& text, const Probe& probe, const ArmDescription& arm) {
   const NamedFrame& at = frame(probe, arm);
   const bool own = at.origin.matrix() == Pose::Identity().matrix();
   const Pose back = own ? Pose::Identity() : at.origin.inverse();
@@ -410,7 +285,7 @@ void put_probe(Text& text, const Probe& probe, const ArmDescription& arm) {
 // False for one that is left out.
 bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
   t.allow_only({"file", "position", "rpy", "scale"});
-  const fs::path file = model_file(t);
+  const fs::path file = model_of(t);
   out.pose = optional_pose(t);
   out.scale = t.number("scale", kScale).value_or(1);
   std::error_code error;
@@ -451,7 +326,7 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
   const TomlTable t(table, where, "");
   std::vector<const char*> keys{"title", "about", "tip_radius"};
   for (const Shape& shape : kShapes) keys.push_back(table_of(shape));
-  keys.insert(keys.end(), {"probe", "visual"});
+  keys.insert(keys.end(), {"gravity", "body", "spring", "probe", "visual"});
   t.allow_only(keys);
   SceneDocument out;
   out.title = t.text("title").value_or("");
@@ -459,6 +334,7 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
   Scene& scene = out.scene;
   scene.tip_radius = t.number("tip_radius", kRadius).value_or(0);
   read_objects(t, arm, base_dir, files, out);
+  read_bodies(t, base_dir, files, out);
   for (const TomlTable& each : t.tables("probe")) scene.probes.push_back(probe(each, arm));
   for (const TomlTable& each : t.tables("visual")) {
     SceneVisual seen;
@@ -475,21 +351,25 @@ void hold(Object& object) {
   object.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
   if (has_surface(object)) hold(object.material);
   std::visit([&](auto& shape) { hold(object, shape); }, object.shape);
+  hold_body(object);
 }
 
 std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
                        const fs::path& folder) {
   const Scene& scene = document.scene;
-  Text text;
+  SceneText text;
   if (!document.title.empty()) text.put("title", document.title);
   if (!document.about.empty()) text.put("about", document.about);
   if (scene.tip_radius != 0) text.put("tip_radius", scene.tip_radius);
+  put_gravity(text, scene);
   for (const Object& object : scene.objects) {
+    if (object.body) continue;
     text.table(table_of(object.shape));
     text.put("name", object.name);
     std::visit([&](const auto& shape) { write(object, shape, arm, text); }, object.shape);
     if (has_surface(object)) put_material(text, object.material);
   }
+  put_bodies(text, document);
   for (const Probe& probe : scene.probes) put_probe(text, probe, arm);
   for (const SceneVisual& visual : document.visuals) {
     text.table("visual");

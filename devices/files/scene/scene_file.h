@@ -53,6 +53,8 @@
 //     side = "below"               # touched when the joint goes below the angle; or "above"
 //     stiffness = 20.0             # N m/rad
 //
+//     [[body]]                     # what moves, and [[spring]] between two of them: body_file.h
+//
 //     [[probe]]                    # a part of the arm that touches, besides the tip
 //     name = "forearm"
 //     link = "forearm"             # URDF name of a link that moves

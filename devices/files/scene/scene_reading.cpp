@@ -1,0 +1,96 @@
+#include "devices/files/scene/scene_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "devices/files/rpy.h"
+#include "devices/files/scene/material_keys.h"
+#include "devices/files/text_file.h"
+
+namespace limpid {
+
+using namespace scene_limits;
+namespace fs = std::filesystem;
+
+Pose pose_of(const TomlTable& t, const Vec3& position, const char* key) {
+  Pose p = pose_at(position);
+  if (const auto rpy = t.vector(key, kAngle)) p.linear() = rotation(*rpy);
+  return p;
+}
+
+Vec3 point_of(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
+
+std::string name_of(const TomlTable& t) { return t.need(t.text("name"), "name"); }
+
+Material material_of(const TomlTable& t, bool needed) {
+  Material out;
+  for (const MaterialKey& each : kMaterialKeys) {
+    const auto value = t.number(each.key, each.range);
+    out.*each.field =
+        each.required && needed ? t.need(value, each.key) : value.value_or(out.*each.field);
+  }
+  return out;
+}
+
+std::string model_of(const TomlTable& t) {
+  const std::string file = t.need(t.text("file"), "file");
+  constexpr std::array kKinds{".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"};
+  if (std::ranges::find(kKinds, small_suffix(file)) == kKinds.end()) {
+    t.refuse("file", fmt::format("a model ({})", fmt::join(kKinds, ", ")));
+  }
+  return file;
+}
+
+fs::path model_path(const TomlTable& t, const std::string& file, const fs::path& base_dir) {
+  const fs::path absolute = fs::absolute(base_dir / file).lexically_normal();
+  std::error_code error;
+  if (const std::string why = why_not_found(absolute, ""); !why.empty()) {
+    throw FileError(fmt::format("{}: {}", absolute.string(), why));
+  }
+  if (!fs::is_regular_file(absolute, error)) {
+    t.refuse("file", fmt::format("a file that exists; there is no {}", absolute.string()));
+  }
+  return absolute;
+}
+
+namespace {
+
+double unit_of(const TomlTable& t, const std::string& file) {
+  const auto wanted = t.text("unit");
+  if (!wanted) return usual_unit(file);
+  std::vector<std::string> names;
+  for (const ModelUnit& each : kModelUnits) {
+    if (each.name == *wanted) return each.metres;
+    names.push_back(fmt::format("\"{}\"", each.name));
+  }
+  t.refuse("unit", fmt::format("{}", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+void read_model_keys(const TomlTable& t, Mesh& mesh) {
+  mesh.model = model_of(t);
+  mesh.scale = t.number("scale", kScale).value_or(1);
+  mesh.unit = unit_of(t, mesh.model);
+  const std::string up = t.text("up").value_or("z");
+  if (up != "y" && up != "z") t.refuse("up", "\"y\", \"z\"");
+  mesh.y_up = up == "y";
+}
+
+void take_model(const TomlTable& t, const Mesh& mesh, const fs::path& base_dir,
+                const SceneFiles& files, SceneDocument& out) {
+  if (out.models.contains(mesh.model)) return;
+  ModelFile& model = out.models[mesh.model];
+  if (const auto known = files.find(mesh.model); known != files.end()) {
+    model.bytes = known->second;
+    return;
+  }
+  const fs::path path = model_path(t, mesh.model, base_dir);
+  const std::string bytes = read_text(path, kLargestModel);
+  model = {path.string(),
+           std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end())};
+}
+
+}  // namespace limpid
