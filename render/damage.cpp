@@ -70,7 +70,7 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
   return switches(a) == switches(b) && near(a.device, b.device) && near(a.proxy, b.proxy) &&
          near(a.rerun, b.rerun) && near(a.twin, b.twin) && hands &&
          near.forces(a.hand_force, b.hand_force) && near(a.contacts, b.contacts) &&
-         near(a.shade, b.shade);
+         near(a.shade, b.shade) && near(a.bodies, b.bodies) && near(a.other_bodies, b.other_bodies);
 }
 
 void Damage::begin(const glm::mat4& to_clip, int width, int height) {

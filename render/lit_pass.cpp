@@ -221,6 +221,32 @@ Links links_of(const ArmPose& arm) {
   return out;
 }
 
+Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts) {
+  Links out;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const bool known = i < seen.size() && seen[i].matrix().allFinite();
+    out.push_back(to_glm(known ? seen[i] : starts[i]));
+  }
+  return out;
+}
+
+BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
+                       double meters_per_pixel) {
+  if (state.other_bodies.empty()) return {};
+  constexpr double kSpan = 0.03;  // of a body: how far a turn moves its edge [m]
+  BodyGhosts ghosts{body_links(state.other_bodies, starts),
+                    {},
+                    state.rerun ? palette::kRerun : palette::of_twin(palette::kProxy, state.theme)};
+  const std::size_t both = std::min(state.bodies.size(), state.other_bodies.size());
+  for (std::size_t i = 0; i < std::min(both, starts.size()); ++i) {
+    const Pose &a = state.bodies[i], &b = state.other_bodies[i];
+    const double apart =
+        (a.translation() - b.translation()).norm() + kSpan * (a.linear() - b.linear()).norm();
+    ghosts.shown.push_back(apart > meters_per_pixel);
+  }
+  return ghosts;
+}
+
 std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel) {
   std::vector<Ghost> ghosts;
   if (state.rerun) {

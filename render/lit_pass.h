@@ -110,6 +110,23 @@ struct Ghost {
   std::vector<float> outline;  // of each link: how strong it is, 0 to 1
 };
 
+// Bodies of a second run, or of a re-run, where they are elsewhere than those of the first.
+struct BodyGhosts {
+  Links links;
+  std::vector<bool> shown;  // of each body
+  palette::Rgb color{};
+
+  bool has(int body) const {
+    const auto i = static_cast<std::size_t>(body);
+    return i < shown.size() && shown[i];
+  }
+};
+
+// Where each body is: as seen, else as it starts.
+Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts);
+BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
+                       double meters_per_pixel);
+
 // Where each link is; none of an arm with a pose that is not finite.
 Links links_of(const ArmPose& arm);
 // In the order in which they are to be drawn. `meters_per_pixel` at the tips.

@@ -43,22 +43,31 @@ bool slips(const ContactMark& contact, const Material& material) {
 
 }  // namespace
 
-std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within) {
+std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within,
+                                           std::span<const Pose> bodies) {
   std::optional<NearSurface> nearest;
-  for (const Object& object : scene.objects) {
-    const Found found = std::visit(
-        [&](const auto& shape) { return near(shape, object.pose, at, within); }, object.shape);
-    if (!found) continue;
+  const auto look = [&](const Object& object, const Shape& of, const Pose& pose) {
+    const Found found =
+        std::visit([&](const auto& shape) { return near(shape, pose, at, within); }, of);
+    if (!found) return;
     const double distance = std::abs(found->distance);
-    if (!(distance <= within) || (nearest && distance >= nearest->distance)) continue;
+    if (!(distance <= within) || (nearest && distance >= nearest->distance)) return;
     nearest = {at - found->distance * found->normal, found->normal, distance, object.material};
+  };
+  std::size_t body = 0;
+  for (const Object& object : scene.objects) {
+    const bool moved = object.body && body < bodies.size();
+    const Pose& pose = moved ? bodies[body] : object.pose;
+    if (object.body) ++body;
+    look(object, object.shape, pose);
+    for (const BodyPart& part : object.parts) look(object, part.shape, pose * part.pose);
   }
   return nearest;
 }
 
 void add_surfaces(const Scene& scene, bool rubs, ViewState& state) {
   for (ContactMark& contact : state.contacts) {
-    const auto surface = nearest_surface(scene, contact.position, kTouch);
+    const auto surface = nearest_surface(scene, contact.position, kTouch, state.bodies);
     if (!surface) continue;
     const double side = contact.force.dot(surface->normal) < 0 ? -1 : 1;
     contact.normal = side * surface->normal;
@@ -68,7 +77,7 @@ void add_surfaces(const Scene& scene, bool rubs, ViewState& state) {
   }
   state.shade.reset();
   if (state.proxy.links.empty() || !state.proxy.tip.allFinite()) return;
-  if (const auto below = nearest_surface(scene, state.proxy.tip, kShade))
+  if (const auto below = nearest_surface(scene, state.proxy.tip, kShade, state.bodies))
     state.shade = ContactShade{below->point, below->normal, below->distance};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "core/touch/scene.h"
 #include "render/view_state.h"
@@ -14,8 +15,10 @@ struct NearSurface {
   Material material;
 };
 
-// The nearest one within so many metres. Meshes without a shape are left out.
-std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within);
+// The nearest one within so many metres. Meshes without a shape are left out. `bodies`: as
+// ViewState has them.
+std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within,
+                                           std::span<const Pose> bodies = {});
 
 // Fills in what the contacts' forces do not say: the normals, and, if the law `rubs`, friction and
 // whether they slip; and the proxy's shade. A force that is no more than friction holds, and is not

@@ -60,6 +60,19 @@ class ObjectItems {
   ObjectItems(const ArmDescription& arm, const std::vector<Bounds>& visuals, SceneItems& items)
       : arm_(arm), visuals_(visuals), items_(items) {}
 
+  void add(const Object& object) {
+    if (!object.body) return add(object.pose, object.shape);
+    body_ = static_cast<int>(items_.starts.size());
+    items_.starts.push_back(object.pose);
+    add(Pose::Identity(), object.shape);
+    for (const BodyPart& part : object.parts) add(part.pose, part.shape);
+    body_ = -1;
+  }
+
+  void add(const Pose& pose, const Shape& any) {
+    std::visit([&](const auto& shape) { add(pose, shape); }, any);
+  }
+
   void add(const Pose& pose, const Plane& plane) {
     const Vec3 normal = plane.normal.normalized();
     const Vec3 point = pose.translation();
@@ -83,14 +96,14 @@ class ObjectItems {
 
   void add(const Pose& pose, const Sphere& sphere) {
     const Vec3 r = Vec3::Constant(sphere.radius);
-    if (shown_by_visual(moved(Bounds(-r, r), pose), visuals_)) return;
-    items_.world.push_back({make_sphere(sphere.radius, kObject), pose, -1});
+    if (shown(moved(Bounds(-r, r), pose))) return;
+    put(make_sphere(sphere.radius, kObject), pose);
   }
 
   void add(const Pose& pose, const Box& box) {
     const Bounds edges(-0.5 * box.size, 0.5 * box.size);
-    if (shown_by_visual(moved(edges, pose), visuals_)) return;
-    items_.world.push_back({make_box(box.size, 0.04 * box.size.minCoeff(), kObject), pose, -1});
+    if (shown(moved(edges, pose))) return;
+    put(make_box(box.size, 0.04 * box.size.minCoeff(), kObject), pose);
   }
 
   void add(const Pose& pose, const Cylinder& cylinder) {
@@ -125,9 +138,17 @@ class ObjectItems {
   }
 
  private:
+  // What moves is nowhere that a model of the scene could show it.
+  bool shown(const Bounds& shape) const { return body_ < 0 && shown_by_visual(shape, visuals_); }
+  // `pose`: of a body in its frame.
+  void put(Model model, const Pose& pose) {
+    (body_ < 0 ? items_.world : items_.bodies).push_back({std::move(model), pose, body_});
+  }
+
   const ArmDescription& arm_;
   const std::vector<Bounds>& visuals_;
   SceneItems& items_;
+  int body_ = -1;  // number of the one that is being added; else -1
 };
 
 std::vector<Bounds> add_visuals(std::span<const VisualPicture> seen, SceneItems& items) {
@@ -195,6 +216,8 @@ Bounds moved(const Bounds& box, const Eigen::Affine3d& by) {
 Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>& meshes) {
   std::vector<Bounds> world;
   for (const Item& item : items.world) world.push_back(moved(item.model.bounds(), item.pose));
+  for (const Item& item : items.bodies)
+    world.push_back(moved(item.model.bounds(), pose_of(items.starts, item.link) * item.pose));
   Surroundings around{items.arm_bounds, 0, {}};
   // Of what can be touched only what stands in the arm's room: a desk may be larger than the
   // picture.
@@ -217,13 +240,14 @@ Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>&
 void collect_scene_items(const ArmDescription& arm, const Scene& scene,
                          std::span<const VisualPicture> visuals, SceneItems& items) {
   items.world.clear();
+  items.bodies.clear();
+  items.starts.clear();
   items.walls.clear();
   items.probes.clear();
   items.level_planes.clear();
   const std::vector<Bounds> shown = add_visuals(visuals, items);
   ObjectItems objects(arm, shown, items);
-  for (const Object& object : scene.objects)
-    std::visit([&](const auto& shape) { objects.add(object.pose, shape); }, object.shape);
+  for (const Object& object : scene.objects) objects.add(object);
   for (const Probe& probe : scene.probes)
     items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
                             Pose::Identity(), probe.link});

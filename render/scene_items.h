@@ -22,6 +22,8 @@ struct SceneItems {
   std::vector<Item> base;    // of the arm, does not move
   std::vector<Item> moving;  // of the arm
   std::vector<Item> world;   // what can be touched, solid
+  std::vector<Item> bodies;  // the same of what moves; `link` is the body's number
+  std::vector<Pose> starts;  // of each body, where the scene has it
   std::vector<Item> walls;   // stops of joints, translucent; `link` is the one before the joint
   std::vector<Item> probes;  // parts of the arm that touch, translucent
   Bounds arm_bounds;         // of the arm at rest and the room in front of it [m]

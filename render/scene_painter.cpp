@@ -67,6 +67,7 @@ void ScenePainter::set_quality(const Quality& quality) {
 
 void ScenePainter::set_scene_items(const SceneItems& items) {
   world_ = upload_all(items.world);
+  bodies_ = upload_all(items.bodies);
   walls_ = upload_all(items.walls);
   probes_ = upload_all(items.probes);
   still_shadows_ = false;
@@ -77,6 +78,7 @@ void ScenePainter::set_scene_items(const SceneItems& items) {
 void ScenePainter::set_meshes(const std::vector<PlacedMesh>& meshes) {
   decltype(uploaded_) uploaded;
   meshes_.clear();
+  body_meshes_.clear();
   highlighted_.clear();
   for (const PlacedMesh& mesh : meshes) {
     auto& model = uploaded[mesh.model];
@@ -85,8 +87,9 @@ void ScenePainter::set_meshes(const std::vector<PlacedMesh>& meshes) {
       model =
           known != uploaded_.end() ? known->second : std::make_shared<const GpuModel>(*mesh.model);
     }
-    meshes_.push_back({model, mesh.pose, -1});
-    if (mesh.highlighted) highlighted_.push_back(meshes_.back());
+    auto& list = mesh.body < 0 ? meshes_ : body_meshes_;
+    list.push_back({model, mesh.pose, mesh.body});
+    if (mesh.highlighted) highlighted_.push_back(list.back());
   }
   uploaded_ = std::move(uploaded);
   still_shadows_ = false;
@@ -136,7 +139,7 @@ void ScenePainter::draw_ground() const {
 }
 
 // Stencil 2 marks the arm: a ghost behind it stays hidden, one behind the scene shines through.
-void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy) {
+void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy, const Links& bodies) {
   lit_->shadow.bind(1);
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -148,8 +151,11 @@ void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy) {
   const bool cheap = !quality_.soft && !textured_world_;
   const LitPass::Look world{
       .tint = lighting.object_tint, .matte = cheap, .coarse = coarse_, .pixels = pixels_};
+  const LitPass::Look mesh{.coarse = coarse_, .pixels = pixels_};
   lit_->draw_solid(world_, {}, seen_, world);
-  lit_->draw_solid(meshes_, {}, seen_, {.coarse = coarse_, .pixels = pixels_});
+  lit_->draw_solid(bodies_, bodies, seen_, world);
+  lit_->draw_solid(meshes_, {}, seen_, mesh);
+  lit_->draw_solid(body_meshes_, bodies, seen_, mesh);
   draw_ground();
 
   backdrop_.use();
@@ -158,21 +164,22 @@ void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_BLEND);
   lit_->draw_blended(world_, {}, seen_, world);
-  lit_->draw_blended(meshes_, {}, seen_, {.coarse = coarse_, .pixels = pixels_});
+  lit_->draw_blended(meshes_, {}, seen_, mesh);
+  lit_->draw_blended(body_meshes_, bodies, seen_, mesh);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDisable(GL_STENCIL_TEST);
-  draw_outlines(lighting);
+  draw_outlines(lighting, bodies);
 }
 
 // The inside of a slightly larger copy shows around the edge of what is highlighted.
-void ScenePainter::draw_outlines(const Lighting& lighting) const {
+void ScenePainter::draw_outlines(const Lighting& lighting, const Links& bodies) const {
   if (highlighted_.empty()) return;
   glCullFace(GL_FRONT);
   outline_.use();
   outline_.set("tint", lighting.outline);
   outline_.set("width", 2.5f);
-  each(highlighted_, {}, [&](const GpuModel& model, const glm::mat4& pose) {
+  each(highlighted_, bodies, [&](const GpuModel& model, const glm::mat4& pose) {
     outline_.set("model", pose);
     model.draw(coarse_);
   });
@@ -214,17 +221,42 @@ std::vector<glm::vec3> with_shadow(std::span<const glm::vec3> body, float floor,
 
 }  // namespace
 
-void ScenePainter::note(const Links& links, bool casts, Damage& damage) const {
-  const bool shadow = casts && quality_.shadow_size > 0;
-  const float soft = kSoftTexels * lit_->shadow.texel();
-  const auto add = [&](const GpuModel& model, const glm::mat4& pose) {
-    const auto body = corners_of(model.box(), pose);
-    if (shadow) {
-      damage.add(bytes_of(pose), with_shadow(body, ground_height_ - soft, soft),
-                 kMargin * pixel_scale_);
-    } else {
-      damage.add(bytes_of(pose), body, kMargin * pixel_scale_);
+void ScenePainter::add_to(Damage& damage, const GpuModel& model, const glm::mat4& pose,
+                          bool shadow) const {
+  const auto body = corners_of(model.box(), pose);
+  if (shadow && quality_.shadow_size > 0) {
+    const float soft = kSoftTexels * lit_->shadow.texel();
+    damage.add(bytes_of(pose), with_shadow(body, ground_height_ - soft, soft),
+               kMargin * pixel_scale_);
+  } else {
+    damage.add(bytes_of(pose), body, kMargin * pixel_scale_);
+  }
+}
+
+void ScenePainter::note_bodies(const Links& bodies, Damage& damage) const {
+  for (const auto* list : {&bodies_, &body_meshes_}) {
+    each(*list, bodies,
+         [&](const GpuModel& model, const glm::mat4& pose) { add_to(damage, model, pose, true); });
+  }
+}
+
+// One that is not shown is named too, with nothing around it: the order stays.
+void ScenePainter::note(const BodyGhosts& ghosts, Damage& damage) const {
+  for (const auto* list : {&bodies_, &body_meshes_}) {
+    for (const Drawable& item : *list) {
+      if (!ghosts.has(item.link)) {
+        damage.add({}, {}, 0);
+        continue;
+      }
+      const glm::mat4 pose = ghosts.links[static_cast<std::size_t>(item.link)] * item.pose;
+      add_to(damage, *item.model, pose, false);
     }
+  }
+}
+
+void ScenePainter::note(const Links& links, bool casts, Damage& damage) const {
+  const auto add = [&](const GpuModel& model, const glm::mat4& pose) {
+    add_to(damage, model, pose, casts);
   };
   each(moving_, links, add);
   if (!casts) return;
@@ -285,7 +317,7 @@ void ScenePainter::draw_still_shadows() const {
   glEnable(GL_CULL_FACE);
 }
 
-void ScenePainter::draw_shadows(const Links& proxy) {
+void ScenePainter::draw_shadows(const Links& proxy, const Links& bodies) {
   if (quality_.shadow_size <= 0) return;
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 3.0f);
@@ -297,7 +329,14 @@ void ScenePainter::draw_shadows(const Links& proxy) {
   }
   const ShadowMap& map = lit_->shadow;
   shadow_damage_.begin(map.clip(), map.size(), map.size());
-  each(moving_, proxy, [&](const GpuModel& model, const glm::mat4& pose) {
+  const auto each_caster = [&](auto&& draw_one) {
+    each(moving_, proxy, draw_one);
+    each(bodies_, bodies, draw_one);
+    glDisable(GL_CULL_FACE);  // meshes may be open sheets
+    each(body_meshes_, bodies, draw_one);
+    glEnable(GL_CULL_FACE);
+  };
+  each_caster([&](const GpuModel& model, const glm::mat4& pose) {
     shadow_damage_.add(bytes_of(pose), corners_of(model.box(), pose), 2);
   });
   if (const PixelArea area = shadow_damage_.end(); !area.isEmpty()) {
@@ -305,7 +344,7 @@ void ScenePainter::draw_shadows(const Links& proxy) {
     glEnable(GL_SCISSOR_TEST);
     glScissor(area.min().x(), area.min().y(), area.sizes().x(), area.sizes().y());
     const glm::mat4 clip = cropped(map.clip(), area, shadow_damage_.whole());
-    each(moving_, proxy, [&](const GpuModel& model, const glm::mat4& pose) {
+    each_caster([&](const GpuModel& model, const glm::mat4& pose) {
       if (!in_sight(model.box(), clip * pose)) return;
       depth_only_.set("model_to_clip", map.clip() * pose);
       model.draw(true);
@@ -401,6 +440,24 @@ void ScenePainter::draw_glass(const Links& proxy) {
   glDepthMask(GL_FALSE);
   draw_translucent(ghost_, walls_, proxy, palette::kContact, {0.30f, 0.75f});
   draw_translucent(ghost_, probes_, proxy, palette::kRerun, {0.10f, 0.55f});
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void ScenePainter::draw_body_ghosts(const BodyGhosts& ghosts) {
+  if (ghosts.shown.empty()) return;
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  ghost_.use();
+  ghost_.set("tint", srgb(ghosts.color));
+  ghost_.set("alpha", glm::vec2(0.25f, 0.75f));
+  for (const auto* list : {&bodies_, &body_meshes_}) {
+    for (const Drawable& item : *list) {
+      if (!ghosts.has(item.link)) continue;
+      ghost_.set("model", ghosts.links[static_cast<std::size_t>(item.link)] * item.pose);
+      item.model->draw();
+    }
+  }
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }

@@ -27,6 +27,7 @@ struct PlacedMesh {
   std::shared_ptr<const Model> model;
   glm::mat4 pose;
   bool highlighted;
+  int body;  // whose frame it is in; -1: the world
 };
 
 class ScenePainter {
@@ -43,6 +44,8 @@ class ScenePainter {
   // What of the arm may look different from frame to frame; `casts`: with its shadow.
   void note(const Links& links, bool casts, Damage& damage) const;
   void note(const Ghost& ghost, Damage& damage) const;
+  void note_bodies(const Links& bodies, Damage& damage) const;  // with their shadows
+  void note(const BodyGhosts& ghosts, Damage& damage) const;
   void note(const Marks& marks, Damage& damage) const;
   void note(const LineBatch& lines, Damage& damage) const;
   // Nothing beside `area` is drawn from now on; what lies there is left out as far as it is cheap.
@@ -50,15 +53,16 @@ class ScenePainter {
     seen_ = cropped(view_, area, whole);
     pixels_ = static_cast<float>(area.sizes().prod());
   }
-  void draw_shadows(const Links& proxy);
+  void draw_shadows(const Links& proxy, const Links& bodies);
   // Proxy, base, scene, ground and backdrop.
-  void draw_solid(const Lighting& lighting, const Links& proxy);
+  void draw_solid(const Lighting& lighting, const Links& proxy, const Links& bodies);
   // Only its outermost surface shows; `number` tells the ghosts of a picture apart, from 0 on.
   void draw_ghost(const Ghost& ghost, std::size_t number);
   // Before any ghost.
   void draw_shades(const Marks& marks) const;
   // Stops of joints and the arm's touching parts.
   void draw_glass(const Links& proxy);
+  void draw_body_ghosts(const BodyGhosts& ghosts);
   void draw_marks(const Marks& marks);
   // Those hidden by what is in front of them, or those on top of everything.
   void draw_lines(LineBatch& lines, bool on_top);
@@ -71,7 +75,8 @@ class ScenePainter {
  private:
   bool too_many_triangles() const;
   void draw_still_shadows() const;
-  void draw_outlines(const Lighting& lighting) const;
+  void draw_outlines(const Lighting& lighting, const Links& bodies) const;
+  void add_to(Damage& damage, const GpuModel& model, const glm::mat4& pose, bool shadow) const;
   void draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                         const Links& links, const palette::Rgb& color, glm::vec2 alpha) const;
   void draw_ghost_outline(const Ghost& ghost, int mark) const;
@@ -86,7 +91,8 @@ class ScenePainter {
   GlVertexArray no_vertices_;
   GpuModel ball_, cone_, tube_, patch_;
   std::vector<Drawable> base_, moving_, world_, walls_, probes_, meshes_;
-  std::vector<Drawable> highlighted_;  // some of meshes_
+  std::vector<Drawable> bodies_, body_meshes_;  // `link` is the body's number
+  std::vector<Drawable> highlighted_;           // some of both kinds of meshes
   // One for each model that is in meshes_, which keeps the model's address its own.
   std::map<std::shared_ptr<const Model>, std::shared_ptr<const GpuModel>> uploaded_;
   Bounds bounds_;

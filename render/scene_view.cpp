@@ -112,7 +112,9 @@ struct SceneView::Impl {
     for (const MeshPicture& mesh : meshes) {
       const auto [known, is_new] = model_bounds.try_emplace(mesh.model.get());
       if (is_new) known->second = mesh.model->bounds();
-      boxes.push_back(moved(known->second, placed(mesh)));
+      const auto body = static_cast<std::size_t>(mesh.body);
+      const Pose start = body < items.starts.size() ? items.starts[body] : Pose::Identity();
+      boxes.push_back(moved(known->second, Eigen::Affine3d(start) * placed(mesh)));
     }
     surroundings = surroundings_of(items, boxes);
     painter.set_surroundings(surroundings);
@@ -160,7 +162,7 @@ void SceneView::set_meshes(std::span<const MeshPicture> meshes) {
   std::vector<PlacedMesh> placed_meshes;
   for (const MeshPicture& mesh : kept)
     placed_meshes.push_back(
-        {mesh.model, to_glm(Eigen::Matrix4d(placed(mesh).matrix())), mesh.highlighted});
+        {mesh.model, to_glm(Eigen::Matrix4d(placed(mesh).matrix())), mesh.highlighted, mesh.body});
   impl_->painter.set_meshes(placed_meshes);
   impl_->meshes = std::move(kept);
   impl_->use_surroundings();
@@ -218,15 +220,19 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   const Marks marks = collect_marks(state, eye, painter.pixel_scale() * scale);
   const double mpp = eye.meters_per_pixel(state.proxy.tip) / painter.pixel_scale();
   const std::vector<Ghost> ghosts = ghosts_of(state, mpp);
+  const Links bodies = body_links(state.bodies, items.starts);
+  const BodyGhosts others = body_ghosts(state, items.starts, mpp);
 
   painter.begin_frame(lighting, eye);
-  painter.draw_shadows(proxy);
+  painter.draw_shadows(proxy, bodies);
   if (sheet.target.begin(columns, rows, painter.quality().msaa) ||
       sheet.still != Still{state.theme, state.show_grid})
     sheet.damage.spoil();
   sheet.still = {state.theme, state.show_grid};
   sheet.damage.begin(to_glm(DrawnSheet::matrix_of(eye)), columns, rows);
   painter.note(proxy, true, sheet.damage);
+  painter.note_bodies(bodies, sheet.damage);
+  painter.note(others, sheet.damage);
   for (const Ghost& ghost : ghosts) painter.note(ghost, sheet.damage);
   painter.note(sheet.trails, sheet.damage);
   painter.note(sheet.lines_on_top, sheet.damage);
@@ -236,10 +242,11 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
 
   painter.limit(changed, sheet.damage.whole());
   sheet.target.clear(area_of(changed));
-  painter.draw_solid(lighting, proxy);
+  painter.draw_solid(lighting, proxy, bodies);
   painter.draw_shades(marks);
   painter.draw_lines(sheet.floor_lines, false);
   painter.draw_glass(proxy);
+  painter.draw_body_ghosts(others);
   for (std::size_t i = 0; i < ghosts.size(); ++i) painter.draw_ghost(ghosts[i], i);
   painter.draw_marks(marks);
   painter.draw_lines(sheet.trails, false);

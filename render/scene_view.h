@@ -22,12 +22,14 @@
 
 namespace limpid {
 
-// A model in the world: a vertex v appears at pose * (scale * v).
+// A model in the world, or in the frame of the scene's body of that number: a vertex v appears at
+// pose * (scale * v) there.
 struct MeshPicture {
   std::shared_ptr<const Model> model;
   Pose pose = Pose::Identity();
   double scale = 1;          // above 0
   bool highlighted = false;  // an outline, for what is selected
+  int body = -1;             // -1: the world
 };
 
 class SceneView {

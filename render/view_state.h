@@ -58,6 +58,10 @@ struct ViewState {
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
   std::vector<ContactMark> contacts;
   std::optional<ContactShade> shade;
+  // The frames of the scene's objects that move, in their order; without one, or with one that is
+  // not finite, an object is where the scene has it.
+  std::vector<Pose> bodies;
+  std::vector<Pose> other_bodies;  // the second run's, or the re-run's: ghosts where they are apart
 
   bool show_ghost = true;
   bool show_error = true;  // the two tips and the line between them

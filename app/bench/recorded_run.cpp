@@ -69,7 +69,7 @@ std::vector<Line> recorded_runs(const Line& unit) {
   const RunPlan plan = touching_the_table();
   const SessionInfo info = session_info(plan);
   const Temporary out;
-  std::vector<double> rows(kRows * static_cast<std::size_t>(RowLayout(info.dof).stride()));
+  std::vector<double> rows(kRows * static_cast<std::size_t>(info.layout().stride()));
   const auto line = [&](const char* id, const char* what, auto&& work) {
     return timed(id, what, unit, plan.parameters.tick, work);
   };

@@ -45,6 +45,9 @@ int info(const InfoOptions& options) {
     fmt::print("limits of force          {}\n", limits);
   }
   fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
+  if (!i.bodies.empty()) {
+    fmt::print("objects that move        {}\n", fmt::join(i.bodies, ", "));
+  }
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
   if (session.twin) {
     Summary twin(session.layout, slides);

@@ -133,7 +133,7 @@ void LiveBench::WithoutForce::judge(double seconds) const {
 
 bool LiveBench::lead(const LiveTask& task, double T, const LiveRun::Row& row, WithoutForce& off) {
   Progress progress({.title = "live", .whole = task.seconds, .unit = "s", .rate = ""});
-  const RowLayout layout(plan_.arm.dof());
+  const RowLayout layout = plan_.layout();
   double time = 0;
   return run_->pass(task.seconds, interrupted, [&](std::span<const double> tick) {
     progress.at(time += T);

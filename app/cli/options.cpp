@@ -99,7 +99,13 @@ RunPlan plan_from_session(const InputOptions& options) {
                       options.device, plan.arm.dof(), options.hand, session.info.dof));
     }
   }
-  if (!options.scene.empty()) plan.document = read_scene(options.scene, plan.arm);
+  if (!options.scene.empty()) {
+    plan.document = read_scene(options.scene, plan.arm);
+    if (plan.start) plan.start->world.clear();  // another scene's
+    for (Lane& lane : plan.beside) {
+      if (lane.start) lane.start->world.clear();
+    }
+  }
   if (!options.device.empty() || !options.scene.empty()) plan.models = build_meshes(plan.document);
   return plan;
 }

@@ -48,10 +48,13 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
                     visual_pictures(plan.document));
   picture.set_quality(Quality::level(0));  // there is time
   picture.set_meshes(mesh_pictures(plan.document.scene, plan.models));
-  const RowLayout layout(plan.arm.dof());
-  const RowView rows(plan.arm);
+  const RowLayout layout = plan.layout();
+  const RowView rows(plan.arm, plan.document.scene);
   ViewState view = rows.view(layout, row);
-  if (!twin.empty()) view.rerun = rows.pose(layout.in(twin, Column::proxy_position));
+  if (!twin.empty()) {
+    view.rerun = rows.pose(layout.in(twin, Column::proxy_position));
+    view.other_bodies = rows.bodies(layout, twin);
+  }
   ViewMemory().update(view, rows.contacts(layout, row), 0);
   Camera camera;
   camera.resize(kWidth, kHeight);
@@ -64,7 +67,7 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
 int run_live(const LiveRunOptions& options) {
   LiveBench bench(options.live, options.input);
   const RunPlan& plan = bench.plan();
-  Summary summary(RowLayout(plan.arm.dof()));
+  Summary summary(plan.layout());
   const double seconds = options.input.duration.value_or(kLiveSeconds);
   const LiveTask task{
       fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds), seconds,
@@ -140,8 +143,8 @@ Lane make_twin(const Parameters& chosen, const std::vector<std::string>& setting
 class RunLog {
  public:
   RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
-      : stride_(static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride())),
-        runs_(plan.lanes(), Summary(RowLayout(plan.arm.dof()), slides_of(plan.arm))),
+      : stride_(static_cast<std::size_t>(plan.layout().stride())),
+        runs_(plan.lanes(), Summary(plan.layout(), slides_of(plan.arm))),
         recorder_(recorder),
         waits_(waits) {}
 
@@ -246,6 +249,7 @@ int run(const RunOptions& options) {
   if (!options.record.empty()) {
     recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
                      options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom, plan.twin());
+    tell_start(*recorder, plan);
   }
   RunLog log(plan, recorder ? &*recorder : nullptr, !options.realtime);
   const auto began = std::chrono::steady_clock::now();

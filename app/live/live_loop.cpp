@@ -56,6 +56,8 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   parameters_ = p;
   limits_ = {};  // as a new rig has them; the first tick lowers them again
   rig_->start(p, home_);
+  rig_->present(rebase_);  // of the sizes that it needs from now on
+  twin_.room_for(rebase_);
   hand_.reset(home_.target);
   guided_.reset(home_.target);
   led_ = false;
@@ -211,7 +213,10 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   rig_->rebase(parameters_, rebase_, target);
   twin_.rebase(target);
   offered->changed(parameters_);
-  if (offered->of_twin()) offered->changed(twin_.parameters(), kTwinLane);
+  offered->begins(rebase_.world);
+  if (!offered->of_twin()) return;
+  offered->changed(twin_.parameters(), kTwinLane);
+  offered->begins(twin_.start().world, kTwinLane);
 }
 
 void LiveLoop::publish(const TickTiming& timing) {

@@ -13,6 +13,7 @@ class Twin {
  public:
   // Not the loop's: they allocate.
   void open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes);
+  void room_for(const RigStart& sizes) { start_ = sizes; }
   void close() {
     rig_.reset();
     running_ = changed_ = false;
@@ -25,6 +26,7 @@ class Twin {
   void begin_anew() noexcept { anew_ = true; }  // at the next step
   // Between two ticks, as Rig::rebase().
   void rebase(const Vec3& target) noexcept;
+  const RigStart& start() const { return start_; }  // of the last rebase()
   void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
   const Parameters& parameters() const { return parameters_; }
   // Whether they have changed at the last step.

@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 #include <exception>
+#include <utility>
 
 namespace limpid {
 namespace {
@@ -17,16 +18,28 @@ std::size_t ring_rows(std::size_t room, int stride) {
   return std::min(room, std::bit_floor(fit));
 }
 
+// Memory that is there, so that taking in what a loop begins with does not ask for any.
+std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t lanes) {
+  std::array<std::vector<double>, 2> worlds;
+  if (info.bodies.empty()) return worlds;
+  for (std::vector<double>& world : std::span(worlds).first(lanes)) {
+    world.assign(kMostWorld, 0.0);
+    world.clear();
+  }
+  return worlds;
+}
+
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
                    const Parameters& initial, bool force, std::size_t room, const Parameters* twin)
     : out_(out),
       writer_(out, info, force),
-      ring_(ring_rows(room, (twin ? 2 : 1) * RowLayout(info.dof).stride()),
-            static_cast<std::size_t>((twin ? 2 : 1) * RowLayout(info.dof).stride())),
+      ring_(ring_rows(room, (twin ? 2 : 1) * info.layout().stride()),
+            static_cast<std::size_t>((twin ? 2 : 1) * info.layout().stride())),
       lanes_(twin ? 2 : 1),
       known_{initial, twin ? *twin : initial},
+      worlds_(rooms(info, lanes_)),
       block_(kBlockRows * ring_.stride()),
       thread_([this] { live(); }) {}
 
@@ -52,6 +65,15 @@ bool Recorder::changed(const Parameters& now, std::size_t lane) noexcept {
   const bool kept = changes_.push({pushed_.load(std::memory_order_relaxed), now, lane});
   if (!kept) lost_changes_.fetch_add(1);
   return kept;
+}
+
+void Recorder::begins(std::span<const double> world, std::size_t lane) noexcept {
+  std::vector<double>& into = worlds_[lane];
+  if (world.size() > into.capacity()) {
+    lost_changes_.fetch_add(1);
+    return;
+  }
+  into.assign(world.begin(), world.end());
 }
 
 std::string Recorder::error() const {
@@ -87,6 +109,9 @@ void Recorder::live() {
 void Recorder::write_rows() {
   const std::size_t rows = ring_.pop(block_);
   const auto both = std::span<const double>(block_).first(rows * ring_.stride());
+  if (rows > 0 && !std::exchange(begun_, true)) {
+    for (std::size_t lane = 0; lane < lanes_; ++lane) writer_.append_world(worlds_[lane], lane);
+  }
   if (lanes_ == 1) return writer_.append(both);
   const std::size_t stride = ring_.stride() / lanes_;
   for (std::size_t lane = 0; lane < lanes_; ++lane) {

@@ -37,6 +37,8 @@ class Recorder {
   bool push_waiting(std::span<const double> row);
   bool changed(const Parameters& now,
                std::size_t lane = kMainLane) noexcept;  // from the next row on
+  // What the loop keeps of bodies at the first row, before that is pushed: RigStart's `world`.
+  void begins(std::span<const double> world, std::size_t lane = kMainLane) noexcept;
 
   // The owner's side.
   std::size_t stride() const noexcept { return ring_.stride(); }  // doubles a push
@@ -64,9 +66,11 @@ class Recorder {
   SessionWriter writer_;
   TraceRing ring_;
   SpscQueue<Change> changes_{256};
-  std::size_t lanes_;                    // runs
-  std::array<Parameters, 2> known_;      // the writing thread's, of each run
-  std::vector<double> block_, of_lane_;  // the writing thread's
+  std::size_t lanes_;                          // runs
+  std::array<Parameters, 2> known_;            // the writing thread's, of each run
+  std::array<std::vector<double>, 2> worlds_;  // of each run, with room for the largest
+  bool begun_ = false;                         // the writing thread's: these are written
+  std::vector<double> block_, of_lane_;        // the writing thread's
   std::atomic<std::uint64_t> pushed_{0};
   std::atomic<std::uint64_t> lost_changes_{0};
   std::atomic<bool> stop_{false};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/base/folders.h"
@@ -18,6 +19,7 @@ SessionInfo session_info(const RunPlan& plan) {
   SessionInfo info;
   info.tick = plan.parameters.tick;
   info.dof = plan.arm.dof();
+  info.bodies = body_names(plan.document.scene);
   info.app_version = program_version();
   info.build = program_build();
   info.seed = plan.seed;
@@ -29,6 +31,13 @@ SessionInfo session_info(const RunPlan& plan) {
   info.arm = std::make_shared<const ArmDescription>(plan.arm);
   if (plan.twin() != nullptr) info.twin = config_text(*plan.twin());
   return info;
+}
+
+void tell_start(Recorder& recorder, const RunPlan& plan) {
+  for (std::size_t lane = 0; lane < std::min<std::size_t>(plan.lanes(), 2); ++lane) {
+    const auto& start = plan.lane(lane).start ? plan.lane(lane).start : plan.start;
+    if (start) recorder.begins(start->world, lane);
+  }
 }
 
 Parameters session_parameters(const Session& session, const std::string& where) {
@@ -80,6 +89,12 @@ Parameters with_changed(Parameters twin, const Parameters& began, const Paramete
   return twin;
 }
 
+RigStart start_of(const Session& run) {
+  RigStart start = start_of(run.layout, run.row(0));
+  start.world = run.world;
+  return start;
+}
+
 // What the motors held of a real device's own forces the virtual arm in its place has.
 void give_forces(RunPlan& plan) {
   plan.parameters.weighs = plan.parameters.holds_weight;
@@ -107,11 +122,15 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     return parse_scene(session.info.scene, where + " (scene)", folder, plan.arm,
                        session.info.models);
   });
+  if (const int bodies = count_bodies(plan.document.scene); bodies != session.layout.bodies()) {
+    throw FileError(fmt::format("{}: /objects/pose: {} bodies; needed: {}, as the scene has", where,
+                                session.layout.bodies(), bodies));
+  }
   plan.models = build_meshes(plan.document);
   plan.hand = hand_of(session, where);
   plan.parameters = chosen;
   plan.parameters.tick = session.info.tick;
-  plan.start = start_of(session.layout, session.row(0));
+  plan.start = start_of(session);
   plan.rows = session.size();
   plan.note = other_build(session.info.build, where);
   plan.seed = session.info.seed;
@@ -133,7 +152,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     again.parameters = with_changed(own, session_parameters(session, where), chosen);
     again.parameters.tick = session.info.tick;
     again.changes = changes_again(twin, where + " (twin)", own, again.parameters);
-    again.start = start_of(twin.layout, twin.row(0));
+    again.start = start_of(twin);
   }
   return plan;
 }

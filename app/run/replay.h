@@ -1,12 +1,15 @@
 // Between plans and recordings: what a recording says of its plan, and the plan it stands for.
 #pragma once
 
+#include "app/run/recorder.h"
 #include "app/run/simulate.h"
 
 namespace limpid {
 
 // What a recording of this plan says about itself.
 SessionInfo session_info(const RunPlan& plan);
+// And of what each of its lanes begins with, before the first row.
+void tell_start(Recorder& recorder, const RunPlan& plan);
 
 // The parameters a session began with. Errors: FileError.
 Parameters session_parameters(const Session& session, const std::string& where);

@@ -42,6 +42,7 @@ struct RunPlan : Lane {
   const Lane& lane(std::size_t i) const { return i == 0 ? *this : beside[i - 1]; }
   // What a recorder wants to know of the second lane; null: there is none.
   const Parameters* twin() const { return beside.empty() ? nullptr : &beside[0].parameters; }
+  RowLayout layout() const { return row_layout(arm.dof(), document.scene); }  // of each lane's rows
 };
 
 // Called with each tick's rows, lane behind lane, and with the parameters of each lane whose own

@@ -135,6 +135,11 @@ bool Summary::add(std::span<const double> row) {
   t.energy_total = at(Column::energy_total)[0];
   t.energy_commanded = at(Column::energy_commanded)[0];
   t.highest_total = std::max(t.highest_total, t.energy_total);
+  if (layout_.bodies() > 0) {
+    t.to_objects = at(Column::energy_to_objects)[0];
+    t.objects_gain = std::max(t.objects_gain, at(Column::objects_gain)[0]);
+    t.most_awake = std::max(t.most_awake, at(Column::objects_awake)[0]);
+  }
   return memorable;
 }
 
@@ -147,27 +152,35 @@ std::string Summary::text() const {
         "before that\n",
         watch_.since(), watch_.why());
   }
+  text += fmt::format(
+      "in contact               {:.0f} %\n"
+      "largest |x_E|            {:.3f} {}\n"
+      "largest |f2|             {:.4f} {}\n"
+      "rms human torque         {:.4f} {}\n"
+      "E_c total                {:.3f} mJ (highest {:.3f} mJ)\n"
+      "E_c commanded            {:.3f} mJ\n",
+      100 * t.share_in_contact(), 1e3 * units_.angles * t.largest_error, units_.milliangle,
+      units_.torques * t.largest_contact, units_.torque, units_.torques * t.human_rms(),
+      units_.torque, 1e3 * t.energy_total, 1e3 * t.highest_total, 1e3 * t.energy_commanded);
+  if (layout_.bodies() == 0) return text;
   return text + fmt::format(
-                    "in contact               {:.0f} %\n"
-                    "largest |x_E|            {:.3f} {}\n"
-                    "largest |f2|             {:.4f} {}\n"
-                    "rms human torque         {:.4f} {}\n"
-                    "E_c total                {:.3f} mJ (highest {:.3f} mJ)\n"
-                    "E_c commanded            {:.3f} mJ\n",
-                    100 * t.share_in_contact(), 1e3 * units_.angles * t.largest_error,
-                    units_.milliangle, units_.torques * t.largest_contact, units_.torque,
-                    units_.torques * t.human_rms(), units_.torque, 1e3 * t.energy_total,
-                    1e3 * t.highest_total, 1e3 * t.energy_commanded);
+                    "to objects               {:.3f} mJ\n"
+                    "objects gained           {:.6f} mJ at most\n"
+                    "objects that moved       {:.0f} of {} at once\n",
+                    1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
 }
 
 std::vector<Summary::Number> Summary::numbers() const {
   const Totals& t = totals();
-  return {{"in contact", "%", 100 * t.share_in_contact()},
-          {"largest |x_E|", units_.milliangle, 1e3 * units_.angles * t.largest_error},
-          {"largest |f2|", units_.torque, units_.torques * t.largest_contact},
-          {"rms human torque", units_.torque, units_.torques * t.human_rms()},
-          {"E_c total", "mJ", 1e3 * t.energy_total},
-          {"E_c total, highest", "mJ", 1e3 * t.highest_total}};
+  std::vector<Number> numbers{
+      {"in contact", "%", 100 * t.share_in_contact()},
+      {"largest |x_E|", units_.milliangle, 1e3 * units_.angles * t.largest_error},
+      {"largest |f2|", units_.torque, units_.torques * t.largest_contact},
+      {"rms human torque", units_.torque, units_.torques * t.human_rms()},
+      {"E_c total", "mJ", 1e3 * t.energy_total},
+      {"E_c total, highest", "mJ", 1e3 * t.highest_total}};
+  if (layout_.bodies() > 0) numbers.push_back({"to objects", "mJ", 1e3 * t.to_objects});
+  return numbers;
 }
 
 std::string Summary::beside(const Summary& first, const std::string& name, const Summary& second,

@@ -70,6 +70,8 @@ class Summary {
     double human_square_sum = 0;                                       // of |f1| [N^2 m^2]
     double energy_total = 0, energy_commanded = 0, highest_total = 0;  // [J]
     std::uint64_t in_contact = 0;
+    double to_objects = 0, objects_gain = 0;  // given to bodies, and the most they gained [J]
+    double most_awake = 0;                    // bodies
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }

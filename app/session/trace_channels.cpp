@@ -97,10 +97,13 @@ struct Group {
   Ink ink;
 };
 constexpr std::array kGroups{
-    Group{"device", "Device", device}, Group{"proxy", "Proxy", proxy},
-    Group{"hand", "Hand", hand},       Group{"coupling", "Coupling", neutral},
-    Group{"energy", "Energy", energy}, Group{"contact", "Contacts", contact},
-    Group{"timing", "Timing", neutral}};
+    Group{"device", "Device", device},  Group{"proxy", "Proxy", proxy},
+    Group{"hand", "Hand", hand},        Group{"coupling", "Coupling", neutral},
+    Group{"energy", "Energy", energy},  Group{"contact", "Contacts", contact},
+    Group{"timing", "Timing", neutral}, Group{"objects", "Objects", neutral}};
+
+// Of each body, in this order: its place, and how fast it goes and turns.
+constexpr std::size_t kOfBody = 5;
 
 // What the parts of a column are called; a single one has no name.
 std::string part_name(ColumnWidth width, int part) {
@@ -109,13 +112,18 @@ std::string part_name(ColumnWidth width, int part) {
   switch (width) {
     case ColumnWidth::one:
     case ColumnWidth::if_bodies: return "";
-    case ColumnWidth::poses: return fmt::format("body {} {}", part / 7 + 1, part % 7);
-    case ColumnWidth::velocities: return fmt::format("body {} {}", part / 6 + 1, part % 6);
+    case ColumnWidth::poses:
+    case ColumnWidth::velocities: break;  // bodies have channels of their own
     case ColumnWidth::three: return axis;
     case ColumnWidth::dof: return "joint " + std::to_string(part + 1);
     case ColumnWidth::contacts: return "contact " + std::to_string(part / 3 + 1) + " " + axis;
   }
   return "";
+}
+
+// Many numbers of each, of which people want a few.
+bool of_bodies(const ColumnInfo& column) {
+  return column.width == ColumnWidth::poses || column.width == ColumnWidth::velocities;
 }
 
 ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string& unit) {
@@ -154,7 +162,8 @@ std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p)
   return limits;
 }
 
-TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& slides)
+TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& slides,
+                             const std::vector<std::string>& bodies)
     : layout_(layout),
       norms_(norm_units(slides)),
       positions_(static_cast<std::size_t>(layout.dof())) {
@@ -166,7 +175,7 @@ TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& s
     positions_[static_cast<std::size_t>(scaled.part)] = scaled;
   }
   for (const ColumnInfo& column : kColumnInfo) {
-    if (column.column == Column::time || find(column.path + 1)) continue;
+    if (column.column == Column::time || find(column.path + 1) || of_bodies(column)) continue;
     const std::vector<std::string> of_parts = units.units(column);
     for (int part = 0; part < layout.width(column.column); ++part) {
       const std::string& unit = of_parts[of_parts.size() == 1 ? 0 : static_cast<std::size_t>(part)];
@@ -176,6 +185,36 @@ TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& s
         if (scaled.column == column.column && scaled.part == part) place.scaled = scaled;
       }
       columns_.push_back(place);
+    }
+  }
+  add_bodies(bodies);
+}
+
+void TraceChannels::add_bodies(const std::vector<std::string>& names) {
+  struct Quantity {
+    const char *key, *unit, *help;
+  };
+  constexpr std::array<Quantity, kOfBody> kQuantities{{
+      {"x", "m", "its centre of mass, forward"},
+      {"y", "m", "its centre of mass, to the left"},
+      {"z", "m", "its centre of mass, upward"},
+      {"speed", "m/s", "how fast its centre of mass moves"},
+      {"turning", "rad/s", "how fast it turns, about whatever axis"},
+  }};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layout_.bodies()); ++i) {
+    std::string body = i < names.size() ? names[i] : "object " + std::to_string(i + 1);
+    // Two of one name: the second by its number as well.
+    if (find("objects/" + body + ".x")) body += " (" + std::to_string(i + 1) + ")";
+    for (const Quantity& q : kQuantities) {
+      infos_.push_back(
+          {.key = "objects/" + body + "." + q.key,
+           .group = "Objects",
+           .name = body + ", " + q.key,
+           .label = body + " " + q.key,
+           .unit = q.unit,
+           .help = q.help,
+           .ink = static_cast<Ink>(static_cast<int>(joint_1) + static_cast<int>(i) % kJointInks),
+           .zero = q.unit != std::string_view("m")});
     }
   }
 }
@@ -225,6 +264,15 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   const auto rest = joints.subspan(x1.size());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);
+  }
+  auto of_bodies = rest.subspan(columns_.size());
+  const auto poses = at(Column::body_pose), velocities = at(Column::body_velocity);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layout_.bodies()); ++i) {
+    const auto velocity = velocities.subspan(i * kVelocityNumbers, kVelocityNumbers);
+    std::ranges::copy(poses.subspan(i * kPoseNumbers, 3), of_bodies.begin());
+    of_bodies[3] = norm(velocity.first(3));
+    of_bodies[4] = norm(velocity.last(3));
+    of_bodies = of_bodies.subspan(kOfBody);
   }
 }
 

@@ -50,8 +50,10 @@ std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p)
 
 class TraceChannels {
  public:
-  // `slides`: which joints do; their channels are in metres and newtons. Empty: none.
-  explicit TraceChannels(const RowLayout& layout, const std::vector<bool>& slides = {});
+  // `slides`: which joints do; their channels are in metres and newtons. Empty: none. `bodies`:
+  // what the objects that move are called; those without a name go by their number.
+  explicit TraceChannels(const RowLayout& layout, const std::vector<bool>& slides = {},
+                         const std::vector<std::string>& bodies = {});
 
   // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
@@ -70,10 +72,12 @@ class TraceChannels {
   const RowLayout& layout() const { return layout_; }
 
  private:
+  void add_bodies(const std::vector<std::string>& names);
+
   RowLayout layout_;
   NormUnits norms_;
   std::vector<ChannelInfo> infos_;
-  // A number of the row, behind the first channels.
+  // A number of the row, behind the first channels; the bodies' follow.
   struct Place {
     std::size_t at;
     std::optional<SessionUnits::Scaled> scaled;  // if it is shown in another unit

@@ -116,7 +116,7 @@ StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
   StoryRun run;
   Session& first = run.session;
   first.info = session_info(plan);
-  first.layout = RowLayout(plan.arm.dof());
+  first.layout = plan.layout();
   first.changes = plan.changes;
   const auto stride = static_cast<std::size_t>(first.layout.stride());
   auto twin = std::make_shared<Session>(first);
@@ -151,6 +151,7 @@ void write_session(const Session& session, const ToldSteps& told, const std::fil
   SessionWriter writer(out, session.info, force);
   const Session* runs[] = {&session, session.twin.get()};
   for (std::size_t lane = 0; lane < 2 && runs[lane] != nullptr; ++lane) {
+    writer.append_world(runs[lane]->world, lane);
     writer.append(runs[lane]->rows, lane);
     for (const SettingChange& change : runs[lane]->changes) {
       if (change.row < runs[lane]->size()) writer.append(change, lane);

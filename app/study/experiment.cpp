@@ -138,7 +138,7 @@ Laboratory::Laboratory(std::string experiment, Options options)
 TrialResult Laboratory::run_one(const Trial& trial) const {
   TrialResult result;
   result.session.info = session_info(trial.plan);
-  result.session.layout = RowLayout(trial.plan.arm.dof());
+  result.session.layout = trial.plan.layout();
   const std::string& folder = trial.folder.empty() ? experiment_ : trial.folder;
   const fs::path file = options_.dir / folder / (trial.name + ".h5");
   const std::uint64_t key = trial.keep ? trial_key(trial.plan, options_.program) : 0;
@@ -152,6 +152,7 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
     fs::create_directories(file.parent_path());
     recorder.emplace(file, result.session.info, trial.plan.parameters, true,
                      Recorder::kWaitingRoom);
+    tell_start(*recorder, trial.plan);
   }
   std::vector<double>& rows = result.session.rows;
   rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));

@@ -100,7 +100,7 @@ std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
   const auto wall = std::ranges::find_if(objects, has_shape<Plane>);
   const bool one_wall = std::ranges::count_if(objects, has_shape<Plane>) == 1;
   RunMeter meter(run.arm, run.parameters.tick, run.rows, needs_felt(plan),
-                 one_wall ? &*wall : nullptr);
+                 one_wall ? &*wall : nullptr, count_bodies(run.document.scene));
   const auto must_stop = [&] {
     for (const StopRule& rule : plan.stops) {
       if (meter.seconds() >= rule.after && rule.limit.met(rule.limit.measure->value(meter))) {

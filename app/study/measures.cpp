@@ -74,8 +74,8 @@ const MeasureInfo* find_measure(std::string_view name) {
 }
 
 RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
-                   const Object* wall)
-    : layout_(arm.dof()),
+                   const Object* wall, int bodies)
+    : layout_(arm.dof(), bodies),
       summary_(layout_),
       T_(T),
       rows_(rows),

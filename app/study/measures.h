@@ -35,10 +35,10 @@ inline constexpr double kNoEnergy = 1e-6;
 // number where there is nothing to measure.
 class RunMeter {
  public:
-  // Of a run of `rows` ticks of T [s], in a world with this plane. `felt`: whether what needs the
-  // arm's inertia and tip is wanted, which costs as much as a tick.
+  // Of a run of `rows` ticks of T [s], in a world with this plane and so many bodies. `felt`:
+  // whether what needs the arm's inertia and tip is wanted, which costs as much as a tick.
   RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
-           const Object* wall = nullptr);
+           const Object* wall = nullptr, int bodies = 0);
 
   void add(std::span<const double> row);
   const Summary& summary() const { return summary_; }

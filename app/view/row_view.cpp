@@ -1,6 +1,8 @@
 #include "app/view/row_view.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace limpid {
@@ -17,7 +19,14 @@ Vec<kAnyDof> joints(std::span<const double> x) {
 
 }  // namespace
 
-RowView::RowView(const ArmDescription& arm) : arm_(arm) {}
+RowView::RowView(const ArmDescription& arm, const Scene& scene) : arm_(arm) { show(scene); }
+
+void RowView::show(const Scene& scene) {
+  centers_.clear();
+  for (const Object& object : scene.objects) {
+    if (object.body) centers_.push_back(center_of_mass(object));
+  }
+}
 
 ArmPose RowView::pose(std::span<const double> x) const {
   Arm<kAnyDof>::Frames f;
@@ -62,6 +71,20 @@ std::vector<ContactForce> RowView::contacts(const RowLayout& layout,
   return contacts;
 }
 
+std::vector<Pose> RowView::bodies(const RowLayout& layout, std::span<const double> row) const {
+  const auto all = layout.in(row, Column::body_pose);
+  std::vector<Pose> frames;
+  const std::size_t count = std::min(centers_.size(), static_cast<std::size_t>(layout.bodies()));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto x = all.subspan(i * kPoseNumbers, kPoseNumbers);
+    Pose frame = Pose::Identity();
+    frame.linear() = Eigen::Quaterniond(x[3], x[4], x[5], x[6]).normalized().toRotationMatrix();
+    frame.translation() = Vec3(x[0], x[1], x[2]) - frame.linear() * centers_[i];
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
 ViewState RowView::view(const RowLayout& layout, std::span<const double> row) const {
   const auto at = [&](Column c) { return layout.in(row, c); };
   ViewState view;
@@ -71,11 +94,13 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
   view.hand_target = Vec3(target[0], target[1], target[2]);
   view.hand_grips = view.show_hand = at(Column::hand_grip)[0] > 0.5;
   view.hand_force = tip_force(at(Column::device_position), layout.human_torque(row));
+  view.bodies = bodies(layout, row);
   return view;
 }
 
 void lay_over(ViewState& view, const ViewState& twin) {
   view.twin = {twin.device, twin.proxy, twin.hand_force, twin.contacts};
+  view.other_bodies = twin.bodies;
 }
 
 void ViewMemory::clear() {

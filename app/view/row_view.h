@@ -21,11 +21,14 @@ namespace limpid {
 inline std::vector<MeshPicture> mesh_pictures(const Scene& scene, const MeshModels& models,
                                               std::optional<std::size_t> highlighted = {}) {
   std::vector<MeshPicture> pictures;
+  int bodies = 0;
   for (std::size_t i = 0; i < std::min(scene.objects.size(), models.size()); ++i) {
     const Object& object = scene.objects[i];
+    const int body = object.body ? bodies++ : -1;
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr) continue;
-    pictures.push_back({models[i], mesh->stood(object.pose), mesh->size(), highlighted == i});
+    const Pose pose = mesh->stood(object.body ? Pose::Identity() : object.pose);
+    pictures.push_back({models[i], pose, mesh->size(), highlighted == i, body});
   }
   return pictures;
 }
@@ -41,7 +44,10 @@ inline std::vector<VisualPicture> visual_pictures(const SceneDocument& document)
 // From a row of the trace to what the 3D view shows.
 class RowView {
  public:
-  explicit RowView(const ArmDescription& arm);
+  explicit RowView(const ArmDescription& arm, const Scene& scene = {});
+
+  // Another scene: where the centres of mass of its bodies are.
+  void show(const Scene& scene);
 
   ArmPose pose(std::span<const double> x) const;
   Vec3 tip(std::span<const double> x) const;
@@ -50,11 +56,14 @@ class RowView {
   // Where the proxy is touched. A recording that has but the torque of its contacts shows it as one
   // force at the tip.
   std::vector<ContactForce> contacts(const RowLayout& layout, std::span<const double> row) const;
-  // Both arms, the hand and its force; no contacts, no trails.
+  // The frames of the scene's objects that move, as many as row and scene have.
+  std::vector<Pose> bodies(const RowLayout& layout, std::span<const double> row) const;
+  // Both arms, the hand and its force, and what moves; no contacts, no trails.
   ViewState view(const RowLayout& layout, std::span<const double> row) const;
 
  private:
   Arm<kAnyDof> arm_;
+  std::vector<Vec3> centers_;  // of mass, of each body, in its frame [m]
 };
 
 // A second run's view in the first one's picture.

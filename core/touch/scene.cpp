@@ -51,6 +51,7 @@ struct Volume {
 
 Vec3 center_of_mass(const Object& object) {
   if (object.body && object.body->center) return *object.body->center;
+  if (has_shape<Mesh>(object)) return Vec3::Zero();
   double volume = std::visit(Volume{}, object.shape);
   Vec3 moment = Vec3::Zero();  // [m^4]
   for (const BodyPart& part : object.parts) {

@@ -7,6 +7,7 @@
 
 #include "render/gl/offscreen.h"
 #include "render/marks.h"
+#include "render/mesh_shapes.h"
 #include "render/scene_view.h"
 
 namespace limpid {
@@ -140,6 +141,115 @@ TEST_F(SteadyPicture, IsTheSameDrawnInPartsOrAtOnce) {
       draw();  // the next one begins from a picture drawn in parts
     }
   }
+}
+
+// A cube and a bar of two parts that move over the table, and a model that does.
+class MovingObjects : public SteadyPicture {
+ protected:
+  void SetUp() override {
+    SteadyPicture::SetUp();
+    if (!view_) return;
+    Scene scene = table();
+    scene.add({.name = "cube",
+               .pose = pose_at(Vec3(0.2, 0.1, -0.1)),
+               .shape = Box{Vec3::Constant(0.04)},
+               .body = Body{},
+               .parts = {{pose_at(Vec3(0, 0, 0.04)), Sphere{0.02}}}});
+    scene.add({.name = "model", .pose = pose_at(kModel), .shape = Mesh{}, .body = Body{}});
+    view_->set_scene(scene, {});
+    view_->set_meshes(std::vector<MeshPicture>{
+        {std::make_shared<const Model>(make_box(Vec3::Constant(0.05), 0.005, {})), Pose::Identity(),
+         1, false, 1}});
+    state_.proxy = pose_of(arm_, -0.6, 0.4);
+    state_.device = state_.proxy;
+    state_.contacts.clear();
+    state_.shade.reset();
+    move_bodies(0);
+  }
+  void move_bodies(int step) {
+    Pose cube = pose_at(Vec3(0.2 + 0.02 * step, 0.1, -0.1));
+    cube.rotate(Eigen::AngleAxisd(0.3 * step, Vec3::UnitZ()));
+    state_.bodies = {cube, pose_at(kModel + Vec3(0, 0.01 * step, 0.01 * (step % 3)))};
+  }
+  const Vec3 kModel{0.1, -0.1, -0.08};
+};
+
+TEST_F(MovingObjects, AreNotDrawnAgainWhileTheySleep) {
+  EXPECT_TRUE(draw());
+  const auto before = pixels();
+  move_bodies(0);
+  EXPECT_FALSE(view_->differs(state_, camera_));
+  EXPECT_FALSE(draw());
+  move_bodies(1);
+  EXPECT_TRUE(draw());
+  EXPECT_NE(pixels(), before);
+  move_bodies(0);
+  EXPECT_TRUE(draw());
+  EXPECT_EQ(pixels(), before);
+}
+
+// With their shadows, and a second run's beside them.
+TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
+  for (const int level : {0, 2, 4}) {
+    view_->set_quality(Quality::level(level));
+    for (int step = 0; step < 6; ++step) {
+      move_bodies(step);
+      state_.other_bodies.clear();
+      if (step > 2) {
+        state_.other_bodies = state_.bodies;
+        state_.other_bodies[0].translation().y() -= 0.03;
+      }
+      draw();
+      const auto in_parts = pixels();
+      view_->set_quality(Quality::level(level));  // forgets what was there
+      draw();
+      const auto at_once = pixels();
+      int wrong = 0;
+      for (std::size_t i = 0; i < at_once.size(); ++i)
+        wrong += std::abs(int{at_once[i]} - int{in_parts[i]}) > 2;
+      ASSERT_LT(wrong, 12) << "level " << level << ", step " << step;
+      move_bodies(step + 1);
+      draw();  // the next one begins from a picture drawn in parts
+    }
+  }
+}
+
+TEST_F(MovingObjects, TakeTheirShadowsWithThem) {
+  view_->set_quality(Quality::level(0));
+  state_.proxy.links.clear();
+  state_.device.links.clear();
+  state_.show_error = state_.show_grid = state_.show_trail = false;
+  camera_.look(Camera::View::top);
+  camera_.frame(view_->bounds());
+  camera_.finish();
+  // The light comes from (-0.30, -0.55, 1): a decimetre above the table, this far off.
+  const Vec3 cube(0.2, -0.15, -0.02), shadow = cube + Vec3(0.03, 0.055, -0.1);
+  const Vec3 away(0.1, 0, 0);
+  const auto light = [&](const Vec3& place) {
+    const Eigen::Vector2i pixel = camera_.project(place).value().cast<int>();
+    const auto at = 4 * static_cast<std::size_t>(pixel.y() * kWidth + pixel.x());
+    return int{pixels()[at]};
+  };
+  state_.bodies[0] = pose_at(cube);
+  draw();
+  const int dark = light(shadow), open = light(shadow + away);
+  state_.bodies[0] = pose_at(cube + away);
+  draw();
+  EXPECT_LT(dark + 10, light(shadow));
+  EXPECT_LT(light(shadow + away) + 10, open);
+}
+
+// Where the row says nothing, or no number, an object is where the scene has it.
+TEST_F(MovingObjects, AreWhereTheSceneHasThemUntilARowSaysMore) {
+  state_.bodies.clear();
+  draw();
+  const auto as_in_scene = pixels();
+  move_bodies(0);
+  draw();
+  EXPECT_EQ(pixels(), as_in_scene);
+  state_.bodies[0].translation().x() = std::nan("");
+  draw();
+  EXPECT_EQ(pixels(), as_in_scene);
 }
 
 // Lines and marks as wide as on the finest screens: what they leave is wiped off as well.

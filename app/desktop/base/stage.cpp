@@ -10,13 +10,19 @@
 namespace limpid {
 namespace {
 
+bool same_part(const BodyPart& a, const BodyPart& b) {
+  return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+}
+
 // Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
 bool same_items(const SceneDocument& first, const SceneDocument& second) {
-  const auto seen = [](const Object& object) { return !has_shape<Mesh>(object); };
+  const auto seen = [](const Object& object) { return object.body || !has_shape<Mesh>(object); };
   return std::ranges::equal(first.scene.objects | std::views::filter(seen),
                             second.scene.objects | std::views::filter(seen),
                             [](const Object& a, const Object& b) {
-                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() &&
+                                     a.body.has_value() == b.body.has_value() &&
+                                     std::ranges::equal(a.parts, b.parts, same_part);
                             }) &&
          std::ranges::equal(first.visuals, second.visuals, {}, &SceneVisual::file,
                             &SceneVisual::file);
@@ -37,8 +43,9 @@ Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, Hist
       group(shown),
       arm_(std::move(arm)),
       document_(std::move(document)),
-      rows_(arm_),
-      channels_(RowLayout(arm_.dof()), slides_of(arm_)) {
+      rows_(arm_, document_.scene),
+      channels_(row_layout(arm_.dof(), document_.scene), slides_of(arm_),
+                body_names(document_.scene)) {
   choose_plots(default_plots());
   show_meshes(models, std::nullopt);
 }
@@ -74,6 +81,7 @@ void Stage::show(const SceneDocument& document, const MeshModels& models,
     picture.set_scene(document.scene, visual_pictures(document));
   }
   document_ = document;
+  rows_.show(document_.scene);
   show_meshes(models, highlighted);
 }
 

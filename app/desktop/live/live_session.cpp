@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <stdexcept>
 
 #include "app/device/device_store.h"
 #include "app/run/replay.h"
@@ -64,6 +65,11 @@ void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshMod
 
 void LiveSession::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
                               double shown) {
+  if (const int bodies = count_bodies(document.scene); bodies != loop_.layout().bodies()) {
+    throw std::runtime_error(fmt::format(
+        "This scene has {} objects that move, the one under way {}: unplug the device first.",
+        bodies, loop_.layout().bodies()));
+  }
   auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
   touch(fresh->document().scene);
   take_stage(std::move(fresh));
@@ -76,7 +82,7 @@ void LiveSession::touch(const Scene& scene) {
 std::unique_ptr<Stage> LiveSession::make_stage(ArmDescription arm, SceneDocument document,
                                                const MeshModels& models, const Parameters& p,
                                                double shown) const {
-  const int channels = TraceChannels(RowLayout(arm.dof())).count();
+  const int channels = TraceChannels(row_layout(arm.dof(), document.scene)).count();
   return std::make_unique<Stage>(std::move(arm), std::move(document), models,
                                  History({.channels = 2 * channels, .tick = p.tick}), shown);
 }

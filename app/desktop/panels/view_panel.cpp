@@ -151,6 +151,7 @@ ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) 
   if (!scene.rerun.empty()) {
     const RowLayout& layout = stage.channels().layout();
     view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
+    view.other_bodies = stage.rows().bodies(layout, scene.rerun);
   }
   if (scene.overlaid && !scene.twin.empty()) lay_over(view, twin_of(scene, settings));
   return view;

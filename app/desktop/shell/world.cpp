@@ -390,9 +390,26 @@ void World::hand_scene_over(bool at_once) {
   const auto now = std::chrono::steady_clock::now();
   if (d_.document.editor().version().world == touched_ || d_.live.recording()) return;
   if (!at_once && now - touched_since_ < kBetweenWorlds) return;
-  d_.live.touch(d_.document.scene());
+  take_up(d_.document.editor());
   touched_ = d_.document.editor().version().world;
   touched_since_ = now;
+}
+
+// Rows have room for so many bodies: with more or fewer another loop begins, at rest.
+void World::take_up(const SceneEditor& editor) {
+  const int bodies = count_bodies(editor.scene());
+  if (bodies == d_.live.loop().layout().bodies()) return d_.live.touch(editor.scene());
+  if (d_.live.loop().device_in_place()) {
+    d_.notices.say("Unplug the device before objects that move come or go.", true);
+    return;
+  }
+  try {
+    d_.live.open(ArmDescription(d_.live.stage().arm()), editor.document(), editor.models(),
+                 d_.settings.parameters, d_.settings.plot_length, nullptr);
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+  }
+  shown_ = {};  // the new stage does not know what is selected
 }
 
 void World::toggle_recording() {

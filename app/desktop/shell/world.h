@@ -76,6 +76,7 @@ class World {
   Workplace workplace() const;
   void show_scene();
   void hand_scene_over(bool at_once);
+  void take_up(const SceneEditor& editor);
 
   Desktop& d_;
   std::string device_file_, device_tip_;

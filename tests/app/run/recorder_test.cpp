@@ -38,6 +38,28 @@ TEST_P(RecorderOfJoints, WritesEveryRowInOrder) {
   EXPECT_EQ(std::memcmp(session.rows.data(), rows.data(), rows.size() * sizeof(double)), 0);
 }
 
+TEST(Recorder, WritesWhatBodiesBeginWithBeforeTheFirstRow) {
+  const test::TempDir dir;
+  SessionInfo info = sample_info(3);
+  info.bodies = {"die"};
+  info.twin = "";
+  const Parameters p;
+  Recorder recorder(dir / "a.h5", info, p, false, Recorder::kLiveRoom, &p);
+  const std::vector<double> world{1, 2, 3}, other{4, 5};
+  recorder.begins(world);
+  recorder.begins(other, kTwinLane);
+  const auto row = sample_rows(info.layout(), 0, 1);
+  std::vector<double> both = row;
+  both.insert(both.end(), row.begin(), row.end());
+  ASSERT_TRUE(recorder.push(both));
+  recorder.finish();
+  EXPECT_EQ(recorder.dropped(), 0u);
+  const Session session = read_session(dir / "a.h5");
+  EXPECT_EQ(session.world, world);
+  EXPECT_EQ(session.twin->world, other);
+  EXPECT_EQ(session.info.bodies, info.bodies);
+}
+
 TEST(Recorder, WritesChangesBesideTheRowTheyHoldFrom) {
   const test::TempDir dir;
   const RowLayout layout(3);

@@ -51,6 +51,33 @@ TEST(Replay, GivesEveryRowOfARunAgainWithItsChangesInTheMiddle) {
   EXPECT_EQ(first_difference(rows_of(session), rows_of(again)), -1);
 }
 
+TEST(Replay, BeginsWithWhatTheLoopKeptOfItsBodiesAndTellsItOn) {
+  const test::TempDir dir;
+  Session session = recorded(test::plan("table.toml", "touch.csv", 0.2), dir / "a.h5");
+  session.world = {1, 2, 3};
+  const RunPlan plan = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  ASSERT_TRUE(plan.start);
+  EXPECT_EQ(plan.start->world, session.world);
+  SessionInfo info = session_info(plan);
+  info.bodies = {"die"};
+  Recorder recorder(dir / "b.h5", info, plan.parameters, false);
+  tell_start(recorder, plan);
+  ASSERT_TRUE(recorder.push(std::vector<double>(recorder.stride(), 0.0)));
+  recorder.finish();
+  EXPECT_EQ(read_session(dir / "b.h5").world, session.world);
+}
+
+TEST(Replay, RefusesRowsOfMoreBodiesThanTheSceneHas) {
+  const test::TempDir dir;
+  Session session = recorded(test::plan("table.toml", "touch.csv", 0.2), dir / "a.h5");
+  session.info.bodies = {"die"};
+  session.layout = session.info.layout();
+  session.rows.assign(static_cast<std::size_t>(session.layout.stride()), 0.0);
+  EXPECT_THAT(test::refusal([&] { replay(session, "a.h5", {}); }),
+              testing::AllOf(testing::HasSubstr("a.h5"), testing::HasSubstr("/objects/pose"),
+                             testing::HasSubstr("1 bodies; needed: 0")));
+}
+
 TEST(Replay, OfAReplayIsTheSameStill) {
   const test::TempDir dir;
   const Session first = recorded(eventful(), dir / "a.h5");

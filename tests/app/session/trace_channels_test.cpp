@@ -119,6 +119,54 @@ TEST_P(TraceChannelsOfJoints, AreAllThatARecordingHolds) {
   }
 }
 
+TEST(TraceChannels, AreOfEachBodyWhereItIsAndHowFastItMoves) {
+  const RowLayout layout(3, 2);
+  const TraceChannels channels(layout, {}, {"die", "key"});
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  std::ranges::copy(std::array{0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0, 0.4, 0.5, 0.6},
+                    layout.in(std::span(row), Column::body_pose).begin());
+  std::ranges::copy(std::array{3.0, 0.0, 4.0, 0.0, 5.0, 12.0},
+                    layout.in(std::span(row), Column::body_velocity).begin());
+  layout.in(std::span(row), Column::energy_objects)[0] = 0.25;
+  std::vector<double> values(static_cast<std::size_t>(channels.count()));
+  channels.values(row, values);
+  const auto value = [&](const char* key) {
+    return values[static_cast<std::size_t>(channels.find(key).value())];
+  };
+  EXPECT_EQ(value("objects/die.x"), 0.1);
+  EXPECT_EQ(value("objects/die.z"), 0.3);
+  EXPECT_EQ(value("objects/die.speed"), 5);
+  EXPECT_EQ(value("objects/die.turning"), 13);
+  EXPECT_EQ(value("objects/key.y"), 0.5);
+  EXPECT_EQ(value("objects/key.speed"), 0);
+  EXPECT_EQ(value("energy/objects"), 0.25);
+  const ChannelInfo& speed =
+      channels.infos()[static_cast<std::size_t>(channels.find("objects/die.speed").value())];
+  EXPECT_EQ(speed.label, "die speed");
+  EXPECT_EQ(speed.unit, "m/s");
+}
+
+TEST(TraceChannels, HaveNoneOfBodiesWhereNothingMoves) {
+  const TraceChannels channels{RowLayout(3, 0)};
+  for (const ChannelInfo& info : channels.infos()) EXPECT_NE(info.group, "Objects");
+  EXPECT_FALSE(channels.find("energy/objects"));
+}
+
+// Of as many bodies as there can be, on the largest arm, a row's channels still fit.
+TEST(TraceChannels, FitIntoAHistoryHoweverManyMove) {
+  const RowLayout layout(kMaxDof, kMostBodies);
+  const TraceChannels channels(layout, {}, std::vector<std::string>(kMostBodies, "die"));
+  std::set<std::string> keys;
+  for (const ChannelInfo& info : channels.infos()) {
+    EXPECT_TRUE(keys.insert(info.key).second) << info.key;
+  }
+  History history({.channels = 2 * channels.count(), .seconds = 0.01});
+  const std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.5);
+  channels.append(history, row, row);
+  EXPECT_EQ(history.value(2 * channels.count() - 1, history.first()),
+            static_cast<float>(std::sqrt(0.75)));
+}
+
 TEST_P(TraceChannelsOfJoints, HaveNamesOfTheirOwn) {
   const TraceChannels channels{RowLayout(GetParam())};
   std::set<std::string> keys, names, labels;

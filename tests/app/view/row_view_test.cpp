@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -98,6 +99,48 @@ TEST(RowView, ShowsWhereTheHandWantsTheTip) {
   const ViewState view = RowView(plan.arm).view(layout, row);
   EXPECT_EQ(view.hand_target, target);
   EXPECT_FALSE(view.hand_grips);
+}
+
+// Its row has the centre of mass, the picture the object's own frame.
+TEST(RowView, PlacesWhatMovesByItsCentreOfMass) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  Object lever{.name = "lever", .pose = pose_at(Vec3(0.2, 0, 0)), .shape = Box{}, .body = Body{}};
+  lever.body->center = Vec3(0.02, 0, 0);
+  plan.document.scene.add(lever);
+  const RowLayout layout = plan.layout();
+  ASSERT_EQ(layout.bodies(), 1);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  // A quarter of a turn to the left, of a quaternion of another length.
+  std::ranges::copy(std::array{0.1, 0.2, 0.3, 2.0, 0.0, 0.0, 2.0},
+                    layout.in(std::span(row), Column::body_pose).begin());
+  const ViewState view = RowView(plan.arm, plan.document.scene).view(layout, row);
+  ASSERT_EQ(view.bodies.size(), 1u);
+  const Pose& frame = view.bodies[0];
+  EXPECT_NEAR((frame * *lever.body->center - Vec3(0.1, 0.2, 0.3)).norm(), 0, 1e-12);
+  EXPECT_NEAR((frame.linear() * Vec3::UnitX() - Vec3::UnitY()).norm(), 0, 1e-12);
+  EXPECT_NEAR((frame.translation() - Vec3(0.1, 0.18, 0.3)).norm(), 0, 1e-12);
+  // Of a row without bodies, and of a scene that has fewer, there is nothing to place.
+  const RowLayout none(plan.arm.dof(), 0);
+  EXPECT_TRUE(RowView(plan.arm, plan.document.scene).bodies(none, row).empty());
+  EXPECT_TRUE(RowView(plan.arm).bodies(layout, row).empty());
+}
+
+TEST(RowView, GivesAMeshThatMovesItsPlaceInItsBody) {
+  Scene scene;
+  const auto shape = [](bool moves) {
+    Object object{.name = "bunny", .pose = pose_at(Vec3(0.2, 0, 0)), .shape = Mesh{}};
+    if (moves) object.body.emplace();
+    return object;
+  };
+  scene.objects = {shape(false), shape(true), shape(true)};
+  const auto model = std::make_shared<const Model>();
+  const auto pictures = mesh_pictures(scene, {model, model, model});
+  ASSERT_EQ(pictures.size(), 3u);
+  EXPECT_EQ(pictures[0].body, -1);
+  EXPECT_EQ(pictures[0].pose.translation(), Vec3(0.2, 0, 0));
+  EXPECT_EQ(pictures[1].body, 0);
+  EXPECT_EQ(pictures[2].body, 1);
+  EXPECT_EQ(pictures[2].pose.translation(), Vec3::Zero());
 }
 
 }  // namespace
