@@ -108,16 +108,15 @@ class ObjectItems {
 
   void add(const Pose& pose, const Cylinder& cylinder) {
     const double r = cylinder.radius, half = cylinder.length / 2;
-    if (shown_by_visual(moved(Bounds(Vec3(-r, -r, -half), Vec3(r, r, half)), pose), visuals_))
-      return;
-    items_.world.push_back({make_cylinder(r, cylinder.length, kObject), pose, -1});
+    if (shown(moved(Bounds(Vec3(-r, -r, -half), Vec3(r, r, half)), pose))) return;
+    put(make_cylinder(r, cylinder.length, kObject), pose);
   }
 
   void add(const Pose& pose, const Capsule& capsule) {
     const double r = capsule.radius;
     const Vec3 end = capsule.length / 2 * Vec3::UnitZ(), all = Vec3(r, r, r) + end;
-    if (shown_by_visual(moved(Bounds(-all, all), pose), visuals_)) return;
-    items_.world.push_back({make_capsule(-end, end, r, kObject), pose, -1});
+    if (shown(moved(Bounds(-all, all), pose))) return;
+    put(make_capsule(-end, end, r, kObject), pose);
   }
 
   void add(const Pose&, const Mesh&) {}  // SceneView::set_meshes() has their models

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/touch/mass_properties.h"
+
 namespace limpid {
 
 namespace {
@@ -24,7 +26,7 @@ RowView::RowView(const ArmDescription& arm, const Scene& scene) : arm_(arm) { sh
 void RowView::show(const Scene& scene) {
   centers_.clear();
   for (const Object& object : scene.objects) {
-    if (object.body) centers_.push_back(center_of_mass(object));
+    if (object.body) centers_.push_back(mass_properties(object).center);
   }
 }
 

@@ -41,7 +41,7 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
 // Over the last tick, to bodies [J].
 template <int N>
 double given_to(const Proxy<N>& proxy) {
-  const World* world = proxy.contacts().world();
+  const BodyWorld* world = proxy.contacts().world();
   return world != nullptr ? world->given() : 0;
 }
 

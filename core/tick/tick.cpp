@@ -44,7 +44,7 @@ template <int N>
 void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   const Vec<N> zero = Vec<N>::Zero(start.x1.size());
   proxy_.place(start.x2, start.v2, p.inertia_ratio);
-  if (World* world = proxy_.contacts().world(); world != nullptr && !world->read(start.world)) {
+  if (BodyWorld* world = proxy_.contacts().world(); world != nullptr && !world->read(start.world)) {
     world->reset();
   }
   to_bodies_ = 0;
@@ -235,7 +235,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::contact_potential, potential_);
   set(Column::contact_gain, books_.contact_gain(potential_, first_potential_, to_bodies_));
   write_contacts(row);
-  if (const World* world = proxy_.contacts().world()) {
+  if (const BodyWorld* world = proxy_.contacts().world()) {
     set(Column::energy_objects, world->energy());
     set(Column::objects_gain, world->gain());
     set(Column::objects_awake, world->awake());
@@ -247,7 +247,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
 // Where bodies are now: the law will have moved them when the rest of the row is written.
 template <int N>
 void Tick<N>::write_bodies(std::span<double> row) {
-  const World* world = proxy_.contacts().world();
+  const BodyWorld* world = proxy_.contacts().world();
   if (world == nullptr) return;
   auto pose = layout_.in(row, Column::body_pose).begin();
   auto velocity = layout_.in(row, Column::body_velocity).begin();

@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-// Free, or on a slider or a hinge. A ball joint is a free body that a row holds (World).
+// Free, or on a slider or a hinge. A ball joint is a free body that a row holds (BodyWorld).
 class BodyMotion {
  public:
   // Where a body's point is, seen from its centre of mass, in the middle of a tick [m].

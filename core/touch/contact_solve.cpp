@@ -239,7 +239,7 @@ void ContactSolve<N>::add(MeshContact<N>& c, Contacts<N>& contacts) {
 
 // It may not be thrown out by deeper contacts.
 template <int N>
-void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, World& world) {
+void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, BodyWorld& world) {
   Row& row = next_row(std::numeric_limits<double>::infinity());
   row.magnet = &magnet;
   row.material = magnet.material;
@@ -251,7 +251,7 @@ void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, World& world) {
 
 // The other side of the row moves as well.
 template <int N>
-void ContactSolve<N>::on_body(Row& row, World* world, int body, const Vec3& point) {
+void ContactSolve<N>::on_body(Row& row, BodyWorld* world, int body, const Vec3& point) {
   row.world = world;
   row.end = world->end_at(body, point);
 }

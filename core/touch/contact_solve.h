@@ -112,8 +112,8 @@ class ContactSolve {
     Vec3 push = Vec3::Zero();      // along the axes, without friction [N]
     Vec3 friction = Vec3::Zero();  // [N]
     // Of a body's surface:
-    World* world = nullptr;
-    World::End end;
+    BodyWorld* world = nullptr;
+    BodyWorld::End end;
     Mat3 W_body = Mat3::Zero();    // along the axes [m/(N s)]
     Vec3 on_body = Vec3::Zero();   // force that it has had so far, less its sign [N]
     Vec3 body_free = Vec3::Zero(); // its velocity without that, along the axes [m/s]
@@ -137,12 +137,12 @@ class ContactSolve {
     }
   };
   Row& next_row(double depth);
-  static void on_body(Row& row, World* world, int body, const Vec3& point);
+  static void on_body(Row& row, BodyWorld* world, int body, const Vec3& point);
   static Vec3 of_body(const Row& row);  // its velocity along the row's axes [m/s]
   void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
            const typename Arm<N>::Frames& f);
   void add(MeshContact<N>& c, Contacts<N>& contacts);
-  void add(typename Contacts<N>::Magnet& magnet, World& world);
+  void add(typename Contacts<N>::Magnet& magnet, BodyWorld& world);
   static void learn(Row& row, const ContactAnswer<N>& answer, double T);
   static void set_damping(Row& row, const ContactAnswer<N>& answer, double T);
   static Mat3 push(Row& row, double T, const Vec3& v);
@@ -157,7 +157,7 @@ class ContactSolve {
 
   std::array<Row, kMost> rows_;
   std::array<double, kMost> depths_{};
-  World* world_ = nullptr;
+  BodyWorld* world_ = nullptr;
   int count_ = 0;
   int sweeps_ = 0;
   bool settled_ = true;

@@ -24,7 +24,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
   const Vec3 tip = arm.tip.translation();
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
   probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
-  if (count_bodies(scene) > 0) world_ = std::make_unique<World>(scene);
+  if (count_bodies(scene) > 0) world_ = std::make_unique<BodyWorld>(scene);
   magnet_.J = Jacobian<N>::Zero(3, arm.dof());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -176,7 +176,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
 // The magnet takes the nearest body that may be picked up, where the tip then is.
 template <int N>
 void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Frames& f) {
-  World& world = *world_;
+  BodyWorld& world = *world_;
   if (!magnet_wanted_) world.let_go();
   const Vec3 tip = Arm<N>::point(f, probes_[0].link, probes_[0].from);
   if (magnet_wanted_ && world.magnet().body == BodyContact::kStill && !world.magnet().spent) {

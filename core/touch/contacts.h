@@ -10,7 +10,7 @@
 #include "core/math/solve.h"
 #include "core/touch/mesh_touch.h"
 #include "core/touch/scene.h"
-#include "core/touch/world.h"
+#include "core/touch/body_world.h"
 
 namespace limpid {
 
@@ -141,8 +141,8 @@ class Contacts {
   // Of all surfaces [N/m].
   double stiffest() const { return stiffest_; }
   // What moves of the scene; null: nothing.
-  World* world() { return world_.get(); }
-  const World* world() const { return world_.get(); }
+  BodyWorld* world() { return world_.get(); }
+  const BodyWorld* world() const { return world_.get(); }
   // From the next find() on the tip holds what it may and is near to, or lets go of it.
   void want_magnet(bool on) { magnet_wanted_ = on; }
   // That holds something, over the tick: a spring from the tip to a point of a body.
@@ -195,7 +195,7 @@ class Contacts {
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
   std::vector<ContactMemory> memories_;  // by id
-  std::unique_ptr<World> world_;
+  std::unique_ptr<BodyWorld> world_;
   std::vector<Material> of_bodies_;
   bool magnet_wanted_ = false;
   Magnet magnet_;

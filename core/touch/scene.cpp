@@ -1,7 +1,6 @@
 #include "core/touch/scene.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace limpid {
 
@@ -34,32 +33,6 @@ std::vector<std::string> body_names(const Scene& scene) {
                                         : object.name);
   }
   return names;
-}
-
-namespace {
-
-// [m^3]; of what is no solid 0.
-struct Volume {
-  double operator()(const Sphere& s) const {
-    return 4.0 / 3 * std::numbers::pi * s.radius * s.radius * s.radius;
-  }
-  double operator()(const Box& b) const { return b.size.prod(); }
-  double operator()(const auto&) const { return 0; }
-};
-
-}  // namespace
-
-Vec3 center_of_mass(const Object& object) {
-  if (object.body && object.body->center) return *object.body->center;
-  if (has_shape<Mesh>(object)) return Vec3::Zero();
-  double volume = std::visit(Volume{}, object.shape);
-  Vec3 moment = Vec3::Zero();  // [m^4]
-  for (const BodyPart& part : object.parts) {
-    const double of_part = std::visit(Volume{}, part.shape);
-    volume += of_part;
-    moment += of_part * part.pose.translation();
-  }
-  return volume > 0 ? Vec3(moment / volume) : Vec3::Zero();
 }
 
 double stiffest_surface(const Scene& scene) {

@@ -142,9 +142,6 @@ Pose pose_at(const Vec3& position);
 int count_bodies(const Scene& scene);
 // What these are called, in their order; one without a name by its number: "object 2".
 std::vector<std::string> body_names(const Scene& scene);
-// Of mass, in the frame of an object that moves [m]: what it says itself, else of shape and parts
-// as solids of one density; of a mesh its origin.
-Vec3 center_of_mass(const Object& object);
 // Of all surfaces; 0 without any [N/m].
 double stiffest_surface(const Scene& scene);
 void set_surface_stiffness(Scene& scene, double stiffness);

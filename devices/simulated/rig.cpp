@@ -191,7 +191,10 @@ void Rig::present(RigStart& into) const {
         into.armed = of->tick.force().armed();
         into.reserve = of->tick.reserve();
         into.world.clear();
-        if (const World* world = of->tick.proxy().contacts().world()) world->write(into.world);
+        if (const BodyWorld* world = of->tick.proxy().contacts().world()) {
+          into.world.reserve(BodyWorld::kMostNumbers);  // the first time, which is not in a tick
+          world->write(into.world);
+        }
       },
       of_);
 }

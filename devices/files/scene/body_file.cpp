@@ -193,14 +193,6 @@ Object body_of(const TomlTable& t, SceneDocument& out) {
   return object;
 }
 
-std::vector<std::string> body_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Object& object : scene.objects) {
-    if (object.body) names.push_back(object.name);
-  }
-  return names;
-}
-
 std::string bodies_text(const std::vector<std::string>& names) {
   return names.empty() ? "a body; there is none"
                        : fmt::format("the name of a body: {}", fmt::join(names, ", "));

@@ -1,4 +1,4 @@
-#include "core/touch/world.h"
+#include "core/touch/body_world.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -29,7 +29,7 @@ double damping_ratio(double restitution) {
 
 }  // namespace
 
-World::World(const Scene& scene) : geometry_(scene), gravity_(scene.gravity) {
+BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene), gravity_(scene.gravity) {
   for (const Object& object : scene.objects) {
     of_objects_.push_back(object.material);
     body_of_.push_back(object.body ? count() : BodyContact::kStill);
@@ -52,12 +52,12 @@ World::World(const Scene& scene) : geometry_(scene), gravity_(scene.gravity) {
   reset();
 }
 
-int World::number(const std::string& name) const {
+int BodyWorld::number(const std::string& name) const {
   const auto found = std::ranges::find(names_, name);
   return found == names_.end() ? BodyContact::kStill : static_cast<int>(found - names_.begin());
 }
 
-void World::add_links(const Scene& scene) {
+void BodyWorld::add_links(const Scene& scene) {
   for (int i = 0; i < count(); ++i) {
     if (bodies_[at(i)].on_joint() || !of_bodies_[at(i)].joint) continue;
     const BodyJoint& joint = *of_bodies_[at(i)].joint;
@@ -87,7 +87,7 @@ void World::add_links(const Scene& scene) {
   }
 }
 
-void World::add_link(int body, const BodyJoint& joint, const Vec3& point) {
+void BodyWorld::add_link(int body, const BodyJoint& joint, const Vec3& point) {
   Link link;
   link.a = body;
   link.b = number(joint.to);
@@ -98,7 +98,7 @@ void World::add_link(int body, const BodyJoint& joint, const Vec3& point) {
   links_.push_back(link);
 }
 
-void World::reset() {
+void BodyWorld::reset() {
   for (BodyMotion& body : bodies_) body.reset();
   std::ranges::fill(awake_, 1);
   std::ranges::fill(pushed_, 0);
@@ -116,7 +116,7 @@ void World::reset() {
   given_ = given_now_ = all_given_ = energy_ = first_energy_ = gain_ = 0;
 }
 
-void World::take_over(const World& other) {
+void BodyWorld::take_over(const BodyWorld& other) {
   std::array<double, BodyMotion::kNumbers> numbers{};
   for (int i = 0; i < count(); ++i) {
     const int theirs = other.number(names_[at(i)]);
@@ -127,29 +127,29 @@ void World::take_over(const World& other) {
   }
 }
 
-void World::touch(int body) {
+void BodyWorld::touch(int body) {
   touched_[at(body)] = 1;
   awake_[at(body)] = 1;
   quiet_[at(body)] = 0;
 }
 
-void World::attach(int body, const Vec3& tip) {
+void BodyWorld::attach(int body, const Vec3& tip) {
   magnet_ = {body, pose(body).inverse() * tip};
   touch(body);
 }
 
-void World::pulled(const Vec3& force) {
+void BodyWorld::pulled(const Vec3& force) {
   magnet_.force = force;
   if (!(force.norm() > Magnet::kBreaks)) return;
   let_go();
   magnet_.spent = true;
 }
 
-Vec3 World::place(int body, const Vec3& own) const {
+Vec3 BodyWorld::place(int body, const Vec3& own) const {
   return body == BodyContact::kStill ? own : Vec3(pose(body) * own);
 }
 
-void World::begin(double T) {
+void BodyWorld::begin(double T) {
   T_ = T;
   sweeps_ = 0;
   wake_neighbours();
@@ -173,7 +173,7 @@ void World::begin(double T) {
 }
 
 // What moves wakes what it comes near to, and what hangs on it.
-void World::wake_neighbours() {
+void BodyWorld::wake_neighbours() {
   const auto quick = [&](int i) { return moves(i) && quiet_[at(i)] == 0; };
   const auto wake = [&](int i) {
     awake_[at(i)] = 1;
@@ -194,7 +194,7 @@ void World::wake_neighbours() {
   }
 }
 
-int World::root(int body) {
+int BodyWorld::root(int body) {
   while (parent_[at(body)] != body) {
     parent_[at(body)] = parent_[at(parent_[at(body)])];
     body = parent_[at(body)];
@@ -202,13 +202,13 @@ int World::root(int body) {
   return body;
 }
 
-void World::join(int a, int b) {
+void BodyWorld::join(int a, int b) {
   if (!moves(a) || !moves(b)) return;
   const int one = root(a), two = root(b);
   parent_[at(std::max(one, two))] = std::min(one, two);
 }
 
-void World::find_islands() {
+void BodyWorld::find_islands() {
   for (int i = 0; i < count(); ++i) parent_[at(i)] = i;
   for (const BodyContact* c : geometry_.points()) join(c->a, c->b);
   for (const Link& link : links_) {
@@ -220,19 +220,19 @@ void World::find_islands() {
   }
 }
 
-bool World::in_turn(int a, int b, bool touched) {
+bool BodyWorld::in_turn(int a, int b, bool touched) {
   const int body = moves(a) ? a : b;
   return moves(body) && (touched_[at(root(body))] != 0) == touched;
 }
 
-double World::stiffness(const BodyContact& contact) const {
+double BodyWorld::stiffness(const BodyContact& contact) const {
   const double one = of_bodies_[at(contact.a)].contact_stiffness;
   return contact.b == BodyContact::kStill
              ? one
              : std::min(one, of_bodies_[at(contact.b)].contact_stiffness);
 }
 
-bool World::begin_row(BodyContact& contact) {
+bool BodyWorld::begin_row(BodyContact& contact) {
   if (!moves(contact.a) && !moves(contact.b)) return false;
   Row& row = rows_[count_];
   row.contact = &contact;
@@ -272,7 +272,7 @@ bool World::begin_row(BodyContact& contact) {
   return true;
 }
 
-void World::begin_link(Link& link) {
+void BodyWorld::begin_link(Link& link) {
   if (link.broken || (!moves(link.a) && !moves(link.b))) return;
   const Vec3 on_a = place(link.a, link.on_a), on_b = place(link.b, link.on_b);
   link.end_a = end_at(link.a, on_a);
@@ -295,34 +295,34 @@ void World::begin_link(Link& link) {
   apply(link.end_a, link.end_b, link.force);
 }
 
-World::End World::end_at(int body, const Vec3& point) const {
+BodyWorld::End BodyWorld::end_at(int body, const Vec3& point) const {
   if (!moves(body)) return {};
   return {body, bodies_[at(body)].lever(point, T_)};
 }
 
-Vec3 World::velocity(const End& end) const {
+Vec3 BodyWorld::velocity(const End& end) const {
   if (end.body == BodyContact::kStill) return Vec3::Zero();
   return bodies_[at(end.body)].velocity(end.lever);
 }
 
-Mat3 World::answer(const End& end) const {
+Mat3 BodyWorld::answer(const End& end) const {
   if (end.body == BodyContact::kStill) return Mat3::Zero();
   return bodies_[at(end.body)].answer(end.lever);
 }
 
-void World::push(const End& end, const Vec3& force) {
+void BodyWorld::push(const End& end, const Vec3& force) {
   if (end.body == BodyContact::kStill) return;
   bodies_[at(end.body)].push(end.lever, force);
   pushed_[at(end.body)] = 1;
 }
 
-void World::apply(const End& a, const End& b, const Vec3& force) {
+void BodyWorld::apply(const End& a, const End& b, const Vec3& force) {
   if (force.isZero(0)) return;
   push(a, force);
   push(b, -force);
 }
 
-double World::sweep(bool touched) {
+double BodyWorld::sweep(bool touched) {
   double most = 0;
   for (JointRow& row : joints_) {
     if (in_turn(row.body, BodyContact::kStill, touched)) most = std::max(most, sweep(row));
@@ -336,7 +336,7 @@ double World::sweep(bool touched) {
   return most;
 }
 
-double World::sweep(Row& row) {
+double BodyWorld::sweep(Row& row) {
   const Vec3 v = row.frame.transpose() * (velocity(row.a) - velocity(row.b));
   const double c = T_ * row.W(0, 0);
   const double F = wall_force({row.K, row.B, T_, row.depth, -T_ * v.x() + c * row.force, c});
@@ -354,7 +354,7 @@ double World::sweep(Row& row) {
   return std::abs(change) + more.norm();
 }
 
-double World::sweep(Link& link) {
+double BodyWorld::sweep(Link& link) {
   const Vec3 v = velocity(link.end_a) - velocity(link.end_b);
   Vec3 f;
   if (link.spring) {
@@ -372,7 +372,7 @@ double World::sweep(Link& link) {
   return change.norm();
 }
 
-double World::sweep(JointRow& row) {
+double BodyWorld::sweep(JointRow& row) {
   BodyMotion& body = bodies_[at(row.body)];
   const BodyJoint& joint = body.of_joint();
   const double w = body.joint_answer(), c = T_ * w;
@@ -408,18 +408,18 @@ double World::sweep(JointRow& row) {
   return change;
 }
 
-void World::settle(bool touched, double enough, int most) {
+void BodyWorld::settle(bool touched, double enough, int most) {
   for (int i = 0; i < most; ++i) {
     ++sweeps_;
     if (sweep(touched) <= enough) break;
   }
 }
 
-void World::book(const End& end, const Vec3& force) {
+void BodyWorld::book(const End& end, const Vec3& force) {
   given_now_ += T_ * force.dot(velocity(end));
 }
 
-void World::end_rows() {
+void BodyWorld::end_rows() {
   for (const Row& row : std::span(rows_.data(), count_)) {
     BodyContact& c = *row.contact;
     c.force = row.force;
@@ -442,12 +442,12 @@ void World::end_rows() {
   }
 }
 
-void World::settle() {
+void BodyWorld::settle() {
   settle(true, kEnough, kMostSweeps);
   settle(false, kEnoughElse, kMostSweepsElse);
 }
 
-void World::finish() {
+void BodyWorld::finish() {
   given_ = given_now_;
   all_given_ += given_now_;
   given_now_ = 0;
@@ -464,7 +464,7 @@ void World::finish() {
 }
 
 // An island sleeps once all of it has been at rest for a while.
-void World::fall_asleep() {
+void BodyWorld::fall_asleep() {
   const auto long_enough = static_cast<int>(kQuiet / T_);
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
@@ -492,7 +492,7 @@ void World::fall_asleep() {
   for (std::uint8_t& awake : awake_) awake = awake == 2 ? 0 : awake;
 }
 
-void World::take_stock() {
+void BodyWorld::take_stock() {
   double E = 0;
   for (const BodyMotion& body : bodies_) {
     E += body.kinetic() + body.weight_energy(gravity_);
@@ -521,11 +521,11 @@ void World::take_stock() {
   gain_ = E - first_energy_ - all_given_;
 }
 
-int World::awake() const {
+int BodyWorld::awake() const {
   return static_cast<int>(std::ranges::count_if(awake_, [](auto a) { return a != 0; }));
 }
 
-void World::write(std::vector<double>& into) const {
+void BodyWorld::write(std::vector<double>& into) const {
   std::array<double, BodyMotion::kNumbers> numbers{};
   into.push_back(count());
   into.push_back(static_cast<double>(links_.size()));
@@ -547,7 +547,7 @@ void World::write(std::vector<double>& into) const {
   geometry_.write(into);
 }
 
-bool World::read(std::span<const double> from) {
+bool BodyWorld::read(std::span<const double> from) {
   constexpr std::size_t kMagnet = 8, kBody = BodyMotion::kNumbers + 3, kJoint = 4, kLink = 4;
   const std::size_t own =
       2 + kMagnet + kBody * bodies_.size() + kJoint * joints_.size() + kLink * links_.size();

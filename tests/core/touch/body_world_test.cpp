@@ -1,4 +1,4 @@
-#include "core/touch/world.h"
+#include "core/touch/body_world.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ Mat3 turned(double angle, const Vec3& about) {
 }
 
 // Runs it and returns the most that its energy ever grew.
-double run(World& world, int ticks) {
+double run(BodyWorld& world, int ticks) {
   double most = 0;
   for (int k = 0; k < ticks; ++k) {
     world.begin(T);
@@ -47,18 +47,18 @@ double run(World& world, int ticks) {
   return most;
 }
 
-std::vector<double> state(const World& world) {
+std::vector<double> state(const BodyWorld& world) {
   std::vector<double> all;
   world.write(all);
   return all;
 }
 
-TEST(World, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
+TEST(BodyWorld, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
   Scene scene;
   scene.gravity.setZero();
   const Vec3 size(0.03, 0.05, 0.01);
   scene.add(body("slab", Box{size}, 0.05, {0.1, -0.2, 0.3}));
-  World world(scene);
+  BodyWorld world(scene);
   std::vector<double> numbers = state(world);
   const Vec3 spin(12, 15, -10);
   std::copy_n(spin.data(), 3, numbers.begin() + 10 + 15);
@@ -78,17 +78,17 @@ TEST(World, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
   EXPECT_LT((world.center(0) - Vec3(0.1, -0.2, 0.3)).norm(), 1e-15);
 }
 
-TEST(World, AFreeBodyFallsAsTheMidpointRuleSays) {
+TEST(BodyWorld, AFreeBodyFallsAsTheMidpointRuleSays) {
   Scene scene;
   scene.gravity = {0.3, -1, -9.81};
   scene.add(body("ball", Sphere{0.02}, 0.05, {0, 0, 1}));
-  World world(scene);
+  BodyWorld world(scene);
   run(world, 400);
   EXPECT_LT((world.center(0) - (Vec3(0, 0, 1) + 0.08 * scene.gravity)).norm(), 1e-13);
   EXPECT_LT((world.speed(0) - 0.4 * scene.gravity).norm(), 1e-13);
 }
 
-TEST(World, APendulumKeepsItsEnergyAndItsPeriod) {
+TEST(BodyWorld, APendulumKeepsItsEnergyAndItsPeriod) {
   Scene scene;
   Object rod = body("rod", Box{{0.01, 0.01, 0.1}}, 0.05, {0, 0, -0.05});
   BodyJoint& joint = rod.body->joint.emplace();
@@ -96,7 +96,7 @@ TEST(World, APendulumKeepsItsEnergyAndItsPeriod) {
   joint.axis = Vec3::UnitY();
   joint.point = {0, 0, 0.05};
   scene.add(rod);
-  World world(scene);
+  BodyWorld world(scene);
   std::vector<double> numbers = state(world);
   numbers[10 + 18] = 0.02;  // a small swing [rad]
   ASSERT_TRUE(world.read(numbers));
@@ -116,30 +116,30 @@ TEST(World, APendulumKeepsItsEnergyAndItsPeriod) {
   EXPECT_NEAR((crossings.back() - crossings.front()) / 20, period, 1e-4 * period);
 }
 
-TEST(World, ABlockSlidesAsCoulombSays) {
+TEST(BodyWorld, ABlockSlidesAsCoulombSays) {
   for (const double friction : {0.2, 0.5}) {
     Scene scene;
     const double slope = 0.35;  // rad: tan 0.365
     scene.gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
     scene.add(floor_at(0));
     scene.add(body("block", Box{{0.04, 0.04, 0.01}}, 0.1, {0, 0, 0.00499}, friction));
-    World world(scene);
+    BodyWorld world(scene);
     run(world, 500);
     const double pull = std::sin(slope) - friction * std::cos(slope);
     EXPECT_NEAR(world.center(0).x(), std::max(0.0, 0.5 * 9.81 * pull * 0.25), 1e-3) << friction;
   }
 }
 
-TEST(World, WhatRestsSinksByItsWeightOverItsContactsStiffness) {
+TEST(BodyWorld, WhatRestsSinksByItsWeightOverItsContactsStiffness) {
   Scene scene;
   scene.add(floor_at(0));
   scene.add(body("die", Box{Vec3::Constant(0.03)}, 0.05, {0, 0, 0.015}));
-  World world(scene);
+  BodyWorld world(scene);
   run(world, 400);
   EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / (4 * 20000), 1e-7);
 }
 
-TEST(World, MakesNoEnergyWhateverFallsOnWhatever) {
+TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
   Random random(7);
   const std::array<Shape, 4> shapes{Box{{0.03, 0.02, 0.04}}, Sphere{0.015}, Cylinder{0.012, 0.03},
                                     Capsule{0.01, 0.02}};
@@ -154,13 +154,13 @@ TEST(World, MakesNoEnergyWhateverFallsOnWhatever) {
       o.body->contact_stiffness = std::exp(random.uniform(std::log(3000.0), std::log(50000.0)));
       scene.add(o);
     }
-    World world(scene);
+    BodyWorld world(scene);
     EXPECT_LT(run(world, 2500), 1e-6) << trial;
     for (int i = 0; i < 5; ++i) EXPECT_GT(world.center(i).z(), 0.004) << trial << " " << i;
   }
 }
 
-TEST(World, GoesToSleepAndIsWokenByWhatFallsOnIt) {
+TEST(BodyWorld, GoesToSleepAndIsWokenByWhatFallsOnIt) {
   Scene scene;
   scene.add(floor_at(0));
   for (int i = 0; i < 3; ++i) {
@@ -169,7 +169,7 @@ TEST(World, GoesToSleepAndIsWokenByWhatFallsOnIt) {
   }
   scene.add(body("far", Box{Vec3::Constant(0.03)}, 0.02, {0.2, 0, 0.015}));
   scene.add(body("falling", Sphere{0.01}, 0.02, {0, 0.001, 3}));
-  World world(scene);
+  BodyWorld world(scene);
   run(world, 700);
   EXPECT_EQ(world.awake(), 1);
   const std::vector<double> asleep = state(world);
@@ -180,7 +180,7 @@ TEST(World, GoesToSleepAndIsWokenByWhatFallsOnIt) {
   EXPECT_EQ(world.awake(), 4);
 }
 
-TEST(World, GoesOnFromItsNumbersBitForBit) {
+TEST(BodyWorld, GoesOnFromItsNumbersBitForBit) {
   Scene scene;
   scene.add(floor_at(0));
   for (int i = 0; i < 6; ++i) {
@@ -192,7 +192,7 @@ TEST(World, GoesOnFromItsNumbersBitForBit) {
   Object on_string = body("bob", Sphere{0.01}, 0.02, {0, 0.1, 0.1});
   on_string.body->joint = BodyJoint{.kind = BodyJoint::Kind::ball, .point = {0.05, 0, 0}};
   scene.add(on_string);
-  World one(scene), other(scene);
+  BodyWorld one(scene), other(scene);
   run(one, 250);  // the third is falling
   ASSERT_TRUE(other.read(state(one)));
   run(one, 500);
@@ -202,13 +202,13 @@ TEST(World, GoesOnFromItsNumbersBitForBit) {
   EXPECT_EQ(a, b);
 }
 
-TEST(World, RefusesNumbersOfAnotherScene) {
+TEST(BodyWorld, RefusesNumbersOfAnotherScene) {
   Scene scene;
   scene.add(body("a", Sphere{0.01}, 0.02, {0, 0, 1}));
-  World one(scene);
+  BodyWorld one(scene);
   std::vector<double> numbers = state(one);
   scene.add(body("b", Sphere{0.01}, 0.02, {0, 0, 2}));
-  World two(scene);
+  BodyWorld two(scene);
   EXPECT_FALSE(two.read(numbers));
   EXPECT_FALSE(two.read({}));
   numbers[20] = std::nan("");
@@ -216,14 +216,14 @@ TEST(World, RefusesNumbersOfAnotherScene) {
 }
 
 // A force F of the arm on a body is answered within the tick by T F / (2 m) at the middle.
-TEST(World, AnswersAForceWithItsMass) {
+TEST(BodyWorld, AnswersAForceWithItsMass) {
   Scene scene;
   scene.gravity.setZero();
   scene.add(body("ball", Sphere{0.02}, 0.05, {0, 0, 0}));
-  World world(scene);
+  BodyWorld world(scene);
   world.touch(0);
   world.begin(T);
-  const World::End end = world.end_at(0, {0, 0, 0.02});
+  const BodyWorld::End end = world.end_at(0, {0, 0, 0.02});
   world.push(end, {0, 0, -2});
   EXPECT_NEAR(world.velocity(end).z(), -2 * T / (2 * 0.05), 1e-15);
   EXPECT_NEAR(world.answer(end)(2, 2), T / (2 * 0.05), 1e-15);
@@ -233,7 +233,7 @@ TEST(World, AnswersAForceWithItsMass) {
   EXPECT_NEAR(world.given(), 0.5 * 0.05 * world.speed(0).squaredNorm(), 1e-15);
 }
 
-TEST(World, AKeyClicksWhereItsTableSays) {
+TEST(BodyWorld, AKeyClicksWhereItsTableSays) {
   Scene scene;
   Object key = body("key", Box{{0.012, 0.012, 0.006}}, 0.002, {0, 0, 0});
   BodyJoint& joint = key.body->joint.emplace();
@@ -242,7 +242,7 @@ TEST(World, AKeyClicksWhereItsTableSays) {
   joint.high = 0.0096;
   joint.force.travel = {{0, 0.5}, {0.002, 0.9}, {0.006, 0.1}, {0.0096, 0.9}};
   scene.add(key);
-  World world(scene);
+  BodyWorld world(scene);
   // Pressed with 0.6 N it stops where the table says so, with 1.2 N at the end.
   const double weight = 0.002 * 9.81;
   for (const auto& [force, rest] : {std::pair{0.6, 0.0005 * (0.1 + weight) / 0.1},
@@ -251,7 +251,7 @@ TEST(World, AKeyClicksWhereItsTableSays) {
       world.touch(0);
       world.begin(T);
       // A damper that is no part of it brings it to rest.
-      const World::End end = world.end_at(0, world.center(0));
+      const BodyWorld::End end = world.end_at(0, world.center(0));
       world.push(end, {0, 0, -force - 0.5 * world.speed(0).z()});
       world.settle();
       world.finish();

@@ -21,15 +21,15 @@ namespace limpid {
 // A tick: touch() what the arm is near to, begin(), then velocity(), answer() and push() of the
 // arm's rows between sweep()s, settle(), book() of each of them, and finish(). Allocates nothing after it was
 // made.
-class World {
+class BodyWorld {
  public:
   // Every mesh of the scene has its shape.
-  explicit World(const Scene& scene);
+  explicit BodyWorld(const Scene& scene);
 
   int count() const { return static_cast<int>(bodies_.size()); }
   void reset();  // as the scene has it
   // Takes over where bodies of the same name, mass and joint are in another scene.
-  void take_over(const World& other);
+  void take_over(const BodyWorld& other);
 
   // The arm is near to it: it wakes up, and its rows are solved with the arm's.
   void touch(int body);
@@ -72,7 +72,7 @@ class World {
   Vec3 speed(int body) const { return bodies_[at(body)].speed(); }
   Vec3 spin(int body) const { return bodies_[at(body)].spin(); }
   double joint(int body) const { return bodies_[at(body)].joint(); }
-  // Of the body in the scene that moves, or none: as World counts them.
+  // Of the body in the scene that moves, or none: as BodyWorld counts them.
   int body_of(std::size_t object) const { return body_of_[object]; }
   bool magnetic(int body) const { return of_bodies_[at(body)].magnet; }
 
