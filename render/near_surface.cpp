@@ -45,13 +45,19 @@ bool slips(const ContactMark& contact, const Material& material) {
 
 std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within) {
   std::optional<NearSurface> nearest;
-  for (const Object& object : scene.objects) {
-    const Found found = std::visit(
-        [&](const auto& shape) { return near(shape, object.pose, at, within); }, object.shape);
-    if (!found) continue;
+  const auto look = [&](const Shape& of, const Pose& pose, const Material& material) {
+    const Found found =
+        std::visit([&](const auto& shape) { return near(shape, pose, at, within); }, of);
+    if (!found) return;
     const double distance = std::abs(found->distance);
-    if (!(distance <= within) || (nearest && distance >= nearest->distance)) continue;
-    nearest = {at - found->distance * found->normal, found->normal, distance, object.material};
+    if (!(distance <= within) || (nearest && distance >= nearest->distance)) return;
+    nearest = {at - found->distance * found->normal, found->normal, distance, material};
+  };
+  for (const Object& object : scene.objects) {
+    look(object.shape, object.pose, object.material);
+    for (const BodyPart& part : object.parts) {
+      look(part.shape, object.pose * part.pose, object.material);
+    }
   }
   return nearest;
 }

@@ -222,8 +222,12 @@ void collect_scene_items(const ArmDescription& arm, const Scene& scene,
   items.level_planes.clear();
   const std::vector<Bounds> shown = add_visuals(visuals, items);
   ObjectItems objects(arm, shown, items);
-  for (const Object& object : scene.objects)
+  for (const Object& object : scene.objects) {
     std::visit([&](const auto& shape) { objects.add(object.pose, shape); }, object.shape);
+    for (const BodyPart& part : object.parts)
+      std::visit([&](const auto& shape) { objects.add(object.pose * part.pose, shape); },
+                 part.shape);
+  }
   for (const Probe& probe : scene.probes)
     items.probes.push_back({make_capsule(probe.from, probe.to, std::max(probe.radius, 0.002), {}),
                             Pose::Identity(), probe.link});
