@@ -34,8 +34,8 @@ struct JointUnit {
   const char* damping;
 };
 JointUnit unit_of(Kind kind) {
-  if (kind == Kind::slider) return {1e3, "%.2f mm", "%.3g N", "%.4g N/m", "%.4g N s/m"};
-  return {180 / std::numbers::pi, "%.1f\xC2\xB0", "%.3g N m", "%.4g N m/rad", "%.4g N m s/rad"};
+  if (kind == Kind::slider) return {1e3, "%.2f mm", "%.3g N", "%.6g N/m", "%.4g N s/m"};
+  return {180 / std::numbers::pi, "%.1f\xC2\xB0", "%.3g N m", "%.6g N m/rad", "%.4g N m s/rad"};
 }
 
 // Dragged, a step is a part of what is there.
@@ -246,7 +246,7 @@ bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what)
                   "While it pulls nothing.")) {
     what = "length";
   }
-  if (drag_scaled("Stiffness", spring.stiffness, 1, kJointSpring, "%.4g N/m", "Per metre.")) {
+  if (drag_scaled("Stiffness", spring.stiffness, 1, kJointSpring, "%.6g N/m", "Per metre.")) {
     what = "stiffness";
   }
   if (drag_scaled("Damping", spring.damping, 1, kDamping, "%.4g N s/m",
@@ -314,7 +314,7 @@ std::string_view edit_body(Object& object, const Scene& scene, std::size_t place
                    "The part of its speed that it keeps when it hits something. 0: none.")) {
     what = "restitution";
   }
-  if (drag_scaled("Contact stiffness", body.contact_stiffness, 1, kStiffness, "%.4g N/m",
+  if (drag_scaled("Contact stiffness", body.contact_stiffness, 1, kStiffness, "%.6g N/m",
                   "Against other objects; what the tip feels is the stiffness above.")) {
     what = "contact stiffness";
   }

@@ -285,6 +285,42 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
   }
 }
 
+// Against many points of their surfaces.
+TEST(SceneEditor, KnowsHowMuchRoomCylindersAndCapsulesTake) {
+  test::Random random(3);
+  for (int round = 0; round < 20; ++round) {
+    Object object{.name = "c", .shape = Cylinder{0.02, 0.06}};
+    object.pose.linear() = random.rotation();
+    object.pose.translation() = random.point(0.3);
+    Bounds tube, pill;
+    const auto take = [&](Bounds& box, const Vec3& p) { box.extend(Vec3(object.pose * p)); };
+    for (int i = 0; i < 720; ++i) {
+      const double angle = i * std::numbers::pi / 360;
+      const Vec3 rim(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.03);
+      take(tube, rim);
+      take(tube, -rim);
+    }
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 on_ball = 0.02 * random.direction();
+      take(pill, on_ball + Vec3(0, 0, on_ball.z() < 0 ? -0.03 : 0.03));
+    }
+    const auto differ = [](const Bounds& a, const Bounds& b) {
+      return std::max((a.min() - b.min()).cwiseAbs().maxCoeff(),
+                      (a.max() - b.max()).cwiseAbs().maxCoeff());
+    };
+    EXPECT_LT(differ(bounds_of(object, nullptr), tube), 1e-6);
+    object.shape = Capsule{0.02, 0.06};
+    EXPECT_LT(differ(bounds_of(object, nullptr), pill), 1e-4);
+  }
+}
+
+TEST(SceneEditor, CountsPartsAsRoomTaken) {
+  Object object{.name = "c", .shape = Sphere{0.02}, .body = Body{}};
+  object.parts.push_back({pose_at(Vec3(0.1, 0, 0)), Sphere{0.01}});
+  EXPECT_NEAR(bounds_of(object, nullptr).max().x(), 0.11, 1e-12);
+  EXPECT_NEAR(bounds_of(object, nullptr).min().x(), -0.02, 1e-12);
+}
+
 Object body(const std::string& name, const std::string& to = "") {
   Object out{.name = name, .shape = Box{}, .body = Body{}};
   out.body->joint = BodyJoint{};
