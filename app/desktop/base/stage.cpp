@@ -12,11 +12,17 @@ namespace {
 
 // Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
 bool same_items(const SceneDocument& first, const SceneDocument& second) {
-  const auto seen = [](const Object& object) { return !has_shape<Mesh>(object); };
+  const auto seen = [](const Object& object) {
+    return !has_shape<Mesh>(object) || !object.parts.empty();
+  };
+  const auto same_part = [](const BodyPart& a, const BodyPart& b) {
+    return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+  };
   return std::ranges::equal(first.scene.objects | std::views::filter(seen),
                             second.scene.objects | std::views::filter(seen),
-                            [](const Object& a, const Object& b) {
-                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+                            [&](const Object& a, const Object& b) {
+                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() &&
+                                     std::ranges::equal(a.parts, b.parts, same_part);
                             }) &&
          std::ranges::equal(first.visuals, second.visuals, {}, &SceneVisual::file,
                             &SceneVisual::file);
