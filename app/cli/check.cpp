@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/desktop/document/scene_loader.h"
 #include "app/run/analysis.h"
+#include "app/run/body_report.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/model_report.h"
 #include "core/dynamics/arm.h"
@@ -131,7 +133,8 @@ void list_mesh(const std::string& name, const Mesh& mesh, const Model& model, Ch
 }
 
 CheckReport on_scene(const std::string& file, const InputOptions& input) {
-  const LoadedScene loaded = load_scene(file, arm_of(input));
+  const ArmDescription arm = arm_of(input);
+  const LoadedScene loaded = load_scene(file, arm);
   const std::vector<Object>& objects = loaded.document.scene.objects;
   CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
@@ -150,6 +153,9 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
     const auto* mesh = std::get_if<Mesh>(&objects[i].shape);
     if (mesh != nullptr) list_mesh(objects[i].name, *mesh, *loaded.models[i], report);
   }
+  BodyReport bodies = report_on_bodies(loaded.document.scene, arm);
+  std::ranges::move(bodies.facts, std::back_inserter(report.facts));
+  std::ranges::move(bodies.warnings, std::back_inserter(report.warnings));
   return report;
 }
 

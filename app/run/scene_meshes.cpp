@@ -6,6 +6,7 @@
 
 #include "app/run/model_report.h"
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/body_file.h"
 #include "devices/files/text_file.h"
 #include "render/model/model_file.h"
 #include "render/model/simplify.h"
@@ -65,6 +66,7 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
       throw FileError(e.what());
     }
   }
+  settle_masses(document);
   return models;
 }
 

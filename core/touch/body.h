@@ -51,12 +51,12 @@ struct Body {
   double mass = 0.05;  // [kg]
   // Of mass, in the object's frame [m]; principal moments about it, along the frame's axes
   // [kg m^2]. Default: of a solid of the shape, of the same density everywhere.
-  std::optional<Vec3> center;
-  std::optional<Vec3> inertia;
+  std::optional<Vec3> center{};
+  std::optional<Vec3> inertia{};
   double contact_stiffness = 20000;  // with other bodies and with what stands still [N/m]
   double restitution = 0;            // in contacts with them [-]
   bool magnet = false;               // the device's button or a key picks it up
-  std::optional<BodyJoint> joint;
+  std::optional<BodyJoint> joint{};
   friend bool operator==(const Body&, const Body&) = default;
 };
 

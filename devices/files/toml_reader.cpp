@@ -27,7 +27,7 @@ std::optional<double> number_in(const toml::node& node, const Range& range) {
 
 // Of just so many.
 std::optional<std::vector<double>> list_in(const toml::node& node, std::size_t count,
-                                              const Range& range) {
+                                           const Range& range) {
   const toml::array* list = node.as_array();
   if (list == nullptr || list->size() != count) return std::nullopt;
   std::vector<double> all;

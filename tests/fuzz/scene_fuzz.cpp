@@ -29,6 +29,10 @@ void check(const limpid::Sphere& sphere, int) {
 
 void check(const limpid::Box& box, int) { demand(box.size.allFinite() && box.size.minCoeff() > 0); }
 
+void check(const limpid::Cylinder& c, int) { demand(c.radius > 0 && c.length > 0); }
+
+void check(const limpid::Capsule& c, int) { demand(c.radius > 0 && c.length > 0); }
+
 void check(const limpid::Mesh& mesh, int) { demand(std::isfinite(mesh.size()) && mesh.size() > 0); }
 
 void check(const limpid::JointStop& stop, int joints) {
@@ -36,11 +40,23 @@ void check(const limpid::JointStop& stop, int joints) {
   demand(std::abs(stop.direction) == 1);
 }
 
+void check(const limpid::Object& object) {
+  const limpid::Body& body = *object.body;
+  demand(body.mass >= 1e-6 && body.mass <= 100 && body.restitution >= 0 && body.restitution <= 1);
+  for (const limpid::BodyPart& part : object.parts) {
+    demand(part.pose.matrix().allFinite());
+    std::visit([](const auto& shape) { check(shape, 0); }, part.shape);
+  }
+  if (!body.joint) return;
+  demand(std::abs(body.joint->axis.norm() - 1) < 1e-9 && body.joint->low < body.joint->high);
+}
+
 void check(const limpid::Scene& scene, int joints) {
   demand(scene.tip_radius >= 0 && std::isfinite(scene.tip_radius));
   for (const limpid::Object& object : scene.objects) {
     demand(object.pose.matrix().allFinite());
     check(object.material);
+    if (object.body) check(object);
     std::visit([&](const auto& shape) { check(shape, joints); }, object.shape);
   }
   for (const limpid::Probe& probe : scene.probes) {
@@ -64,6 +80,11 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     check(again.scene, arm.dof());
     demand(again.title == scene.title && again.scene.objects.size() == scene.scene.objects.size());
     demand(again.scene.probes.size() == scene.scene.probes.size());
+    demand(again.scene.springs == scene.scene.springs);
+    for (std::size_t i = 0; i < scene.scene.objects.size(); ++i) {
+      demand(again.scene.objects[i].body == scene.scene.objects[i].body);
+      demand(again.scene.objects[i].shape == scene.scene.objects[i].shape);
+    }
   } catch (const limpid::FileError& error) {
     demand(std::string(error.what()).find('\n') == std::string::npos);
   }

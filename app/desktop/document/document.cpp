@@ -8,6 +8,7 @@
 #include "app/desktop/base/passivity_break.h"
 #include "app/run/twin_settings.h"
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/body_file.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_writer.h"
 
@@ -92,11 +93,19 @@ void Document::add_model(LoadedModel loaded, const Workplace& at) {
   notices_.say(text);
 }
 
+void Document::add_spring(BodySpring spring) {
+  try {
+    editor_.add_spring(std::move(spring));
+  } catch (const std::exception& e) {
+    notices_.say(e.what(), true);
+  }
+}
+
 void Document::remove_selected() {
   if (!editor_.selected() || !may_edit()) return;
   const std::string name = editor_.selected_object()->name;
-  editor_.remove(*editor_.selected());
-  notices_.say(fmt::format("Removed {}. Ctrl+Z brings it back.", name));
+  const std::string also = editor_.remove(*editor_.selected());
+  notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings it back.", name, also));
 }
 
 void Document::duplicate_selected() {
@@ -232,6 +241,7 @@ std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm)
         mesh->triangles = std::get<Mesh>(present.scene.objects.at(i).shape).triangles;
       }
     }
+    settle_masses(document);
     return SceneEditor::World{std::move(document), editor_.models()};
   } catch (const std::exception&) {  // it names joints or links that this arm does not have
     return std::nullopt;

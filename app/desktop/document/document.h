@@ -113,6 +113,7 @@ class Document {
   bool may_edit();
   void add_object(Object object, const Workplace& at);  // it gets a place in reach
   void add_model(LoadedModel loaded, const Workplace& at);
+  void add_spring(BodySpring spring);
   void remove_selected();
   void duplicate_selected();
   Bounds selected_bounds() const;  // [m]; empty for what has none, or with nothing selected

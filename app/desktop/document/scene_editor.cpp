@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "devices/files/rpy.h"
+#include "devices/files/scene/body_file.h"
 #include "devices/files/scene/scene_document.h"
 #include "devices/files/scene/scene_file.h"
 #include "render/scene_items.h"
@@ -42,11 +44,33 @@ Bounds bounds(const Mesh& mesh, const Pose& pose, const Model* model) {
   return moved(model->bounds(), Eigen::Affine3d(mesh.stood(pose)) * Eigen::Scaling(mesh.size()));
 }
 
+// Nothing hangs on the body `name` any more. Returns what did, for people.
+std::string let_go(Scene& scene, const std::string& name) {
+  std::string said;
+  for (Object& object : scene.objects) {
+    if (!object.body || !object.body->joint || object.body->joint->to != name) continue;
+    object.body->joint->to.clear();
+    said += fmt::format("{}'s joint now holds to the world. ", object.name);
+  }
+  const auto springs = std::erase_if(scene.springs, [&](const BodySpring& spring) {
+    return spring.between[0] == name || spring.between[1] == name;
+  });
+  if (springs == 1) said += "Its spring went with it. ";
+  if (springs > 1) said += fmt::format("Its {} springs went with it. ", springs);
+  return said;
+}
+
 }  // namespace
 
 Bounds bounds_of(const Object& object, const Model* model) {
-  return std::visit([&](const auto& shape) { return bounds(shape, object.pose, model); },
-                    object.shape);
+  Bounds all = std::visit([&](const auto& shape) { return bounds(shape, object.pose, model); },
+                          object.shape);
+  for (const BodyPart& part : object.parts) {
+    const Pose pose = object.pose * part.pose;
+    all.extend(
+        std::visit([&](const auto& shape) { return bounds(shape, pose, nullptr); }, part.shape));
+  }
+  return all;
 }
 
 void SceneEditor::open(SceneDocument document, MeshModels models, bool saved) {
@@ -90,8 +114,59 @@ void SceneEditor::select_next(int step) {
 
 void SceneEditor::set(std::size_t place, Object object, const std::string& what) {
   hold(object);
-  change(fmt::format("{} {}", place, what),
-         [&](World& world) { world.document.scene.objects.at(place) = std::move(object); });
+  const bool moves = object.body.has_value();
+  if (moves && object.body->joint && object.body->joint->to == object.name) {
+    object.body->joint->to.clear();
+  }
+  if (moves == scene().objects.at(place).body.has_value()) {
+    change(fmt::format("{} {}", place, what),
+           [&](World& world) { world.document.scene.objects.at(place) = std::move(object); });
+    return;
+  }
+  if (moves) object.name = free_name(object.name, place);
+  if (!moves) object.parts.clear();
+  std::size_t there = 0;
+  change("", [&](World& world) {
+    Scene& scene = world.document.scene;
+    if (!moves) let_go(scene, object.name);
+    const auto from = static_cast<std::ptrdiff_t>(place);
+    const auto model = world.models[place];
+    scene.objects.erase(scene.objects.begin() + from);
+    world.models.erase(world.models.begin() + from);
+    there = scene.add(std::move(object));
+    world.models.insert(world.models.begin() + static_cast<std::ptrdiff_t>(there), model);
+  });
+  now_.selected = there;
+}
+
+void SceneEditor::set_gravity(const Vec3& gravity) {
+  change("gravity", [&](World& world) {
+    for (int i = 0; i < 3; ++i) {
+      world.document.scene.gravity[i] = kGravity.hold(gravity[i], 0);
+    }
+  });
+}
+
+void SceneEditor::add_spring(BodySpring spring) {
+  if (scene().springs.size() >= kMostSprings) {
+    throw std::runtime_error(
+        fmt::format("A scene holds at most {} springs; remove one first.", kMostSprings));
+  }
+  hold(spring);
+  change("", [&](World& world) { world.document.scene.springs.push_back(std::move(spring)); });
+}
+
+void SceneEditor::set_spring(std::size_t place, BodySpring spring, const std::string& what) {
+  hold(spring);
+  change(fmt::format("spring {} {}", place, what),
+         [&](World& world) { world.document.scene.springs.at(place) = std::move(spring); });
+}
+
+void SceneEditor::remove_spring(std::size_t place) {
+  change("", [&](World& world) {
+    std::vector<BodySpring>& springs = world.document.scene.springs;
+    springs.erase(springs.begin() + static_cast<std::ptrdiff_t>(place));
+  });
 }
 
 void SceneEditor::set_tip_radius(double radius) {
@@ -142,13 +217,25 @@ void SceneEditor::duplicate(std::size_t place) {
 void SceneEditor::rename(std::size_t place, const std::string& name) {
   if (name.empty() || name == scene().objects.at(place).name) return;
   const std::string wanted = free_name(name, place);
-  change("", [&](World& world) { world.document.scene.objects[place].name = wanted; });
+  change("", [&](World& world) {
+    Scene& scene = world.document.scene;
+    const std::string before = std::exchange(scene.objects[place].name, wanted);
+    if (!scene.objects[place].body) return;
+    for (Object& object : scene.objects) {
+      if (object.body && object.body->joint && object.body->joint->to == before) {
+        object.body->joint->to = wanted;
+      }
+    }
+    for (BodySpring& spring : scene.springs) std::ranges::replace(spring.between, before, wanted);
+  });
 }
 
-void SceneEditor::remove(std::size_t place) {
+std::string SceneEditor::remove(std::size_t place) {
   const auto at = static_cast<std::ptrdiff_t>(place);
+  std::string said;
   change("", [&](World& world) {
     std::vector<Object>& objects = world.document.scene.objects;
+    if (objects[place].body) said = let_go(world.document.scene, objects[place].name);
     world.models.erase(world.models.begin() + at);
     objects.erase(objects.begin() + at);
     std::erase_if(world.document.models, [&](const auto& known) {
@@ -159,6 +246,7 @@ void SceneEditor::remove(std::size_t place) {
     });
   });
   now_.selected.reset();
+  return said;
 }
 
 std::string SceneEditor::free_name(const std::string& wanted,

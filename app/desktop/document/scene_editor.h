@@ -49,7 +49,7 @@ class SceneEditor {
   void select_next(int step);
 
   // Replaces the object at a place by one of the same shape; `what` names the number that was
-  // changed.
+  // changed. One that begins to move, or no longer does, gets another place and is selected there.
   void set(std::size_t place, Object object, const std::string& what);
   void set_tip_radius(double radius);
   // The name gets a number where another object has it already. All select what they made. Errors:
@@ -59,7 +59,13 @@ class SceneEditor {
   void add(Object mesh, ModelFile file, std::shared_ptr<const Model> model);
   void duplicate(std::size_t place);
   void rename(std::size_t place, const std::string& name);
-  void remove(std::size_t place);
+  // Joints to it then hold to the world, and its springs go. What did, for people; mostly nothing.
+  std::string remove(std::size_t place);
+
+  void set_gravity(const Vec3& gravity);
+  void add_spring(BodySpring spring);
+  void set_spring(std::size_t place, BodySpring spring, const std::string& what);
+  void remove_spring(std::size_t place);
 
   // The scene was written, and has become this one by that.
   void saved(SceneDocument document);

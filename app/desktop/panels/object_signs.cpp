@@ -157,16 +157,33 @@ const char* shape_name(const Shape& shape) {
   return std::visit([](const auto& s) { return name(s); }, shape);
 }
 
+namespace {
+
+// Of wood, on the whole; hard enough to be pushed.
+Object moving(const char* name, Shape shape, double mass) {
+  return {.name = name,
+          .shape = std::move(shape),
+          .material = {.stiffness = 2000, .friction_static = 0.4, .friction_kinetic = 0.3},
+          .body = Body{.mass = mass}};
+}
+
+}  // namespace
+
 std::vector<NewObject> new_objects() {
-  return {{"Ball", {.name = "ball", .shape = Sphere{.radius = 0.02}}},
-          {"Block", {.name = "block", .shape = Box{.size = Vec3::Constant(0.04)}}},
-          {"Cylinder", {.name = "cylinder", .shape = Cylinder{.radius = 0.02, .length = 0.04}}},
-          {"Capsule", {.name = "capsule", .shape = Capsule{.radius = 0.01, .length = 0.04}}},
-          {"Plane", {.name = "plane", .shape = Plane{}}},
-          {"Joint stop",
-           {.name = "stop",
-            .shape = JointStop{.angle = 0.6},
-            .material = {JointStop::kUsualStiffness}}}};
+  return {
+      {"Ball", {.name = "ball", .shape = Sphere{.radius = 0.02}}},
+      {"Block", {.name = "block", .shape = Box{.size = Vec3::Constant(0.04)}}},
+      {"Cylinder", {.name = "cylinder", .shape = Cylinder{.radius = 0.02, .length = 0.04}}},
+      {"Capsule", {.name = "capsule", .shape = Capsule{.radius = 0.01, .length = 0.04}}},
+      {"Plane", {.name = "plane", .shape = Plane{}}},
+      {"Joint stop",
+       {.name = "stop",
+        .shape = JointStop{.angle = 0.6},
+        .material = {JointStop::kUsualStiffness}}},
+      {"Ball that moves", moving("ball", Sphere{.radius = 0.02}, 0.02), true},
+      {"Block that moves", moving("die", Box{.size = Vec3::Constant(0.03)}, 0.05)},
+      {"Cylinder that moves", moving("roller", Cylinder{.radius = 0.015, .length = 0.03}, 0.02)},
+      {"Capsule that moves", moving("pill", Capsule{.radius = 0.01, .length = 0.03}, 0.01)}};
 }
 
 void draw_icon(const Shape& shape, ImVec2 middle, float r, ImU32 ink) {
@@ -178,6 +195,10 @@ void draw_outline(const Object& object, const Camera& camera, ScreenRect view, I
   list.PushClipRect(view.min, view.max, true);
   Pen pen(camera, view, list);
   std::visit([&](const auto& shape) { outline(shape, object.pose, camera, pen); }, object.shape);
+  for (const BodyPart& part : object.parts) {
+    const Pose pose = object.pose * part.pose;
+    std::visit([&](const auto& shape) { outline(shape, pose, camera, pen); }, part.shape);
+  }
   list.PopClipRect();
 }
 

@@ -17,6 +17,7 @@ const char* shape_name(const Shape& shape);  // for people
 struct NewObject {
   const char* label;  // in a menu
   Object object;
+  bool first_that_moves = false;
 };
 std::vector<NewObject> new_objects();
 

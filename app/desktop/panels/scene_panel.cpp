@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "app/desktop/panels/body_editor.h"
 #include "app/desktop/panels/object_signs.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -20,13 +21,14 @@
 
 namespace limpid {
 
-namespace {
+void caption(const char* text, const char* help) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  tooltip(help);
+  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+  ImGui::SetNextItemWidth(-1);
+}
 
-using namespace scene_limits;
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
-
-// Three numbers side by side, dragged or typed after a double click.
 bool drag3(const char* label, Vec3& values, double speed, double least, double most,
            const char* format, const char* help) {
   ImGui::TextUnformatted(label);
@@ -40,6 +42,12 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
   tooltip(help);
   return changed;
 }
+
+namespace {
+
+using namespace scene_limits;
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
 
 bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
               const char* help = "Forward, left and up from the arm's base.") {
@@ -71,15 +79,6 @@ ParameterInfo slider_of(const MaterialKey& each) {
           .logarithmic = each.logarithmic,
           .live = true,
           .meaning = ""};
-}
-
-// What stands before a control, on its line.
-void caption(const char* text, const char* help) {
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(text);
-  tooltip(help);
-  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
-  ImGui::SetNextItemWidth(-1);
 }
 
 bool choose_material(Material& material) {
@@ -171,8 +170,8 @@ void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescript
     extent_ = model->bounds().sizes().maxCoeff();
   }
   Object object = document.scene().objects[place];
-  const std::string what(
-      std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  std::string what(std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  if (const auto moved = edit_body(object, document.scene(), place); !moved.empty()) what = moved;
   if (!what.empty() && document.may_edit()) document.editor().set(place, std::move(object), what);
 }
 
@@ -218,6 +217,7 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
   if (position(object.pose, "Centre x, y, z [mm]")) {
     what = "place";
   }
+  if (object.body && edit_rotation(object.pose)) what = "rotation";
   if (drag_length("Radius", sphere.radius, "Of the ball")) what = "radius";
   return what;
 }
@@ -339,9 +339,9 @@ void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& a
       editor->select(chosen && !twice ? std::nullopt : std::optional(i));
       if (twice) act("scene.look");
     }
-    tooltip(
-        fmt::format("{}, {}. Double click to look at it.", object.name, shape_name(object.shape))
-            .c_str());
+    tooltip(fmt::format("{}, {}{}. Double click to look at it.", object.name,
+                        shape_name(object.shape), object.body ? " that moves" : "")
+                .c_str());
     draw_icon(object.shape, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
               colour(current_palette().muted));
     ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
@@ -370,6 +370,7 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   if (ImGui::BeginPopup("add")) {
     if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
     for (const NewObject& each : new_objects()) {
+      if (each.first_that_moves) ImGui::Separator();
       if (ImGui::MenuItem(each.label)) add(each.object);
     }
     ImGui::EndPopup();
@@ -405,6 +406,7 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
     object_.draw(document, *place, arm);
     ImGui::Separator();
   }
+  draw_springs(document);
   double tip = 1e3 * editor.scene().tip_radius;
   if (drag_number("Tip radius", tip, 0.05, 0, 50, "%.2f mm",
                   "The ball at the arm's tip that touches; 0 is a point.")) {

@@ -16,6 +16,12 @@ namespace limpid {
 bool drag_number(const char* label, double& value, double speed, double least, double most,
                  const char* format, const char* help);
 
+// Three numbers side by side under a label, dragged or typed after a double click.
+bool drag3(const char* label, Vec3& values, double speed, double least, double most,
+           const char* format, const char* help);
+// What stands before a control, on its line.
+void caption(const char* text, const char* help);
+
 class ObjectEditor {
  public:
   void draw(Document& document, std::size_t place, const ArmDescription& arm);

@@ -147,11 +147,11 @@ TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
     Scene scene;
     scene.add(floor_at(0));
     for (int i = 0; i < 5; ++i) {
-      const double mass = std::exp(random.uniform(std::log(0.0005), std::log(0.5)));
+      const double mass = random.log_between(0.0005, 0.5);
       Object o = body("body " + std::to_string(i), shapes[static_cast<std::size_t>((i + trial) % 4)],
                       mass, {0.005 * i, 0.003 * i, 0.03 + 0.05 * i}, 0.3);
-      o.pose.linear() = turned(random.uniform(-3, 3), Vec3(1, 2, random.uniform(-1, 1)));
-      o.body->contact_stiffness = std::exp(random.uniform(std::log(3000.0), std::log(50000.0)));
+      o.pose.linear() = turned(random.between(-3, 3), Vec3(1, 2, random.between(-1, 1)));
+      o.body->contact_stiffness = random.log_between(3000, 50000);
       scene.add(o);
     }
     BodyWorld world(scene);
@@ -190,7 +190,9 @@ TEST(BodyWorld, GoesOnFromItsNumbersBitForBit) {
     scene.add(o);
   }
   Object on_string = body("bob", Sphere{0.01}, 0.02, {0, 0.1, 0.1});
-  on_string.body->joint = BodyJoint{.kind = BodyJoint::Kind::ball, .point = {0.05, 0, 0}};
+  BodyJoint& string = on_string.body->joint.emplace();
+  string.kind = BodyJoint::Kind::ball;
+  string.point = {0.05, 0, 0};
   scene.add(on_string);
   BodyWorld one(scene), other(scene);
   run(one, 250);  // the third is falling

@@ -22,6 +22,18 @@ TEST(Scene, HasObjectsOfOneShapeTogetherInTheOrderOfShapes) {
   EXPECT_EQ(order, "2651430");
 }
 
+TEST(Scene, HasWhatMovesBehindWhatStandsStillAsItCame) {
+  Scene scene;
+  EXPECT_EQ(scene.add({.name = "a", .shape = Mesh{}, .body = Body{}}), 0u);
+  EXPECT_EQ(scene.add({.name = "b", .shape = Sphere{}, .body = Body{}}), 1u);
+  EXPECT_EQ(scene.add({.name = "c", .shape = JointStop{}}), 0u);
+  EXPECT_EQ(scene.add({.name = "d", .shape = Sphere{}}), 0u);
+  std::string order;
+  for (const Object& object : scene.objects) order += object.name;
+  EXPECT_EQ(order, "dcab");
+  EXPECT_EQ(count_bodies(scene), 2);
+}
+
 TEST(Scene, HasNoStopOfAJointAmongItsSurfaces) {
   Scene scene;
   EXPECT_EQ(stiffest_surface(scene), 0);

@@ -285,5 +285,145 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
   }
 }
 
+// Against many points of their surfaces.
+TEST(SceneEditor, KnowsHowMuchRoomCylindersAndCapsulesTake) {
+  test::Random random(3);
+  for (int round = 0; round < 20; ++round) {
+    Object object{.name = "c", .shape = Cylinder{0.02, 0.06}};
+    object.pose.linear() = random.rotation();
+    object.pose.translation() = random.point(0.3);
+    Bounds tube, pill;
+    const auto take = [&](Bounds& box, const Vec3& p) { box.extend(Vec3(object.pose * p)); };
+    for (int i = 0; i < 720; ++i) {
+      const double angle = i * std::numbers::pi / 360;
+      const Vec3 rim(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.03);
+      take(tube, rim);
+      take(tube, -rim);
+    }
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 on_ball = 0.02 * random.direction();
+      take(pill, on_ball + Vec3(0, 0, on_ball.z() < 0 ? -0.03 : 0.03));
+    }
+    const auto differ = [](const Bounds& a, const Bounds& b) {
+      return std::max((a.min() - b.min()).cwiseAbs().maxCoeff(),
+                      (a.max() - b.max()).cwiseAbs().maxCoeff());
+    };
+    EXPECT_LT(differ(bounds_of(object, nullptr), tube), 1e-6);
+    object.shape = Capsule{0.02, 0.06};
+    EXPECT_LT(differ(bounds_of(object, nullptr), pill), 1e-4);
+  }
+}
+
+TEST(SceneEditor, CountsPartsAsRoomTaken) {
+  Object object{.name = "c", .shape = Sphere{0.02}, .body = Body{}};
+  object.parts.push_back({pose_at(Vec3(0.1, 0, 0)), Sphere{0.01}});
+  EXPECT_NEAR(bounds_of(object, nullptr).max().x(), 0.11, 1e-12);
+  EXPECT_NEAR(bounds_of(object, nullptr).min().x(), -0.02, 1e-12);
+}
+
+Object body(const std::string& name, const std::string& to = "") {
+  Object out{.name = name, .shape = Box{}, .body = Body{}};
+  out.body->joint = BodyJoint{};
+  out.body->joint->to = to;
+  return out;
+}
+
+// A lid on a pot on the world, and a spring from each.
+SceneEditor kitchen() {
+  SceneEditor editor = full();
+  editor.add(body("pot"));
+  editor.add(body("lid", "pot"));
+  editor.add_spring({.between = {"pot", ""}});
+  editor.add_spring({.between = {"lid", "pot"}});
+  return editor;
+}
+constexpr std::size_t kPot = 5, kLid = 6;
+
+TEST(SceneEditor, LetsGoOfABodyThatIsRemoved) {
+  SceneEditor editor = kitchen();
+  const SceneEditor::Version before = editor.version();
+  const std::string said = editor.remove(kPot);
+  EXPECT_THAT(said, testing::HasSubstr("lid's joint now holds to the world"));
+  EXPECT_THAT(said, testing::HasSubstr("2 springs"));
+  EXPECT_EQ(editor.scene().objects.at(kPot).body->joint->to, "");
+  EXPECT_TRUE(editor.scene().springs.empty());
+  editor.restore(before);
+  EXPECT_EQ(editor.scene().objects.at(kLid).body->joint->to, "pot");
+  EXPECT_EQ(editor.scene().springs.size(), 2u);
+  EXPECT_EQ(editor.remove(kBall), "") << "nothing hangs on it";
+}
+
+TEST(SceneEditor, RenamesABodyWhereverItIsNamed) {
+  SceneEditor editor = kitchen();
+  editor.rename(kPot, "pan");
+  EXPECT_EQ(editor.scene().objects.at(kLid).body->joint->to, "pan");
+  EXPECT_EQ(editor.scene().springs[0].between[0], "pan");
+  EXPECT_EQ(editor.scene().springs[1].between[1], "pan");
+  EXPECT_EQ(editor.scene().springs[0].between[1], "") << "the world stays the world";
+  editor.rename(kBall, "globe");
+  EXPECT_EQ(editor.scene().objects.at(kLid).body->joint->to, "pan");
+}
+
+TEST(SceneEditor, ACopyHangsOnWhatTheFirstOneHangsOn) {
+  SceneEditor editor = kitchen();
+  editor.duplicate(kLid);
+  EXPECT_EQ(editor.selected_object()->name, "lid 2");
+  EXPECT_EQ(editor.selected_object()->body->joint->to, "pot");
+  EXPECT_EQ(editor.scene().springs.size(), 2u);
+}
+
+// What begins to move goes behind all that stands still, with its model, and comes back.
+TEST(SceneEditor, PutsWhatMovesBehindWhatStandsStill) {
+  SceneEditor editor = kitchen();
+  const SceneEditor::Version before = editor.version();
+  const MeshModels models = editor.models();
+  Object gear = editor.scene().objects[kGear];
+  gear.body = Body{};
+  editor.set(kGear, gear, "moves");
+  EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "stop", "pot", "lid", "gear"));
+  EXPECT_EQ(editor.selected_object()->name, "gear");
+  EXPECT_EQ(editor.models().back(), models[kGear]);
+  Object pot = editor.scene().objects[4];
+  pot.body.reset();
+  editor.set(4, pot, "moves");
+  EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "pot", "stop", "lid", "gear"));
+  EXPECT_EQ(editor.scene().objects[5].body->joint->to, "") << "of lid";
+  EXPECT_TRUE(editor.scene().springs.empty());
+  editor.restore(before);
+  EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "gear", "stop", "pot", "lid"));
+}
+
+TEST(SceneEditor, WhatMovesComesBackFromItsText) {
+  SceneEditor editor = kitchen();
+  const ArmDescription arm = test::random_arm(3, 2);
+  Object lid = editor.scene().objects[kLid];
+  lid.body->mass = -1;
+  lid.body->joint->axis = Vec3(0, 3, 4);
+  editor.set(kLid, lid, "axis");
+  EXPECT_EQ(editor.scene().objects[kLid].body->mass, 1e-6) << "held";
+  BodySpring spring = editor.scene().springs[0];
+  spring.stiffness = -3;
+  editor.set_spring(0, spring, "stiffness");
+  editor.set_gravity(Vec3(0, 0, -1000));
+  const Scene again = parse_scene(scene_text(editor.document(), arm), "edited", "", arm,
+                                  files_of(editor.document()))
+                          .scene;
+  EXPECT_EQ(again.gravity, Vec3(0, 0, -100));
+  EXPECT_EQ(again.springs, editor.scene().springs);
+  ASSERT_EQ(again.objects.size(), 7u);
+  for (std::size_t i : {kPot, kLid}) test::expect_same(again.objects[i], editor.scene().objects[i]);
+  editor.remove_spring(0);
+  EXPECT_EQ(editor.scene().springs.size(), 1u);
+  EXPECT_EQ(editor.last_change(), "") << "a step of its own";
+}
+
+TEST(SceneEditor, NothingThatCannotMoveHasABody) {
+  SceneEditor editor = full();
+  Object top = editor.scene().objects[kTop];
+  top.body = Body{};
+  editor.set(kTop, top, "moves");
+  EXPECT_FALSE(editor.scene().objects[kTop].body);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -1,0 +1,344 @@
+#include "app/desktop/panels/body_editor.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/sliders.h"
+#include "app/style/theme.h"
+#include "core/touch/mass_properties.h"
+#include "devices/files/scene/body_file.h"
+
+namespace limpid {
+namespace {
+
+using Kind = BodyJoint::Kind;
+using namespace scene_limits;
+
+constexpr double kWood = 600;  // of what begins to move [kg/m^3]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What numbers along a joint are shown in: slides in mm, turns in degrees.
+struct JointUnit {
+  double of_one;  // how many make one m or rad
+  const char* format;
+  const char* force;
+  const char* stiffness;
+  const char* damping;
+};
+JointUnit unit_of(Kind kind) {
+  if (kind == Kind::slider) return {1e3, "%.2f mm", "%.3g N", "%.6g N/m", "%.4g N s/m"};
+  return {180 / std::numbers::pi, "%.1f\xC2\xB0", "%.3g N m", "%.6g N m/rad", "%.4g N m s/rad"};
+}
+
+// Dragged, a step is a part of what is there.
+double pace(double value, double least) { return std::max(least, 0.005 * std::abs(value)); }
+
+bool drag_scaled(const char* label, double& value, double per_one, const Range& range,
+                 const char* format, const char* help) {
+  double shown = per_one * value;
+  const double least = range.exclusive_minimum ? 1e-6 : range.minimum;
+  if (!drag_number(label, shown, pace(shown, 0.01), per_one * least,
+                   per_one * std::min(range.maximum, 1e9), format, help)) {
+    return false;
+  }
+  value = shown / per_one;
+  return true;
+}
+
+bool share_slider(const char* label, double& value, const char* help) {
+  const ParameterInfo info{.key = label,
+                           .label = label,
+                           .field = &Parameters::eta,
+                           .unit = "-",
+                           .minimum = 0,
+                           .maximum = 1,
+                           .slider_minimum = 0,
+                           .slider_maximum = 1,
+                           .logarithmic = false,
+                           .live = true,
+                           .meaning = ""};
+  const bool changed = value_slider(info, value, 0);
+  tooltip(help);
+  return changed;
+}
+
+// Bodies that `allowed` takes, and the world under an empty name.
+template <class Allowed>
+bool choose_body(const char* label, std::string& name, const Scene& scene, const char* help,
+                 Allowed allowed) {
+  bool changed = false;
+  caption(label, help);
+  ImGui::PushID(label);
+  if (ImGui::BeginCombo("##body", name.empty() ? "the world" : name.c_str())) {
+    const auto choice = [&](const std::string& each, const char* shown) {
+      if (!allowed(each) || !ImGui::Selectable(shown, each == name)) return;
+      name = each;
+      changed = true;
+    };
+    choice("", "the world");
+    for (const Object& object : scene.objects) {
+      if (object.body) choice(object.name, object.name.c_str());
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+bool may_hang_on(const Scene& scene, std::size_t place, const std::string& name) {
+  Scene tried = scene;
+  Object& object = tried.objects[place];
+  if (!object.body) object.body = Body{};
+  if (!object.body->joint) object.body->joint = BodyJoint{};
+  object.body->joint->to = name;
+  return !joint_leads_round(tried, place);
+}
+
+bool choose_kind(Body& body) {
+  constexpr const char* kKinds = "nothing, it is free\0a slider\0a hinge\0a ball joint\0";
+  int kind = body.joint ? 1 + static_cast<int>(body.joint->kind) : 0;
+  caption("Hangs on", "A slider moves along a line, a hinge turns, a ball joint turns any way.");
+  if (!ImGui::Combo("##kind", &kind, kKinds)) return false;
+  if (kind == 0) {
+    body.joint.reset();
+    return true;
+  }
+  BodyJoint joint = body.joint.value_or(BodyJoint{});
+  if (static_cast<int>(joint.kind) != kind - 1) {
+    // Metres are no radians: what is measured along the joint begins anew.
+    BodyJoint fresh;
+    fresh.to = joint.to;
+    fresh.axis = joint.axis;
+    fresh.point = joint.point;
+    joint = fresh;
+  }
+  joint.kind = static_cast<Kind>(kind - 1);
+  body.joint = joint;
+  return true;
+}
+
+std::string_view edit_limits(BodyJoint& joint, const JointUnit& unit) {
+  std::string_view what;
+  bool limited = std::isfinite(joint.low) || std::isfinite(joint.high);
+  if (ImGui::Checkbox("has stops", &limited)) {
+    const double room = joint.kind == Kind::slider ? 0.01 : 0.5;
+    joint.low = limited ? -room : -kInfinity;
+    joint.high = limited ? room : kInfinity;
+    what = "stops";
+  }
+  tooltip("Where its way ends on both sides; 0 is where it starts.");
+  if (!limited) return what;
+  constexpr double kLeast = 1e-4;  // between the stops [m or rad]
+  const double far = 100;
+  double low = std::max(joint.low, -far), high = std::min(joint.high, far);
+  if (drag_scaled("From", low, unit.of_one, {-far, high - kLeast}, unit.format,
+                  "The stop on the side against the axis.")) {
+    joint.low = low;
+    what = "from";
+  }
+  if (drag_scaled("To", high, unit.of_one, {low + kLeast, far}, unit.format,
+                  "The stop on the side of the axis.")) {
+    joint.high = high;
+    what = "to";
+  }
+  if (drag_scaled("Stops' stiffness", joint.stop_stiffness, 1, kStiffness, unit.stiffness,
+                  "How hard a stop pushes back.")) {
+    what = "stop stiffness";
+  }
+  if (share_slider("Stops' bounce", joint.stop_restitution,
+                   "The part of its speed that it keeps when it hits a stop.")) {
+    what = "stop restitution";
+  }
+  return what;
+}
+
+std::string_view edit_force(JointForce& force, const JointUnit& unit) {
+  std::string_view what;
+  if (drag_scaled("Spring", force.spring, 1, kJointSpring, unit.stiffness,
+                  "Pulls it towards its place of rest.")) {
+    what = "spring";
+  }
+  if (drag_scaled("Rest", force.rest, unit.of_one, kTravel, unit.format,
+                  "Where the spring pulls nothing; 0 is where it starts.")) {
+    what = "rest";
+  }
+  if (drag_scaled("Detent", force.detent_force, 1, kJointForce, unit.force,
+                  "The largest force of steps that it clicks into; 0: it does not click.")) {
+    what = "detent";
+  }
+  if (drag_scaled("Detent's period", force.detent_period, unit.of_one, kPeriod, unit.format,
+                  "From one step to the next.")) {
+    what = "detent period";
+  }
+  if (!force.travel.empty()) {
+    read_out("force over travel", fmt::format("{} points", force.travel.size()), {},
+             "From the scene's file; it adds to spring and detent.");
+  }
+  return what;
+}
+
+std::string_view edit_joint(Body& body, const Scene& scene, std::size_t place) {
+  std::string_view what;
+  if (choose_kind(body)) what = "joint";
+  if (!body.joint) return what;
+  BodyJoint& joint = *body.joint;
+  const JointUnit unit = unit_of(joint.kind);
+  if (choose_body("of", joint.to, scene, "What the joint's other half is fixed to.",
+                  [&](const std::string& name) { return may_hang_on(scene, place, name); })) {
+    what = "to";
+  }
+  if (joint.kind != Kind::ball && drag3("Axis x, y, z", joint.axis, 0.01, -1, 1, "%.3f",
+                                        "Along it, or about it; in the world, at the start.")) {
+    what = "axis";
+  }
+  Vec3 point = 1e3 * joint.point;
+  if (joint.kind != Kind::slider &&
+      drag3("Joint at x, y, z [mm]", point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
+            "%.1f", "From the object's own middle, along its own axes.")) {
+    joint.point = 1e-3 * point;
+    what = "point";
+  }
+  if (drag_scaled("Damping", joint.damping, 1, kDamping, unit.damping,
+                  "What it takes up, by how fast the joint moves.")) {
+    what = "joint damping";
+  }
+  if (drag_scaled("Dry friction", joint.friction, 1, kJointForce, unit.force,
+                  "What it takes to move the joint at all.")) {
+    what = "joint friction";
+  }
+  if (joint.kind == Kind::ball) return what;
+  if (const auto stops = edit_limits(joint, unit); !stops.empty()) what = stops;
+  if (const auto force = edit_force(joint.force, unit); !force.empty()) what = force;
+  return what;
+}
+
+bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what) {
+  const auto body = [](const std::string& name) { return !name.empty(); };
+  if (choose_body(
+          "From", spring.between[0], scene, "One of its ends.",
+          [&](const std::string& name) { return body(name) && name != spring.between[1]; })) {
+    what = "from";
+  }
+  if (choose_body("To", spring.between[1], scene, "Its other end.",
+                  [&](const std::string& name) { return name != spring.between[0]; })) {
+    what = "to";
+  }
+  constexpr std::array kEnds{"Holds there x, y, z [mm]", "Holds here x, y, z [mm]"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    Vec3 point = 1e3 * spring.points[i];
+    if (drag3(kEnds[1 - i], point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum, "%.1f",
+              i == 0 ? "Where it holds the first one, from that one's middle, along its own axes."
+                     : "The same of the second one; of the world from the arm's base.")) {
+      spring.points[i] = 1e-3 * point;
+      what = i == 0 ? "first point" : "second point";
+    }
+  }
+  if (drag_scaled("Length", spring.length, 1e3, kSpringLength, "%.1f mm",
+                  "While it pulls nothing.")) {
+    what = "length";
+  }
+  if (drag_scaled("Stiffness", spring.stiffness, 1, kJointSpring, "%.6g N/m", "Per metre.")) {
+    what = "stiffness";
+  }
+  if (drag_scaled("Damping", spring.damping, 1, kDamping, "%.4g N s/m",
+                  "While its length changes.")) {
+    what = "damping";
+  }
+  double breaks = std::isfinite(spring.breaks_at) ? spring.breaks_at : 0;
+  if (drag_scaled("Breaks at", breaks, 1, {0, 1e6}, breaks > 0 ? "%.4g N" : "never",
+                  "The pull that tears it; 0: it never does.")) {
+    spring.breaks_at = breaks > 0 ? breaks : kInfinity;
+    what = "breaks at";
+  }
+  return !what.empty();
+}
+
+void draw_spring(Document& document, std::size_t place) {
+  BodySpring spring = document.scene().springs[place];
+  const std::string& to = spring.between[1];
+  const std::string label =
+      fmt::format("{} to {}##spring{}", spring.between[0], to.empty() ? "the world" : to, place);
+  ImGui::PushID(static_cast<int>(place));
+  if (ImGui::TreeNode("##spring", "%s", label.substr(0, label.find("##")).c_str())) {
+    std::string_view what;
+    const bool changed = edit_spring(spring, document.scene(), what);
+    const bool remove = ImGui::Button("Remove spring", {-1, 0});
+    tooltip("Ctrl+Z brings it back.");
+    if (remove) {
+      if (document.may_edit()) document.editor().remove_spring(place);
+    } else if (changed && document.may_edit()) {
+      document.editor().set_spring(place, spring, std::string(what));
+    }
+    ImGui::TreePop();
+  }
+  ImGui::PopID();
+}
+
+// From the selected body, else the first one, to where it hangs in the world.
+BodySpring new_spring(const SceneEditor& editor) {
+  const Object* body = editor.selected_object();
+  if (body == nullptr || !body->body) {
+    body = &*std::ranges::find_if(editor.scene().objects,
+                                  [](const Object& object) { return object.body.has_value(); });
+  }
+  return {.between = {body->name, ""}, .points = {Vec3::Zero(), body->pose.translation()}};
+}
+
+}  // namespace
+
+std::string_view edit_body(Object& object, const Scene& scene, std::size_t place) {
+  if (has_shape<Plane>(object) || has_shape<JointStop>(object)) return {};
+  std::string_view what;
+  bool moves = object.body.has_value();
+  if (ImGui::Checkbox("moves", &moves)) {
+    object.body.reset();
+    if (moves) object.body = Body{.mass = kMass.hold(kWood * volume(object), Body{}.mass)};
+    return "moves";
+  }
+  tooltip("It can be pushed, and falls. It begins with the mass of wood.");
+  if (!moves) return what;
+  Body& body = *object.body;
+  if (drag_scaled("Mass", body.mass, 1e3, kMass, "%.4g g", "Up to 100 kg.")) what = "mass";
+  if (ImGui::Checkbox("a magnet picks it up", &body.magnet)) what = "magnet";
+  tooltip("While the device's button, or its key, is held and the tip is at it.");
+  if (share_slider("Bounce", body.restitution,
+                   "The part of its speed that it keeps when it hits something. 0: none.")) {
+    what = "restitution";
+  }
+  if (drag_scaled("Contact stiffness", body.contact_stiffness, 1, kStiffness, "%.6g N/m",
+                  "Against other objects; what the tip feels is the stiffness above.")) {
+    what = "contact stiffness";
+  }
+  if (!object.parts.empty()) {
+    read_out("parts", fmt::format("{}", object.parts.size()), {}, "From the scene's file.");
+  }
+  if (const auto joint = edit_joint(body, scene, place); !joint.empty()) what = joint;
+  return what;
+}
+
+void draw_springs(Document& document) {
+  if (count_bodies(document.scene()) == 0) return;
+  Vec3 gravity = document.scene().gravity;
+  if (drag3("Gravity x, y, z [m/s\xC2\xB2]", gravity, 0.05, kGravity.minimum, kGravity.maximum,
+            "%.2f", "Of what moves. On the Moon it is 1.62, here 9.81, downwards.") &&
+      document.may_edit()) {
+    document.editor().set_gravity(gravity);
+  }
+  heading("Springs");
+  for (std::size_t i = 0; i < document.scene().springs.size(); ++i) draw_spring(document, i);
+  if (ImGui::Button("Add spring", {-1, 0}) && document.may_edit()) {
+    document.add_spring(new_spring(document.editor()));
+  }
+  tooltip("From the selected object that moves to where it is now.");
+}
+
+}  // namespace limpid

@@ -1,0 +1,32 @@
+// What there is to know of a scene's moving objects before anybody touches them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/dynamics/arm_description.h"
+#include "core/touch/scene.h"
+
+namespace limpid {
+
+// Lines for people.
+struct BodyReport {
+  std::vector<std::string> facts, warnings;
+};
+
+// Meshes have their triangles. Empty for a scene in which nothing moves.
+BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
+
+// The most that weight may give: how far each may sink, at most to the lowest level plane, or
+// without one as far as the tip gets [J].
+double most_weight_energy(const Scene& scene, const ArmDescription& arm);
+
+// Places of objects that are in each other at the start, more than half a millimetre; one of each
+// two moves. What hangs on each other is none. Moving meshes count as the boxes around them.
+std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene);
+
+// Whether some body can have these principal moments: none is more than the other two together.
+bool possible_inertia(const Vec3& inertia);
+
+}  // namespace limpid
