@@ -64,7 +64,7 @@ struct BodyGeometry::Inside {
   static bool overlap(const Solid& a, const Solid& b);
   void meet(Pair& pair);
   void take(Pair& pair);
-  BodyContact* fresh(const Pair& pair, double depth);
+  BodyContact* fresh(const Pair& pair);
   bool allowed(const Pair& pair) const;
 
   btDefaultCollisionConfiguration configuration;
@@ -266,7 +266,7 @@ void BodyGeometry::Inside::meet(Pair& p) {
   result.refreshContactPoints();
 }
 
-BodyContact* BodyGeometry::Inside::fresh(const Pair& p, double depth) {
+BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   if (free_ones.empty()) {
     full = true;
     return nullptr;
@@ -274,7 +274,6 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p, double depth) {
   BodyContact* c = free_ones.back();
   free_ones.pop_back();
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
-  c->rest = std::max(0.0, depth);
   c->used = true;
   return c;
 }
@@ -284,7 +283,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
     if (c == nullptr) {
-      c = fresh(p, -point.getDistance());
+      c = fresh(p);
       if (c == nullptr) continue;
       point.m_userPersistentData = c;
     }
@@ -361,7 +360,7 @@ void BodyGeometry::forget() {
 namespace {
 
 // Of a point, in the file.
-constexpr std::size_t kNumbers = 29;
+constexpr std::size_t kNumbers = 30;
 
 void put(std::vector<double>& into, const btVector3& v) {
   for (int i = 0; i < 3; ++i) into.push_back(v[i]);
@@ -395,6 +394,7 @@ void BodyGeometry::write(std::vector<double>& into) const {
       put(into, c->anchor);
       into.push_back(c->slipping ? 1 : 0);
       into.push_back(c->lost);
+      into.push_back(c->pressed);
     }
   }
 }
@@ -415,13 +415,15 @@ std::span<const double> BodyGeometry::read(std::span<const double> from) {
     const bool turned = from[18] != 0;
     p.manifold->setBodies(turned ? &p.b->at : &p.a->at, turned ? &p.a->at : &p.b->at);
     const int at = p.manifold->addManifoldPoint(point);
-    BodyContact* c = in_->fresh(p, from[19]);
+    BodyContact* c = in_->fresh(p);
     if (c == nullptr) break;
+    c->rest = from[19];
     c->force = from[20];
     c->friction = Vec3(from[21], from[22], from[23]);
     c->anchor = Vec3(from[24], from[25], from[26]);
     c->slipping = from[27] != 0;
     c->lost = from[28];
+    c->pressed = from[29];
     p.manifold->getContactPoint(at).m_userPersistentData = c;
   }
   return from;

@@ -23,7 +23,10 @@ struct BodyContact {
 
   // From tick to tick:
   double lost = 0;                 // by its damper over the last tick [J]
-  double rest = 0;                 // depth that nobody pressed in: it was there at the start [m]
+  // Depth that nobody pressed in: it was there when they met, or the nearest features of two shapes
+  // changed. It pushes nothing [m].
+  double rest = 0;
+  double pressed = 0;              // depth to which it was pressed in by the end of the last tick [m]
   double force = 0;                // along the normal, on a [N]
   Vec3 friction = Vec3::Zero();    // on a [N]
   Vec3 anchor = Vec3::Zero();      // stretch of friction's spring [m]

@@ -240,8 +240,9 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   row.b = end_at(contact.b, contact.point);
   row.K = stiffness(contact);
   // A depth that nobody pressed in goes, as fast as the contact's damper pays for it.
+  contact.rest = std::max(contact.rest, contact.depth - contact.pressed);
+  contact.rest = std::min(contact.rest, std::max(0.0, contact.depth));
   if (contact.rest > 0) {
-    contact.rest = std::min(contact.rest, std::max(0.0, contact.depth));
     const double d = std::max(0.0, contact.depth - contact.rest);
     const double paid = std::sqrt(d * d + 2 * std::max(0.0, contact.lost) / row.K) - d;
     contact.rest -= std::min(paid, contact.rest * std::min(1.0, T_ / kFade));
@@ -429,6 +430,7 @@ void BodyWorld::end_rows() {
         row.force > 0 && row.radius > 0 && row.friction.norm() >= row.radius * row.force * (1 - 1e-9);
     const double D = -T_ * row.frame.col(0).dot(velocity(row.a) - velocity(row.b));
     const double before = std::max(0.0, row.depth), after = std::max(0.0, row.depth + D);
+    c.pressed = after;
     c.lost = row.force * D - 0.5 * row.K * (after * after - before * before);
   }
   for (Link& link : links_) {

@@ -88,7 +88,7 @@ class BodyWorld {
   // numbers are of another scene.
   void write(std::vector<double>& into) const;
   bool read(std::span<const double> from);
-  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 29;
+  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 30;
 
  private:
   // A contact's force over a tick.
