@@ -11,8 +11,8 @@ constexpr double kMostDamping = 0.34;
 // limit from being the last.
 constexpr double kStillPulled = 0.02;
 // What a hand may push unforeseen in a tick, and the most that changes of the device's velocity.
-constexpr int kMostTurns = 10;       // between bodies and the rest
-constexpr double kSameForce = 1e-6;  // after which nothing more is to be found [N]
+constexpr int kMostTurns = 10;                     // between bodies and the rest
+constexpr double kSameForce = 1e-6;                // after which nothing more is to be found [N]
 constexpr double kPushed = 4e-4, kSurprise = 0.5;  // [N s], [rad/s]
 
 template <int N>
@@ -189,8 +189,8 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   ledger_.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
-    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given_to(proxy),
-                in.encoder_step, elapsed_);
+    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given_to(proxy), in.encoder_step,
+                elapsed_);
     network_.advance(ledger_.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger_.dx()));
   }

@@ -69,7 +69,8 @@ struct Start {
   bool armed = true;  // at full force from the first tick on; not where motors are guarded
   // What the human may still be given by laws that account for it; they start with no more [J].
   double reserve = std::numeric_limits<double>::infinity();
-  std::span<const double> world{};  // of all bodies, see BodyWorld::write(); empty: as the scene has it
+  std::span<const double>
+      world{};  // of all bodies, see BodyWorld::write(); empty: as the scene has it
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());

@@ -1,8 +1,8 @@
 #include "core/touch/body_geometry.h"
 
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <btBulletCollisionCommon.h>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,19 +12,19 @@
 namespace limpid {
 namespace {
 
-constexpr double kNear = 1e-3;     // points further apart than this are none [m]
-constexpr double kMargin = 1e-4;   // Bullet rounds edges by so much, where it does [m]
-constexpr double kWide = 10;       // half the edge of what stands for a plane [m]
-constexpr int kPointsOfPair = 4;   // that Bullet keeps
+constexpr double kNear = 1e-3;    // points further apart than this are none [m]
+constexpr double kMargin = 1e-4;  // Bullet rounds edges by so much, where it does [m]
+constexpr double kWide = 10;      // half the edge of what stands for a plane [m]
+constexpr int kPointsOfPair = 4;  // that Bullet keeps
 
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
 btTransform to_bullet(const Pose& pose) {
   const Mat3& R = pose.linear();
-  return btTransform(btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0),
-                                 R(2, 1), R(2, 2)),
-                     to_bullet(Vec3(pose.translation())));
+  return btTransform(
+      btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
+      to_bullet(Vec3(pose.translation())));
 }
 
 // A plane is a large block below it: of faces and edges Bullet finds all points at once.
@@ -290,8 +290,8 @@ void BodyGeometry::Inside::take(Pair& p) {
     // Bullet may have taken the pair the other way round.
     const bool turned = p.manifold->getBody0() != &p.a->at;
     c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
-    c->point = 0.5 * (from_bullet(point.getPositionWorldOnA()) +
-                      from_bullet(point.getPositionWorldOnB()));
+    c->point =
+        0.5 * (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
     c->depth = -point.getDistance();
     c->seen = true;
     if (points.size() < kMost) points.push_back(c);

@@ -15,27 +15,27 @@ namespace limpid {
 struct BodyContact {
   static constexpr int kStill = -1;
 
-  int a = 0, b = kStill;         // bodies
+  int a = 0, b = kStill;           // bodies
   int object_a = 0, object_b = 0;  // of the scene
-  Vec3 point = Vec3::Zero();     // in the middle of the overlap [m]
-  Vec3 normal = Vec3::UnitZ();   // out of b, unit
-  double depth = 0;              // negative: apart [m]
+  Vec3 point = Vec3::Zero();       // in the middle of the overlap [m]
+  Vec3 normal = Vec3::UnitZ();     // out of b, unit
+  double depth = 0;                // negative: apart [m]
 
   // From tick to tick:
-  double lost = 0;                 // by its damper over the last tick [J]
+  double lost = 0;  // by its damper over the last tick [J]
   // Depth that nobody pressed in: it was there when they met, or the nearest features of two shapes
   // changed. It pushes nothing [m].
   double rest = 0;
-  double pressed = 0;              // depth to which it was pressed in by the end of the last tick [m]
-  double force = 0;                // along the normal, on a [N]
-  Vec3 friction = Vec3::Zero();    // on a [N]
-  Vec3 anchor = Vec3::Zero();      // stretch of friction's spring [m]
+  double pressed = 0;            // depth to which it was pressed in by the end of the last tick [m]
+  double force = 0;              // along the normal, on a [N]
+  Vec3 friction = Vec3::Zero();  // on a [N]
+  Vec3 anchor = Vec3::Zero();    // stretch of friction's spring [m]
   bool slipping = false;
   bool seen = false, used = false;
 };
 
-// Finds these points, by Bullet's collision library in double precision. All memory is taken when it
-// is made; the same poses in the same order give the same points, bit for bit.
+// Finds these points, by Bullet's collision library in double precision. All memory is taken when
+// it is made; the same poses in the same order give the same points, bit for bit.
 class BodyGeometry {
  public:
   // Bodies are those objects of the scene that have one, in its order. At most kMost points at a

@@ -28,9 +28,7 @@ Mat3 cayley(const Vec3& d) {
 }
 
 // The nearest rotation, of what is one up to rounding: one step of Newton's method.
-Mat3 rotation_again(const Mat3& R) {
-  return 1.5 * R - 0.5 * R * (R.transpose() * R);
-}
+Mat3 rotation_again(const Mat3& R) { return 1.5 * R - 0.5 * R * (R.transpose() * R); }
 
 }  // namespace
 
@@ -93,8 +91,7 @@ void BodyMotion::begin(double T, const Vec3& gravity, bool pushed) {
       S_v_ = joint_.axis.cross(p_ - pivot_ + 0.5 * T * sd_ * joint_.axis.cross(p_ - pivot_));
       const Vec3 c = start_ * c_ - pivot_;  // at s = 0
       const Vec3 along = joint_.axis * joint_.axis.dot(c);
-      potential_.add_weight(-m_ * gravity.dot(c - along),
-                            -m_ * gravity.dot(joint_.axis.cross(c)));
+      potential_.add_weight(-m_ * gravity.dot(c - along), -m_ * gravity.dot(joint_.axis.cross(c)));
     } else {
       potential_.add_weight(m_ * gravity.dot(joint_.axis));
     }

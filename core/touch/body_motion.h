@@ -19,8 +19,8 @@ class BodyMotion {
 
   void reset();  // to where it starts, at rest
 
-  // Weight of the tick's end where something pushed at the last tick, 1/2 at least: at 1/2 energy is
-  // kept, but a stiff contact of a light body then alternates.
+  // Weight of the tick's end where something pushed at the last tick, 1/2 at least: at 1/2 energy
+  // is kept, but a stiff contact of a light body then alternates.
   static constexpr double kTheta = 0.6;
 
   // The mean velocity that it has over the tick when nothing but its weight acts, and what a force
@@ -73,19 +73,19 @@ class BodyMotion {
   Pose start_;
   BodyJoint joint_;
   JointPotential potential_;
-  double reflected_ = 0;  // inertia along the joint [kg] or [kg m^2]
+  double reflected_ = 0;       // inertia along the joint [kg] or [kg m^2]
   Vec3 pivot_ = Vec3::Zero();  // of a hinge [m]
 
-  Pose pose_;                  // of the object
-  Vec3 p_, v_, w_;             // centre [m], its velocity [m/s], angular velocity in its frame
-  double s_ = 0, sd_ = 0;      // of the joint
+  Pose pose_;              // of the object
+  Vec3 p_, v_, w_;         // centre [m], its velocity [m/s], angular velocity in its frame
+  double s_ = 0, sd_ = 0;  // of the joint
   double theta_ = 0.5;
 
   // Of the tick:
-  Vec3 u_, o_;                 // mean velocities, world
-  double im_ = 0;              // theta T / m
+  Vec3 u_, o_;     // mean velocities, world
+  double im_ = 0;  // theta T / m
   Mat3 Ai_;
-  Vec3 S_v_, S_w_;             // of the joint, at the centre
+  Vec3 S_v_, S_w_;  // of the joint, at the centre
   double U_ = 0, a_ = 0;
 };
 

@@ -11,14 +11,14 @@
 namespace limpid {
 namespace {
 
-constexpr double kZeta = 0.7;        // of a contact's damper, where nothing is said
-constexpr double kEnough = 1e-8;     // change of a force of what the arm touches [N],
-constexpr double kEnoughElse = 1e-5; // and of all others
+constexpr double kZeta = 0.7;         // of a contact's damper, where nothing is said
+constexpr double kEnough = 1e-8;      // change of a force of what the arm touches [N],
+constexpr double kEnoughElse = 1e-5;  // and of all others
 constexpr int kMostSweeps = 30, kMostSweepsElse = 10;
-constexpr double kFade = 0.05;    // s in which a depth that was there at the start goes
-constexpr double kSlow = 1e-3;    // what is slower is at rest [m/s]
-constexpr double kQuiet = 0.5;    // s of rest, after which it sleeps
-constexpr double kGone = 20;      // further off than this nobody looks for it [m]
+constexpr double kFade = 0.05;      // s in which a depth that was there at the start goes
+constexpr double kSlow = 1e-3;      // what is slower is at rest [m/s]
+constexpr double kQuiet = 0.5;      // s of rest, after which it sleeps
+constexpr double kGone = 20;        // further off than this nobody looks for it [m]
 constexpr double kHingeArm = 0.01;  // of the two points that make a hinge between bodies [m]
 
 double damping_ratio(double restitution) {
@@ -268,8 +268,7 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   row.friction = row.frame.rightCols<2>().transpose() * contact.friction;
   row.anchor = row.frame.rightCols<2>().transpose() * contact.anchor;
   if (row.radius == 0) row.friction.setZero();
-  apply(row.a, row.b,
-        row.force * contact.normal + row.frame.rightCols<2>() * row.friction);
+  apply(row.a, row.b, row.force * contact.normal + row.frame.rightCols<2>() * row.friction);
   return true;
 }
 
@@ -426,8 +425,8 @@ void BodyWorld::end_rows() {
     c.force = row.force;
     c.friction = row.frame.rightCols<2>() * row.friction;
     c.anchor = -c.friction / row.K;
-    c.slipping =
-        row.force > 0 && row.radius > 0 && row.friction.norm() >= row.radius * row.force * (1 - 1e-9);
+    c.slipping = row.force > 0 && row.radius > 0 &&
+                 row.friction.norm() >= row.radius * row.force * (1 - 1e-9);
     const double D = -T_ * row.frame.col(0).dot(velocity(row.a) - velocity(row.b));
     const double before = std::max(0.0, row.depth), after = std::max(0.0, row.depth + D);
     c.pressed = after;
@@ -513,8 +512,7 @@ void BodyWorld::take_stock() {
   for (const JointRow& row : joints_) {
     const BodyMotion& body = bodies_[at(row.body)];
     const BodyJoint& joint = body.of_joint();
-    const double d =
-        std::max({0.0, joint.low - body.joint(), body.joint() - joint.high});
+    const double d = std::max({0.0, joint.low - body.joint(), body.joint() - joint.high});
     E += 0.5 * joint.stop_stiffness * (d * d + row.anchor * row.anchor);
   }
   energy_ = E;
@@ -531,9 +529,9 @@ void BodyWorld::write(std::vector<double>& into) const {
   std::array<double, BodyMotion::kNumbers> numbers{};
   into.push_back(count());
   into.push_back(static_cast<double>(links_.size()));
-  into.insert(into.end(), {double(magnet_.body), magnet_.point.x(), magnet_.point.y(),
-                           magnet_.point.z(), magnet_.force.x(), magnet_.force.y(),
-                           magnet_.force.z(), magnet_.spent ? 1.0 : 0.0});
+  into.insert(into.end(),
+              {double(magnet_.body), magnet_.point.x(), magnet_.point.y(), magnet_.point.z(),
+               magnet_.force.x(), magnet_.force.y(), magnet_.force.z(), magnet_.spent ? 1.0 : 0.0});
   for (int i = 0; i < count(); ++i) {
     bodies_[at(i)].write(numbers);
     into.insert(into.end(), numbers.begin(), numbers.end());
@@ -543,8 +541,8 @@ void BodyWorld::write(std::vector<double>& into) const {
     into.insert(into.end(), {row.potential, row.stop, row.friction, row.anchor});
   }
   for (const Link& link : links_) {
-    into.insert(into.end(), {link.force.x(), link.force.y(), link.force.z(),
-                             link.broken ? 1.0 : 0.0});
+    into.insert(into.end(),
+                {link.force.x(), link.force.y(), link.force.z(), link.broken ? 1.0 : 0.0});
   }
   geometry_.write(into);
 }

@@ -19,8 +19,8 @@ namespace limpid {
 // the arm gave, whatever masses, stiffnesses and the tick are.
 //
 // A tick: touch() what the arm is near to, begin(), then velocity(), answer() and push() of the
-// arm's rows between sweep()s, settle(), book() of each of them, and finish(). Allocates nothing after it was
-// made.
+// arm's rows between sweep()s, settle(), book() of each of them, and finish(). Allocates nothing
+// after it was made.
 class BodyWorld {
  public:
   // Every mesh of the scene has its shape.
@@ -76,7 +76,7 @@ class BodyWorld {
   int body_of(std::size_t object) const { return body_of_[object]; }
   bool magnetic(int body) const { return of_bodies_[at(body)].magnet; }
 
-  double given() const { return given_; }   // by the arm over the last tick [J]
+  double given() const { return given_; }    // by the arm over the last tick [J]
   double energy() const { return energy_; }  // then: kinetic, weight and stored [J]
   // At the start of the last tick, beyond what there was at first and what the arm gave [J].
   double gain() const { return gain_; }
@@ -84,8 +84,8 @@ class BodyWorld {
   int awake() const;
   int sweeps() const { return sweeps_; }  // of the last tick
 
-  // All that is kept from tick to tick: appended to `into`, and taken from there again. False: these
-  // numbers are of another scene.
+  // All that is kept from tick to tick: appended to `into`, and taken from there again. False:
+  // these numbers are of another scene.
   void write(std::vector<double>& into) const;
   bool read(std::span<const double> from);
   static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 30;
@@ -105,10 +105,11 @@ class BodyWorld {
   // a length.
   struct Link {
     int a = 0, b = BodyContact::kStill;
-    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // in their objects' frames; of the world: in it [m]
+    Vec3 on_a = Vec3::Zero(),
+         on_b = Vec3::Zero();  // in their objects' frames; of the world: in it [m]
     double length = 0, K = 0, B = 0;
     double breaks_at = std::numeric_limits<double>::infinity();
-    bool spring = false;   // else a joint
+    bool spring = false;  // else a joint
     bool broken = false;
     Vec3 force = Vec3::Zero();  // on a [N]
     // Of the tick:
@@ -151,9 +152,9 @@ class BodyWorld {
   std::vector<Material> materials_;
   std::vector<Body> of_bodies_;
   std::vector<std::uint8_t> awake_, pushed_, touched_, held_;
-  std::vector<int> quiet_;        // ticks
-  std::vector<int> parent_;       // of islands
-  std::vector<int> body_of_;      // by object
+  std::vector<int> quiet_;    // ticks
+  std::vector<int> parent_;   // of islands
+  std::vector<int> body_of_;  // by object
   std::vector<Material> of_objects_;
   BodyGeometry geometry_;
   Vec3 gravity_;

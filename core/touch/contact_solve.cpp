@@ -290,10 +290,9 @@ void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, doub
     direction = row.magnet->J.transpose() * along;
   } else if (row.mesh != nullptr) {
     const FreeSpace& space = row.mesh->touch.space();
-    along = !row.push.isZero(0) ? Vec3(row.push.normalized())
-                       : row.mesh->rank == 0 && space.count() > 0
-                           ? space.normal(0)
-                           : Vec3(row.mesh->direction.col(0));
+    along = !row.push.isZero(0)                        ? Vec3(row.push.normalized())
+            : row.mesh->rank == 0 && space.count() > 0 ? space.normal(0)
+                                                       : Vec3(row.mesh->direction.col(0));
     direction = row.mesh->J.transpose() * along;
   }
   double mass = 1 / direction.dot(answer.inertia->solve(direction));
@@ -420,9 +419,9 @@ void ContactSolve<N>::rub(Row& row, double T, const Vec3& v, Mat3& slope) {
   Vec2 l = wanted;
   if (size > most) {
     const Vec2 along = wanted / size;
-    l = row.world != nullptr
-            ? friction_force(K_t, most, across.transpose() * anchor, T, across.transpose() * free, W)
-            : Vec2(most * along);
+    l = row.world != nullptr ? friction_force(K_t, most, across.transpose() * anchor, T,
+                                              across.transpose() * free, W)
+                             : Vec2(most * along);
     on_v = most / size * (on_v - along * (along.transpose() * on_v));
     slope += across * (row.radius * along) * (normal.transpose() * slope).eval();
   }
@@ -516,7 +515,8 @@ bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
   if (row.mesh->touch.held() || row.mesh->rank > 0) return false;
   Vec3 x;
   FreeSpace::Active by;
-  return row.mesh->touch.space().project(row.mesh->center + T * (speed(row, u) - of_body(row)), x, by) &&
+  return row.mesh->touch.space().project(row.mesh->center + T * (speed(row, u) - of_body(row)), x,
+                                         by) &&
          by.count == 0;
 }
 

@@ -114,9 +114,9 @@ class ContactSolve {
     // Of a body's surface:
     BodyWorld* world = nullptr;
     BodyWorld::End end;
-    Mat3 W_body = Mat3::Zero();    // along the axes [m/(N s)]
-    Vec3 on_body = Vec3::Zero();   // force that it has had so far, less its sign [N]
-    Vec3 body_free = Vec3::Zero(); // its velocity without that, along the axes [m/s]
+    Mat3 W_body = Mat3::Zero();     // along the axes [m/(N s)]
+    Vec3 on_body = Vec3::Zero();    // force that it has had so far, less its sign [N]
+    Vec3 body_free = Vec3::Zero();  // its velocity without that, along the axes [m/s]
 
     void clear() {
       wall = nullptr;

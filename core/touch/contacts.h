@@ -8,9 +8,9 @@
 
 #include "core/dynamics/arm.h"
 #include "core/math/solve.h"
+#include "core/touch/body_world.h"
 #include "core/touch/mesh_touch.h"
 #include "core/touch/scene.h"
-#include "core/touch/body_world.h"
 
 namespace limpid {
 
@@ -37,13 +37,13 @@ Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& fr
 // d(x2 + dx) = depth + gradient . dx, torque -gradient K d where d > 0.
 template <int N>
 struct Contact {
-  double depth = 0;            // [m], or [rad] in joint space; negative: apart
-  Vec<N> gradient;             // of the depth [m/rad] or [-]
-  Material material;           // in joint space its stiffness is in [N m/rad]
-  Vec3 point = Vec3::Zero();   // on the arm [m]
-  Vec3 normal = Vec3::Zero();  // out of the material; zero in joint space
-  int link = 0;                // that touches
-  std::size_t id = 0;          // the same as long as the scene is
+  double depth = 0;                // [m], or [rad] in joint space; negative: apart
+  Vec<N> gradient;                 // of the depth [m/rad] or [-]
+  Material material;               // in joint space its stiffness is in [N m/rad]
+  Vec3 point = Vec3::Zero();       // on the arm [m]
+  Vec3 normal = Vec3::Zero();      // out of the material; zero in joint space
+  int link = 0;                    // that touches
+  std::size_t id = 0;              // the same as long as the scene is
   int body = BodyContact::kStill;  // whose surface it is
   bool touching = false;
   double force = 0;              // over the last tick [N] or [N m]
@@ -71,8 +71,8 @@ struct MeshContact {
       : touch(mesh, radius), material(mesh.material), J(Jacobian<N>::Zero(3, dof)) {}
 
   MeshTouch touch;
-  int link = 0;                 // index
-  std::size_t id = 0;           // among all contacts
+  int link = 0;        // index
+  std::size_t id = 0;  // among all contacts
   int body = BodyContact::kStill;
   Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
   Material material;
@@ -152,8 +152,8 @@ class Contacts {
     Vec3 at = Vec3::Zero();       // that point [m]
     Vec3 stretch = Vec3::Zero();  // of the spring: from there to the tip [m]
     Material material;
-    Jacobian<N> J;                  // of the tip
-    Vec3 force = Vec3::Zero();      // on the tip, over the last tick [N]
+    Jacobian<N> J;              // of the tip
+    Vec3 force = Vec3::Zero();  // on the tip, over the last tick [N]
   };
   Magnet& magnet() { return magnet_; }
   const Magnet& magnet() const { return magnet_; }

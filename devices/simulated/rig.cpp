@@ -111,8 +111,14 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   x_before = x;
   const auto truth = device->truth();
   if (!truth) return {x, x, v, health, now.periods, now.dt, {}, now.hand.magnet};
-  return {x,      of_joints(truth->x),           of_joints(truth->v), health, now.periods,
-          now.dt, of_joints(truth->motor_torque), now.hand.magnet};
+  return {x,
+          of_joints(truth->x),
+          of_joints(truth->v),
+          health,
+          now.periods,
+          now.dt,
+          of_joints(truth->motor_torque),
+          now.hand.magnet};
 }
 
 template <int N>
@@ -159,9 +165,8 @@ void Rig::start(const Parameters& p, const RigStart& start) {
   std::visit(
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
-        of->tick.start(
-            p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed, start.reserve,
-                start.world});
+        of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed,
+                           start.reserve, start.world});
         of->begin_at(start, start.target);
       },
       of_);

@@ -136,7 +136,6 @@ Vec3 HandPath::at(double t) const {
          h * s * r * (r * velocity[i] - s * velocity[i + 1]);
 }
 
-
 Vec3 HandPath::sample(std::size_t k, double T) const {
   if (tick == T) return position[std::min(k, position.size() - 1)];
   return at(static_cast<double>(k) * T);

@@ -215,7 +215,8 @@ TEST_P(LedgerOfJoints, CountsTheLeastOfTheAccountsOfEveryDelayThatIsPossible) {
     sent.insert(sent.begin(), random_.vector(n(), 0.2));
     const Any next = y_ + random_.vector(n(), 1e-3);
     ledger_.add(
-        next, next, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, Any::Zero(n()), 0, 0, T);
+        next, next, [&](int d) { return sent[static_cast<std::size_t>(d)]; }, Any::Zero(n()), 0, 0,
+        T);
     ledger_.settle(kE0, 0);
     double least = kCap;
     for (std::size_t d = kLeast; d <= kMost; ++d) {

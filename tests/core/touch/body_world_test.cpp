@@ -64,8 +64,9 @@ TEST(BodyWorld, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
   std::copy_n(spin.data(), 3, numbers.begin() + 10 + 15);
   ASSERT_TRUE(world.read(numbers));
   const Vec3 squares = size.cwiseProduct(size);
-  const Vec3 I = 0.05 / 12 * Vec3(squares.y() + squares.z(), squares.z() + squares.x(),
-                                  squares.x() + squares.y());
+  const Vec3 I =
+      0.05 / 12 *
+      Vec3(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
   const auto momentum = [&] {
     const Mat3& R = world.pose(0).linear();
     return Vec3(R * I.cwiseProduct(R.transpose() * world.spin(0)));
@@ -149,8 +150,9 @@ TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
     scene.add(floor_at(0));
     for (int i = 0; i < 5; ++i) {
       const double mass = random.log_between(0.005, 0.1);
-      Object o = body("body " + std::to_string(i), shapes[static_cast<std::size_t>((i + trial) % 4)],
-                      mass, {0.005 * i, 0.003 * i, 0.03 + 0.05 * i}, 0.3);
+      Object o =
+          body("body " + std::to_string(i), shapes[static_cast<std::size_t>((i + trial) % 4)], mass,
+               {0.005 * i, 0.003 * i, 0.03 + 0.05 * i}, 0.3);
       o.pose.linear() = turned(random.between(-3, 3), Vec3(1, 2, random.between(-1, 1)));
       o.body->contact_stiffness = random.log_between(10000, 50000);
       scene.add(o);
