@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/tick/parameters.h"
+#include "devices/simulated/rig.h"
+#include "tests/support/built_in.h"
+
+namespace limpid::test {
+namespace {
+
+Object block(double mass, const Vec3& at, double friction, double stiffness) {
+  Object o;
+  o.name = "block";
+  o.shape = Box{Vec3::Constant(0.03)};
+  o.pose = pose_at(at);
+  o.material = {stiffness, 0, friction, friction};
+  o.body = Body{};
+  o.body->mass = mass;
+  return o;
+}
+
+struct Outcome {
+  double energy = 0;        // highest E_c [J]
+  double beyond = 0;        // most that the hand got beyond what bodies gave [J]
+  double gain = 0;          // most that the bodies' world made [J]
+  double force = 0;         // hardest contact [N]
+  Vec3 end = Vec3::Zero();  // of the last body's centre
+};
+
+Outcome run(const Scene& scene, double eta, double grip, int ticks,
+            const std::function<HandInput(double)>& hand) {
+  const ArmDescription arm = omni();
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  p.eta = eta;
+  p.hand_stiffness = grip;
+  Rig rig(arm, scene);
+  rig.start(p, rest_at(arm, hand(0).target));
+  const RowLayout& layout = rig.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  const auto at = [&](Column c) { return layout.in(std::span<const double>(row), c); };
+  Outcome all;
+  for (int k = 0; k < ticks; ++k) {
+    rig.step(p, {hand(k * p.tick)}, row);
+    all.energy = std::max(all.energy, at(Column::energy_total)[0]);
+    all.beyond =
+        std::max(all.beyond, at(Column::energy_port)[0] + at(Column::energy_to_objects)[0]);
+    all.gain = std::max(all.gain, at(Column::objects_gain)[0]);
+    const auto force = at(Column::contact_force);
+    all.force = std::max(all.force, Vec3(force[0], force[1], force[2]).norm());
+  }
+  const auto pose = at(Column::body_pose);
+  const std::size_t last = pose.size() - 7;
+  all.end = Vec3(pose[last], pose[last + 1], pose[last + 2]);
+  return all;
+}
+
+HandInput across(double t) { return {Vec3(0.18, -0.01 + 0.04 * std::min(t, 1.5), 0)}; }
+
+class MovingBodies : public testing::TestWithParam<double> {};  // stiffness [N/m]
+
+TEST_P(MovingBodies, ArePushedWithoutEnergyFromContact) {
+  for (const double eta : {1.0, 0.3}) {
+    for (const double mass : {0.0005, 0.005, 0.5}) {
+      Scene scene;
+      scene.tip_radius = 0.004;
+      scene.gravity.setZero();
+      scene.add(block(mass, {0.18, 0.03, 0}, 0, GetParam()));
+      const Outcome r = run(scene, eta, 300, 2000, across);
+      EXPECT_LE(r.energy, 5e-5) << mass;
+      EXPECT_LE(r.beyond, 5e-5) << mass;
+      EXPECT_LE(r.gain, 1e-6) << mass;
+      EXPECT_GT(r.end.y(), 0.04) << mass;  // it went
+    }
+  }
+}
+
+TEST_P(MovingBodies, FallOnTheTipAndGiveNoMoreThanTheyHad) {
+  Scene scene;
+  scene.tip_radius = 0.004;
+  scene.add(block(0.05, {0.18, 0, 0.119}, 0.5, GetParam()));
+  const Outcome r = run(scene, 1, 300, 500, [](double) { return HandInput{Vec3(0.18, 0, 0)}; });
+  EXPECT_GT(r.force, 1);
+  EXPECT_LE(r.beyond, 5e-5);
+  EXPECT_LE(r.gain, 1e-6);
+}
+
+TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
+  for (const double mass : {0.0001, 0.05}) {
+    Scene scene;
+    scene.tip_radius = 0.004;
+    scene.gravity.setZero();
+    Object o = block(mass, {0.18, 0.018, 0}, 0, GetParam());
+    o.body->magnet = true;
+    scene.add(o);
+    const Outcome r = run(scene, 1, 300, 1500, [](double t) {
+      HandInput hand{Vec3(0.18, 0.02 * std::sin(6 * t) - 0.002, 0)};
+      hand.magnet = t < 1;
+      return hand;
+    });
+    EXPECT_LE(r.energy, 5e-5) << mass;
+    EXPECT_LE(r.beyond, 5e-5) << mass;
+    EXPECT_LE(r.gain, 1e-6) << mass;
+    EXPECT_GT((r.end - Vec3(0.18, 0.018, 0)).norm(), 0.005) << mass;  // it was moved
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Stiffnesses, MovingBodies, testing::Values(600, 2000, 5000));
+
+}  // namespace
+}  // namespace limpid::test
