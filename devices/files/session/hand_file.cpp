@@ -144,9 +144,12 @@ Vec3 HandPath::sample(std::size_t k, double T) const {
 // The sample that holds at the k-th tick.
 std::size_t HandPath::row(std::size_t k, double T) const {
   if (tick == T) return std::min(k, time.size() - 1);
-  const double t = static_cast<double>(k) * T;
-  return t > time.front() ? before(time, t) : 0;
+  return row_at(static_cast<double>(k) * T);
 }
+
+std::size_t HandPath::row_at(double t) const { return t > time.front() ? before(time, t) : 0; }
+
+double HandPath::grip_at(double t) const { return grip[row_at(t)]; }
 
 double HandPath::grip_sample(std::size_t k, double T) const { return grip[row(k, T)]; }
 

@@ -29,15 +29,17 @@ struct HandPath {
     return tick > 0 ? tick * static_cast<double>(time.size()) : time.back();
   }
 
-  Vec3 at(double t) const;  // t [s] from the first sample; a sample at its time, exactly
+  Vec3 at(double t) const;         // t [s] from the first sample; a sample at its time, exactly
+  double grip_at(double t) const;  // held from sample to sample
 
   // The k-th tick of a loop with tick T: the recorded row itself where the session's tick is T.
   Vec3 sample(std::size_t k, double T) const;
-  double grip_sample(std::size_t k, double T) const;  // held from sample to sample
+  double grip_sample(std::size_t k, double T) const;
   bool magnet_sample(std::size_t k, double T) const;
 
  private:
   std::size_t row(std::size_t k, double T) const;
+  std::size_t row_at(double t) const;
 };
 
 // CSV with the header `time_s,x_m,y_m,z_m[,magnet][,...]` (magnet: 0 or 1, from that sample on;
