@@ -184,7 +184,7 @@ HandPath hand_of(const Session& session, const std::string& where) {
     path.position.emplace_back(target[0], target[1], target[2]);
     path.grip.push_back(grip);
     if (session.layout.bodies() > 0) {
-      path.magnet.push_back(session.at(k, Column::magnet)[0] > 0);
+      path.magnet.push_back(session.at(k, Column::hand_magnet)[0] > 0);
     }
   }
   start_at_zero(path);

@@ -104,6 +104,7 @@ std::optional<double> default_of(Column column) {
     case Column::energy_compensation:
     case Column::objects_sweeps:
     case Column::magnet:
+    case Column::hand_magnet:
     case Column::energy_ledger: return 0.0;
     // What the human and objects were given, and that nothing touched, is not known.
     case Column::energy_port:

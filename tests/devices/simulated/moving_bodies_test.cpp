@@ -87,6 +87,43 @@ TEST_P(MovingBodies, FallOnTheTipAndGiveNoMoreThanTheyHad) {
   EXPECT_LE(r.gain, 1e-6);
 }
 
+// What the hand wanted leads a recording again: what was held would not, where it broke.
+TEST(MagnetThatBreaks, IsWantedAgainAsTheHandDid) {
+  Scene scene;
+  scene.tip_radius = 0.004;
+  Object o = block(0.05, {0.18, 0.018, 0}, 0, 2000);
+  o.body->magnet = true;
+  BodyJoint& joint = o.body->joint.emplace();  // held back by a strong spring
+  joint.axis = Vec3::UnitY();
+  joint.force.spring = 1000;
+  scene.add(o);
+  const ArmDescription arm = omni();
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  p.torque_limit = 5;  // so strong that it breaks
+  Rig first(arm, scene), second(arm, scene);
+  const RigStart start = rest_at(arm, Vec3(0.18, -0.002, 0));
+  first.start(p, start);
+  second.start(p, start);
+  const RowLayout& layout = first.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride())), again = row;
+  bool held = false, broke = false;
+  for (int k = 0; k < 1500; ++k) {
+    RigInput input;
+    input.hand.target = Vec3(0.18, -0.002 - 4e-5 * k, 0);
+    input.hand.magnet = true;
+    first.step(p, input, row);
+    input.hand.magnet = layout.in(std::span<const double>(row), Column::hand_magnet)[0] > 0;
+    second.step(p, input, again);
+    ASSERT_EQ(row, again) << k;
+    const bool holds = layout.in(std::span<const double>(row), Column::magnet)[0] > 0;
+    broke = broke || (held && !holds);
+    held = holds;
+  }
+  EXPECT_TRUE(broke);
+  EXPECT_FALSE(held);
+}
+
 TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
   for (const double mass : {0.0001, 0.05}) {
     Scene scene;
