@@ -191,6 +191,71 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   EXPECT_FALSE(crowded.diverged());
 }
 
+// Of every shape, falling on each other, on a plane, a mesh and the tip; one on a hinge, one on a
+// slider, two on a spring, one that the magnet takes.
+Scene heap(const Vec3& tip) {
+  Random random(152);
+  Scene scene;
+  scene.tip_radius = 0.003;
+  scene.add({"floor", pose_at(tip - Vec3(0, 0, 0.03)), Plane{Vec3::UnitZ()}, 600});
+  Object ground = test::obstacle(test::bumpy_body(4, 0.3));
+  test::mesh_of(ground).scale = 0.02;
+  ground.pose.translation() = tip + Vec3(0.03, 0.03, -0.03);
+  scene.add(ground);
+  const std::array<Shape, 4> shapes{Box{Vec3::Constant(0.02)}, Sphere{0.01}, Cylinder{0.01, 0.02},
+                                    Capsule{0.008, 0.02}};
+  for (int i = 0; i < 12; ++i) {
+    Object o{.name = "body " + std::to_string(i), .shape = shapes[static_cast<std::size_t>(i % 4)]};
+    o.pose.linear() = random.rotation();
+    o.pose.translation() = tip + 0.01 * random.direction() + Vec3(0, 0, 0.025 * (i + 1));
+    o.material = {2000, 0, 0.4, 0.3};
+    o.body = Body{};
+    o.body->mass = random.log_between(0.002, 0.1);
+    o.body->magnet = true;
+    if (i % 4 == 3) o.body->joint.emplace().kind = static_cast<BodyJoint::Kind>(i / 4);
+    scene.add(o);
+  }
+  scene.springs.push_back({.between = {"body 0", "body 1"}, .length = 0.02});
+  return scene;
+}
+
+TEST_P(NoWaiting, NeitherAllocatesNorLocksWithBodiesThatMove) {
+  const int n = GetParam();
+  const ArmDescription arm = random_arm(n, 151);
+  Rig rig(arm, Scene{});
+  RigStart start;
+  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(n);
+  rig.start(Parameters{}, start);
+  start.target = rig.tip();
+  Rig heaped(arm, heap(rig.tip()));
+  heaped.start(Parameters{}, start);
+  RigStart present = start;
+  heaped.present(present);  // of the sizes that it needs
+  const RowLayout& layout = heaped.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  double moved = 0, held = 0;
+  {
+    const Watch watch;
+    for (int k = 0; k < 1500; ++k) {
+      Parameters p;
+      p.kind = static_cast<CouplingKind>(k / 100 % kLaws);
+      p.torque_limit = k / 150 % 2 ? 0.05 : 1;
+      RigInput input;
+      const double t = 1e-3 * k;
+      input.hand.target = start.target + 0.02 * Vec3(std::sin(9 * t), std::sin(7 * t), 0);
+      input.hand.magnet = k % 300 > 150;
+      heaped.step(p, input, row);
+      moved = std::max(moved, layout.in(std::span<const double>(row), Column::objects_awake)[0]);
+      held = std::max(held, layout.in(std::span<const double>(row), Column::magnet)[0]);
+      if (k % 333 == 332) heaped.rebase(p, present, input.hand.target);
+    }
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  EXPECT_EQ(moved, 12);
+  EXPECT_GT(held, 0);
+}
+
 TEST(NoWaiting, NeitherAllocatesNorLocksWhileAxesAreChecked) {
   DeviceTraits traits;
   traits.dof = 2;
