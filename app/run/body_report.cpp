@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/dynamics/farthest_tip.h"
-#include "core/math/elementary.h"
+#include "core/touch/body_geometry.h"
 #include "core/touch/contacts.h"
 #include "core/touch/mass_properties.h"
 #include "core/touch/triangle_mesh.h"
@@ -33,98 +32,12 @@ std::pair<Box, Pose> box_around(const Mesh& mesh) {
   return {Box{mesh.size() * box.sizes()}, mesh.stood(Pose::Identity()) * pose_at(middle)};
 }
 
-// A part of a surface: a segment with a ball that goes along it.
-struct Edge {
-  Vec3 from, to;  // in the world [m]
-  double radius = 0;
-};
-
-void add_edges(const Box& box, const Pose& pose, std::vector<Edge>& out) {
-  const auto corner = [&](int i) {
-    const Vec3 sign(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
-    return Vec3(pose * sign.cwiseProduct(box.size));
-  };
-  for (int i = 0; i < 8; ++i) {
-    for (const int bit : {1, 2, 4}) {
-      if ((i & bit) == 0) out.push_back({corner(i), corner(i | bit)});
-    }
-  }
-  out.push_back({corner(0), corner(7)});
-}
-
-void add_edges(const Cylinder& cylinder, const Pose& pose, std::vector<Edge>& out) {
-  constexpr int kSides = 16;
-  const auto rim = [&](int i, double end) {
-    const auto [s, c] = sine_cosine(2 * std::numbers::pi * i / kSides);
-    return Vec3(pose * Vec3(cylinder.radius * c, cylinder.radius * s, end * cylinder.length));
-  };
-  for (int i = 0; i < kSides; ++i) {
-    out.push_back({rim(i, -0.5), rim(i, 0.5)});
-    for (const double end : {-0.5, 0.5}) {
-      out.push_back({rim(i, end), rim(i + 1, end)});
-      if (i < kSides / 2) out.push_back({rim(i, end), rim(i + kSides / 2, end)});
-    }
-  }
-}
-
-void add_edges(const Capsule& capsule, const Pose& pose, std::vector<Edge>& out) {
-  const Vec3 end = capsule.length / 2 * Vec3::UnitZ();
-  out.push_back({pose * Vec3(-end), pose * end, capsule.radius});
-}
-
-void add_edges(const Sphere& sphere, const Pose& pose, std::vector<Edge>& out) {
-  out.push_back({pose.translation(), pose.translation(), sphere.radius});
-}
-
-double less(double length, double by) { return std::max(length - by, 0.0); }
-
-// Of a shape that is smaller on all sides, so that what only touches is in nothing.
-void add_edges(const Shape& shape, const Pose& pose, std::vector<Edge>& out) {
-  constexpr double by = kInEachOther;
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    add_edges(Box{(box->size.array() - 2 * by).max(0)}, pose, out);
-  } else if (const auto* ball = std::get_if<Sphere>(&shape)) {
-    add_edges(Sphere{less(ball->radius, by)}, pose, out);
-  } else if (const auto* c = std::get_if<Cylinder>(&shape)) {
-    add_edges(Cylinder{less(c->radius, by), less(c->length, 2 * by)}, pose, out);
-  } else if (const auto* k = std::get_if<Capsule>(&shape)) {
-    add_edges(Capsule{less(k->radius, by), k->length}, pose, out);
-  } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-    const auto [around, at] = box_around(*mesh);
-    add_edges(Shape(around), pose * at, out);
-  }
-}
-
-template <class S>
-bool enters(const Edge& edge, const S& shape, const Pose& pose) {
-  const Vec3 near =
-      edge.from == edge.to ? edge.from : nearest_on_segment(shape, pose, edge.from, edge.to);
-  return distance_to(shape, pose, near).distance < edge.radius;
-}
-
-bool enters(const Edge&, const JointStop&, const Pose&) { return false; }
-
-// Through the surface of a mesh, or nearer to it than its ball is large.
-bool enters(const Edge& edge, const Mesh& mesh, const Pose& pose) {
-  if (!mesh.triangles || !(mesh.size() > 0)) return false;
-  const Pose back = mesh.stood(pose).inverse();
-  const auto local = [&](const Vec3& p) {
-    return Vec3(back * p / mesh.size() - mesh.triangles->middle());
-  };
-  const Vec3 from = local(edge.from), to = local(edge.to);
-  MeshPoint found;
-  if (from != to && mesh.triangles->crossing(from, to, found)) return true;
-  const double within = edge.radius / mesh.size();
-  return within > 0 && (mesh.triangles->nearest(from, within, MeshPoint::kNone, found) ||
-                        mesh.triangles->nearest(to, within, MeshPoint::kNone, found));
-}
-
 struct Placed {
   Shape shape;
   Pose pose;
 };
 
-// Shape and parts in the world; of a body's mesh the box around it.
+// Shape and parts in the world; of a mesh the box around it.
 std::vector<Placed> pieces(const Object& object) {
   std::vector<Placed> all{{object.shape, object.pose}};
   if (const auto* mesh = std::get_if<Mesh>(&object.shape); mesh != nullptr && object.body) {
@@ -133,23 +46,6 @@ std::vector<Placed> pieces(const Object& object) {
   }
   for (const BodyPart& part : object.parts) all.push_back({part.shape, object.pose * part.pose});
   return all;
-}
-
-bool edges_enter(const Object& a, const Object& b) {
-  std::vector<Edge> edges;
-  for (const Placed& piece : pieces(a)) add_edges(piece.shape, piece.pose, edges);
-  for (const Placed& piece : pieces(b)) {
-    for (const Edge& edge : edges) {
-      if (std::visit([&](const auto& s) { return enters(edge, s, piece.pose); }, piece.shape)) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-bool hangs_on(const Object& a, const Object& b) {
-  return a.body && a.body->joint && b.body && a.body->joint->to == b.name;
 }
 
 double half_width(const Shape& shape) {
@@ -221,12 +117,31 @@ double out_of_reach(const Object& object, const Scene& scene, const Vec3& root, 
   return least - reach - scene.tip_radius;
 }
 
+// What a joint says and the loop does not do yet; empty: nothing.
+std::string not_rendered(const std::optional<BodyJoint>& joint) {
+  if (!joint) return {};
+  const bool damped = joint->damping != 0 || joint->friction != 0;
+  if (joint->kind == BodyJoint::Kind::ball) {
+    return damped ? "damping and friction of a ball joint are not rendered" : "";
+  }
+  if (joint->to.empty()) return {};
+  if (joint->kind == BodyJoint::Kind::slider) {
+    return "a slider on another body is not rendered: the body moves freely";
+  }
+  const bool stops = std::isfinite(joint->low) || std::isfinite(joint->high);
+  if (!damped && !stops && joint->force == JointForce{}) return {};
+  return "of a hinge on another body, stops, damping, friction and forces are not rendered";
+}
+
 void warn(const Object& object, const Scene& scene, const Vec3& root, double reach,
           BodyReport& report) {
   const double away = out_of_reach(object, scene, root, reach);
   if (away > 0) {
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
+  }
+  if (const std::string missing = not_rendered(object.body->joint); !missing.empty()) {
+    report.warnings.push_back(fmt::format("'{}': {}", object.name, missing));
   }
   if (object.body->inertia && !possible_inertia(*object.body->inertia)) {
     const Vec3& i = *object.body->inertia;
@@ -263,14 +178,20 @@ double most_weight_energy(const Scene& scene, const ArmDescription& arm) {
 
 std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
-  const std::vector<Object>& objects = scene.objects;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    for (std::size_t j = i + 1; j < objects.size(); ++j) {
-      const Object &a = objects[i], &b = objects[j];
-      if ((!a.body && !b.body) || hangs_on(a, b) || hangs_on(b, a)) continue;
-      if (edges_enter(a, b) || edges_enter(b, a)) found.emplace_back(i, j);
-    }
+  BodyGeometry geometry(scene);
+  int bodies = 0;
+  for (const Object& object : scene.objects) {
+    if (object.body) geometry.place(bodies++, object.pose);
   }
+  geometry.search(std::vector<std::uint8_t>(static_cast<std::size_t>(bodies), 1));
+  for (const BodyContact* contact : geometry.points()) {
+    if (contact->depth <= kInEachOther) continue;
+    const auto [i, j] = std::minmax(contact->object_a, contact->object_b);
+    found.emplace_back(i, j);
+  }
+  std::ranges::sort(found);
+  const auto twice = std::ranges::unique(found);
+  found.erase(twice.begin(), twice.end());
   return found;
 }
 

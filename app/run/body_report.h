@@ -23,7 +23,7 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
 double most_weight_energy(const Scene& scene, const ArmDescription& arm);
 
 // Places of objects that are in each other at the start, more than half a millimetre; one of each
-// two moves. What hangs on each other is none. Moving meshes count as the boxes around them.
+// two moves. What hangs on each other is none. Of moving meshes the convex hull counts.
 std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene);
 
 // Whether some body can have these principal moments: none is more than the other two together.
