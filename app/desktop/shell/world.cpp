@@ -432,6 +432,11 @@ void World::start_recording() {
   plan.parameters = d_.settings.parameters;
   if (d_.settings.twin.on) plan.beside.push_back({d_.settings.twin.parameters, {}});
   hand_scene_over(true);
+  if (plan.layout().bodies() != d_.live.loop().layout().bodies()) {
+    d_.notices.say("Not recorded: objects that move came or went while a device is in place.",
+                   true);
+    return;
+  }
   d_.live.record(plan, sessions_dir());
 }
 
