@@ -74,6 +74,18 @@ class SteadyPicture : public testing::Test {
 
   bool draw() { return view_->draw(state_, camera_, 0, 0, kWidth, kHeight); }
   std::vector<unsigned char> pixels() { return read_rgba(kWidth, kHeight); }
+  // Bytes of the next picture, drawn in parts, that a fresh view does not draw.
+  int wrong_in_parts(int level) {
+    draw();
+    const auto in_parts = pixels();
+    view_->set_quality(Quality::level(level));  // forgets what was there
+    draw();
+    const auto at_once = pixels();
+    int wrong = 0;
+    for (std::size_t i = 0; i < at_once.size(); ++i)
+      wrong += std::abs(int{at_once[i]} - int{in_parts[i]}) > 2;
+    return wrong;
+  }
 
   ArmDescription arm_ = two_links();
   std::optional<OffscreenContext> context_;
@@ -128,15 +140,7 @@ TEST_F(SteadyPicture, IsTheSameDrawnInPartsOrAtOnce) {
     view_->set_quality(Quality::level(level));
     for (int step = 0; step < 12; ++step) {
       move(step);
-      draw();
-      const auto in_parts = pixels();
-      view_->set_quality(Quality::level(level));  // forgets what was there
-      draw();
-      const auto at_once = pixels();
-      int wrong = 0;
-      for (std::size_t i = 0; i < at_once.size(); ++i)
-        wrong += std::abs(int{at_once[i]} - int{in_parts[i]}) > 2;
-      ASSERT_LT(wrong, 12) << "level " << level << ", step " << step;
+      ASSERT_LT(wrong_in_parts(level), 12) << "level " << level << ", step " << step;
       move(step + 1);
       draw();  // the next one begins from a picture drawn in parts
     }
@@ -199,15 +203,7 @@ TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
         state_.other_bodies = state_.bodies;
         state_.other_bodies[0].translation().y() -= 0.03;
       }
-      draw();
-      const auto in_parts = pixels();
-      view_->set_quality(Quality::level(level));  // forgets what was there
-      draw();
-      const auto at_once = pixels();
-      int wrong = 0;
-      for (std::size_t i = 0; i < at_once.size(); ++i)
-        wrong += std::abs(int{at_once[i]} - int{in_parts[i]}) > 2;
-      ASSERT_LT(wrong, 12) << "level " << level << ", step " << step;
+      ASSERT_LT(wrong_in_parts(level), 12) << "level " << level << ", step " << step;
       move_bodies(step + 1);
       draw();  // the next one begins from a picture drawn in parts
     }

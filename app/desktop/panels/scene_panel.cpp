@@ -222,10 +222,16 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
   return what;
 }
 
-std::string_view ObjectEditor::edit(Object& object, Box& box) {
+// Of what stands anywhere and is turned anyhow.
+std::string_view ObjectEditor::edit_placed(Object& object) {
   std::string_view what = edit_material(object.material);
   if (position(object.pose)) what = "place";
   if (edit_rotation(object.pose)) what = "rotation";
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Box& box) {
+  std::string_view what = edit_placed(object);
   Vec3 size = 1e3 * box.size;
   if (drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
     box.size = 1e-3 * size;
@@ -235,27 +241,21 @@ std::string_view ObjectEditor::edit(Object& object, Box& box) {
 }
 
 std::string_view ObjectEditor::edit(Object& object, Cylinder& cylinder) {
-  std::string_view what = edit_material(object.material);
-  if (position(object.pose)) what = "place";
-  if (edit_rotation(object.pose)) what = "rotation";
+  std::string_view what = edit_placed(object);
   if (drag_length("Radius", cylinder.radius, "Of its faces")) what = "radius";
   if (drag_length("Length", cylinder.length, "From face to face")) what = "length";
   return what;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Capsule& capsule) {
-  std::string_view what = edit_material(object.material);
-  if (position(object.pose)) what = "place";
-  if (edit_rotation(object.pose)) what = "rotation";
+  std::string_view what = edit_placed(object);
   if (drag_length("Radius", capsule.radius, "Of its round ends")) what = "radius";
   if (drag_length("Length", capsule.length, "Between the middles of its ends")) what = "length";
   return what;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
-  std::string_view what = edit_material(object.material);
-  if (position(object.pose)) what = "place";
-  if (edit_rotation(object.pose)) what = "rotation";
+  std::string_view what = edit_placed(object);
   double millimetres = 1e3 * mesh.size() * extent_;
   if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
                   "1: as large as its file says.")) {

@@ -37,6 +37,7 @@ class ObjectEditor {
   std::string_view edit(Object& object, Mesh& mesh);
   std::string_view edit(Object& object, JointStop& stop);
   bool edit_rotation(Pose& pose);
+  std::string_view edit_placed(Object& object);
 
   std::string name_;            // being typed
   std::string name_of_;         // the object's it is
