@@ -76,7 +76,6 @@ struct BodyGeometry::Inside {
   std::vector<Pair> pairs;
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points;
-  bool full = false;
 
   static btDefaultCollisionConstructionInfo sizes() {
     btDefaultCollisionConstructionInfo info;
@@ -267,10 +266,7 @@ void BodyGeometry::Inside::meet(Pair& p) {
 }
 
 BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
-  if (free_ones.empty()) {
-    full = true;
-    return nullptr;
-  }
+  if (free_ones.empty()) return nullptr;
   BodyContact* c = free_ones.back();
   free_ones.pop_back();
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
@@ -313,7 +309,6 @@ void BodyGeometry::place(int body, const Pose& pose) {
 void BodyGeometry::search(std::span<const std::uint8_t> awake) {
   Inside& in = *in_;
   in.points.clear();
-  in.full = false;
   for (BodyContact& c : in.pool) c.seen = false;
   const auto moves = [&](const Inside::Solid& s) {
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
@@ -336,7 +331,6 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
 }
 
 std::span<BodyContact* const> BodyGeometry::points() const { return in_->points; }
-bool BodyGeometry::full() const { return in_->full; }
 
 bool BodyGeometry::near(int a, int b) const {
   for (const Inside::Solid* one : in_->of_body[static_cast<std::size_t>(a)]) {

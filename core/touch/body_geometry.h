@@ -53,8 +53,7 @@ class BodyGeometry {
   std::span<BodyContact* const> points() const;
   // Whether the boxes around two bodies, a little larger, overlap.
   bool near(int a, int b) const;
-  bool full() const;  // points were left out
-  void forget();      // all points
+  void forget();  // all points
 
   // All that is kept from tick to tick, as numbers, behind those there are.
   void write(std::vector<double>& into) const;

@@ -32,7 +32,8 @@ Mat3 rotation_again(const Mat3& R) { return 1.5 * R - 0.5 * R * (R.transpose() *
 
 }  // namespace
 
-BodyMotion::BodyMotion(const Object& object) : start_(object.pose) {
+BodyMotion::BodyMotion(const Object& object, const Vec3& gravity)
+    : gravity_(gravity), start_(object.pose) {
   const MassProperties own = mass_properties(object);
   m_ = own.mass;
   c_ = own.center;
@@ -51,7 +52,17 @@ BodyMotion::BodyMotion(const Object& object) : start_(object.pose) {
       reflected_ = axis.dot(I_ * axis) + m_ * arm.squaredNorm();
     }
   }
+  add_weight();
   reset();
+}
+
+// Of a body on a joint weight is one more energy that depends on the joint's place alone.
+void BodyMotion::add_weight() {
+  if (kind_ == Kind::slider) potential_.add_weight(m_ * gravity_.dot(joint_.axis));
+  if (kind_ != Kind::hinge) return;
+  const Vec3 c = start_ * c_ - pivot_;  // at s = 0
+  const Vec3 along = joint_.axis * joint_.axis.dot(c);
+  potential_.add_weight(-m_ * gravity_.dot(c - along), -m_ * gravity_.dot(joint_.axis.cross(c)));
 }
 
 void BodyMotion::reset() {
@@ -78,7 +89,7 @@ void BodyMotion::place() {
   p_ = pose_ * c_;
 }
 
-void BodyMotion::begin(double T, const Vec3& gravity, bool pushed) {
+void BodyMotion::begin(double T, bool pushed) {
   theta_ = pushed ? kTheta : 0.5;
   if (kind_ != Kind::free) {
     const double M = reflected_ / (theta_ * T);
@@ -89,18 +100,13 @@ void BodyMotion::begin(double T, const Vec3& gravity, bool pushed) {
     if (kind_ == Kind::hinge) {
       S_w_ = joint_.axis;
       S_v_ = joint_.axis.cross(p_ - pivot_ + 0.5 * T * sd_ * joint_.axis.cross(p_ - pivot_));
-      const Vec3 c = start_ * c_ - pivot_;  // at s = 0
-      const Vec3 along = joint_.axis * joint_.axis.dot(c);
-      potential_.add_weight(-m_ * gravity.dot(c - along), -m_ * gravity.dot(joint_.axis.cross(c)));
-    } else {
-      potential_.add_weight(m_ * gravity.dot(joint_.axis));
     }
     u_ = S_v_ * U_;
     o_ = S_w_ * U_;
     return;
   }
   im_ = theta_ * T / m_;
-  u_ = v_ + theta_ * T * gravity;
+  u_ = v_ + theta_ * T * gravity_;
   const Mat3& R = pose_.linear();
   const Vec3 middle = w_ + 0.5 * T * (inverse_ * (I_ * w_).cross(w_));
   const Mat3 A = (I_ / (theta_ * T) - skew(I_ * middle)).inverse();
@@ -178,8 +184,8 @@ double BodyMotion::kinetic() const {
   return 0.5 * m_ * v_.squaredNorm() + 0.5 * w_.dot(I_ * w_);
 }
 
-double BodyMotion::weight_energy(const Vec3& gravity) const {
-  return kind_ == Kind::free ? -m_ * gravity.dot(p_) : 0;  // else in the potential
+double BodyMotion::weight_energy() const {
+  return kind_ == Kind::free ? -m_ * gravity_.dot(p_) : 0;  // else in the potential
 }
 
 void BodyMotion::write(std::span<double, kNumbers> into) const {

@@ -15,7 +15,7 @@ class BodyMotion {
   // Where a body's point is, seen from its centre of mass, in the middle of a tick [m].
   using Lever = Vec3;
 
-  explicit BodyMotion(const Object& object);
+  BodyMotion(const Object& object, const Vec3& gravity);  // [m/s^2]
 
   void reset();  // to where it starts, at rest
 
@@ -24,8 +24,8 @@ class BodyMotion {
   static constexpr double kTheta = 0.6;
 
   // The mean velocity that it has over the tick when nothing but its weight acts, and what a force
-  // adds to it. T [s], gravity [m/s^2].
-  void begin(double T, const Vec3& gravity, bool pushed);
+  // adds to it. T [s].
+  void begin(double T, bool pushed);
   Lever lever(const Vec3& point, double T) const;
   // Of the body's point there, mean over the tick [m/s].
   Vec3 velocity(const Lever& at) const { return u_ + o_.cross(at); }
@@ -52,7 +52,7 @@ class BodyMotion {
   Vec3 spin() const;                          // [rad/s], world
   double mass() const { return m_; }
   double kinetic() const;
-  double weight_energy(const Vec3& gravity) const;  // of a free body, against the origin [J]
+  double weight_energy() const;  // of a free body, against the origin [J]
   bool finite() const { return p_.allFinite() && pose_.matrix().allFinite(); }
 
   // All that changes, as numbers.
@@ -64,9 +64,11 @@ class BodyMotion {
 
  private:
   enum class Kind : std::uint8_t { free, slider, hinge };
+  void add_weight();
   void place();
 
   Kind kind_ = Kind::free;
+  Vec3 gravity_;
   double m_ = 0;
   Vec3 c_;            // centre of mass in the object's frame [m]
   Mat3 I_, inverse_;  // about it, along the object's axes [kg m^2]

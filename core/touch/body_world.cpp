@@ -29,22 +29,21 @@ double damping_ratio(double restitution) {
 
 }  // namespace
 
-BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene), gravity_(scene.gravity) {
+BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene) {
   for (const Object& object : scene.objects) {
     of_objects_.push_back(object.material);
     body_of_.push_back(object.body ? count() : BodyContact::kStill);
     if (!object.body) continue;
-    bodies_.emplace_back(object);
+    bodies_.emplace_back(object, scene.gravity);
     names_.push_back(object.name);
     of_bodies_.push_back(*object.body);
-    materials_.push_back(object.material);
     if (bodies_.back().on_joint()) joints_.push_back({.body = count() - 1});
   }
   const std::size_t n = bodies_.size();
   awake_.assign(n, 1);
   pushed_.assign(n, 0);
   touched_.assign(n, 0);
-  held_.assign(n, 0);
+  quiet_island_.assign(n, 0);
   quiet_.assign(n, 0);
   parent_.assign(n, 0);
   rows_.resize(BodyGeometry::kMost);
@@ -117,6 +116,9 @@ void BodyWorld::reset() {
 }
 
 void BodyWorld::take_over(const BodyWorld& other) {
+  given_ = other.given_;
+  all_given_ = other.all_given_;
+  gain_ = other.gain_;
   std::array<double, BodyMotion::kNumbers> numbers{};
   for (int i = 0; i < count(); ++i) {
     const int theirs = other.number(names_[at(i)]);
@@ -155,7 +157,7 @@ void BodyWorld::begin(double T) {
   wake_neighbours();
   geometry_.search(awake_);
   for (int i = 0; i < count(); ++i) {
-    if (moves(i)) bodies_[at(i)].begin(T, gravity_, pushed_[at(i)] != 0);
+    if (moves(i)) bodies_[at(i)].begin(T, pushed_[at(i)] != 0);
   }
   std::ranges::fill(pushed_, 0);
   find_islands();
@@ -278,19 +280,17 @@ void BodyWorld::begin_link(Link& link) {
   link.end_a = end_at(link.a, on_a);
   link.end_b = end_at(link.b, on_b);
   link.stretch = on_a - on_b;
-  const Mat3 W = answer(link.end_a) + answer(link.end_b);
+  link.W = answer(link.end_a) + answer(link.end_b);
   if (link.spring) {
     const double length = link.stretch.norm();
     link.along = length > 0 ? Vec3(link.stretch / length) : Vec3(Vec3::UnitZ());
-    const double k = link.K * T_ / 2 + link.B;
-    link.c = link.along.dot(W * link.along);
-    link.give = k / (1 + k * link.c) * (link.along * link.along.transpose());
+    link.c = link.along.dot(link.W * link.along);
     link.force = link.along * link.along.dot(link.force);
   } else {
-    const double m_eff = 3 * BodyMotion::kTheta * T_ / W.trace();
+    const double m_eff = 3 * BodyMotion::kTheta * T_ / link.W.trace();
     link.B = 2 * kZeta * std::sqrt(link.K * m_eff);
     const double k = link.K * T_ / 2 + link.B;
-    link.give = k * (Mat3::Identity() + k * W).inverse();
+    link.give = k * (Mat3::Identity() + k * link.W).inverse();
   }
   apply(link.end_a, link.end_b, link.force);
 }
@@ -362,9 +362,8 @@ double BodyWorld::sweep(Link& link) {
     const double v0 = link.along.dot(v) - link.c * before;
     f = -(link.K * (link.stretch.norm() - link.length) + k * v0) / (1 + k * link.c) * link.along;
   } else {
-    const Mat3 W = answer(link.end_a) + answer(link.end_b);
     const double k = link.K * T_ / 2 + link.B;
-    f = -link.give * (link.K / k * link.stretch + v - W * link.force);
+    f = -link.give * (link.K / k * link.stretch + v - link.W * link.force);
   }
   const Vec3 change = f - link.force;
   link.force = f;
@@ -475,28 +474,24 @@ void BodyWorld::fall_asleep() {
     quiet_[at(i)] = slow || gone ? quiet_[at(i)] + 1 : 0;
     if (gone) quiet_[at(i)] = long_enough;
   }
-  std::ranges::fill(held_, 1);  // by root: all of it is quiet
+  std::ranges::fill(quiet_island_, 1);
   for (int i = 0; i < count(); ++i) {
+    parent_[at(i)] = root(i);  // from here on everybody's own
     if (moves(i) && (quiet_[at(i)] < long_enough || touched_[at(root(i))] != 0)) {
-      held_[at(root(i))] = 0;
+      quiet_island_[at(root(i))] = 0;
     }
   }
   for (int i = 0; i < count(); ++i) {
-    if (!moves(i) || held_[at(root(i))] == 0) continue;
-    parent_[at(i)] = root(i);
-  }
-  for (int i = 0; i < count(); ++i) {
-    if (!moves(i) || held_[at(parent_[at(i)])] == 0) continue;
+    if (!moves(i) || quiet_island_[at(parent_[at(i)])] == 0) continue;
     bodies_[at(i)].halt();
-    awake_[at(i)] = 2;
+    awake_[at(i)] = 0;
   }
-  for (std::uint8_t& awake : awake_) awake = awake == 2 ? 0 : awake;
 }
 
 void BodyWorld::take_stock() {
   double E = 0;
   for (const BodyMotion& body : bodies_) {
-    E += body.kinetic() + body.weight_energy(gravity_);
+    E += body.kinetic() + body.weight_energy();
     if (body.on_joint()) E += body.potential().energy(body.joint());
   }
   for (const BodyContact* c : geometry_.points()) {
@@ -516,7 +511,7 @@ void BodyWorld::take_stock() {
     E += 0.5 * joint.stop_stiffness * (d * d + row.anchor * row.anchor);
   }
   energy_ = E;
-  if (fresh_) first_energy_ = E;
+  if (fresh_) first_energy_ = E - all_given_ - gain_;
   fresh_ = false;
   gain_ = E - first_energy_ - all_given_;
 }

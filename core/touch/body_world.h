@@ -28,7 +28,7 @@ class BodyWorld {
 
   int count() const { return static_cast<int>(bodies_.size()); }
   void reset();  // as the scene has it
-  // Takes over where bodies of the same name, mass and joint are in another scene.
+  // Takes over the books, and where bodies of the same name, mass and joint are in another scene.
   void take_over(const BodyWorld& other);
 
   // The arm is near to it: it wakes up, and its rows are solved with the arm's.
@@ -115,7 +115,7 @@ class BodyWorld {
     // Of the tick:
     End end_a, end_b;
     Vec3 stretch = Vec3::Zero(), along = Vec3::Zero();
-    Mat3 give = Mat3::Zero();  // force that a stretch's velocity without it makes
+    Mat3 W = Mat3::Zero(), give = Mat3::Zero();  // force that a stretch's velocity without it makes
     double c = 0;
   };
   struct JointRow {
@@ -149,15 +149,14 @@ class BodyWorld {
 
   std::vector<BodyMotion> bodies_;
   std::vector<std::string> names_;
-  std::vector<Material> materials_;
   std::vector<Body> of_bodies_;
-  std::vector<std::uint8_t> awake_, pushed_, touched_, held_;
-  std::vector<int> quiet_;    // ticks
-  std::vector<int> parent_;   // of islands
-  std::vector<int> body_of_;  // by object
+  std::vector<std::uint8_t> awake_, pushed_, touched_;
+  std::vector<std::uint8_t> quiet_island_;  // by root
+  std::vector<int> quiet_;                  // ticks
+  std::vector<int> parent_;                 // of islands
+  std::vector<int> body_of_;                // by object
   std::vector<Material> of_objects_;
   BodyGeometry geometry_;
-  Vec3 gravity_;
   std::vector<Row> rows_;
   std::size_t count_ = 0;
   std::vector<Link> links_;

@@ -207,6 +207,34 @@ TEST(BodyWorld, GoesOnFromItsNumbersBitForBit) {
   EXPECT_EQ(a, b);
 }
 
+// As where a scene is edited while the loop runs: nothing is given or made by that.
+TEST(BodyWorld, GoesOnWithItsBooksInAnotherScene) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("block", Box{Vec3::Constant(0.03)}, 0.02, {0, 0, 0.1}));
+  BodyWorld before(scene);
+  for (int k = 0; k < 100; ++k) {
+    before.touch(0);
+    before.begin(T);
+    const BodyWorld::End end = before.end_at(0, before.center(0));
+    before.push(end, {0.1, 0, 0});
+    before.settle();
+    before.book(end, {0.1, 0, 0});
+    before.finish();
+  }
+  ASSERT_GT(before.all_given(), 0);
+  ASSERT_GT(before.given(), 0);
+  scene.add(body("another", Sphere{0.01}, 0.02, {0.2, 0, 0.01}));
+  BodyWorld after(scene);
+  after.take_over(before);
+  EXPECT_EQ(after.given(), before.given());
+  EXPECT_EQ(after.all_given(), before.all_given());
+  run(after, 1);
+  EXPECT_NEAR(after.gain(), before.gain(), 1e-15);
+  run(after, 1000);
+  EXPECT_LT(after.gain(), 1e-9);
+}
+
 TEST(BodyWorld, RefusesNumbersOfAnotherScene) {
   Scene scene;
   scene.add(body("a", Sphere{0.01}, 0.02, {0, 0, 1}));
