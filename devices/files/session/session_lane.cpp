@@ -314,11 +314,10 @@ void SessionLane::sort_in(std::span<const double> rows) {
   });
   for (auto from = rows.begin(); from != rows.end();) {
     for (Place& place : places) {
-      if (place.byte) {  // as it will be stored
-        *place.to++ = static_cast<std::uint8_t>(*from++);
-        continue;
+      for (int i = 0; i < place.width; ++i, ++from) {
+        *place.to++ =
+            place.byte ? static_cast<std::uint8_t>(*from) : *from;  // as it will be stored
       }
-      for (int i = 0; i < place.width; ++i) *place.to++ = *from++;
     }
   }
   pending_rows_ += rows.size() / static_cast<std::size_t>(layout_.stride());
