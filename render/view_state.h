@@ -56,6 +56,8 @@ struct ViewState {
   bool show_hand = false;
   bool hand_grips = false;         // draws the line from the target to the device tip
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
+  bool magnet = false;             // at the proxy's tip: picks up what it may
+  bool magnet_holds = false;       // something
   std::vector<ContactMark> contacts;
   std::optional<ContactShade> shade;
   // The frames of the scene's objects that move, in their order; without one, or with one that is

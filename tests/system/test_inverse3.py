@@ -190,9 +190,11 @@ class InTheWindow(WindowTest):
                 self.assertIn(why, device["problem"])
                 self.assertIn("in use by " + holder, device["problem"])
                 self.assertTrue(device["waits_for_choice"])
-        lines = list(self.service.lines)
-        self.assertEqual([line for line in lines if line in ("session", "end")], [],
-                         "no second stream of forces")
+        # A busy machine may lose the first window's stream, which that window begins anew then.
+        streams = 1
+        for line in list(self.service.lines):
+            streams += {"session": 1, "end": -1}.get(line, 0)
+            self.assertLessEqual(streams, 1, "no second stream of forces")
 
 
 if __name__ == "__main__":

@@ -55,8 +55,7 @@ class Window(WindowTest):
         self.assertFalse(self.state()["twin"])
         self.key("b")
         self.wait("the twin", lambda s: s["twin"])
-        x, y = 551, 286  # the tip, in the left half
-        self.hold_tip(x, y)
+        x, y = self.hold_tip()  # in the left half
         self.key("r")
         self.wait("recording", lambda s: s["recording"])
         for step in range(60):

@@ -12,9 +12,9 @@ FAULT = 1e-3  # from here on the panel says so [J]
 class Energy(WindowTest):
     def hold(self) -> None:
         """Takes the tip and keeps it where it is, a little aside."""
-        self.hold_tip()
+        x, y = self.hold_tip()
         for step in range(10):
-            self.move(800 - step, 315 + step)
+            self.move(x - step, y + step)
             time.sleep(0.03)
 
     def test_passivity_is_broken_by_a_button_and_repaired_by_it_or_by_undo(self) -> None:

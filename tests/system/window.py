@@ -135,17 +135,18 @@ class WindowTest(unittest.TestCase):
         ticks = self.state()["ticks"]
         return self.wait(f"{seconds} s", lambda s: s["ticks"] > ticks + 1000 * seconds)
 
-    def hold_tip(self, x: float = 800, y: float = 315) -> None:
-        """By the mouse; it stands right of the middle of the view."""
+    def hold_tip(self) -> tuple[float, float]:
+        """By the mouse, which is there then."""
+        x, y = self.state()["places"]["tip"]
         self.move(x, y)
         self.settled()
         self.xdotool("mousedown", "1")
         self.wait("the hand to hold", lambda s: s["grip"] == 1)
+        return x, y
 
     def press_onto_table(self) -> None:
         """Drags the tip down onto the table."""
-        x, y = 800, 315
-        self.hold_tip(x, y)
+        x, y = self.hold_tip()
         for step in range(1, 31):
             self.move(x - step, y + 5 * step)
             time.sleep(0.04)

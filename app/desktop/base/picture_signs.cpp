@@ -67,6 +67,34 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
                    list);
 }
 
+namespace {
+
+void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Camera& camera,
+               ScreenRect picture, ImDrawList& list) {
+  const auto pixel = camera.project(around);
+  if (!pixel) return;
+  const ImVec2 middle(picture.min.x + static_cast<float>(pixel->x()),
+                      picture.min.y + static_cast<float>(pixel->y()));
+  list.AddCircle(middle, radius, colour(current_palette().backdrop, 0.75f), 0, thick + 2);
+  list.AddCircle(middle, radius, colour(tint), 0, thick);
+}
+
+}  // namespace
+
+void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture,
+                 ImDrawList& list) {
+  if (!view.magnet || view.proxy.links.empty()) return;
+  const float em = font(Face::small)->FontSize, thick = (view.magnet_holds ? 0.25f : 0.12f) * em;
+  draw_ring(view.proxy.tip, em, thick, current_palette().accent, camera, picture, list);
+}
+
+void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
+  if (view.device.links.empty()) return;
+  const float em = font(Face::small)->FontSize;
+  draw_ring(view.device.tip, 1.3f * em, 0.15f * em, ink(current_palette(), Ink::hand), camera,
+            picture, list);
+}
+
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);

@@ -24,6 +24,10 @@ struct GapPlace {
 // name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
+// A ring around the proxy's tip while its magnet is on, thick while that holds something.
+void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
+// A ring around the device's tip: the mouse has hold of it, or would have.
+void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // What a run of a twin is called, at the top of its half.
 void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
 

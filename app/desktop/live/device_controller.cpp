@@ -114,7 +114,7 @@ void DeviceController::watch() {
     return;
   }
   const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
-  if ((pressed & 1) != 0) requests_.toggle_coupling();
+  if ((pressed & 1) != 0) requests_.first_button();
   if ((pressed & 2) != 0) live_.toggle_force();
 }
 

@@ -20,7 +20,7 @@ namespace limpid {
 struct DeviceRequests {
   std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
   std::function<void()> close;                        // the virtual arm by the mouse
-  std::function<void()> toggle_coupling;
+  std::function<void()> first_button;
 };
 
 class DeviceController {

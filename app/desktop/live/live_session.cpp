@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
@@ -58,7 +59,7 @@ void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshMod
   } else {
     loop_.open(fresh->arm(), fresh->document().scene, p, rest);
   }
-  controls_.grab = false;
+  controls_.grab = controls_.magnet = false;
   controls_.goal = rest;
   take_stage(std::move(fresh));
 }
@@ -106,12 +107,25 @@ bool LiveSession::force_armed() const {
   return now != Arming::off && now != Arming::tripped;
 }
 
+std::string LiveSession::why_no_magnet() const {
+  const auto& objects = stage_->document().scene.objects;
+  return std::ranges::any_of(objects, [](const Object& o) { return o.body && o.body->magnet; })
+             ? ""
+             : "Nothing in this scene can be picked up.";
+}
+
+void LiveSession::toggle_magnet() {
+  controls_.magnet = !controls_.magnet && why_no_magnet().empty();
+  notices_.say(controls_.magnet ? "The magnet is on: what the tip touches hangs on it. H lets go."
+                                : "The magnet is off.");
+}
+
 void LiveSession::start_over() {
   if (recording()) {
     notices_.say("Stop the recording before starting over.", true);
     return;
   }
-  controls_.grab = false;
+  controls_.grab = controls_.magnet = false;
   ++controls_.resets;
   const bool off = loop_.device_in_place() || !force_armed();
   notices_.say(off ? "Started over, at rest and without force; F arms it."

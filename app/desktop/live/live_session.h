@@ -40,6 +40,7 @@ class LiveSession {
   LiveLoop& loop() { return loop_; }
   const LiveLoop& loop() const { return loop_; }
   Controls& controls() { return controls_; }
+  const Controls& controls() const { return controls_; }
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
   std::span<const double> row() const;       // the newest
@@ -50,6 +51,10 @@ class LiveSession {
   // Whether force is on, or will be as soon as nothing keeps it off.
   bool force_armed() const;
   void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
+  // Why the tip cannot pick anything up, for people; empty if it can.
+  std::string why_no_magnet() const;
+  // The magnet at the tip on or off.
+  void toggle_magnet();
   // At rest in the middle; a recording has to end first, and says so.
   void start_over();
 

@@ -56,7 +56,7 @@ PadHand::Asked PadHand::lead(const PadReading& now, const PictureAxes& axes,
     controls.goal = within_reach(arm, tip + off / stretch);
     holds_ = true;
   }
-  return {.cut = now.b && !before.b, .next_law = now.y && !before.y};
+  return {.cut = now.b && !before.b, .next_law = now.y && !before.y, .magnet = now.x && !before.x};
 }
 
 void PadHand::lose(Controls& controls) {

@@ -24,7 +24,7 @@ inline Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
 struct PadReading {
   double left_x = 0, left_y = 0, right_y = 0;
   double left_trigger = 0, right_trigger = 0;
-  bool a = false, b = false, y = false;
+  bool a = false, b = false, x = false, y = false;
 };
 
 // One that is plugged in.
@@ -45,11 +45,11 @@ struct PictureAxes {
 class PadHand {
  public:
   struct Asked {
-    bool cut = false, next_law = false;
+    bool cut = false, next_law = false, magnet = false;
   };
   // After `dt` [s]: leads the hand on the arm, whose tip is there [m]. A push takes hold, A takes
-  // hold and lets go, B asks for no force, Y for the next law. After A has let go the sticks have
-  // to rest before they take hold again.
+  // hold and lets go, B asks for no force, Y for the next law, X for the magnet. After A has let go
+  // the sticks have to rest before they take hold again.
   Asked lead(const PadReading& now, const PictureAxes& axes, const ArmDescription& arm,
              const Vec3& tip, double dt, Controls& controls);
   // It is gone: lets go if it held.

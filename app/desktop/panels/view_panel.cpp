@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "app/desktop/base/picture_signs.h"
 #include "app/desktop/live/pad_hand.h"
@@ -18,6 +19,8 @@ namespace limpid {
 namespace {
 
 constexpr double kDepthStep = 0.004;  // of one wheel notch while dragging [m]
+constexpr double kPullReach = 40;     // of the mouse around the tips, at the scale 1 [px]
+constexpr double kClickReach = 4;     // that a click may move [px]
 
 ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
   return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
@@ -95,8 +98,7 @@ void draw_hint(const std::string& pad, ScreenRect rect, ImDrawList& list) {
   ImFont* face = font(Face::semibold);
   const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
   const char* lines[] = {
-      pad.empty() ? "Drag with the left button: your hand pulls the arm onto the table."
-                  : of_pad.c_str(),
+      pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table." : of_pad.c_str(),
       pad.empty() ? "Wheel while dragging: nearer and farther."
                   : "Its triggers: nearer and farther. A lets go, B cuts the force.",
       "C switches the coupling: the standard one lets hand and world drift apart."};
@@ -161,21 +163,21 @@ ViewState ViewPanel::twin_of(const ViewScene& scene, const Settings& settings) {
   return view_of(scene.stage, scene.twin, scene.stage.twin_memory, settings);
 }
 
-bool ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
-                     ScreenRect rect) {
+ViewRequest ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
+                            Settings& settings, ScreenRect rect, bool taken) {
   const bool split = scene.split();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsAnyMouseDown()) on_right_ = split && half_of(rect, true).contains(mouse);
   const ScreenRect under = split ? half_of(rect, on_right_) : rect;
   const ImVec2 size = under.size();
-  if (size.x < 8 || size.y < 8) return false;
+  if (size.x < 8 || size.y < 8) return {};
   camera.resize(size.x, size.y);
-  const bool turned = handle_mouse(scene, camera, controls, settings, under);
+  const ViewRequest asked = handle_mouse(scene, camera, controls, settings, under, taken);
   scene.stage.picture.set_pixel_scale(scene.pixel_scale * static_cast<double>(current_scale()));
   scene.stage.draw_at(scene.quality);
   drawn_ = split ? half_of(rect, false) : rect;
   draw_halves(scene, camera, settings, rect);
-  return turned;
+  return asked;
 }
 
 // The picture, or a twin's two with one camera.
@@ -228,6 +230,8 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
     draw_grid_labels(scene.stage.picture.grid(), view, camera, rect, magnifier_.rect(), list);
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
+  draw_magnet(view, camera, rect, list);
+  if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
   if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
     draw_hint(scene.pad, rect, list);
@@ -247,47 +251,86 @@ bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Sett
           picture.differs(twin_of(scene, settings), shown, SceneView::Sheet::beside));
 }
 
-bool ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
-                             Settings& settings, ScreenRect rect) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const bool over = rect.contains(io.MousePos) && !io.WantCaptureMouse;
-  const Eigen::Vector2d pixel(io.MousePos.x - rect.min.x, io.MousePos.y - rect.min.y);
-  const bool orbiting = io.KeyAlt;
+bool ViewPanel::near_tip(const ViewScene& scene, const Camera& camera,
+                         const Eigen::Vector2d& pixel) const {
+  const Stage& stage = scene.stage;
+  const RowLayout& layout = stage.channels().layout();
+  const auto near = [&](Column c) {
+    const auto tip = camera.project(stage.rows().tip(layout.in(scene.row, c)));
+    return tip && (*tip - pixel).norm() < kPullReach * static_cast<double>(current_scale());
+  };
+  return near(Column::device_position) || near(Column::proxy_position);
+}
 
-  if (over && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !orbiting && !scene.recorded) {
+// The mouse has hold of this point from now on.
+void ViewPanel::hold(const Camera& camera, ScreenRect rect, const Vec3& point,
+                     const Eigen::Vector2d& pixel) {
+  anchor_ = point;
+  offset_ = anchor_ - camera.plane_drag(pixel, anchor_);
+  looked_ = camera.projection() * camera.view();
+  corner_ = rect.min;
+}
+
+ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
+                                    Settings& settings, ScreenRect rect, bool taken) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool over = rect.contains(io.MousePos) && !io.WantCaptureMouse && !taken;
+  const Eigen::Vector2d pixel(io.MousePos.x - rect.min.x, io.MousePos.y - rect.min.y);
+  const RowLayout& layout = scene.stage.channels().layout();
+  const bool free = !ImGui::IsAnyMouseDown() || ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  if (free) pulls_ = over && !io.KeyAlt && !scene.recorded && near_tip(scene, camera, pixel);
+  if (pulls_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+
+  if (pulls_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     dragging_ = true;
-    const Stage& stage = scene.stage;
-    const RowLayout& layout = stage.channels().layout();
-    anchor_ = controls.grab ? controls.goal
-                            : stage.rows().tip(layout.in(scene.row, Column::device_position));
-    offset_ = anchor_ - camera.plane_drag(pixel, anchor_);
+    hold(camera, rect,
+         controls.grab ? controls.goal
+                       : scene.stage.rows().tip(layout.in(scene.row, Column::device_position)),
+         pixel);
     settings.hint_seen = true;
   }
   if (dragging_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragging_ = false;
     if (!settings.hold_on_release) controls.grab = false;
   }
-  if (dragging_) drag_hand(scene.stage.arm(), camera, controls, pixel);
+  if (dragging_) drag_hand(scene.stage.arm(), camera, controls, rect, pixel);
 
-  const bool pan = ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0) ||
-                   (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0) && io.KeyShift);
-  const bool orbit = ImGui::IsMouseDragging(ImGuiMouseButton_Right, 0) ||
-                     (orbiting && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 0));
+  ViewRequest asked;
+  for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right}) {
+    const auto i = static_cast<std::size_t>(button);
+    if (over && !dragging_ && ImGui::IsMouseClicked(button)) {
+      pressed_[i] = pixel;
+      moved_[i] = false;
+    }
+    if (!pressed_[i]) continue;
+    moved_[i] = moved_[i] || (pixel - *pressed_[i]).norm() > kClickReach;
+    if (ImGui::IsMouseDown(button)) continue;
+    const auto at = std::exchange(pressed_[i], std::nullopt);
+    if (moved_[i] || scene.recorded) continue;
+    (button == ImGuiMouseButton_Left ? asked.clicked : asked.asked) = camera.ray(*at);
+  }
+  const bool left = pressed_[0] && moved_[0], right = pressed_[1] && moved_[1];
+  const bool pan = ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0) || (right && io.KeyShift);
   const bool moved = !io.WantCaptureMouse && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0);
   if (moved && pan) {
     camera.pan(io.MouseDelta.x, io.MouseDelta.y);
-  } else if (moved && orbit) {
+  } else if (moved && (left || right)) {
     camera.orbit(io.MouseDelta.x, io.MouseDelta.y);
   }
   const bool zoom = over && !dragging_ && io.MouseWheel != 0;
   if (zoom) camera.zoom(io.MouseWheel, pixel);
-  return zoom || (moved && (pan || orbit));
+  asked.turned = zoom || (moved && (pan || left || right));
+  return asked;
 }
 
 // The target moves in the plane through it that is parallel to the picture; the wheel moves that
-// plane.
+// plane. Where it is looked at otherwise than a frame ago, the target stays in the world.
 void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
-                          const Eigen::Vector2d& pixel) {
+                          ScreenRect rect, const Eigen::Vector2d& pixel) {
+  const Eigen::Matrix4d looks = camera.projection() * camera.view();
+  if (looks != looked_ || rect.min.x != corner_.x || rect.min.y != corner_.y) {
+    hold(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
+  }
   anchor_ += kDepthStep * static_cast<double>(ImGui::GetIO().MouseWheel) * camera.forward();
   const Vec3 goal = camera.plane_drag(pixel, anchor_ - offset_) + offset_;
   controls.goal = within_reach(arm, goal);

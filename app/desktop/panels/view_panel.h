@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -38,12 +39,19 @@ struct ViewScene {
 // What its legend takes of a view's upper left corner.
 ScreenRect legend_box(ScreenRect view);
 
+// What the mouse did in the picture besides leading the hand.
+struct ViewRequest {
+  bool turned = false;           // the camera
+  std::optional<Ray> clicked{};  // with the left button
+  std::optional<Ray> asked{};    // with the right one
+};
+
 class ViewPanel {
  public:
-  // The mouse turns the camera and, in the controls, leads the hand; true when it turned the
-  // camera.
-  bool draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
-            ScreenRect rect);
+  // The mouse leads the hand, in the controls, from near the tips; elsewhere it turns the camera.
+  // `taken`: what it does belongs to somebody else.
+  ViewRequest draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+                   ScreenRect rect, bool taken);
   // Whether anything in the picture has moved since it was drawn. Once a turn, before draw().
   bool differs(const ViewScene& scene, const Camera& camera, const Settings& settings);
 
@@ -54,17 +62,25 @@ class ViewPanel {
                    ScreenRect rect);
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
   static ViewState twin_of(const ViewScene& scene, const Settings& settings);
-  bool handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
-                    ScreenRect rect);
+  ViewRequest handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
+                           Settings& settings, ScreenRect rect, bool taken);
+  bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) const;
+  void hold(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
   void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
-                 const Eigen::Vector2d& pixel);
+                 ScreenRect rect, const Eigen::Vector2d& pixel);
 
   Magnifier magnifier_;
-  std::optional<ScreenRect> drawn_;  // where the view was
-  bool dragging_ = false;
+  std::optional<ScreenRect> drawn_;                          // where the view was
+  bool dragging_ = false;                                    // the hand
+  bool pulls_ = false;                                       // what the left button would do here
+  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where, without the hand
+  std::array<bool, 2> moved_{};                              // since then
   bool on_right_ = false;       // the mouse, when it last began something
   Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
   Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]
+  // How the picture was looked at when the hand was dragged last.
+  Eigen::Matrix4d looked_ = Eigen::Matrix4d::Identity();
+  ImVec2 corner_{};
 };
 
 }  // namespace limpid

@@ -147,6 +147,18 @@ std::string selection_fixed(const Desktop& d) {
   return why.empty() ? d.document.why_fixed() : why;
 }
 
+template <TransformKind kKind>
+void begin_transform(Desktop& d) {
+  d.transform.begin(kKind);
+}
+
+template <TransformKind kKind>
+std::string cannot(const Desktop& d) {
+  const std::string why = selection_fixed(d);
+  if (!why.empty() || can(kKind, *d.document.editor().selected_object())) return why;
+  return "This object cannot be changed in that way.";
+}
+
 std::string no_virtual_arm(const Desktop& d) {
   return d.live.loop().device_in_place()
              ? "A real device is in the arm's place. Choose the virtual arm first."
@@ -185,6 +197,15 @@ constexpr std::array kCommands{
         [](Desktop& d) { show_or_close(d, "identify"); }),
     row("device.force", "Force on or off", "Device", "F", "force on or off",
         [](Desktop& d) { d.live.toggle_force(); }, {.apart = true, .now = force_label}),
+    row("hand.magnet", "Magnet at the tip", "Device", "H",
+        "magnet at the tip: picks up what it touches, or lets go",
+        [](Desktop& d) { d.live.toggle_magnet(); },
+        {.why_not =
+             [](const Desktop& d) {
+               const std::string playback = in_playback(d);
+               return playback.empty() ? d.live.why_no_magnet() : playback;
+             },
+         .checked = [](const Desktop& d) { return d.live.controls().magnet; }}),
     row("device.start_over", "Start over", "Device", "Backspace", "start over",
         [](Desktop& d) { d.live.start_over(); }, {.why_not = in_playback}),
     row("coupling.next", "Next coupling law", nullptr, "C", "the next coupling law",
@@ -222,13 +243,36 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.dialog.open("save scene"); }),
     row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
         [](Desktop& d) { d.asked.picture = sessions_dir() / picture_name(); }),
-    row("edit.undo", "Undo", "File", "Ctrl+Z", "undo", [](Desktop& d) { d.document.undo(); },
-        {.apart = true, .repeats = true}),
-    row("edit.redo", "Redo", "File", "Ctrl+Y, Ctrl+Shift+Z", "redo",
+    row("edit.undo", "Undo", "Edit", "Ctrl+Z", "undo", [](Desktop& d) { d.document.undo(); },
+        {.repeats = true}),
+    row("edit.redo", "Redo", "Edit", "Ctrl+Y, Ctrl+Shift+Z", "redo",
         [](Desktop& d) { d.document.redo(); }, {.repeats = true}),
-    row("settings.reset", "All settings to their usual values", "File", nullptr, nullptr,
+    row("object.move", "Move", "Edit", "G", "selected object: move, turn, scale it with the mouse",
+        begin_transform<TransformKind::move>,
+        {.apart = true, .reach = Reach::selection, .why_not = cannot<TransformKind::move>}),
+    row("object.turn", "Turn", "Edit", "R", "", begin_transform<TransformKind::turn>,
+        {.reach = Reach::selection, .why_not = cannot<TransformKind::turn>}),
+    row("object.scale", "Scale", "Edit", "S", "", begin_transform<TransformKind::scale>,
+        {.reach = Reach::selection, .why_not = cannot<TransformKind::scale>}),
+    row("object.along_x", "Along x alone", nullptr, "X",
+        "meanwhile: along one axis alone; Ctrl: in whole steps; click or Enter ends it, Esc gives "
+        "it "
+        "up",
+        [](Desktop& d) { d.transform.lock(0); }, {.reach = Reach::transform}),
+    row("object.along_y", "Along y alone", nullptr, "Y", "",
+        [](Desktop& d) { d.transform.lock(1); }, {.reach = Reach::transform}),
+    row("object.along_z", "Along z alone", nullptr, "Z", "",
+        [](Desktop& d) { d.transform.lock(2); }, {.reach = Reach::transform}),
+    row("object.accept", "Let it be as it is now", nullptr, "Enter, Keypad Enter", "",
+        [](Desktop& d) { d.transform.accept(); }, {.reach = Reach::transform}),
+    row("scene.copy", "Copy selected object", "Edit", "Ctrl+D",
+        "copy or remove the selected object", [](Desktop& d) { d.document.duplicate_selected(); },
+        {.apart = true, .why_not = selection_fixed}),
+    row("scene.remove", "Remove selected object", "Edit", "Delete", "",
+        [](Desktop& d) { d.document.remove_selected(); }, {.why_not = selection_fixed}),
+    row("settings.reset", "All settings to their usual values", "Edit", nullptr, nullptr,
         [](Desktop& d) { d.tuning.reset(); }),
-    row("settings.presets", "Save, rename...", "File/Presets of settings", "Ctrl+P",
+    row("settings.presets", "Save, rename...", "Edit/Presets of settings", "Ctrl+P",
         "presets of settings", [](Desktop& d) { d.dialog.open("presets"); }, {.apart = true}),
     row("window.quit", "Quit", "File", "Ctrl+Q", "quit", [](Desktop& d) { d.asked.close = true; },
         {.apart = true}),
@@ -265,7 +309,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.shown.look(Camera::View::front); }, {.apart = true}),
     row("view.side", "Side", "View", "2", "", [](Desktop& d) { d.shown.look(Camera::View::side); }),
     row("view.top", "Top", "View", "3", "", [](Desktop& d) { d.shown.look(Camera::View::top); }),
-    row("view.reset", "Reset camera", "View", "0", "", [](Desktop& d) { d.shown.reset_view(); }),
+    row("view.reset", "Reset camera", "View", "0, Home", "",
+        [](Desktop& d) { d.shown.reset_view(); }),
     row("view.light", "Light theme", "View", nullptr, nullptr, change_theme,
         {.apart = true,
          .checked = [](const Desktop& d) { return d.settings.theme == Theme::light; }}),
@@ -331,12 +376,7 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.document.editor().select_next(1); }, {.repeats = true}),
     row("scene.select_previous", "Select the object before", nullptr, "Shift+Tab", "",
         [](Desktop& d) { d.document.editor().select_next(-1); }, {.repeats = true}),
-    row("scene.copy", "Copy selected object", "Scene", "Ctrl+D",
-        "copy or remove the selected object", [](Desktop& d) { d.document.duplicate_selected(); },
-        {.apart = true, .why_not = selection_fixed}),
-    row("scene.remove", "Remove selected object", "Scene", "Delete", "",
-        [](Desktop& d) { d.document.remove_selected(); }, {.why_not = selection_fixed}),
-    row("scene.look", "Look at the selected object", nullptr, nullptr, nullptr, look_at_selected,
+    row("scene.look", "Look at the selected object", "View", ".", nullptr, look_at_selected,
         {.why_not = nothing_selected}),
     row("scene.save_and_leave", "Save the changes and go on", nullptr, "Enter, Keypad Enter",
         nullptr, save_and_leave, {.reach = Reach::question, .why_not = no_question}),
@@ -361,14 +401,16 @@ struct Hint {
   const char *with, *what;
 };
 constexpr std::array kBefore{
-    Hint{"left drag", "pull the arm by its tip; wheel meanwhile: nearer and farther"},
-    Hint{"right drag, Alt+left drag", "turn the camera"},
+    Hint{"left drag at the tip", "pull the arm; wheel meanwhile: nearer and farther"},
+    Hint{"left drag elsewhere, right drag", "turn the camera"},
     Hint{"middle drag, Shift+right drag", "move the camera"},
     Hint{"wheel", "zoom to the cursor"},
+    Hint{"click, right click", "select an object; what can be done with it"},
 };
 constexpr std::array kAfter{
     Hint{"gamepad",
-         "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law"},
+         "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law, X "
+         "magnet"},
     Hint{"plots", "drag pans, wheel zooms, double click fits, right click chooses and saves"},
     Hint{"sliders", "double click to type, right click for the usual value"},
 };
@@ -424,8 +466,11 @@ std::vector<std::string_view> keys_of(const Command& command) {
 
 bool reaches(const Command& command, KeyOwner owner) {
   switch (command.how.reach) {
-    case Reach::view: return owner == KeyOwner::view || owner == KeyOwner::playback;
+    case Reach::view:
+      return owner == KeyOwner::view || owner == KeyOwner::playback || owner == KeyOwner::selection;
     case Reach::playback: return owner == KeyOwner::playback;
+    case Reach::selection: return owner == KeyOwner::selection || owner == KeyOwner::transform;
+    case Reach::transform: return owner == KeyOwner::transform;
     case Reach::question: return owner == KeyOwner::question;
     case Reach::all_but_text: return owner != KeyOwner::text;
     case Reach::all: return true;
@@ -473,7 +518,7 @@ const Command* command_of(KeyOwner owner, const KeyPress& press) {
   const Command* found = nullptr;
   for (const Command& command : kCommands) {
     if (!reaches(command, owner) || !has_key(command, press.key, held)) continue;
-    if (found == nullptr || command.how.reach == Reach::playback) found = &command;
+    if (found == nullptr || found->how.reach == Reach::view) found = &command;
   }
   return found == nullptr || (press.repeated && !found->how.repeats) ? nullptr : found;
 }

@@ -17,8 +17,11 @@ class Desktop;
 
 // Where a command's keys act.
 enum class Reach : std::uint8_t {
-  view,          // in playback, too, unless a command of playback has the key
+  view,          // in playback, too, and with something selected, unless a command of those has the
+                 // key
   playback,      //
+  selection,     // while an object of the scene is selected
+  transform,     // while that follows the mouse
   question,      // about unsaved changes
   all_but_text,  // whatever is open, with any modifiers; not while somebody types
   all,           // the same, also while somebody types

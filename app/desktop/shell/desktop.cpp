@@ -138,7 +138,7 @@ Desktop::Desktop(Settings first, const AskForPriority& ask)
           live, notices, ask,
           {.open = [this](std::unique_ptr<Device> device) { world.open_device(std::move(device)); },
            .close = [this] { world.close_device(); },
-           .toggle_coupling = [this] { tuning.next_law(); }}),
+           .first_button = [this] { pick_up_or_next_law(); }}),
       identify(live, devices, notices),
       playback(notices),
       sweep(notices),
@@ -214,6 +214,11 @@ void Desktop::follow_pads(std::vector<Pad> plugged, bool focused, double dt) {
       shown.camera, dt);
   if (asked_for.cut) cut_force();
   if (asked_for.next_law) tuning.next_law();
+  if (asked_for.magnet) run_or_say("hand.magnet", *this);
+}
+
+void Desktop::pick_up_or_next_law() {
+  live.why_no_magnet().empty() ? live.toggle_magnet() : tuning.next_law();
 }
 
 Focus Desktop::focus() const {
@@ -222,7 +227,9 @@ Focus Desktop::focus() const {
           .question = document.asking(),
           .dialog = dialog.name(),
           .modal = dialog.modal(),
-          .playback = playback.on()};
+          .playback = playback.on(),
+          .selection = document.editor().selected().has_value(),
+          .transform = transform.follows()};
 }
 
 void Desktop::cut_force() {
@@ -249,6 +256,8 @@ bool Desktop::close_one() {
     ImGui::ClosePopupToLevel(level, true);
   } else if (now.question) {
     document.stay();
+  } else if (owner_of(now) == KeyOwner::transform) {
+    transform.give_up(document);
   } else if (playback.loading_part() > 0 && playback.loading()) {
     playback.cancel_loading();
   } else if (dialog.kind() == nullptr) {

@@ -14,6 +14,7 @@
 #include "app/desktop/live/identify_controller.h"
 #include "app/desktop/live/live_session.h"
 #include "app/desktop/panels/over_view.h"
+#include "app/desktop/panels/transform_tool.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/focus.h"
@@ -48,6 +49,7 @@ class Shown {
   int quality_level() const;  // of Quality, as the settings want it
 
   Camera camera;
+  ScreenRect picture{};  // where it is in the window, of a twin's the left one
   AutoQuality automatic_quality;
 
  private:
@@ -106,6 +108,7 @@ class Desktop {
   Shown shown;
   Tuning tuning;
   PlotLayout plots;
+  TransformTool transform;
   Pads pads;
   KeptScenes kept;
   World world;
@@ -119,6 +122,9 @@ class Desktop {
   // The gamepads that are there now, `dt` [s] after the last call: the chosen one leads the hand,
   // where the window has the focus and nothing is open over it.
   void follow_pads(std::vector<Pad> plugged, bool focused, double dt);
+  // What a device's first button does: the magnet where something can be picked up, else the next
+  // coupling law.
+  void pick_up_or_next_law();
   // Before the OpenGL context goes.
   void drop_pictures();
 

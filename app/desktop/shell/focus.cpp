@@ -28,7 +28,9 @@ KeyOwner owner_of(const Focus& focus) {
   if (focus.popup) return KeyOwner::popup;
   if (focus.question) return KeyOwner::question;
   if (focus.modal) return KeyOwner::dialog;
-  return focus.playback ? KeyOwner::playback : KeyOwner::view;
+  if (focus.playback) return KeyOwner::playback;
+  if (focus.transform) return KeyOwner::transform;
+  return focus.selection ? KeyOwner::selection : KeyOwner::view;
 }
 
 void HeldKeys::press(int key) {

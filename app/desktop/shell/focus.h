@@ -19,11 +19,22 @@ struct Focus {
   std::string_view dialog{};  // that is open; empty: none
   bool modal = false;         // it asks something: nothing behind it acts meanwhile
   bool playback = false;
+  bool selection = false;  // an object of the scene is selected
+  bool transform = false;  // and follows the mouse
 
   friend bool operator==(const Focus&, const Focus&) = default;
 };
 
-enum class KeyOwner : std::uint8_t { view, playback, dialog, popup, question, text };
+enum class KeyOwner : std::uint8_t {
+  view,
+  playback,
+  selection,
+  transform,
+  dialog,
+  popup,
+  question,
+  text
+};
 KeyOwner owner_of(const Focus& focus);
 
 // Shift, Control, Alt or Super, by GLFW's number.

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "app/desktop/base/passivity_break.h"
+#include "app/desktop/base/picture_signs.h"
+#include "app/desktop/document/picking.h"
 #include "app/desktop/panels/over_view.h"
 #include "app/desktop/panels/plots_panel.h"
 #include "app/desktop/panels/recorded_panel.h"
@@ -86,8 +88,8 @@ ViewScene Frame::view_scene() {
     scene.rerun = session->rerun_row();
     scene.twin = session->twin_row();
     if (const StoryStep* step = session->step()) scene.told = step->caption;
-  } else if (const Object* selected = desktop_.document.editor().selected_object()) {
-    scene.selected = *selected;
+  } else if (const auto selected = desktop_.document.editor().selected()) {
+    scene.selected = placed_now(desktop_.document.scene(), *selected, bodies_of(scene));
   }
   if (!scene.recorded) scene.twin = desktop_.live.twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();
@@ -109,9 +111,30 @@ void Frame::draw_view(ScreenRect rect) {
     desktop_.shown.reset_view();
     camera.finish();
   }
-  if (view_.draw(scene, camera, desktop_.live.controls(), desktop_.settings, rect)) {
-    desktop_.shown.keep_view();
+  desktop_.shown.picture = scene.split() ? half_of(rect, false) : rect;
+  const bool taken = !scene.recorded && !scene.split() && draw_handles(scene, rect);
+  const ViewRequest asked =
+      view_.draw(scene, camera, desktop_.live.controls(), desktop_.settings, rect, taken);
+  if (asked.turned) desktop_.shown.keep_view();
+  if (asked.clicked) select_under(*asked.clicked, scene);
+  if (asked.asked) {
+    select_under(*asked.asked, scene);
+    ImGui::OpenPopup(kObjectMenu);
   }
+  draw_object_menu(desktop_);
+}
+
+std::vector<Pose> Frame::bodies_of(const ViewScene& scene) {
+  return scene.stage.rows().bodies(scene.stage.channels().layout(), scene.row);
+}
+
+bool Frame::draw_handles(const ViewScene& scene, ScreenRect rect) {
+  return desktop_.transform.draw(desktop_.document, bodies_of(scene), desktop_.shown.camera, rect);
+}
+
+void Frame::select_under(const Ray& ray, const ViewScene& scene) {
+  SceneEditor& editor = desktop_.document.editor();
+  editor.select(object_under(ray, editor.scene(), editor.models(), bodies_of(scene)));
 }
 
 bool Frame::differs() {

@@ -37,6 +37,11 @@ class Frame {
   ViewScene view_scene();
   ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
+  // Where the scene's objects that move are.
+  static std::vector<Pose> bodies_of(const ViewScene& scene);
+  // On the selected object; true while the mouse is theirs.
+  bool draw_handles(const ViewScene& scene, ScreenRect rect);
+  void select_under(const Ray& ray, const ViewScene& scene);
   void draw_coupling(ScreenRect rect);
   void draw_played(PlayedSession& session, const CouplingReading& reading,
                    const CouplingSituation& now);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string>
 
 #include "app/base/folders.h"
 #include "app/desktop/base/thumbnails.h"
+#include "app/desktop/panels/object_signs.h"
 #include "app/desktop/panels/status_line.h"
 #include "app/desktop/shell/commands.h"
 
@@ -97,14 +99,14 @@ struct MenuPart {
 
 constexpr std::array kParts{
     MenuPart{"File", "session.open", recent_files},
-    MenuPart{"File/Presets of settings", "", presets},
+    MenuPart{"Edit/Presets of settings", "", presets},
     MenuPart{"View/Plots of", "", plot_menus},
     MenuPart{"View/Layouts", "", layouts},
     MenuPart{"Scene", "scene.gallery", shipped_scenes},
-    MenuPart{"Scene", "scene.remove", about_drops},
+    MenuPart{"Scene", "scene.gallery", about_drops},
     MenuPart{"Device", "", about_arm},
 };
-constexpr std::array kMenus{"File", "View", "Session", "Scene", "Device", "Help"};
+constexpr std::array kMenus{"File", "Edit", "View", "Session", "Scene", "Device", "Help"};
 
 void draw_item(const Command& command, Desktop& d) {
   const std::string why = why_not(command, d);
@@ -190,6 +192,32 @@ fs::path RecentMenu::draw(const std::vector<std::string>& recent) {
   }
   ImGui::EndMenu();
   return chosen;
+}
+
+void draw_object_menu(Desktop& d) {
+  if (!ImGui::BeginPopup(kObjectMenu)) return;
+  const auto items = [&](std::initializer_list<const char*> ids) {
+    for (const char* id : ids) draw_item(*find_command(id), d);
+  };
+  if (const Object* selected = d.document.editor().selected_object()) {
+    ImGui::TextDisabled("%s", selected->name.c_str());
+    items({"object.move", "object.turn", "object.scale"});
+    ImGui::Separator();
+    items({"scene.copy", "scene.remove", "scene.look"});
+    ImGui::Separator();
+    if (ImGui::MenuItem("Material, size, joint...")) d.settings.show_right = true;
+  } else {
+    for (const NewObject& each : new_objects()) {
+      if (each.first_that_moves) ImGui::Separator();
+      const std::string label = std::string("Add ") + each.label;
+      const std::string why = d.document.why_fixed();
+      if (ImGui::MenuItem(label.c_str(), nullptr, false, why.empty()))
+        d.world.add_object(each.object);
+    }
+    ImGui::Separator();
+    items({"scene.add_model", "view.reset"});
+  }
+  ImGui::EndPopup();
 }
 
 void draw_menu_bar(Desktop& desktop, RecentMenu& recent) {

@@ -30,4 +30,9 @@ class RecentMenu {
 
 void draw_menu_bar(Desktop& desktop, RecentMenu& recent);
 
+// What can be done with the selected object, or with the scene where nothing is selected; opened by
+// this name.
+inline constexpr const char* kObjectMenu = "object menu";
+void draw_object_menu(Desktop& desktop);
+
 }  // namespace limpid

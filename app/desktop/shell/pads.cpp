@@ -25,6 +25,7 @@ std::vector<Pad> plugged_pads() {
                             .right_trigger = trigger(GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER),
                             .a = button(GLFW_GAMEPAD_BUTTON_A),
                             .b = button(GLFW_GAMEPAD_BUTTON_B),
+                            .x = button(GLFW_GAMEPAD_BUTTON_X),
                             .y = button(GLFW_GAMEPAD_BUTTON_Y)}});
   }
   return pads;
@@ -59,7 +60,7 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
     leading_ = pad->name;
     notices_.say(
         fmt::format("{} leads the hand: left stick, triggers nearer and farther, A takes "
-                    "hold or lets go, B cuts the force, Y is the next coupling.",
+                    "hold or lets go, B cuts the force, Y is the next coupling, X the magnet.",
                     leading_));
   }
   const PadReading now = heard.listens ? pad->now : PadReading{.b = pad->now.b};

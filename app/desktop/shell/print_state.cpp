@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/desktop/document/picking.h"
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/identify_dialog.h"
 #include "app/desktop/shell/layout.h"
@@ -110,6 +111,26 @@ nlohmann::json state_of(const DeviceController& controller) {
           {"explains_force", noted_place(kSidePanel, "force").has_value()}};
 }
 
+// Where the device's tip and the scene's objects are in the window [px]; null behind the eye.
+nlohmann::json places_of(Desktop& d) {
+  const auto seen = [&](const Vec3& point) -> nlohmann::json {
+    const auto pixel = d.shown.camera.project(point);
+    if (!pixel) return nullptr;
+    return {pixel->x() + static_cast<double>(d.shown.picture.min.x),
+            pixel->y() + static_cast<double>(d.shown.picture.min.y)};
+  };
+  const Stage& stage = d.shown.stage();
+  const RowLayout& layout = stage.channels().layout();
+  const std::vector<Pose> bodies = stage.rows().bodies(layout, d.shown.row());
+  nlohmann::json objects = nlohmann::json::object();
+  const Scene& scene = stage.document().scene;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    objects[scene.objects[i].name] = seen(placed_now(scene, i, bodies).pose.translation());
+  }
+  return {{"tip", seen(stage.rows().tip(layout.in(d.shown.row(), Column::device_position)))},
+          {"objects", objects}};
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback.on() ? d.playback.shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -146,7 +167,7 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
       "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
       "\"closing\": {}, "
-      "\"recorded\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
+      "\"recorded\": {}, \"places\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
@@ -163,7 +184,8 @@ void print_state(Desktop& d, const WindowState& window) {
       d.playback.video().busy(), d.pads.all().size(), window.frames, window.input_waits,
       d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
       state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
-      banners_of(d).dump(), closing().dump(), recorded(d).dump(), p.hand_stiffness, p.hand_damping);
+      banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(),
+      p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }
 

@@ -180,7 +180,8 @@ void Application::turn() {
   bool drawing = window_.due();
   if (drawing) {
     window_.begin_frame(desktop_.focus());
-    desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left));
+    desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
+                           desktop_.transform.follows());
     guard(notices, [&] { handle_keys(window_.keys(), desktop_); });
     guard(notices, [&] { desktop_.world.open_files(window_.dropped()); });
   }

@@ -85,6 +85,8 @@ TEST(PadHand, AsksOnceAPress) {
   EXPECT_TRUE(held.lead({.b = true}).cut);
   EXPECT_FALSE(held.lead({.b = true}).cut);
   EXPECT_TRUE(held.lead({.y = true}).next_law);
+  EXPECT_TRUE(held.lead({.x = true}).magnet);
+  EXPECT_FALSE(held.lead({.x = true}).magnet);
 }
 
 TEST(PadHand, LetsGoWhenItIsUnpluggedOfWhatItHeldAlone) {

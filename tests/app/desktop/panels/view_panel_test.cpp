@@ -1,8 +1,10 @@
 // The 3D view as it is drawn, frame by frame. Skipped where EGL gives no context.
 #include "app/desktop/panels/view_panel.h"
 
+#include <algorithm>
 #include <optional>
 
+#include "core/dynamics/arm.h"
 #include "render/gl/offscreen.h"
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/built_in.h"
@@ -21,12 +23,33 @@ class AView : public ImGuiFrames {
     History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
     stage_ =
         std::make_unique<Stage>(test::omni(), SceneDocument{}, MeshModels{}, std::move(history), 1);
+    const Eigen::VectorXd rest = rest_pose(test::omni());
+    for (const Column c : {Column::device_position, Column::proxy_position}) {
+      std::ranges::copy(rest, layout_.in(std::span(row_), c).begin());
+    }
     camera_.reset(stage_->picture.bounds());
     camera_.finish();
   }
   ViewScene scene() { return {.stage = *stage_, .row = row_, .pixel_height = 600}; }
   void draw() {
-    frame([&] { panel_.draw(scene(), camera_, controls_, settings_, {{0, 0}, {400, 300}}); });
+    frame([&] { asked_ = panel_.draw(scene(), camera_, controls_, settings_, rect_, taken_); });
+  }
+  // The mouse there, in the window, for a frame.
+  void point(const Eigen::Vector2d& at) {
+    show_mouse({static_cast<float>(at.x()), static_cast<float>(at.y())});
+    draw();
+  }
+  void press(int button, bool down) {
+    show_mouse_button(button, down);
+    draw();
+  }
+  Eigen::Vector2d seen(const Vec3& point) const {
+    const auto pixel = *camera_.project(point);
+    return {pixel.x() + static_cast<double>(rect_.min.x),
+            pixel.y() + static_cast<double>(rect_.min.y)};
+  }
+  Vec3 tip() const {
+    return stage_->rows().tip(layout_.in(std::span<const double>(row_), Column::device_position));
   }
   bool differs(const Settings& settings) { return panel_.differs(scene(), camera_, settings); }
 
@@ -37,6 +60,9 @@ class AView : public ImGuiFrames {
   ViewPanel panel_;
   Camera camera_;
   Controls controls_;
+  ScreenRect rect_{{0, 0}, {400, 300}};
+  bool taken_ = false;
+  ViewRequest asked_;
   Settings settings_;
 };
 
@@ -63,6 +89,76 @@ TEST_F(AView, IsDrawnAgainForEachOfItsSwitches) {
   Settings other = settings_;
   other.theme = other.theme == Theme::dark ? Theme::light : Theme::dark;
   EXPECT_TRUE(differs(other));
+}
+
+TEST_F(AView, PullsTheArmFromNearItsTipAndTurnsElsewhere) {
+  draw();
+  const Eigen::Vector2d at_tip = seen(tip()), aside = at_tip + Eigen::Vector2d(0, -60);
+  const Vec3 eye = camera_.eye();
+  point(at_tip + Eigen::Vector2d(20, 10));
+  press(0, true);
+  EXPECT_TRUE(controls_.grab);
+  EXPECT_TRUE(controls_.goal.isApprox(tip(), 1e-6)) << "nothing has moved yet";
+  point(at_tip + Eigen::Vector2d(30, 10));
+  EXPECT_NEAR((seen(controls_.goal) - at_tip).x(), 10, 1e-3);
+  EXPECT_EQ(camera_.eye(), eye);
+  press(0, false);
+  EXPECT_FALSE(controls_.grab);
+
+  point(aside);
+  press(0, true);
+  EXPECT_FALSE(controls_.grab);
+  point(aside + Eigen::Vector2d(30, 0));
+  EXPECT_TRUE(asked_.turned);
+  EXPECT_NE(camera_.eye(), eye);
+  press(0, false);
+  EXPECT_FALSE(asked_.clicked) << "it has turned the camera";
+}
+
+TEST_F(AView, SaysWhereSomebodyClicked) {
+  draw();
+  const Eigen::Vector2d aside = (seen(tip()) + Eigen::Vector2d(3, -60)).array().round();
+  for (const int button : {0, 1}) {
+    point(aside);
+    press(button, true);
+    EXPECT_FALSE(asked_.clicked || asked_.asked) << "a drag may come of it";
+    point(aside + Eigen::Vector2d(2, 0));
+    press(button, false);
+    const auto& ray = button == 0 ? asked_.clicked : asked_.asked;
+    ASSERT_TRUE(ray) << button;
+    EXPECT_TRUE(ray->direction.isApprox(camera_.ray(aside).direction, 1e-5));
+    draw();
+    EXPECT_FALSE(asked_.clicked || asked_.asked) << "once";
+  }
+  EXPECT_FALSE(controls_.grab);
+}
+
+TEST_F(AView, LeavesTheHandWhereItIsWhenItIsLookedAtOtherwise) {
+  draw();
+  const Eigen::Vector2d at = seen(tip());
+  point(at);
+  press(0, true);
+  point(at + Eigen::Vector2d(15, 10));
+  const Vec3 goal = controls_.goal;
+  rect_ = {{60, 20}, {400, 300}};  // a panel came
+  draw();
+  EXPECT_TRUE(controls_.goal.isApprox(goal, 1e-9));
+  camera_.look(Camera::View::side);
+  camera_.finish();
+  draw();
+  EXPECT_TRUE(controls_.goal.isApprox(goal, 1e-9));
+  point(at + Eigen::Vector2d(25, 10));
+  EXPECT_FALSE(controls_.goal.isApprox(goal, 1e-6)) << "it goes on from there";
+}
+
+TEST_F(AView, LeavesTheMouseToWhoHasTakenIt) {
+  taken_ = true;
+  point(seen(tip()));
+  press(0, true);
+  point(seen(tip()) + Eigen::Vector2d(30, 0));
+  press(0, false);
+  EXPECT_FALSE(controls_.grab);
+  EXPECT_FALSE(asked_.turned || asked_.clicked);
 }
 
 }  // namespace

@@ -20,8 +20,9 @@ namespace limpid {
 namespace {
 
 constexpr int kShift = GLFW_MOD_SHIFT, kControl = GLFW_MOD_CONTROL;
-constexpr KeyOwner kOwners[] = {KeyOwner::view,  KeyOwner::playback, KeyOwner::dialog,
-                                KeyOwner::popup, KeyOwner::question, KeyOwner::text};
+constexpr KeyOwner kOwners[] = {KeyOwner::view,      KeyOwner::playback, KeyOwner::selection,
+                                KeyOwner::transform, KeyOwner::dialog,   KeyOwner::popup,
+                                KeyOwner::question,  KeyOwner::text};
 
 struct Case {
   const char* help;  // as the list of shortcuts writes it
@@ -29,6 +30,8 @@ struct Case {
   int modifiers;
   const char *live, *playback;  // ids of commands; empty: none
   bool repeats = false;
+  const char* selected = nullptr;  // with an object selected; null: as without
+  const char* following = "";      // while that follows the mouse
 };
 
 // By hand from the help, not from the program's table.
@@ -52,21 +55,28 @@ const Case kCases[] = {
     {"Alt+]", GLFW_KEY_RIGHT_BRACKET, GLFW_MOD_ALT, "hand.stiffer", "hand.stiffer", true},
     {"F", GLFW_KEY_F, 0, "device.force", "device.force"},
     {"Backspace", GLFW_KEY_BACKSPACE, 0, "device.start_over", "session.back_to_live"},
-    {"R", GLFW_KEY_R, 0, "session.record", "session.record"},
+    {"R", GLFW_KEY_R, 0, "session.record", "session.record", false, "object.turn", "object.turn"},
     {"P", GLFW_KEY_P, 0, "session.play", "session.play"},
     {"Left", GLFW_KEY_LEFT, 0, "", "session.tick_back", true},
     {"Right", GLFW_KEY_RIGHT, 0, "", "session.tick_on", true},
     {"Shift+Left", GLFW_KEY_LEFT, kShift, "", "session.step_back", true},
     {"Shift+Right", GLFW_KEY_RIGHT, kShift, "", "session.step_on", true},
-    {"Home", GLFW_KEY_HOME, 0, "", "session.to_the_beginning"},
+    {"Home", GLFW_KEY_HOME, 0, "view.reset", "session.to_the_beginning"},
+    {".", GLFW_KEY_PERIOD, 0, "scene.look", "scene.look"},
+    {"H", GLFW_KEY_H, 0, "hand.magnet", "hand.magnet"},
+    {"S", GLFW_KEY_S, 0, "", "", false, "object.scale", "object.scale"},
+    {"Y", GLFW_KEY_Y, 0, "", "", false, "", "object.along_y"},
+    {"Z", GLFW_KEY_Z, 0, "", "", false, "", "object.along_z"},
+    {"Enter", GLFW_KEY_ENTER, 0, "", "", false, "", "object.accept"},
+    {"Keypad Enter", GLFW_KEY_KP_ENTER, 0, "", "", false, "", "object.accept"},
     {"L", GLFW_KEY_L, 0, "", "session.loop"},
     {"E", GLFW_KEY_E, 0, "", "session.rerun"},
     {"N", GLFW_KEY_N, 0, "plots.add", "plots.add"},
     {"Ctrl+L", GLFW_KEY_L, kControl, "plots.layouts", "plots.layouts"},
     {"Ctrl+P", GLFW_KEY_P, kControl, "settings.presets", "settings.presets"},
     {"V", GLFW_KEY_V, 0, "", "session.write_video"},
-    {"X", GLFW_KEY_X, 0, "plots.freeze", "plots.freeze"},
-    {"G", GLFW_KEY_G, 0, "view.ghost", "view.ghost"},
+    {"X", GLFW_KEY_X, 0, "plots.freeze", "plots.freeze", false, nullptr, "object.along_x"},
+    {"G", GLFW_KEY_G, 0, "view.ghost", "view.ghost", false, "object.move", "object.move"},
     {"M", GLFW_KEY_M, 0, "view.lens", "view.lens"},
     {"F1", GLFW_KEY_F1, 0, "help.keys", "help.keys"},
     {"?", GLFW_KEY_SLASH, kShift, "help.keys", "help.keys"},
@@ -124,9 +134,9 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
     // "[, ]" and the like; what the mouse does is written in words.
     for (const std::string& key : split(shortcut.keys)) listed.insert(key);
   }
-  for (const char* other :
-       {"left drag", "right drag", "Alt+left drag", "middle drag", "Shift+right drag", "wheel",
-        "plots", "sliders", "gamepad", "Esc", "Space"}) {
+  for (const char* other : {"left drag at the tip", "left drag elsewhere", "right drag",
+                            "middle drag", "Shift+right drag", "wheel", "click", "right click",
+                            "plots", "sliders", "gamepad", "Esc", "Space"}) {
     EXPECT_EQ(listed.erase(other), 1u) << other;
   }
   std::set<std::string> expected;
@@ -143,6 +153,12 @@ TEST(Keys, EachDoesWhatTheHelpSaysAndNothingUnlistedActs) {
           << key << " with " << modifiers;
       EXPECT_EQ(id_of(KeyOwner::playback, key, modifiers, false),
                 std::string_view(c ? c->playback : ""))
+          << key << " with " << modifiers;
+      const char* selected = c && c->selected != nullptr ? c->selected : c ? c->live : "";
+      EXPECT_EQ(id_of(KeyOwner::selection, key, modifiers, false), std::string_view(selected))
+          << key << " with " << modifiers;
+      EXPECT_EQ(id_of(KeyOwner::transform, key, modifiers, false),
+                std::string_view(c ? c->following : ""))
           << key << " with " << modifiers;
     }
   }
@@ -204,7 +220,8 @@ TEST(Commands, EachHasAnIdOfItsOwnATextAndSomethingToDo) {
     EXPECT_NE(command.run, nullptr) << command.id;
     EXPECT_EQ(find_command(command.id), &command);
     const std::string menu = command.menu != nullptr ? command.menu : "";
-    EXPECT_TRUE(std::regex_match(menu, std::regex("|(File|View|Session|Scene|Device|Help)(/.+)?")))
+    EXPECT_TRUE(
+        std::regex_match(menu, std::regex("|(File|Edit|View|Session|Scene|Device|Help)(/.+)?")))
         << menu;
     // Two of a menu cannot be told apart by its texts otherwise.
     if (!menu.empty()) {

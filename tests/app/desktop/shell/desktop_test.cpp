@@ -1,6 +1,7 @@
 // The desktop without a window: what it does to the loop, to devices and to what is not saved.
 #include "app/desktop/shell/desktop.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -216,6 +217,30 @@ TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   frames(70);
   EXPECT_EQ(arming(), Arming::off);
+}
+
+// The tip rests in the box: it touches it.
+TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
+  EXPECT_NE(run_command("hand.magnet", *desktop), "") << "a table cannot be picked up";
+  const Vec3 tip = desktop->live.controls().goal;
+  const fs::path file = dir / "die.toml";
+  std::ofstream(file) << fmt::format(
+      "tip_radius = 0.004\ngravity = [0, 0, 0]\n[[body]]\nname = \"die\"\n"
+      "box = [0.02, 0.02, 0.02]\nmass = 0.02\nposition = [{}, {}, {}]\nmagnet = true\n",
+      tip.x(), tip.y(), tip.z() - 0.0135);
+  desktop->world.open_scene(file);
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  const auto held = [&] { return loop().layout().in(desktop->live.row(), Column::magnet)[0] == 1; };
+  const CouplingKind law = desktop->settings.parameters.kind;
+  run("hand.magnet");
+  EXPECT_TRUE(until(held));
+  run("hand.magnet");
+  EXPECT_TRUE(until([&] { return !held(); }));
+  desktop->pick_up_or_next_law();
+  EXPECT_TRUE(until(held)) << "so does a device's first button";
+  EXPECT_EQ(desktop->settings.parameters.kind, law);
+  desktop->live.start_over();
+  EXPECT_TRUE(until([&] { return !held(); }));
 }
 
 TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {

@@ -10,9 +10,13 @@
 namespace limpid {
 namespace {
 
-TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndView) {
+TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndWhatIsSelected) {
   Focus focus;
   EXPECT_EQ(owner_of(focus), KeyOwner::view);
+  focus.selection = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::selection);
+  focus.transform = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::transform);
   focus.playback = true;
   EXPECT_EQ(owner_of(focus), KeyOwner::playback);
   focus.dialog = "add model";

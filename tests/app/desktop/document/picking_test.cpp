@@ -1,0 +1,131 @@
+// What a click in the picture meets.
+#include "app/desktop/document/picking.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "app/desktop/document/scene_editor.h"
+
+namespace limpid {
+namespace {
+
+Pose turned(const Vec3& position, const Vec3& axis, double angle) {
+  Pose pose = pose_at(position);
+  pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+  return pose;
+}
+
+// A tetrahedron around the origin, in millimetres.
+std::shared_ptr<const Model> tetrahedron() {
+  Model model;
+  for (const auto& [x, y, z] : {std::array{10.f, 10.f, 10.f},
+                                {-10.f, -10.f, 10.f},
+                                {-10.f, 10.f, -10.f},
+                                {10.f, -10.f, -10.f}}) {
+    model.vertices.push_back({.position = {x, y, z}, .normal = {0, 0, 1}});
+  }
+  model.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  return std::make_shared<const Model>(std::move(model));
+}
+
+struct Shapes {
+  Scene scene;
+  MeshModels models;
+
+  std::size_t add(const char* name, Shape shape, const Pose& pose) {
+    const std::size_t place = scene.add({.name = name, .pose = pose, .shape = std::move(shape)});
+    const bool mesh = has_shape<Mesh>(scene.objects[place]);
+    models.insert(models.begin() + static_cast<std::ptrdiff_t>(place),
+                  mesh ? tetrahedron() : nullptr);
+    return place;
+  }
+  std::optional<std::size_t> under(const Vec3& from, const Vec3& at,
+                                   std::span<const Pose> bodies = {}) const {
+    return object_under({from, (at - from).normalized()}, scene, models, bodies);
+  }
+};
+
+// The signed distance of a point in a shape's frame, by its definition [m].
+double distance(const Shape& shape, const Vec3& p) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() - sphere->radius;
+  if (const auto* box = std::get_if<Box>(&shape)) return (p.cwiseAbs() - box->size / 2).maxCoeff();
+  if (const auto* tube = std::get_if<Cylinder>(&shape)) {
+    return std::max(p.head<2>().norm() - tube->radius, std::abs(p.z()) - tube->length / 2);
+  }
+  const auto& pill = std::get<Capsule>(shape);
+  const double z = std::clamp(p.z(), -pill.length / 2, pill.length / 2);
+  return (p - Vec3(0, 0, z)).norm() - pill.radius;
+}
+
+// Against a walk along the ray in steps of a tenth of a millimetre.
+TEST(Picking, MeetsAShapeWhereTheRayGoesIntoIt) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vec = [&] { return Vec3(any(random), any(random), any(random)); };
+  int met = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Shape shapes[] = {Sphere{.radius = 0.03}, Box{.size = {0.03, 0.05, 0.08}},
+                            Cylinder{.radius = 0.02, .length = 0.06},
+                            Capsule{.radius = 0.02, .length = 0.05}};
+    const Shape& shape = shapes[i % 4];
+    const Pose pose = turned(0.05 * vec(), vec(), 3 * any(random));
+    Shapes all;
+    all.add("it", shape, pose);
+    const Vec3 from = Vec3(0.5, 0.1, 0.3) + 0.1 * vec(), at = pose.translation() + 0.05 * vec();
+    const Vec3 way = (at - from).normalized();
+    double least = 1;
+    for (double s = 0; s < 1; s += 1e-4) {
+      least = std::min(least, distance(shape, pose.inverse() * (from + s * way)));
+    }
+    if (std::abs(least) < 2e-4) continue;  // a near miss, which the walk cannot tell
+    EXPECT_EQ(all.under(from, at).has_value(), least < 0) << i;
+    met += least < 0 ? 1 : 0;
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_LT(met, 350);
+}
+
+TEST(Picking, TakesTheNearestOfWhatIsThere) {
+  Shapes all;
+  all.add("table", Plane{}, pose_at({0, 0, -0.1}));
+  const auto far = all.add("far", Sphere{.radius = 0.02}, pose_at({-0.1, 0, 0}));
+  const auto near = all.add("near", Box{.size = Vec3::Constant(0.02)}, pose_at({0.1, 0, 0}));
+  EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}), near);
+  EXPECT_EQ(all.under({-0.5, 0, 0}, {0, 0, 0}), far);
+  EXPECT_EQ(all.under({0.3, 0.1, 0.2}, {0, 0.1, -0.1}), 0u) << "the table";
+  EXPECT_EQ(all.under({0.3, 0.1, 0.2}, {0.3, 0.1, 1}), std::nullopt) << "the sky";
+  EXPECT_EQ(all.under({0.5, 0, 0}, {1, 0, 0}), std::nullopt) << "what is behind the eye";
+}
+
+TEST(Picking, MeetsAMeshByItsTrianglesAtItsScale) {
+  Shapes all;
+  all.add("model", Mesh{.model = "m", .scale = 2, .unit = 1e-3}, pose_at({0.1, 0, 0}));
+  // Along a face, x + y - z = 20 mm: below it there is the body, above it an empty corner of the
+  // box around it.
+  for (const double part : {0.2, 0.3, 0.36, 0.8}) {
+    const Vec3 through = Vec3(0.1, 0, 0) + 0.02 * part * Vec3(1, 1, -1);
+    const Vec3 from = through + 0.3 * Vec3(1, -1, 0);
+    EXPECT_EQ(all.under(from, through).has_value(), 3 * part < 1) << part;
+  }
+}
+
+TEST(Picking, LooksForWhatMovesWhereItIs) {
+  Shapes all;
+  all.scene.add({.name = "still", .pose = pose_at({0, 0.2, 0}), .shape = Sphere{.radius = 0.02}});
+  all.scene.add({.name = "die",
+                 .pose = pose_at({0, 0, 0}),
+                 .shape = Box{.size = Vec3::Constant(0.02)},
+                 .body = Body{}});
+  all.models.resize(2);
+  const Pose there = turned({0, -0.2, 0}, {0, 0, 1}, 0.5);
+  EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}, {{there}}), std::nullopt);
+  EXPECT_EQ(all.under({0.5, -0.2, 0}, {0, -0.2, 0}, {{there}}), 1u);
+  EXPECT_EQ(placed_now(all.scene, 1, {{there}}).pose.matrix(), there.matrix());
+  EXPECT_EQ(placed_now(all.scene, 0, {{there}}).pose.translation().y(), 0.2);
+  EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}), 1u) << "where it starts, as long as nobody knows";
+}
+
+}  // namespace
+}  // namespace limpid
