@@ -74,9 +74,10 @@ bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const
       start(document, now, mouse);
     }
   }
+  const bool followed = transform_.has_value();  // also by the click that ends it
   if (transform_) follow(document, camera, mouse, list);
   list.PopClipRect();
-  return over_ || transform_;
+  return over_ || followed;
 }
 
 void TransformTool::start(Document& document, const Object& now, const Eigen::Vector2d& mouse) {

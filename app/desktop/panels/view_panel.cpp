@@ -289,6 +289,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
          pixel);
     settings.hint_seen = true;
   }
+  const bool dragged = dragging_;
   if (dragging_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragging_ = false;
     if (!settings.hold_on_release) controls.grab = false;
@@ -298,7 +299,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   ViewRequest asked;
   for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right}) {
     const auto i = static_cast<std::size_t>(button);
-    if (over && !dragging_ && ImGui::IsMouseClicked(button)) {
+    if (over && ImGui::IsMouseClicked(button)) {
       pressed_[i] = pixel;
       moved_[i] = false;
     }
@@ -309,7 +310,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
     if (moved_[i] || scene.recorded) continue;
     (button == ImGuiMouseButton_Left ? asked.clicked : asked.asked) = camera.ray(*at);
   }
-  const bool left = pressed_[0] && moved_[0], right = pressed_[1] && moved_[1];
+  const bool left = pressed_[0] && moved_[0] && !dragged, right = pressed_[1] && moved_[1];
   const bool pan = ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0) || (right && io.KeyShift);
   const bool moved = !io.WantCaptureMouse && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0);
   if (moved && pan) {

@@ -73,7 +73,7 @@ class ViewPanel {
   std::optional<ScreenRect> drawn_;                          // where the view was
   bool dragging_ = false;                                    // the hand
   bool pulls_ = false;                                       // what the left button would do here
-  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where, without the hand
+  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where
   std::array<bool, 2> moved_{};                              // since then
   bool on_right_ = false;       // the mouse, when it last began something
   Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]

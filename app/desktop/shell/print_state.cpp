@@ -127,7 +127,9 @@ nlohmann::json places_of(Desktop& d) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     objects[scene.objects[i].name] = seen(placed_now(scene, i, bodies).pose.translation());
   }
-  return {{"tip", seen(stage.rows().tip(layout.in(d.shown.row(), Column::device_position)))},
+  const auto target = layout.in(d.shown.row(), Column::hand_target);
+  return {{"target", std::vector<double>(target.begin(), target.end())},
+          {"tip", seen(stage.rows().tip(layout.in(d.shown.row(), Column::device_position)))},
           {"objects", objects}};
 }
 
