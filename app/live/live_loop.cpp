@@ -163,11 +163,27 @@ void LiveLoop::start_over(const Parameters& p) {
   led_ = false;  // else the guide would pull it back
 }
 
+// Whether the arm's next tick comes now. A device's time cannot be stopped.
+bool LiveLoop::due(const Controls& controls) {
+  const bool asked =
+      controls.resets != resets_ || known_arms_ != arms_.load() || known_cuts_ != cuts_.load();
+  if (in_place_ || asked) return true;
+  if (!controls.paused) {
+    steps_ = controls.steps;
+    slowed_ = (slowed_ + 1) % std::max(controls.slow, 1);
+    return slowed_ == 0;
+  }
+  if (steps_ == controls.steps) return false;
+  ++steps_;
+  return true;
+}
+
 void LiveLoop::tick(const TickTiming& timing) {
   const auto began = std::chrono::steady_clock::now();
   controls_.update();
   const Controls& controls = controls_.front();
   take_in();
+  if (!due(controls)) return;
   if (controls.resets != resets_) {
     resets_ = controls.resets;
     start_over(controls.parameters);

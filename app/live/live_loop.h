@@ -26,7 +26,12 @@ struct Controls {
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   bool magnet = false;       // picks up what it may
   std::uint32_t resets = 0;  // start over whenever this counts on
-  bool twin = false;         // a second run beside it; not beside a device in the arm's place
+  // A virtual arm's time: its tick comes with every so many of the loop's. Paused, it comes only
+  // when `steps` counts on, or where it starts over or force comes or goes.
+  int slow = 1;
+  bool paused = false;
+  std::uint32_t steps = 0;
+  bool twin = false;  // a second run beside it; not beside a device in the arm's place
   Parameters twin_parameters;
 };
 
@@ -155,6 +160,7 @@ class LiveLoop {
   void publish(const TickTiming& timing);
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
+  bool due(const Controls& controls);              // the loop's
   void begin(RigStart start, const Parameters& p);
   bool recorder_is_free();
 
@@ -196,6 +202,8 @@ class LiveLoop {
   RigStart home_;
   RigStart rebase_;
   std::uint32_t resets_ = 0, known_arms_ = 0, known_cuts_ = 0;
+  std::uint32_t steps_ = 0;          // taken, or not wanted any more
+  int slowed_ = 0;                   // ticks of the loop since the last one of the arm
   std::vector<double> rows_;         // the newest row and the twin's
   std::span<double> row_, of_twin_;  // in them
   double compute_ = 0;

@@ -59,7 +59,8 @@ void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshMod
   } else {
     loop_.open(fresh->arm(), fresh->document().scene, p, rest);
   }
-  controls_.grab = controls_.magnet = false;
+  controls_.grab = controls_.magnet = controls_.paused = false;
+  controls_.slow = 1;
   controls_.goal = rest;
   take_stage(std::move(fresh));
 }
@@ -105,6 +106,18 @@ std::span<const double> LiveSession::row() const {
 bool LiveSession::force_armed() const {
   const Arming now = loop_.snapshot().arming;
   return now != Arming::off && now != Arming::tripped;
+}
+
+std::string LiveSession::why_time_is_fixed() const {
+  return loop_.device_in_place()
+             ? "A real device is in the arm's place: its time cannot be stopped."
+             : "";
+}
+
+std::string LiveSession::pace_text() const {
+  if (paused()) return "paused";
+  if (!why_time_is_fixed().empty() || controls_.slow == 1) return "";
+  return fmt::format("1/{} speed", controls_.slow);
 }
 
 std::string LiveSession::why_no_magnet() const {

@@ -51,6 +51,14 @@ class LiveSession {
   // Whether force is on, or will be as soon as nothing keeps it off.
   bool force_armed() const;
   void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
+  // The virtual arm's time: why it goes on as it is, for people, empty if it can be changed;
+  // whether it stands still; one tick, or more, of it.
+  std::string why_time_is_fixed() const;
+  bool paused() const { return controls_.paused && why_time_is_fixed().empty(); }
+  void pause(bool paused) { controls_.paused = paused; }
+  void step(std::uint32_t ticks) { controls_.steps += ticks; }
+  // "paused", "at 1/10 of the speed"; empty where it goes on as usual.
+  std::string pace_text() const;
   // Why the tip cannot pick anything up, for people; empty if it can.
   std::string why_no_magnet() const;
   // The magnet at the tip on or off.

@@ -36,12 +36,16 @@ StatusPart force_part(const Snapshot& now) {
 
 // Rate, missed ticks and coupling, the most important last.
 std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
-                                     const std::string& played) {
+                                     const StatusGoing& going) {
   const Palette& colours = current_palette();
   const LoopStatus status = loop.status();
   const bool stopped = !status.running;
   std::vector<StatusPart> parts;
+  const auto& [played, pace] = going;
   if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
+  if (!pace.empty()) {
+    parts.push_back({pace, colours.accent, "The simulation; the loop itself goes on as usual"});
+  }
   parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
                    stopped ? colours.broken : colours.muted, status.failure});
   parts.push_back({fmt::format("{} missed", status.missed),
@@ -65,8 +69,8 @@ float status_width(const StatusPart& part) {
 
 float least_status_width(const LiveLoop& loop) { return status_width(force_part(loop.snapshot())); }
 
-void draw_status(const LiveLoop& loop, const StatusLaw& law, const std::string& played) {
-  std::vector<StatusPart> parts = status_parts(loop, law, played);
+void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going) {
+  std::vector<StatusPart> parts = status_parts(loop, law, going);
   parts.push_back(force_part(loop.snapshot()));
   const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX();
   float width = 0;

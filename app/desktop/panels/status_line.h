@@ -13,9 +13,14 @@ struct StatusLaw {
   double eta;
 };
 
-// As much as there is room for; the force is the last to go. `played`: the name of the recording
-// that is shown, empty for the loop.
-void draw_status(const LiveLoop& loop, const StatusLaw& law, const std::string& played);
+// What goes on: the name of the recording that is shown, empty for the loop; and how a virtual
+// arm's time goes, empty as usual.
+struct StatusGoing {
+  std::string played, pace;
+};
+
+// As much as there is room for; the force is the last to go.
+void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going);
 // Of the force alone [px].
 float least_status_width(const LiveLoop& loop);
 

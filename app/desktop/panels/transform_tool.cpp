@@ -77,7 +77,7 @@ bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const
   const bool followed = transform_.has_value();  // also by the click that ends it
   if (transform_) follow(document, camera, mouse, list);
   list.PopClipRect();
-  return over_ || followed;
+  return followed || (over_ && !ImGui::IsMouseDown(ImGuiMouseButton_Right));
 }
 
 void TransformTool::start(Document& document, const Object& now, const Eigen::Vector2d& mouse) {

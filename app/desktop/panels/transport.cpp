@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -148,6 +150,23 @@ void recording_controls(const LiveSession& live, double tick, const Act& act) {
   }
 }
 
+// Of the virtual arm: its speed, or tick by tick.
+void time_controls(LiveSession& live, const Act& act) {
+  if (!live.why_time_is_fixed().empty()) return;
+  const bool paused = live.paused();
+  if (button("Pause", "The simulation stands still until it is pressed again (K).", paused)) {
+    act("loop.pause");
+  }
+  if (paused) {
+    if (button(">", "One tick on (right arrow), with Shift ten")) act("loop.step");
+    return;
+  }
+  int& slow = live.controls().slow;
+  slow = static_cast<int>(std::lround(1 / choose("##slow", 1.0 / slow, {1, 0.1, 0.01}, "x")));
+  tooltip("Speed of the simulation. In slow motion the hand's target moves as fast as before.");
+  ImGui::SameLine();
+}
+
 void live_controls(LiveSession& live, double tick, double& plot_length, const Act& act) {
   recording_controls(live, tick, act);
   if (button("Open...", "Choose a recorded session (Ctrl+O).")) act("session.open");
@@ -167,6 +186,7 @@ void live_controls(LiveSession& live, double tick, double& plot_length, const Ac
   }
   tooltip("How much time the plots show, 1 to 60 s");
   ImGui::SameLine();
+  time_controls(live, act);
   if (button(
           "Start over",
           "Device and proxy at rest in the middle; a real device's force goes off (Backspace).")) {

@@ -165,6 +165,15 @@ std::string no_virtual_arm(const Desktop& d) {
              : "";
 }
 
+std::string time_fixed(const Desktop& d) {
+  const std::string playback = in_playback(d);
+  return playback.empty() ? d.live.why_time_is_fixed() : playback;
+}
+
+std::string not_paused(const Desktop& d) {
+  return d.live.paused() ? "" : "Pause the simulation first (K).";
+}
+
 std::string not_broken(const Desktop& d) {
   return passivity_broken(d.settings) ? "" : "Passivity is whole.";
 }
@@ -336,6 +345,14 @@ constexpr std::array kCommands{
         "twin: a second coupling on the same hand", [](Desktop& d) { d.tuning.toggle_twin(); },
         {.why_not = [](const Desktop& d) { return d.live.why_twin_is_fixed(); },
          .checked = [](const Desktop& d) { return d.settings.twin.on; }}),
+    row("loop.pause", "Pause the simulation", "Session", "K",
+        "pause the simulation; paused: on by a tick, by ten",
+        [](Desktop& d) { d.live.pause(!d.live.paused()); },
+        {.why_not = time_fixed, .checked = [](const Desktop& d) { return d.live.paused(); }}),
+    row("loop.step", "On by a tick", nullptr, "Right", "", [](Desktop& d) { d.live.step(1); },
+        {.repeats = true, .why_not = not_paused}),
+    row("loop.step_ten", "On by ten ticks", nullptr, "Shift+Right", "",
+        [](Desktop& d) { d.live.step(10); }, {.repeats = true, .why_not = not_paused}),
     row("session.tick_back", "Step back by a tick", nullptr, "Left", "in playback: step by a tick",
         [](Desktop& d) { player(d).step(-1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <initializer_list>
 #include <string>
 
@@ -209,7 +210,8 @@ void draw_object_menu(Desktop& d) {
   } else {
     for (const NewObject& each : new_objects()) {
       if (each.first_that_moves) ImGui::Separator();
-      const std::string label = std::string("Add ") + each.label;
+      std::string label = std::string("Add ") + each.label;
+      label[4] = static_cast<char>(std::tolower(label[4]));
       const std::string why = d.document.why_fixed();
       if (ImGui::MenuItem(label.c_str(), nullptr, false, why.empty()))
         d.world.add_object(each.object);
@@ -238,7 +240,7 @@ void draw_menu_bar(Desktop& desktop, RecentMenu& recent) {
     law.eta = layout.in(desktop.shown.row(), Column::eta)[0];
     played = session->file().filename().string();
   }
-  draw_status(loop, law, played);
+  draw_status(loop, law, {played, played.empty() ? desktop.live.pace_text() : ""});
   ImGui::EndMainMenuBar();
 }
 

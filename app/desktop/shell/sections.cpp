@@ -10,6 +10,7 @@
 #include "app/desktop/panels/device_panel.h"
 #include "app/desktop/panels/parameter_rows.h"
 #include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/panels/tick_panel.h"
 #include "app/desktop/panels/timing_panel.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/widgets.h"
@@ -96,6 +97,10 @@ DrawSection timing_section(Desktop& d) {
   };
 }
 
+DrawSection tick_section(Desktop& d) {
+  return [&d](const Act&) { draw_tick(d.shown.stage(), d.shown.row()); };
+}
+
 bool always(const Desktop&) { return true; }
 bool never(const Desktop&) { return false; }
 bool with_device(const Desktop& d) { return !d.devices.hub().in_use().empty(); }
@@ -105,6 +110,7 @@ constexpr std::array kSections{
     SectionKind{"Hand", always, hand_section},
     SectionKind{"Device", with_device, device_section},
     SectionKind{"Analysis", never, analysis_section},
+    SectionKind{"This tick", never, tick_section},
     SectionKind{"Timing", always, timing_section},
 };
 

@@ -91,6 +91,58 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(plan)), -1);
 }
 
+// The time of the newest row, once the loop has lived through some more ticks [ticks].
+std::int64_t arm_ticks(LiveLoop& loop) {
+  let_live(loop, 20);
+  loop.update();
+  const double t = loop.layout().in(std::span<const double>(loop.snapshot().row), Column::time)[0];
+  return std::llround(t * 1e3);
+}
+
+TEST(LiveLoop, StandsStillWhilePausedAndGoesOnByAsManyTicksAsAreAskedFor) {
+  LiveLoop loop({});
+  Controls controls;
+  const SceneDocument table = test::omni_document("table.toml");
+  loop.open(test::omni(), table.scene, controls.parameters, kHome);
+  let_live(loop, 50);
+  controls.paused = true;
+  loop.set(controls);
+  const std::int64_t stood = arm_ticks(loop);
+  EXPECT_EQ(arm_ticks(loop), stood);
+  ++controls.steps;
+  loop.set(controls);
+  EXPECT_EQ(arm_ticks(loop), stood + 1);
+  controls.steps += 7;
+  loop.set(controls);
+  EXPECT_EQ(arm_ticks(loop), stood + 8);
+  loop.cut();  // is not kept waiting
+  EXPECT_EQ(arm_ticks(loop), stood + 9);
+  EXPECT_EQ(loop.snapshot().arming, Arming::off);
+  controls.steps += 1000;  // what is left of them is not wanted any more
+  controls.paused = false;
+  controls.slow = 10;
+  loop.set(controls);
+  const std::int64_t before = arm_ticks(loop), began = loop.status().ticks;
+  let_live(loop, 300);
+  const std::int64_t went = arm_ticks(loop) - before, lived = loop.status().ticks - began;
+  EXPECT_NEAR(static_cast<double>(went), static_cast<double>(lived) / 10, 3);
+}
+
+// A hand may be on it.
+TEST(LiveLoop, DoesNotStandStillForADevice) {
+  LiveLoop loop({});
+  Controls controls;
+  const SceneDocument table = test::omni_document("table.toml");
+  loop.open(test::omni(), table.scene, controls.parameters, std::make_unique<test::FakeDevice>(3));
+  controls.paused = true;
+  controls.slow = 100;
+  loop.set(controls);
+  const std::int64_t before = arm_ticks(loop), began = loop.status().ticks;
+  let_live(loop, 100);
+  EXPECT_NEAR(static_cast<double>(arm_ticks(loop) - before),
+              static_cast<double>(loop.status().ticks - began), 30);
+}
+
 // Of the haptic thread: how often it touched a page that was not there.
 std::int64_t page_faults() {
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
