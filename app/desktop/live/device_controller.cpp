@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace limpid {
 namespace {
 
@@ -87,7 +89,10 @@ bool DeviceController::must_wait() const {
 }
 
 void DeviceController::look() {
-  if (auto found = take_ready(looking_)) hub_.take(std::move(*found), asking_services_);
+  if (auto found = take_ready(looking_)) {
+    hub_.take(std::move(*found), asking_services_);
+    say_what_came();
+  }
   const auto now = Clock::now();
   if (looking_.valid() || now < look_at_) return;
   asking_services_ = now >= services_at_;
@@ -96,6 +101,19 @@ void DeviceController::look() {
     return DeviceHub::look(wanted, services);
   });
   look_at_ = now + kLook;
+}
+
+// Those of the start are in the menu and the panel; one that is used is spoken of elsewhere.
+void DeviceController::say_what_came() {
+  std::vector<std::string> here;
+  for (const FoundDevice& found : hub_.found()) {
+    here.push_back(found.place.id);
+    if (!known_ || std::ranges::find(*known_, found.place.id) != known_->end()) continue;
+    if (found.place.id == hub_.in_use()) continue;
+    notices_.say(
+        fmt::format("{} is plugged in. The menu Device lets you use it.", found.place.name));
+  }
+  known_ = std::move(here);
 }
 
 void DeviceController::watch() {

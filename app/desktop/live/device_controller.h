@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ class DeviceController {
   using Clock = std::chrono::steady_clock;
 
   void look();
+  void say_what_came();
   void connect();
   void take_connected();
   void watch();
@@ -89,6 +91,7 @@ class DeviceController {
   ButtonPresses buttons_;
   Arming arming_ = Arming::off;  // at the last frame
   std::future<std::vector<FoundDevice>> looking_;
+  std::optional<std::vector<std::string>> known_;  // ids of those that were there; none: not asked
   bool asking_services_ = false, lent_ = false;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;

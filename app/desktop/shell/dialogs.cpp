@@ -163,6 +163,12 @@ DrawDialog add_model(Desktop& d) {
       [](Desktop& desktop, const fs::path& file) { desktop.world.add_model(file); });
 }
 
+DrawDialog open_scene(Desktop& d) {
+  return ask_for_file(
+      d, {.title = "Open scene", .action = "Open", .extensions = {".toml"}},
+      [](Desktop& desktop, const fs::path& file) { desktop.world.open_scene(file); });
+}
+
 DrawDialog open_arm(Desktop& d) {
   return ask_for_file(d, {.title = "Open arm", .action = "Open", .extensions = {".urdf", ".xacro"}},
                       [](Desktop& desktop, const fs::path& file) { desktop.world.open_arm(file); });
@@ -253,6 +259,7 @@ constexpr std::array kDialogs{
     DialogKind{"open session", kModal, sessions},
     DialogKind{"gallery", kModal, gallery},
     DialogKind{"add model", kModal, add_model},
+    DialogKind{"open scene", kModal, open_scene},
     DialogKind{"open arm", kModal, open_arm},
     DialogKind{"arm tip", kModal, arm_tip},
     DialogKind{"expand xacro", kModal, expand_xacro},

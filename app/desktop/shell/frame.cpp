@@ -20,7 +20,7 @@ namespace limpid {
 void Frame::draw() {
   const auto part = [this](auto&& work) { guard(desktop_.notices, work); };
   Settings& settings = desktop_.settings;
-  part([&] { draw_menu_bar(desktop_, recent_); });
+  part([&] { draw_menu_bar(desktop_, files_); });
   const Layout at = lay_out();
   part([&] { draw_view(at.view); });
   if (at.show_left) part([&] { draw_coupling(at.left); });

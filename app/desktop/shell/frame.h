@@ -29,7 +29,7 @@ class Frame {
   bool differs();
   void drop_pictures() {  // before the OpenGL context goes
     dialogs_.drop_pictures();
-    recent_.drop_pictures();
+    files_.drop_pictures();
   }
 
  private:
@@ -54,7 +54,7 @@ class Frame {
   Window& window_;
   Act act_;
   WindowLayout layout_;
-  RecentMenu recent_;
+  FileMenus files_;
   ViewPanel view_;
   Sections sections_;
   Dialogs dialogs_;

@@ -1,8 +1,8 @@
 #include "app/desktop/shell/menu.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <initializer_list>
@@ -20,16 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<fs::path> files_in(const fs::path& dir, const std::string& extension) {
-  std::vector<fs::path> files;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(dir, none)) {
-    if (entry.path().extension() == extension) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 // What is kept by name; the one that was clicked, empty for none.
 std::string named_items(const NamedTexts& texts) {
   std::string chosen;
@@ -39,41 +29,58 @@ std::string named_items(const NamedTexts& texts) {
   return chosen;
 }
 
-void presets(Desktop& d, RecentMenu&) {
+void presets(Desktop& d, FileMenus&) {
   if (const std::string name = named_items(d.tuning.presets); !name.empty())
     d.tuning.use_preset(name);
 }
 
-void layouts(Desktop& d, RecentMenu&) {
+void layouts(Desktop& d, FileMenus&) {
   if (const std::string name = named_items(d.plots.layouts); !name.empty()) d.plots.use(name);
 }
 
-void recent_files(Desktop& d, RecentMenu& recent) {
-  if (const fs::path chosen = recent.draw(d.settings.recent); !chosen.empty()) {
+void recent_files(Desktop& d, FileMenus& files) {
+  if (const fs::path chosen = files.draw(d.settings.recent); !chosen.empty()) {
     d.world.open_files({chosen});
   }
 }
 
-void shipped_scenes(Desktop& d, RecentMenu&) {
+void shipped_scenes(Desktop& d, FileMenus& files) {
   ImGui::Separator();
-  for (const fs::path& file : files_in(data_dir() / "assets/scenes", ".toml")) {
-    const bool present = d.document.file() == file.string();
-    if (ImGui::MenuItem(file.stem().string().c_str(), nullptr, present)) d.world.open_scene(file);
+  if (const fs::path chosen = files.draw_scenes(d.document.file()); !chosen.empty()) {
+    d.world.open_scene(chosen);
   }
 }
 
-void about_drops(Desktop&, RecentMenu&) {
+void about_drops(Desktop&, FileMenus&) {
   ImGui::Separator();
   ImGui::TextDisabled("Drop models, scenes, recordings or sweeps on the window.");
 }
 
-void about_arm(Desktop& d, RecentMenu&) {
+// Who has the hand: the virtual arm, or one of the devices that are there.
+void arms(Desktop& d, FileMenus&) {
   const ArmDescription& arm = d.live.stage().arm();
-  ImGui::TextDisabled("%s, virtual, %d joints", arm.name.c_str(), arm.dof());
+  const std::string& in_use = d.devices.hub().in_use();
+  const std::string virtual_arm = fmt::format("{}, virtual, {} joints", arm.name, arm.dof());
+  if (ImGui::MenuItem(in_use.empty() ? virtual_arm.c_str() : "Virtual arm", nullptr,
+                      in_use.empty())) {
+    d.devices.use("");
+  }
+  for (const FoundDevice& found : d.devices.hub().found()) {
+    ImGui::PushID(found.place.path.c_str());
+    const bool here = found.place.id == in_use;
+    if (ImGui::MenuItem(found.place.name.c_str(), nullptr, here, found.missing.empty())) {
+      d.devices.use(found.place.id);
+    }
+    if (!found.missing.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+      ImGui::SetTooltip("%s", found.missing.c_str());
+    }
+    ImGui::PopID();
+  }
+  ImGui::Separator();
 }
 
 // One of the plots, with all that can be done with it.
-void plot_menus(Desktop& d, RecentMenu&) {
+void plot_menus(Desktop& d, FileMenus&) {
   std::vector<Plot>& plots = d.shown.stage().plots;
   PlotWish wish = PlotWish::none;
   std::size_t of = 0;
@@ -95,7 +102,7 @@ void plot_menus(Desktop& d, RecentMenu&) {
 struct MenuPart {
   const char* menu;
   std::string_view behind;  // the id of a command; empty: at the top
-  void (*draw)(Desktop&, RecentMenu&);
+  void (*draw)(Desktop&, FileMenus&);
 };
 
 constexpr std::array kParts{
@@ -105,7 +112,7 @@ constexpr std::array kParts{
     MenuPart{"View/Layouts", "", layouts},
     MenuPart{"Scene", "scene.gallery", shipped_scenes},
     MenuPart{"Scene", "scene.gallery", about_drops},
-    MenuPart{"Device", "", about_arm},
+    MenuPart{"Device", "", arms},
 };
 constexpr std::array kMenus{"File", "Edit", "View", "Session", "Scene", "Device", "Help"};
 
@@ -122,10 +129,10 @@ void draw_item(const Command& command, Desktop& d) {
 }
 
 // A menu inside of `menu` stands where its first command does in the table.
-void draw_menu(std::string_view menu, Desktop& d, RecentMenu& recent) {
+void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
   const auto draw_parts = [&](std::string_view behind) {
     for (const MenuPart& part : kParts) {
-      if (part.menu == menu && part.behind == behind) part.draw(d, recent);
+      if (part.menu == menu && part.behind == behind) part.draw(d, files);
     }
   };
   draw_parts("");
@@ -140,16 +147,16 @@ void draw_menu(std::string_view menu, Desktop& d, RecentMenu& recent) {
       inner = of;
       const std::string title(inner.substr(menu.size() + 1));
       if (!ImGui::BeginMenu(title.c_str())) continue;
-      draw_menu(inner, d, recent);
+      draw_menu(inner, d, files);
       ImGui::EndMenu();
     }
   }
 }
 
-void draw_menus(Desktop& d, RecentMenu& recent) {
+void draw_menus(Desktop& d, FileMenus& files) {
   for (const char* menu : kMenus) {
     if (!ImGui::BeginMenu(menu)) continue;
-    draw_menu(menu, d, recent);
+    draw_menu(menu, d, files);
     ImGui::EndMenu();
   }
 }
@@ -165,7 +172,7 @@ float menus_width() {
 
 }  // namespace
 
-void RecentMenu::look(const std::vector<std::string>& recent) {
+void FileMenus::look(const std::vector<std::string>& recent) {
   pictures_.clear();
   entries_.clear();
   for (const std::string& name : recent) {
@@ -174,7 +181,7 @@ void RecentMenu::look(const std::vector<std::string>& recent) {
   }
 }
 
-fs::path RecentMenu::draw(const std::vector<std::string>& recent) {
+fs::path FileMenus::draw(const std::vector<std::string>& recent) {
   if (!ImGui::BeginMenu("Open recent", !recent.empty())) return {};
   if (ImGui::IsWindowAppearing()) look(recent);
   std::vector<PictureItem> items;
@@ -192,6 +199,18 @@ fs::path RecentMenu::draw(const std::vector<std::string>& recent) {
     if (picture_item(items[i], width)) chosen = entries_[i].file;
   }
   ImGui::EndMenu();
+  return chosen;
+}
+
+fs::path FileMenus::draw_scenes(const std::string& present) {
+  if (ImGui::IsWindowAppearing()) {
+    scenes_ = gallery_of(data_dir() / "assets/scenes", data_dir() / "assets/sessions");
+  }
+  fs::path chosen;
+  for (const GalleryCard& card : scenes_) {
+    if (ImGui::MenuItem(card.title.c_str(), nullptr, card.scene == present)) chosen = card.scene;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", card.about.c_str());
+  }
   return chosen;
 }
 
@@ -222,13 +241,13 @@ void draw_object_menu(Desktop& d) {
   ImGui::EndPopup();
 }
 
-void draw_menu_bar(Desktop& desktop, RecentMenu& recent) {
+void draw_menu_bar(Desktop& desktop, FileMenus& files) {
   if (!ImGui::BeginMainMenuBar()) return;
   const LiveLoop& loop = desktop.live.loop();
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
-    draw_menus(desktop, recent);
+    draw_menus(desktop, files);
   } else if (ImGui::BeginMenu("Menu")) {
-    draw_menus(desktop, recent);
+    draw_menus(desktop, files);
     ImGui::EndMenu();
   }
   const Parameters& p = desktop.settings.parameters;

@@ -5,16 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "app/desktop/panels/gallery.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/picture_shelf.h"
 
 namespace limpid {
 
-// The menu of files that were open last, with their pictures.
-class RecentMenu {
+// Menus of files: those that were open last, with their pictures, and the shipped scenes.
+class FileMenus {
  public:
   // Inside of a menu. The file that is chosen.
   std::filesystem::path draw(const std::vector<std::string>& recent);
+  // The same of the shipped scenes; `present`: the one that is open.
+  std::filesystem::path draw_scenes(const std::string& present);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
  private:
@@ -24,11 +27,13 @@ class RecentMenu {
   };
   void look(const std::vector<std::string>& recent);
 
-  std::vector<Entry> entries_;  // as they were when the menu opened
+  // As they were when the menu opened.
+  std::vector<Entry> entries_;
+  std::vector<GalleryCard> scenes_;
   PictureShelf pictures_;
 };
 
-void draw_menu_bar(Desktop& desktop, RecentMenu& recent);
+void draw_menu_bar(Desktop& desktop, FileMenus& files);
 
 // What can be done with the selected object, or with the scene where nothing is selected; opened by
 // this name.

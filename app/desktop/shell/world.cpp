@@ -294,16 +294,39 @@ std::string World::why_fixed() const {
              : "";
 }
 
-void World::open_scene(const fs::path& file) {
+// After the user has been asked what to do with unsaved changes.
+void World::leave_for_scene(std::function<void()> then) {
   if (d_.live.recording()) {
     d_.notices.say("Stop the recording (R) before opening another scene.", true);
     return;
   }
-  d_.document.leave([this, file = fs::absolute(file).lexically_normal()] {
+  d_.document.leave([this, then = std::move(then)] {
     d_.playback.close();
     d_.document.loader().cancel();
     first_scene_.clear();
+    then();
+  });
+}
+
+void World::open_scene(const fs::path& file) {
+  leave_for_scene([this, file = fs::absolute(file).lexically_normal()] {
     d_.document.loader().open_scene(file, d_.live.stage().arm());
+  });
+}
+
+void World::new_scene() {
+  leave_for_scene([this] {
+    LoadedScene fresh;
+    for (int i = 1; fresh.file.empty() || fs::exists(fresh.file); ++i) {
+      fresh.file = scenes_dir() / (i == 1 ? "untitled.toml" : fmt::format("untitled-{}.toml", i));
+    }
+    fresh.document.title = "Untitled";
+    fresh.document.scene.tip_radius = 0.004;
+    fresh.document.scene.add(
+        {.name = "table top", .pose = pose_at({0.2, 0, -0.04}), .shape = Plane{}});
+    fresh.models.resize(1);
+    first_scene_ = fresh.file.string();  // not one to open at the next start, as long as it is none
+    accept(fresh);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,8 @@ class World {
   // Loading goes on beside the window; what is there stays until it is done.
   void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
   void open_scene(const std::filesystem::path& file);
+  // A table with nothing on it, which no file has yet.
+  void new_scene();
   void add_model(const std::filesystem::path& file);
   // Another arm in place of the virtual one, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
@@ -74,6 +77,7 @@ class World {
   void run_hand(const std::filesystem::path& file);
   void start_recording();
   Workplace workplace() const;
+  void leave_for_scene(std::function<void()> then);
   void show_scene();
   void hand_scene_over(bool at_once);
   void take_up(const SceneEditor& editor);

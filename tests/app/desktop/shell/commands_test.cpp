@@ -90,6 +90,8 @@ const Case kCases[] = {
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
     {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
     {"Ctrl+O", GLFW_KEY_O, kControl, "session.open", "session.open"},
+    {"Ctrl+N", GLFW_KEY_N, kControl, "scene.new", "scene.new"},
+    {"Ctrl+Shift+O", GLFW_KEY_O, kControl | kShift, "scene.open", "scene.open"},
     {"Ctrl+Q", GLFW_KEY_Q, kControl, "window.quit", "window.quit"},
     {"Ctrl+Z", GLFW_KEY_Z, kControl, "edit.undo", "edit.undo", true},
     {"Ctrl+Y", GLFW_KEY_Y, kControl, "edit.redo", "edit.redo", true},

@@ -219,6 +219,26 @@ TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
   EXPECT_EQ(arming(), Arming::off);
 }
 
+TEST_F(ADesktop, MakesNewScenesThatHaveFilesOfTheirOwnOnceTheyAreSaved) {
+  const std::string last = desktop->settings.scene;
+  for (const char* name : {"untitled.toml", "untitled-2.toml"}) {
+    run("scene.new");
+    EXPECT_TRUE(has("table top"));
+    EXPECT_FALSE(document().editor().dirty());
+    EXPECT_EQ(desktop->settings.scene, last) << "there is no file to open at the next start";
+    const fs::path file = document().own_file();
+    EXPECT_EQ(file.filename(), name);
+    EXPECT_FALSE(fs::exists(file));
+    ASSERT_TRUE(document().save_as(file));
+    EXPECT_TRUE(fs::exists(file));
+    EXPECT_EQ(std::exchange(desktop->settings.scene, last), file.string());
+  }
+  record_something();
+  run("scene.new");
+  EXPECT_TRUE(said("Stop the recording"));
+  EXPECT_EQ(document().own_file().filename(), "untitled-2.toml");
+}
+
 // The tip rests in the box: it touches it.
 TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   EXPECT_NE(run_command("hand.magnet", *desktop), "") << "a table cannot be picked up";
