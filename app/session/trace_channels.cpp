@@ -105,6 +105,11 @@ constexpr std::array kGroups{
 // Of each body, in this order: its place, and how fast it goes and turns.
 constexpr std::size_t kOfBody = 5;
 
+// What hands and eyes know of a run: where the tips are, and forces at them. Last in a row of
+// values.
+constexpr std::array<std::string_view, 3> kAxisWords{"forward", "to the left", "upward"};
+constexpr std::size_t kOfTips = 2 * (3 + 1) + 2;
+
 // What the parts of a column are called; a single one has no name.
 std::string part_name(ColumnWidth width, int part) {
   constexpr std::array kAxes{"x", "y", "z"};
@@ -188,6 +193,63 @@ TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& s
     }
   }
   add_bodies(bodies);
+  add_tips();
+}
+
+void TraceChannels::add_tips() {
+  struct Side {
+    std::string path;
+    const char* name;
+    Ink ink;
+  };
+  for (const Side& side : {Side{"device", "Device", device}, Side{"proxy", "Proxy", proxy}}) {
+    for (std::size_t i = 0; i < kAxisWords.size(); ++i) {
+      const std::string axis(1, static_cast<char>('x' + i));
+      infos_.push_back({.key = side.path + "/tip." + std::to_string(i + 1),
+                        .group = side.name,
+                        .name = "tip, " + axis,
+                        .label = side.path + " tip " + axis,
+                        .unit = "m",
+                        .help = "where the tip is, " + std::string(kAxisWords[i]),
+                        .ink = side.ink,
+                        .zero = false});
+    }
+    infos_.push_back({.key = side.path + "/tip_speed",
+                      .group = side.name,
+                      .name = "speed of the tip",
+                      .label = side.path + " tip speed",
+                      .unit = "m/s",
+                      .help = "how fast the tip moves",
+                      .ink = side.ink});
+  }
+  infos_.push_back({.key = "coordination/gap",
+                    .group = "Coordination error",
+                    .name = "gap of the tips",
+                    .label = "gap",
+                    .unit = "m",
+                    .help = "how far the tips of device and proxy are apart: how deep the hand's "
+                            "device is in what the proxy touches",
+                    .ink = proxy});
+  infos_.push_back({.key = "contact/total_force_norm",
+                    .group = "Contacts",
+                    .name = "force, |F|",
+                    .label = "|F|",
+                    .unit = "N",
+                    .help = "how hard the scene pushes on the proxy, all contacts together",
+                    .ink = contact});
+}
+
+void TraceChannels::put_tips(std::span<const double> row, std::span<double> into) const {
+  std::ranges::fill(into, std::numeric_limits<double>::quiet_NaN());
+  if (!tips_) return;
+  const DerivedColumns::Values known = tips_->of(DerivedColumns::from(layout_, row));
+  for (const std::size_t side : {0, 1}) {
+    const Vec3 &tip = known[2 * side], &velocity = known[2 * side + 1];
+    std::ranges::copy(tip, into.begin() + static_cast<std::ptrdiff_t>(4 * side));
+    into[4 * side + 3] = velocity.norm();
+  }
+  into[8] = (known[0] - known[2]).norm();
+  into[9] = known[kTotalForce].norm();
 }
 
 void TraceChannels::add_bodies(const std::vector<std::string>& names) {
@@ -274,12 +336,13 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
     of_bodies[4] = norm(velocity.last(3));
     of_bodies = of_bodies.subspan(kOfBody);
   }
+  put_tips(row, of_bodies.first(kOfTips));
 }
 
 void TraceChannels::append(History& history, std::span<const double> row,
                            std::span<const double> again) const {
   const auto one = static_cast<std::size_t>(count());
-  constexpr auto kMost = static_cast<std::size_t>(Channel::joints) + kMaxDof + kMaxStride;
+  constexpr auto kMost = static_cast<std::size_t>(Channel::joints) + kMaxDof + kMaxStride + kOfTips;
   std::array<double, 2 * kMost> all;
   const auto used = std::span(all).first(static_cast<std::size_t>(history.channels()));
   values(row, used.first(one));

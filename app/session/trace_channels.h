@@ -11,6 +11,7 @@
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 #include "core/tick/row.h"
+#include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_units.h"
 
 namespace limpid {
@@ -57,6 +58,8 @@ class TraceChannels {
 
   // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
+  // From now on its tips are known; before, what is worked out of them is no number.
+  void know(const ArmDescription& arm) { tips_.emplace(arm); }
   // Whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 
@@ -73,6 +76,8 @@ class TraceChannels {
 
  private:
   void add_bodies(const std::vector<std::string>& names);
+  void add_tips();
+  void put_tips(std::span<const double> row, std::span<double> into) const;
 
   RowLayout layout_;
   NormUnits norms_;
@@ -86,6 +91,7 @@ class TraceChannels {
   std::vector<Place> columns_;
   std::vector<std::optional<SessionUnits::Scaled>> positions_;  // of each joint
   std::vector<double> limits_;
+  std::optional<DerivedColumns> tips_;
 };
 
 // Whose energy it is: what the coupling gave, apart from what changing a setting put in.

@@ -46,6 +46,7 @@ Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, Hist
       rows_(arm_, document_.scene),
       channels_(row_layout(arm_.dof(), document_.scene), slides_of(arm_),
                 body_names(document_.scene)) {
+  channels_.know(arm_);
   choose_plots(default_plots());
   show_meshes(models, std::nullopt);
 }

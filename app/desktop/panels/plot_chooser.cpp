@@ -7,6 +7,8 @@
 #include <array>
 #include <cctype>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "app/desktop/widgets/modal.h"
 #include "app/style/palette.h"
@@ -41,9 +43,20 @@ void muted(const char* text) {
 bool meant_by(const ChannelInfo& channel, const std::string& words) {
   const std::string all = lower(channel.group + " " + channel.name + " " + channel.label + " " +
                                 channel.unit + " " + channel.key);
+  // What people call it as well.
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kSame{
+      {{"human", "hand"},
+       {"depth", "gap"},
+       {"penetration", "gap"},
+       {"drift", "gap"},
+       {"error", "gap"}}};
+  const auto has = [&](std::string_view word) { return all.find(word) != std::string::npos; };
   std::istringstream in(lower(words));
   for (std::string word; in >> word;) {
-    if (all.find(word) == std::string::npos) return false;
+    const bool meant = has(word) || std::ranges::any_of(kSame, [&](const auto& same) {
+                         return same.first.starts_with(word) && word.size() > 2 && has(same.second);
+                       });
+    if (!meant) return false;
   }
   return true;
 }

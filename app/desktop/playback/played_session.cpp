@@ -25,6 +25,7 @@ constexpr double kOfStory = 12;  // that the plots show at once: about a step [s
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
                    std::span<const double> again, const std::vector<StoryStep>& steps) {
   TraceChannels channels(session.layout, slides_of(arm), session.info.bodies);
+  channels.know(arm);
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
   const double length = static_cast<double>(session.size()) * session.info.tick;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -146,6 +147,48 @@ TEST(TraceChannels, AreOfEachBodyWhereItIsAndHowFastItMoves) {
   EXPECT_EQ(speed.unit, "m/s");
 }
 
+// Against the arm's own kinematics, by finite differences for how fast.
+TEST(TraceChannels, KnowTheTipsOfTheArm) {
+  const RowLayout layout(3);
+  TraceChannels channels(layout);
+  std::vector<double> row = test::sample_rows(layout, 705, 1),
+                      values(static_cast<std::size_t>(channels.count()));
+  const auto value = [&](const std::string& key) {
+    channels.values(row, values);
+    return values[static_cast<std::size_t>(channels.find(key).value())];
+  };
+  EXPECT_TRUE(std::isnan(value("device/tip.1"))) << "which arm is not known";
+  channels.know(test::omni());
+  const Arm<3> arm(test::omni());
+  const auto tip = [&](Column x, Column v, double dt) {
+    Eigen::Vector3d q;
+    for (int j = 0; j < 3; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      q[j] = layout.in(std::span(row), x)[i] + dt * layout.in(std::span(row), v)[i];
+    }
+    return Vec3(arm.tip_at(q));
+  };
+  const auto speed = [&](Column x, Column v) {
+    return (tip(x, v, 1e-6) - tip(x, v, -1e-6)).norm() / 2e-6;
+  };
+  const Vec3 device = tip(Column::device_position, Column::device_velocity, 0);
+  const Vec3 proxy = tip(Column::proxy_position, Column::proxy_velocity, 0);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(value("device/tip." + std::to_string(i + 1)), device[i], 1e-12);
+    EXPECT_NEAR(value("proxy/tip." + std::to_string(i + 1)), proxy[i], 1e-12);
+  }
+  EXPECT_NEAR(value("device/tip_speed"), speed(Column::device_position, Column::device_velocity),
+              1e-7);
+  EXPECT_NEAR(value("proxy/tip_speed"), speed(Column::proxy_position, Column::proxy_velocity),
+              1e-7);
+  EXPECT_NEAR(value("coordination/gap"), (device - proxy).norm(), 1e-12);
+  Vec3 force = Vec3::Zero();
+  const auto forces = layout.in(std::span(row), Column::contact_force);
+  for (std::size_t i = 0; i < forces.size(); ++i) force[static_cast<int>(i % 3)] += forces[i];
+  EXPECT_GT(force.norm(), 0);
+  EXPECT_NEAR(value("contact/total_force_norm"), force.norm(), 1e-12);
+}
+
 TEST(TraceChannels, HaveNoneOfBodiesWhereNothingMoves) {
   const TraceChannels channels{RowLayout(3, 0)};
   for (const ChannelInfo& info : channels.infos()) EXPECT_NE(info.group, "Objects");
@@ -163,7 +206,11 @@ TEST(TraceChannels, FitIntoAHistoryHoweverManyMove) {
   History history({.channels = 2 * channels.count(), .seconds = 0.01});
   const std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.5);
   channels.append(history, row, row);
-  EXPECT_EQ(history.value(2 * channels.count() - 1, history.first()),
+  int last = 0;  // of the bodies' channels
+  for (int i = 0; i < channels.count(); ++i) {
+    if (channels.infos()[static_cast<std::size_t>(i)].key.ends_with("turning")) last = i;
+  }
+  EXPECT_EQ(history.value(channels.count() + last, history.first()),
             static_cast<float>(std::sqrt(0.75)));
 }
 

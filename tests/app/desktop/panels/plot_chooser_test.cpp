@@ -20,6 +20,12 @@ TEST(PlotChooser, FindsChannelsByAnyWordsOfTheirs) {
   EXPECT_EQ(found("|f2|"), std::vector<std::string>{"proxy/contact_torque_norm"});
   EXPECT_EQ(found("x_e 3"), std::vector<std::string>{"coordination/error.3"});
   EXPECT_TRUE(found("velocity banana").empty());
+  // Words of people.
+  EXPECT_EQ(found("depth"), std::vector<std::string>{"coordination/gap"});
+  EXPECT_EQ(found("penetration"), found("depth"));
+  EXPECT_EQ(found("human torque |"), found("hand torque |"));
+  EXPECT_FALSE(found("human torque |").empty());
+  EXPECT_EQ(found("proxy tip").size(), 4u) << "where it is, and how fast it moves";
 }
 
 }  // namespace
