@@ -10,6 +10,7 @@
 
 #include "app/run/analysis.h"
 #include "devices/identify/torque_scale.h"
+#include "devices/identify/unlike_device.h"
 
 namespace limpid {
 

@@ -8,7 +8,7 @@
 
 #include "app/device/identify_run.h"
 #include "devices/identify/fit.h"
-#include "devices/identify/unlike_device.h"
+#include "devices/identify/unlikeness.h"
 
 namespace limpid {
 
