@@ -202,6 +202,7 @@ inline std::vector<BodyBench> body_benches(const BodyKind& kind) {
 struct BodyRun {
   double energy = 0;    // highest E_c [J]
   double beyond = 0;    // most that the hand was given beyond what bodies gave [J]
+  double given = 0;     // most that the hand was given, beyond what bodies gave if they did [J]
   double gain = 0;      // most that the bodies' world made [J]
   double reserve = 0;   // the ledger's least, less what it began with [J]
   double governor = 1;  // least
@@ -240,6 +241,8 @@ inline BodyRun run(const BodyBench& bench, Parameters p) {
     all.energy = std::max(all.energy, at(Column::energy_total)[0]);
     all.beyond =
         std::max(all.beyond, at(Column::energy_port)[0] + at(Column::energy_to_objects)[0]);
+    all.given = std::max(
+        all.given, at(Column::energy_port)[0] + std::min(0.0, at(Column::energy_to_objects)[0]));
     all.gain = std::max(all.gain, at(Column::objects_gain)[0]);
     all.reserve = std::min(all.reserve, at(Column::energy_ledger)[0] - reserve);
     all.governor = std::min(all.governor, at(Column::governor)[0]);
