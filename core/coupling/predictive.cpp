@@ -308,8 +308,8 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
     settled = solve_with_bodies(both, T, found);
   }
   if (!settled) {
+    contacts_.hold_bodies();
     both.stand_still(contacts_, T, found);
-    contacts_.push_bodies(0);
     ++unsettled_;
     solved_ = TickSolve::stood_still;
   }

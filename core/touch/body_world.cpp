@@ -479,6 +479,25 @@ void BodyWorld::book(const End& end, const Vec3& force) {
   given_now_ += T_ * force.dot(velocity(end));
 }
 
+void BodyWorld::hold_touched() {
+  for (Row& row : std::span(rows_.data(), count_)) {
+    if (!in_turn(row.contact->a, row.contact->b, true)) continue;
+    row.force = row.contact->force;
+    row.friction = row.frame.rightCols<2>().transpose() * row.contact->friction;
+  }
+  for (JointRow& row : joints_) {
+    if (!in_turn(row.body, BodyContact::kStill, true)) continue;
+    row.friction = -row.anchor * bodies_[at(row.body)].of_joint().stop_stiffness;
+  }
+  // As if asleep; who is near the tip, or to what moves, is awake again at the next tick.
+  for (int i = 0; i < count(); ++i) parent_[at(i)] = root(i);
+  for (int i = 0; i < count(); ++i) {
+    if (!moves(i) || touched_[at(parent_[at(i)])] == 0) continue;
+    bodies_[at(i)].halt();
+    awake_[at(i)] = 0;
+  }
+}
+
 void BodyWorld::end_rows() {
   for (const Row& row : std::span(rows_.data(), count_)) {
     BodyContact& c = *row.contact;

@@ -64,6 +64,9 @@ class BodyWorld {
   Vec3 magnet_point() const { return place(magnet_.body, magnet_.point); }  // [m]
   void pulled(const Vec3& force);  // by the magnet, over the tick [N]
 
+  // What the arm touches, and what hangs together with it, stays where it is for this tick, at
+  // rest, with the forces of the last one: it can only lose energy by that.
+  void hold_touched();
   // What the arm's row at this end gave, by its force on it over the whole tick [N].
   void book(const End& end, const Vec3& force);
   // Sweeps until nothing changes any more.

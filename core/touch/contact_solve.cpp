@@ -489,6 +489,18 @@ double ContactSolve<N>::push_bodies(int turn) {
 }
 
 template <int N>
+void ContactSolve<N>::hold_bodies() {
+  if (world_ == nullptr) return;
+  world_->hold_touched();
+  for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    if (row.world == nullptr) continue;
+    row.W_body.setZero();
+    row.body_free.setZero();
+    row.rubbed.setZero();
+  }
+}
+
+template <int N>
 Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
   if (slope != nullptr) slope->setZero();
   for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {

@@ -80,6 +80,9 @@ class ContactSolve {
   // and, from the second `turn` on (they are counted from 0), by what the last change did to them:
   // a body that rests on others gives way less than it would alone.
   double push_bodies(int turn);
+  // Bodies that the arm touches, and all that hangs together with them, stand still for the tick:
+  // what no forces were found for moves nothing, and so makes nothing.
+  void hold_bodies();
   // then the torque [N m] of the forces over a tick in which the proxy moves with the mean velocity
   // u [rad/s]; f2() and finish() are of the last one. `slope`: how it answers u [N m s/rad], on the
   // piece of the forces' laws that holds; null: nobody asks.

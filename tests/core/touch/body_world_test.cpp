@@ -351,6 +351,35 @@ TEST(BodyWorld, AnswersAForceWithItsMass) {
   EXPECT_NEAR(world.given(), 0.5 * 0.05 * world.speed(0).squaredNorm(), 1e-15);
 }
 
+// As where no forces were found for the arm and what it touches.
+TEST(BodyWorld, WhatIsHeldForATickOnlyLosesAndThenGoesOn) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("touched", Box{Vec3::Constant(0.03)}, 0.05, {0, 0, 0.0149}));
+  scene.add(body("falling", Sphere{0.02}, 0.05, {0.3, 0, 0.5}));
+  BodyWorld world(scene);
+  run(world, 3);  // it is being pushed out
+  const double before = world.gain(), speed = world.speed(0).norm();
+  ASSERT_GT(speed, 0);
+  const Vec3 there = world.center(0), falling = world.center(1);
+  world.touch(0);
+  world.begin(T);
+  const BodyWorld::End end = world.end_at(0, world.center(0) + Vec3(0, 0, 0.015));
+  world.push(end, {0, 0, -50});
+  world.hold_touched();
+  world.settle();
+  world.book(end, {0, 0, -50});
+  world.finish();
+  EXPECT_EQ(world.center(0), there);
+  EXPECT_EQ(world.speed(0), Vec3(Vec3::Zero()));
+  EXPECT_EQ(world.given(), 0);
+  EXPECT_LT(world.center(1).z(), falling.z());
+  world.touch(0);
+  run(world, 1);
+  EXPECT_LE(world.gain(), before + 1e-12);
+  EXPECT_EQ(world.awake(), 2);
+}
+
 TEST(BodyWorld, AKeyClicksWhereItsTableSays) {
   Scene scene;
   Object key = body("key", Box{{0.012, 0.012, 0.006}}, 0.002, {0, 0, 0});
