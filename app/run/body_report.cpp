@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kInEachOther = 0.0005;  // less than this deep is touching [m]
 constexpr double kHurts = 0.2;           // [J]
+// As deep as 50 g that fall 10 cm press a point in; deeper than half of it, and the other side is
+// nearer [m].
+constexpr double kThinBody = 0.004;
 
 // The box around a mesh, in its object's frame: as a box at a pose.
 std::pair<Box, Pose> box_around(const Mesh& mesh) {
@@ -139,6 +142,12 @@ void warn(const Object& object, const Scene& scene, const Vec3& root, double rea
   if (away > 0) {
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
+  }
+  double thick = std::numeric_limits<double>::infinity();
+  for (const Placed& piece : pieces(object)) thick = std::min(thick, 2 * half_width(piece.shape));
+  if (thick < kThinBody) {
+    report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
+                                          object.name, 1e3 * thick));
   }
   if (const std::string missing = not_rendered(object.body->joint); !missing.empty()) {
     report.warnings.push_back(fmt::format("'{}': {}", object.name, missing));

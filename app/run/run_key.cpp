@@ -20,6 +20,8 @@ void add_hand(Digest& digest, const HandPath& hand) {
     }
   }
   digest.add_all(hand.grip);
+  digest.add(std::uint64_t{hand.magnet.size()});
+  for (const bool picks_up : hand.magnet) digest.add(std::uint64_t{picks_up});
 }
 
 void add_start(Digest& digest, const std::optional<RigStart>& start) {
@@ -31,6 +33,7 @@ void add_start(Digest& digest, const std::optional<RigStart>& start) {
   for (const double x : start->target) digest.add(x);
   digest.add(std::uint64_t{start->armed});
   digest.add(start->reserve);
+  digest.add_all(start->world);
 }
 
 void add_changes(Digest& digest, const std::vector<SettingChange>& changes) {

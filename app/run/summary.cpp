@@ -139,6 +139,7 @@ bool Summary::add(std::span<const double> row) {
     t.to_objects = at(Column::energy_to_objects)[0];
     t.objects_gain = std::max(t.objects_gain, at(Column::objects_gain)[0]);
     t.most_awake = std::max(t.most_awake, at(Column::objects_awake)[0]);
+    t.left_out = std::max(t.left_out, at(Column::objects_left_out)[0]);
   }
   return memorable;
 }
@@ -163,11 +164,15 @@ std::string Summary::text() const {
       units_.torques * t.largest_contact, units_.torque, units_.torques * t.human_rms(),
       units_.torque, 1e3 * t.energy_total, 1e3 * t.highest_total, 1e3 * t.energy_commanded);
   if (layout_.bodies() == 0) return text;
-  return text + fmt::format(
-                    "to objects               {:.3f} mJ\n"
-                    "objects gained           {:.6f} mJ at most\n"
-                    "objects that moved       {:.0f} of {} at once\n",
-                    1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
+  text += fmt::format(
+      "to objects               {:.3f} mJ\n"
+      "objects gained           {:.6f} mJ at most\n"
+      "objects that moved       {:.0f} of {} at once\n",
+      1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
+  if (t.left_out > 0) {
+    text += fmt::format("contact points left out  {:.0f} at once: they push nothing\n", t.left_out);
+  }
+  return text;
 }
 
 std::vector<Summary::Number> Summary::numbers() const {

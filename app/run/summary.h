@@ -72,6 +72,7 @@ class Summary {
     std::uint64_t in_contact = 0;
     double to_objects = 0, objects_gain = 0;  // given to bodies, and the most they gained [J]
     double most_awake = 0;                    // bodies
+    double left_out = 0;                      // most points at which they meet without pushing
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }

@@ -248,6 +248,10 @@ Outcome switching(Laboratory& lab);
 Outcome friction(Laboratory& lab);
 Outcome delay(Laboratory& lab);
 Outcome walls(Laboratory& lab);
+Outcome mass(Laboratory& lab);
+Outcome click(Laboratory& lab);
+Outcome drop(Laboratory& lab);
+Outcome stack(Laboratory& lab);
 
 namespace {
 
@@ -272,6 +276,11 @@ constexpr std::array kExperiments{
     Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},
     Experiment{"delay", "what is given and felt where the device's torque comes late", delay},
     Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
+    Experiment{"mass", "the mass felt of a body that is held, and the least that can be held",
+               mass},
+    Experiment{"click", "force of a button felt over its travel", click},
+    Experiment{"drop", "a body that falls on the tip, and the energy ledger", drop},
+    Experiment{"stack", "stacks of bodies: how far they sink, sweeps, energy", stack},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,

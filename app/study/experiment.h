@@ -153,7 +153,7 @@ struct Experiment {
   Outcome (*run)(Laboratory&);
 };
 
-// The paper's in its order, then those of the predictive coupling.
+// The paper's in its order, then those of the predictive coupling and of bodies that move.
 std::span<const Experiment> experiments();
 
 // Writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError.

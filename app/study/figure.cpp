@@ -343,7 +343,7 @@ std::string colour_bar(const FigurePanel& panel, const Screen& screen, double ri
 }
 
 std::string x_ticks(const FigurePanel& panel) {
-  if (panel.x_ticks.empty()) return "set xtics autofreq\n";
+  if (panel.x_ticks.empty()) return "set xtics enhanced autofreq\n";
   std::string text;
   for (const auto& [x, name] : panel.x_ticks) {
     text += fmt::format("{}{} {:.7g}", text.empty() ? "" : ", ", printed(name), x);

@@ -22,9 +22,9 @@ bool needs_felt(const SweepPlan& plan) {
 }
 
 // Where the condition changes along the boundary's axis.
-class Search {
+class BoundarySearch {
  public:
-  Search(const SweepPlan& plan, std::uint64_t index, const std::atomic<bool>& stop)
+  BoundarySearch(const SweepPlan& plan, std::uint64_t index, const std::atomic<bool>& stop)
       : plan_(plan), b_(*plan.boundary), index_(index), stop_(stop) {}
 
   std::optional<std::vector<double>> find() {
@@ -129,7 +129,7 @@ std::vector<double> measured(const SweepPlan& plan, const RunMeter& meter) {
 std::optional<std::vector<double>> measure_point(const SweepPlan& plan, std::uint64_t index,
                                                  const std::atomic<bool>& stop) {
   try {
-    if (plan.boundary) return Search(plan, index, stop).find();
+    if (plan.boundary) return BoundarySearch(plan, index, stop).find();
     const auto meter = run_point(plan, run_of(plan, index), stop);
     if (!meter) return std::nullopt;
     return measured(plan, *meter);

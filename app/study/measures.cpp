@@ -36,6 +36,15 @@ constexpr MeasureInfo kTable[] = {
      [](const RunMeter& m) { return of(m).energy_commanded; }},
     {"energy_port", "J", "most that the human was given",
      [](const RunMeter& m) { return m.highest_port(); }},
+    {"energy_beyond", "J", "most that the human was given beyond what bodies gave",
+     [](const RunMeter& m) { return m.highest_beyond(); }},
+    {"bodies_passive", "yes/no",
+     "the human is never given more than a microjoule beyond what bodies gave",
+     [](const RunMeter& m) { return yes(!lost(m) && m.highest_beyond() <= kNoEnergy); }},
+    {"bodies_gain", "J", "most that bodies had beyond what they had at first and were given",
+     [](const RunMeter& m) { return m.bodies_gain(); }},
+    {"bodies_moved", "m", "furthest that a body's centre of mass got from where it was at first",
+     [](const RunMeter& m) { return m.bodies_moved(); }},
     {"error_largest", "rad", "largest |x_E|",
      [](const RunMeter& m) { return of(m).largest_error; }},
     {"error_slope", "rad/(N m)", "|x_E| over |f2|, least squares through the origin",
@@ -79,6 +88,8 @@ RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool
       summary_(layout_),
       T_(T),
       rows_(rows),
+      bodies_gain_(bodies > 0 ? 0 : kNoMeasure),
+      bodies_moved_(bodies_gain_),
       wall_stiffness_(wall != nullptr ? wall->material.stiffness : kNoMeasure) {
   const HighPass fast(kFast, 1 / T);
   if (!felt) return;
@@ -100,10 +111,29 @@ void RunMeter::add(std::span<const double> row) {
     error_contact_ += error * contact;
     contact2_ += contact * contact;
     highest_port_ = std::max(highest_port_, at(Column::energy_port)[0]);
+    if (layout_.bodies() > 0) {
+      add_bodies(row);
+    } else {
+      highest_beyond_ = highest_port_;
+    }
     if (felt_) add_felt(row);
     if (wall_) wall_->add(layout_, row);
   }
   ++row_;
+}
+
+void RunMeter::add_bodies(std::span<const double> row) {
+  const auto at = [&](Column c) { return layout_.in(row, c); };
+  highest_beyond_ =
+      std::max(highest_beyond_, at(Column::energy_port)[0] + at(Column::energy_to_objects)[0]);
+  bodies_gain_ = std::max(bodies_gain_, at(Column::objects_gain)[0]);
+  const auto pose = at(Column::body_pose);
+  if (first_pose_.empty()) first_pose_.assign(pose.begin(), pose.end());
+  for (std::size_t i = 0; i < pose.size(); i += kPoseNumbers) {
+    const Vec3 now(pose[i], pose[i + 1], pose[i + 2]);
+    const Vec3 first(first_pose_[i], first_pose_[i + 1], first_pose_[i + 2]);
+    bodies_moved_ = std::max(bodies_moved_, (now - first).norm());
+  }
 }
 
 void RunMeter::add_felt(std::span<const double> row) {

@@ -46,6 +46,12 @@ class RunMeter {
   double seconds() const { return static_cast<double>(row_) * T_; }
   double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
   double highest_port() const { return highest_port_; }  // [J]
+  // Most that the human was given beyond what bodies gave [J], that bodies had beyond what they had
+  // at first and were given [J], and furthest that one got from where it was [m]; without bodies
+  // the last two are none.
+  double highest_beyond() const { return highest_beyond_; }
+  double bodies_gain() const { return bodies_gain_; }
+  double bodies_moved() const { return bodies_moved_; }
   // Of the wall [N/m]; as it is felt, by that; its force above 20 Hz, in the second half, rms [N].
   double wall() const { return wall_stiffness_; }
   double wall_felt() const;
@@ -77,6 +83,7 @@ class RunMeter {
     double aa = 0, av = 0, vv = 0, af = 0, vf = 0;  // of M a + C v, v and f1, in M^-1
   };
 
+  void add_bodies(std::span<const double> row);
   void add_felt(std::span<const double> row);
   void add_contact(Felt& f, const Vec<kAnyDof>& f1) const;
   void add_free(Felt& f, const Vec<kAnyDof>& v) const;
@@ -85,7 +92,8 @@ class RunMeter {
   Summary summary_;
   double T_;
   std::uint64_t rows_, row_ = 0;
-  double highest_port_ = 0;
+  double highest_port_ = 0, highest_beyond_ = 0, bodies_gain_, bodies_moved_;
+  std::vector<double> first_pose_;  // of all bodies
   double error_contact_ = 0, contact2_ = 0;
   static constexpr std::size_t kSpans = 20;
   std::array<double, kSpans> speed2_{};  // sums over each span

@@ -13,6 +13,7 @@
 #include <limits>
 #include <numeric>
 
+#include "app/study/body_axis.h"
 #include "app/study/measure_point.h"
 #include "core/math/elementary.h"
 #include "devices/files/config_file.h"
@@ -93,6 +94,17 @@ const OwnKey* own_key(const std::string& key) {
   const auto* found = std::ranges::find(kOwnKeys, key, &OwnKey::key);
   return found == std::end(kOwnKeys) ? nullptr : found;
 }
+
+// The property of a body that a key names, or null.
+const BodyProperty* body_property(const std::string& key) {
+  const auto axis = body_axis(key);
+  return axis ? axis->property : nullptr;
+}
+
+const char* unit_of(const BodyProperty& property) {
+  return *property.range.unit != 0 ? property.range.unit : "-";
+}
+
 constexpr const char* kScales[] = {"linear", "log"};
 
 std::size_t choice_in(const TomlTable& table, const char* key, std::span<const char* const> words) {
@@ -136,6 +148,16 @@ double allowed_number(const TomlTable& table, const char* key, const SweepAxis& 
   if (const OwnKey* own = own_key(axis.key)) {
     const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
     if (!allowed) table.refuse(key, own->allowed);
+    return x;
+  }
+  if (const BodyProperty* property = body_property(axis.key)) {
+    const Range& range = property->range;
+    if (!(x >= range.minimum && x <= range.maximum &&
+          !(range.exclusive_minimum && x == range.minimum))) {
+      table.refuse(key,
+                   fmt::format("numbers {} {} to {} {}", range.exclusive_minimum ? "above" : "from",
+                               range.minimum, range.maximum, range.unit));
+    }
     return x;
   }
   Parameters p;
@@ -196,14 +218,15 @@ double scaled(const AxisRange& range, double part, bool logarithmic) {
 }
 
 void refuse_key(const TomlTable& table, const std::string& key) {
+  if (key.starts_with(kBodyKey)) table.refuse("key", body_properties());
   std::vector<std::string> keys{"device", "scene", "hand"};
   for (const OwnKey& own : kOwnKeys) keys.emplace_back(own.key);
   for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
   const auto meant = nearest(key, keys);
   table.refuse(
       "key",
-      "device, scene, hand, scene.stiffness, arm.joints, arm.mass, arm.seed, or a parameter of "
-      "limpid run --help" +
+      "device, scene, hand, scene.stiffness, scene.body.NAME.PROPERTY, arm.joints, arm.mass, "
+      "arm.seed, or a parameter of limpid run --help" +
           (meant ? "; did you mean " + *meant + "?" : std::string()));
 }
 
@@ -258,11 +281,13 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
       read_files(table, &SweepWorld::scene, axis);
     } else if (key == "hand") {
       read_files(table, &SweepWorld::hand, axis);
-    } else if (info == nullptr && own_key(key) == nullptr) {
+    } else if (info == nullptr && own_key(key) == nullptr && body_property(key) == nullptr) {
       refuse_key(table, key);
     } else {
       axis.key = key;
-      axis.unit = info ? info->unit : own_key(key)->unit;
+      axis.unit = info                 ? info->unit
+                  : body_property(key) ? unit_of(*body_property(key))
+                                       : own_key(key)->unit;
       if (info) std::ranges::copy(words_of(*info), std::back_inserter(axis.words));
       axis.words.empty() ? read_numbers(table, read) : read_words(table, axis);
     }

@@ -7,6 +7,7 @@
 #include "app/base/folders.h"
 #include "app/run/reach_check.h"
 #include "app/run/run_key.h"
+#include "app/study/body_axis.h"
 #include "app/study/read_axes.h"
 #include "app/study/sweep_plan.h"
 #include "devices/files/config_file.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestPlan = 1 << 20;  // [bytes]
 constexpr std::uint64_t kMostPoints = 100'000'000, kMostBlocks = 1000;
 constexpr std::size_t kMostWorlds = 1000;
-constexpr Range kSeconds{0, 3600, true, "s"};
+constexpr Range kRunSeconds{0, 3600, true, "s"};
 constexpr Range kMetres{-10, 10, false, "m"};
 constexpr Range kPress{0, 1000, true, "N"};
 
@@ -71,7 +72,7 @@ class Reader {
   }
 
   void read_hand() {
-    if (const auto seconds = file_.number("seconds", kSeconds)) plan_.seconds = *seconds;
+    if (const auto seconds = file_.number("seconds", kRunSeconds)) plan_.seconds = *seconds;
     const toml::node* node = file_.find("hand");
     if (node == nullptr || node->is_string()) {
       plan_.world.hand = file_.text("hand").value_or("");
@@ -105,6 +106,9 @@ class Reader {
       sampled = sampled || axes.back().axis.spread != Spread::grid;
       if (axes.back().axis.key.starts_with("arm.") && !plan_.tap) {
         each.refuse("key", "arm.joints, arm.mass, arm.seed only with hand = { tap = NEWTONS }");
+      }
+      if (axes.back().axis.key.starts_with(kBodyKey) && plan_.tap) {
+        each.refuse("key", "no body's: a tap has its own wall");
       }
       if (names.insert(axes.back().axis.name).second) continue;
       each.refuse(each.find("name") ? "name" : "key", "a name that no other axis has");
@@ -158,7 +162,7 @@ class Reader {
     if (!plan_.boundary && plan_.measures.empty()) file_.refuse_missing("measure");
     for (const TomlTable& each : file_.tables("stop")) {
       each.allow_only({"measure", "above", "below", "after"});
-      plan_.stops.push_back({read_limit(each), each.number("after", kSeconds).value_or(0)});
+      plan_.stops.push_back({read_limit(each), each.number("after", kRunSeconds).value_or(0)});
     }
   }
 
@@ -190,6 +194,19 @@ class Reader {
   const std::string& where_;
   SweepPlan& plan_;
 };
+
+// Whether the scene has the bodies that axes speak of.
+void check_bodies(const SweepPlan& plan, const RunPlan& run, const SweepWorld& world) {
+  const auto check = [&](const std::string& key) {
+    const auto axis = body_axis(key);
+    const std::string why = axis ? why_not(*axis, run.document.scene) : "";
+    if (why.empty()) return;
+    throw FileError(fmt::format("{}: {}: scene {}: {}", plan.file.string(), key,
+                                world.scene.empty() ? "table.toml" : world.scene, why));
+  };
+  for (const SweepAxis& axis : plan.axes) check(axis.key);
+  if (plan.boundary) check(plan.boundary->axis.key);
+}
 
 // Arm, scene and hand as they are named.
 RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
@@ -238,6 +255,7 @@ void read_worlds(SweepPlan& plan) {
   digest.add(plan.text);
   for (const SweepWorld& world : worlds) {
     auto run = std::make_shared<RunPlan>(read_world(plan, world));
+    check_bodies(plan, *run, world);
     digest.add(trial_key(*run, 0));
     plan.worlds[world] = std::move(run);
   }

@@ -63,7 +63,7 @@ std::string value_text(const SweepAxis& axis, std::size_t place) {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDecades = 1000;  // over so much colours go by the logarithm
 constexpr double kRoom = 0.05;     // above and below a curve, of its height
 
@@ -150,7 +150,7 @@ class Making {
         ++finite;
       }
     }
-    double value = finite > 0 ? sum / finite : kNone;
+    double value = finite > 0 ? sum / finite : kNoValue;
     if (spot.count == 0 && y_ != nullptr) {
       if (const auto from_around = sweep_.table.inferred(place, 0, map_.choice.column)) {
         spot.inferred = true;
@@ -201,7 +201,7 @@ class Making {
       return a.there() && b.there() && a.cell.value != b.cell.value;
     };
     const auto add = [&](double x1, double y1, double x2, double y2) {
-      line.points.insert(line.points.end(), {{x1, y1}, {x2, y2}, {kNone, kNone}});
+      line.points.insert(line.points.end(), {{x1, y1}, {x2, y2}, {kNoValue, kNoValue}});
     };
     for (std::size_t ix = 0; ix < columns; ++ix) {
       for (std::size_t iy = 0; iy < rows; ++iy) {

@@ -9,6 +9,7 @@
 #include "app/run/urdf_writer.h"
 #include "app/run/varied_hand.h"
 #include "app/run/wall_tap.h"
+#include "app/study/body_axis.h"
 #include "core/dynamics/random.h"
 #include "core/dynamics/random_arm.h"
 #include "devices/files/config_file.h"
@@ -23,6 +24,7 @@ struct Chosen {
   Parameters parameters;
   std::optional<double> stiffness = {};
   std::optional<double> joints = {}, mass = {}, seed = {};  // of a random arm
+  std::vector<std::pair<BodyAxis, double>> of_bodies = {};
 
   bool random_arm() const { return joints || mass || seed; }
   void take(const SweepAxis& axis, double value) {
@@ -34,6 +36,8 @@ struct Chosen {
       mass = value;
     } else if (axis.key == kArmSeedKey) {
       seed = value;
+    } else if (auto of_body = body_axis(axis.key)) {
+      of_bodies.emplace_back(std::move(*of_body), value);
     } else if (!axis.key.empty()) {
       set_parameter_number(parameters, *find_parameter(axis.key), value);
     } else {
@@ -161,6 +165,9 @@ RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double>
   run.parameters = chosen.parameters;
   run.seed = plan.seed;
   if (chosen.stiffness) set_surface_stiffness(run.document.scene, *chosen.stiffness);
+  for (const auto& [of_body, value] : chosen.of_bodies) {
+    set_of_body(of_body, value, run.document);
+  }
   if (plan.jump) run.hand.time.back() = run.parameters.tick;
   if (point.repeat > 0) run.hand = varied(run.hand, plan.seed, point.repeat);
   const double seconds = plan.seconds > 0 ? plan.seconds : run.hand.duration();

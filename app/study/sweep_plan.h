@@ -36,7 +36,7 @@ inline constexpr const char* kSpreads[] = {"grid", "random", "latin", "sobol"};
 
 struct SweepAxis {
   std::string name;  // of its column
-  std::string key;   // a parameter's, or kStiffnessKey; empty: cases
+  std::string key;   // a parameter's, a body's (body_axis.h), or one of those below; empty: cases
   std::string unit = "-";
   Spread spread = Spread::grid;
   bool logarithmic = false;

@@ -125,7 +125,7 @@ double named_wall(const TapSetting& setting) {
 
 namespace {
 
-struct Search {
+struct WallSearch {
   double low = kSoftest, high = kStiffest;
   bool done = false;
 };
@@ -164,12 +164,12 @@ bool well_rendered(const Touch& touch, bool exact_encoder) {
 }
 
 std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings) {
-  std::vector<Search> searches(settings.size());
+  std::vector<WallSearch> searches(settings.size());
   std::vector<double> walls(settings.size());
   // First the ends: where one of them is the answer there is nothing between to look for.
   for (int step = -2; step < kBisections; ++step) {
     for (std::size_t i = 0; i < settings.size(); ++i) {
-      const Search& s = searches[i];
+      const WallSearch& s = searches[i];
       walls[i] = s.done       ? std::nan("")
                  : step == -2 ? s.high
                  : step == -1 ? s.low
@@ -177,14 +177,14 @@ std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> 
     }
     const std::vector<char> good = try_walls(lab, settings, walls);
     for (std::size_t i = 0; i < settings.size(); ++i) {
-      Search& s = searches[i];
+      WallSearch& s = searches[i];
       if (s.done) continue;
       (good[i] != 0 ? s.low : s.high) = walls[i];
       s.done = s.low >= s.high;
     }
   }
   std::vector<double> found;
-  for (const Search& s : searches) found.push_back(s.low);
+  for (const WallSearch& s : searches) found.push_back(s.low);
   return found;
 }
 

@@ -11,8 +11,8 @@ constexpr double kMostDamping = 0.34;
 // limit from being the last.
 constexpr double kStillPulled = 0.02;
 // What a hand may push unforeseen in a tick, and the most that changes of the device's velocity.
-constexpr int kMostTurns = 10;                     // between bodies and the rest
-constexpr double kSameForce = 1e-6;                // after which nothing more is to be found [N]
+constexpr int kMostTurns = 16;                     // between bodies and the rest
+constexpr double kSameForce = 1e-5;                // after which nothing more is to be found [N]
 constexpr double kPushed = 4e-4, kSurprise = 0.5;  // [N s], [rad/s]
 
 template <int N>
@@ -308,8 +308,8 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
     settled = solve_with_bodies(both, T, found);
   }
   if (!settled) {
+    contacts_.hold_bodies();
     both.stand_still(contacts_, T, found);
-    contacts_.push_bodies();
     ++unsettled_;
     solved_ = TickSolve::stood_still;
   }
@@ -322,7 +322,7 @@ template <int N>
 bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found) {
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (!both.solve(contacts_, T, found)) return false;
-    if (contacts_.push_bodies() < kSameForce) return true;
+    if (contacts_.push_bodies(turn) < kSameForce) return true;
   }
   return false;
 }

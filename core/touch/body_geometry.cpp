@@ -76,6 +76,7 @@ struct BodyGeometry::Inside {
   std::vector<Pair> pairs;
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points;
+  int left_out = 0;
 
   static btDefaultCollisionConstructionInfo sizes() {
     btDefaultCollisionConstructionInfo info;
@@ -280,7 +281,10 @@ void BodyGeometry::Inside::take(Pair& p) {
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
     if (c == nullptr) {
       c = fresh(p);
-      if (c == nullptr) continue;
+      if (c == nullptr) {
+        ++left_out;
+        continue;
+      }
       point.m_userPersistentData = c;
     }
     // Bullet may have taken the pair the other way round.
@@ -290,7 +294,7 @@ void BodyGeometry::Inside::take(Pair& p) {
         0.5 * (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
     c->depth = -point.getDistance();
     c->seen = true;
-    if (points.size() < kMost) points.push_back(c);
+    points.push_back(c);  // there are no more of them than there is room for
   }
 }
 
@@ -309,6 +313,7 @@ void BodyGeometry::place(int body, const Pose& pose) {
 void BodyGeometry::search(std::span<const std::uint8_t> awake) {
   Inside& in = *in_;
   in.points.clear();
+  in.left_out = 0;
   for (BodyContact& c : in.pool) c.seen = false;
   const auto moves = [&](const Inside::Solid& s) {
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
@@ -331,6 +336,7 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
 }
 
 std::span<BodyContact* const> BodyGeometry::points() const { return in_->points; }
+int BodyGeometry::left_out() const { return in_->left_out; }
 
 bool BodyGeometry::near(int a, int b) const {
   for (const Inside::Solid* one : in_->of_body[static_cast<std::size_t>(a)]) {
@@ -344,6 +350,7 @@ bool BodyGeometry::near(int a, int b) const {
 void BodyGeometry::forget() {
   for (Inside::Pair& p : in_->pairs) p.manifold->clearManifold();
   in_->points.clear();
+  in_->left_out = 0;
   in_->free_ones.clear();
   for (auto c = in_->pool.rbegin(); c != in_->pool.rend(); ++c) {
     *c = {};

@@ -39,7 +39,7 @@ struct BodyContact {
 class BodyGeometry {
  public:
   // Bodies are those objects of the scene that have one, in its order. At most kMost points at a
-  // time: further ones are left out.
+  // time: further ones are left out, and counted.
   explicit BodyGeometry(const Scene& scene);
   ~BodyGeometry();
   BodyGeometry(BodyGeometry&&) noexcept;
@@ -51,6 +51,7 @@ class BodyGeometry {
   // Brings the points of all pairs up to date of which one is awake. In the order of the pairs.
   void search(std::span<const std::uint8_t> awake);
   std::span<BodyContact* const> points() const;
+  int left_out() const;  // of the last search()
   // Whether the boxes around two bodies, a little larger, overlap.
   bool near(int a, int b) const;
   void forget();  // all points

@@ -44,9 +44,12 @@ class BodyWorld {
   Vec3 velocity(const End& end) const;  // mean over the tick [m/s]
   Mat3 answer(const End& end) const;    // to a force there [m/(N s)]
   void push(const End& end, const Vec3& force);
-  // Once over the rows of what the arm touches and what hangs together with it, or of all others;
-  // returns the largest change of a force [N].
-  double sweep(bool touched);
+  // Over the rows of what the arm touches and what hangs together with it, or of all others, until
+  // no force changes by more than `enough` or it was gone over them `most` times; returns the
+  // largest change of the last time [N]. Sweeps alone take as many as a heavy body on a light one
+  // weighs more: so from one to the next forces go on as by conjugate gradients (Silcowitz, Niebe
+  // and Erleben 2010), and the last word is a sweep's.
+  double sweep(bool touched, double enough, int most);
   // What the tip holds as if by a magnet: a spring without length from the tip to a point of it.
   struct Magnet {
     static constexpr double kBreaks = 5;  // [N]
@@ -61,6 +64,9 @@ class BodyWorld {
   Vec3 magnet_point() const { return place(magnet_.body, magnet_.point); }  // [m]
   void pulled(const Vec3& force);  // by the magnet, over the tick [N]
 
+  // What the arm touches, and what hangs together with it, stays where it is for this tick, at
+  // rest, with the forces of the last one: it can only lose energy by that.
+  void hold_touched();
   // What the arm's row at this end gave, by its force on it over the whole tick [N].
   void book(const End& end, const Vec3& force);
   // Sweeps until nothing changes any more.
@@ -83,6 +89,8 @@ class BodyWorld {
   double all_given() const { return all_given_; }  // by the arm since the start [J]
   int awake() const;
   int sweeps() const { return sweeps_; }  // of the last tick
+  // Points at which bodies touch that there is no room for: these do not push.
+  int left_out() const { return geometry_.left_out(); }
 
   // All that is kept from tick to tick: appended to `into`, and taken from there again. False:
   // these numbers are of another scene.
@@ -139,10 +147,12 @@ class BodyWorld {
   Vec3 place(int body, const Vec3& own) const;
   double stiffness(const BodyContact& contact) const;
   void apply(const End& a, const End& b, const Vec3& force);
+  double sweep(bool touched);  // once
   double sweep(Row& row);
   double sweep(Link& link);
   double sweep(JointRow& row);
-  void settle(bool touched, double enough, int most);
+  void forces(std::vector<double>& into) const;
+  void add_forces(const std::vector<double>& more);
   void end_rows();
   void fall_asleep();
   void take_stock();
@@ -162,6 +172,7 @@ class BodyWorld {
   std::vector<Link> links_;
   std::vector<JointRow> joints_;
   Magnet magnet_;
+  std::vector<double> before_, now_, along_;  // forces of all rows; where they go on to [N]
   double T_ = 1e-3;
   bool fresh_ = true;  // first_energy_ is to be taken
   double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;

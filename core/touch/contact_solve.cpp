@@ -140,7 +140,9 @@ constexpr double kNear = 2e-3;  // what is further off and does not come is left
 // A joint coordinate moves a contact by less than this: no joint can serve it, and its force, which
 // moves nothing, is left out with its friction [m].
 constexpr double kLeastLever = 1e-9;
-constexpr double kSettled = 1e-8;  // largest change of a force, as a part of it or of 1 N
+constexpr double kSettled = 1e-8;   // largest change of a force, as a part of it or of 1 N
+constexpr double kFelt = 1e-7;      // change of a force that says how a body gives way [N]
+constexpr int kSweepsOfBodies = 5;  // among bodies for each one over what the arm touches
 
 // Two unit vectors across a unit vector.
 Mat3 frame_of(const Vec3& normal) {
@@ -435,32 +437,67 @@ void ContactSolve<N>::prepare(const ContactAnswer<N>& answer, double T) {
     if (row.world != nullptr) {
       row.W_body = row.frame.transpose() * row.world->answer(row.end) * row.frame;
       row.body_free = of_body(row) + row.W_body * row.on_body;
+      row.rubbed = row.friction;
     }
     set_damping(row, answer, T);
   }
 }
 
+// How a point answers a force, of which a change along d made it give way by `given` less: so along
+// d, and across it as before.
+Mat3 answer_along(const Mat3& W, const Vec3& d, double given) {
+  const Mat3 across = Mat3::Identity() - d * d.transpose();
+  return std::clamp(given, 0.0, d.dot(W * d)) * d * d.transpose() + across * W * across;
+}
+
 template <int N>
-double ContactSolve<N>::push_bodies() {
+double ContactSolve<N>::push_bodies(int turn) {
   if (world_ == nullptr) return 0;
   double most = 0;
-  const std::span<Row> rows(rows_.data(), static_cast<std::size_t>(count_));
-  for (Row& row : rows) {
+  std::array<Vec3, kMost> changes, before;
+  for (int i = 0; i < count_; ++i) {
+    Row& row = rows_[static_cast<std::size_t>(i)];
     if (row.world == nullptr) continue;
+    before[static_cast<std::size_t>(i)] = of_body(row);
     const Vec3 change = row.push + row.friction - row.on_body;
-    row.world->push(row.end, -(row.frame * change));
-    row.on_body += change;
+    changes[static_cast<std::size_t>(i)] = change;
     most = std::max(most, change.norm());
   }
-  for (int i = 0; i < kMostSweeps; ++i) {
-    const double change = world_->sweep(true);
-    most = std::max(most, change);
-    if (change < kSettled) break;
+  for (int i = 0; i < count_; ++i) {
+    Row& row = rows_[static_cast<std::size_t>(i)];
+    if (row.world == nullptr) continue;
+    const Vec3& change = changes[static_cast<std::size_t>(i)];
+    row.world->push(row.end, -(row.frame * change));
+    row.on_body += change;
+    row.rubbed = row.friction;
   }
-  for (Row& row : rows) {
-    if (row.world != nullptr) row.body_free = of_body(row) + row.W_body * row.on_body;
+  world_->sweep(true, kSettled, kMostSweeps);
+  for (int i = 0; i < count_; ++i) {
+    Row& row = rows_[static_cast<std::size_t>(i)];
+    if (row.world == nullptr) continue;
+    const Vec3& change = changes[static_cast<std::size_t>(i)];
+    const double size = change.norm();
+    const Vec3 now = of_body(row);
+    if (turn > 0 && size > kFelt) {
+      const Vec3 d = change / size;
+      row.W_body =
+          answer_along(row.W_body, d, d.dot(before[static_cast<std::size_t>(i)] - now) / size);
+    }
+    row.body_free = now + row.W_body * row.on_body;
   }
   return most;
+}
+
+template <int N>
+void ContactSolve<N>::hold_bodies() {
+  if (world_ == nullptr) return;
+  world_->hold_touched();
+  for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
+    if (row.world == nullptr) continue;
+    row.W_body.setZero();
+    row.body_free.setZero();
+    row.rubbed.setZero();
+  }
 }
 
 template <int N>
@@ -468,7 +505,8 @@ Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
   if (slope != nullptr) slope->setZero();
   for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
     const Vec3 v = speed(row, u) - row.body_free;
-    Mat3 on_v = push(row, T, v);
+    // What rubs also moves a body along the normal: as it did last.
+    Mat3 on_v = push(row, T, row.world != nullptr ? Vec3(v + row.W_body * row.rubbed) : v);
     rub(row, T, v, on_v);
     if (slope == nullptr || on_v.isZero(0)) continue;
     for (int i = 0; i < row.axes; ++i) {
@@ -543,7 +581,8 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
       settled_ = settled_ && change < kSettled * std::max(1.0, most);
     }
     if (world_ != nullptr) {
-      settled_ = world_->sweep(true) < kSettled * std::max(1.0, most) && settled_;
+      const double enough = kSettled * std::max(1.0, most);
+      settled_ = world_->sweep(true, enough, kSweepsOfBodies) <= enough && settled_;
     } else if (count_ == 1 && rows_[0].radius == 0) {
       settled_ = true;
       ++sweeps_;

@@ -76,8 +76,13 @@ class ContactSolve {
   // The same as functions of the proxy's motion, for solves of one's own. First, after collect():
   void prepare(const ContactAnswer<N>& answer, double T);
   // Bodies of the scene get the forces of the last push() and settle among themselves; returns by
-  // how much that changed a force on one of them [N]. push() then goes by where they are.
-  double push_bodies();
+  // how much a force of the arm on one of them changed [N]. push() then goes by where they are,
+  // and, from the second `turn` on (they are counted from 0), by what the last change did to them:
+  // a body that rests on others gives way less than it would alone.
+  double push_bodies(int turn);
+  // Bodies that the arm touches, and all that hangs together with them, stand still for the tick:
+  // what no forces were found for moves nothing, and so makes nothing.
+  void hold_bodies();
   // then the torque [N m] of the forces over a tick in which the proxy moves with the mean velocity
   // u [rad/s]; f2() and finish() are of the last one. `slope`: how it answers u [N m s/rad], on the
   // piece of the forces' laws that holds; null: nobody asks.
@@ -116,6 +121,7 @@ class ContactSolve {
     BodyWorld::End end;
     Mat3 W_body = Mat3::Zero();     // along the axes [m/(N s)]
     Vec3 on_body = Vec3::Zero();    // force that it has had so far, less its sign [N]
+    Vec3 rubbed = Vec3::Zero();     // of that, friction [N]
     Vec3 body_free = Vec3::Zero();  // its velocity without that, along the axes [m/s]
 
     void clear() {
@@ -133,6 +139,7 @@ class ContactSolve {
       end = {};
       W_body.setZero();
       on_body.setZero();
+      rubbed.setZero();
       body_free.setZero();
     }
   };

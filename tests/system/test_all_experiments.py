@@ -201,6 +201,47 @@ PROMISES = {
             ("rms force above 20 Hz, of what is allowed", AT_MOST, 1),
             ("given to the human [J]", AT_MOST, 5e-3))
     ],
+    "mass": [
+        *((f"{way}: felt of {mass} g off m / (1 - m w^2 / K), of it", AT_MOST, bound)
+          for way, masses, bound in (("predictive", (5, 50, 500), 0.02),
+                                     ("predictive, eta = 0.3", (5, 50, 500), 0.04),
+                                     ("predictive, held by 600 N/m", (5, 50), 0.02))
+          for mass in masses),
+        ("staggered, 2 N s/m: least mass off K T^2/4 + B T/2, to 5000 N/m, of it", AT_MOST, 0.1),
+        ("predictive: stiffnesses of 100 to 20000 N/m, of 8, at which 0.1 g are held",
+         AT_LEAST, 8),
+    ],
+    "click": [
+        (f"predictive, {stiffness} N/m: {what}", relation, bound)
+        for stiffness in (600, 2000, 5000)
+        for what, relation, bound in (
+            ("rms of felt less given force [N]", AT_MOST, 0.03),
+            ("given to the human beyond what the button gave [J]", AT_MOST, 5e-5),
+            ("deepest travel [m]", AT_LEAST, 0.008))
+    ],
+    "drop": [
+        (f"predictive, {stiffness} N/m: {what}", relation, bound)
+        for stiffness in (600, 2000, 5000)
+        for what, relation, bound in (
+            ("hardest force on the tip [N]", AT_LEAST, 1),
+            ("the ledger's lowest less its start [J]", AT_LEAST, -1e-4),
+            ("least share of the contact's force let through", AT_LEAST, 1),
+            ("highest E_c [J]", AT_MOST, 5e-4),
+            ("given to the human beyond what the block gave [J]", AT_MOST, 5e-5),
+            ("gained by the block [J]", AT_MOST, 1e-6))
+    ],
+    "stack": [
+        (f"{stack}: {what}", AT_MOST, bound)
+        for stack in ("5 of 20 g", "500, 50, 5 g from below", "5, 50, 500 g from below",
+                      "5, 500 g from below")
+        for what, bound in (
+            ("pressed in off weight / (4 K_o) [m]", 2e-5),
+            ("gained by the blocks [J]", 1e-6),
+            ("highest E_c [J]", 5e-5),
+            ("given to the human beyond what the blocks gave [J]", 5e-5),
+            ("ticks for which the proxy stood still", 0),
+            ("force at the end off that of all springs in a row, of it", 0.02))
+    ],
 }  # fmt: skip
 # Of every one of them.
 for promises in PROMISES.values():

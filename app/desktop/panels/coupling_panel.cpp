@@ -206,6 +206,13 @@ void draw_ledger(const CouplingReading& now) {
         "friction or stronger motors avoid it.";
     read_out("Ticks without a solution", fmt::format("{:.0f}", now.unsettled), why, why);
   }
+  if (now.left_out > 0) {
+    const char* why =
+        "Objects meet at more points than the loop has room for. At these they do not push, and "
+        "may "
+        "sink into each other. Fewer objects that lie on each other avoid it.";
+    read_out("Contact points left out", fmt::format("{:.0f}", now.left_out), why, why);
+  }
 }
 
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.

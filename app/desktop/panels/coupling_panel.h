@@ -19,6 +19,7 @@ struct CouplingReading {
   double damping_governor;
   double torque_governor;
   double unsettled;  // ticks without a solution for motors at their limit and contacts together
+  double left_out;   // points at which bodies meet that there is no room for
 };
 
 // Both draw into the ImGui window that is open.

@@ -103,6 +103,7 @@ std::optional<double> default_of(Column column) {
     case Column::compensation_torque:
     case Column::energy_compensation:
     case Column::objects_sweeps:
+    case Column::objects_left_out:
     case Column::magnet:
     case Column::hand_magnet:
     case Column::energy_ledger: return 0.0;

@@ -43,6 +43,12 @@ const std::vector<std::pair<const char*, Change>> kChanges{
     {"a hand sample's time", [](RunPlan& p) { p.hand.time[7] += 1e-12; }},
     {"a slope of the hand", [](RunPlan& p) { p.hand.velocity[7].z() += 1e-12; }},
     {"a grip", [](RunPlan& p) { p.hand.grip[7] = 0.5; }},
+    {"a magnet", [](RunPlan& p) { p.hand.magnet.assign(p.hand.time.size(), true); }},
+    {"when the magnet holds",
+     [](RunPlan& p) {
+       p.hand.magnet.assign(p.hand.time.size(), true);
+       p.hand.magnet[7] = false;
+     }},
     {"the hand's tick", [](RunPlan& p) { p.hand.tick = 0.001; }},
     {"the hand's name", [](RunPlan& p) { p.hand.source += "x"; }},
     {"a change's row", [](RunPlan& p) { ++p.changes[0].row; }},
@@ -52,6 +58,10 @@ const std::vector<std::pair<const char*, Change>> kChanges{
     {"when the force is armed", [](RunPlan& p) { p.force[1] = true; }},
     {"where the device starts", [](RunPlan& p) { p.start->x1[0] += 1e-15; }},
     {"how fast the proxy starts", [](RunPlan& p) { p.start->v2[2] = 1e-3; }},
+    {"where bodies start",
+     [](RunPlan& p) {
+       p.start->world = {1.0, 2.0};
+     }},
     {"whether it starts armed", [](RunPlan& p) { p.start->armed = false; }},
     {"where it starts at all", [](RunPlan& p) { p.start.reset(); }},
     {"what the ledger starts with", [](RunPlan& p) { p.start->reserve = 1e-3; }},

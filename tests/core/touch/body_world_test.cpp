@@ -163,6 +163,91 @@ TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
   }
 }
 
+// Depths by hand: four points of 20,000 N/m each below either body; beyond that what the points had
+// when the fall brought them.
+TEST(BodyWorld, CarriesAHeavyBodyOnALightOne) {
+  for (const double ratio : {10.0, 100.0, 300.0}) {
+    Scene scene;
+    scene.add(floor_at(0));
+    scene.add(body("light", Box{Vec3::Constant(0.03)}, 0.5 / ratio, {0, 0, 0.015}));
+    scene.add(body("heavy", Box{Vec3::Constant(0.03)}, 0.5, {0, 0, 0.055}));  // it falls 1 cm
+    BodyWorld world(scene);
+    EXPECT_LT(run(world, 4000), 1e-6) << ratio;
+    const double first = 0.5 * (1 + 1 / ratio) * 9.81 / 80000, second = 0.5 * 9.81 / 80000;
+    EXPECT_NEAR(world.center(0).z(), 0.015 - first, 2e-5) << ratio;
+    EXPECT_NEAR(world.center(1).z(), 0.045 - first - second, 1e-3) << ratio;
+  }
+}
+
+// One after another, from below: springs in a row that a weight presses together.
+TEST(BodyWorld, StacksSinkByTheWeightAboveOverTheirContacts) {
+  Scene scene;
+  scene.add(floor_at(0));
+  for (int i = 0; i < 10; ++i) {
+    scene.add(body("block " + std::to_string(i), Box{Vec3::Constant(0.03)}, 0.02,
+                   {0, 0, 0.015 + 0.03 * i}));
+  }
+  BodyWorld world(scene);
+  EXPECT_LT(run(world, 1000), 1e-6);
+  double below = -0.015;
+  for (int i = 0; i < 10; ++i) {
+    const double depth = below + 0.03 - world.center(i).z();
+    // A little of it was there before anything pressed.
+    EXPECT_NEAR(depth, 0.02 * 9.81 * (10 - i) / 80000, 5e-6) << i;
+    below = world.center(i).z();
+  }
+}
+
+TEST(BodyWorld, LaysThinPlatesDownOnTheFloorAndOnEachOther) {
+  for (const double thick : {0.0005, 0.001, 0.002}) {
+    for (const double tilt : {0.0, 0.2, 0.7, 1.5}) {
+      Scene scene;
+      scene.add(floor_at(0));
+      Object plate = body("plate", Box{{0.1, 0.06, thick}}, 0.02, {0, 0, 0.06});
+      plate.pose.linear() = turned(tilt, {1, 0.3, 0});
+      scene.add(plate);
+      BodyWorld world(scene);
+      EXPECT_LT(run(world, 3000), 1e-6) << thick << " " << tilt;
+      EXPECT_NEAR(world.center(0).z(), thick / 2, 3e-4) << thick << " " << tilt;
+    }
+  }
+}
+
+// 27 blocks of a cube meet at 432 points, and 64 of a larger one at more than there is room for.
+TEST(BodyWorld, CountsThePointsThatItHasNoRoomFor) {
+  const auto cube_of = [](int n) {
+    Scene scene;
+    scene.gravity.setZero();
+    for (int i = 0; i < n * n * n; ++i) {
+      scene.add(body("block " + std::to_string(i), Box{Vec3::Constant(0.03)}, 0.02,
+                     0.03 * Vec3(i % n, i / n % n, i / (n * n))));
+    }
+    return scene;
+  };
+  BodyWorld fits(cube_of(3)), full(cube_of(4));
+  run(fits, 1);
+  run(full, 1);
+  EXPECT_EQ(fits.left_out(), 0);
+  EXPECT_GT(full.left_out(), 0);
+  EXPECT_LT(run(full, 100), 1e-6);
+}
+
+TEST(BodyWorld, LosesSightOfWhatIsThrownAwayAndGoesOn) {
+  for (const double speed : {100.0, 1e4, 1e8}) {
+    Scene scene;
+    scene.add(body("thrown", Box{Vec3::Constant(0.03)}, 0.02, {0, 0, 0.2}));
+    scene.add(body("falling", Sphere{0.01}, 0.02, {0.5, 0, 0}));
+    BodyWorld world(scene);
+    std::vector<double> numbers = state(world);
+    numbers[10 + 14] = speed;
+    ASSERT_TRUE(world.read(numbers));
+    EXPECT_LT(run(world, 500), 1e-9 * speed * speed);
+    EXPECT_EQ(world.awake(), 1) << speed;
+    EXPECT_GT(world.center(0).z(), 20);
+    EXPECT_NEAR(world.center(1).z(), -0.5 * 9.81 * 0.25, 1e-9);
+  }
+}
+
 TEST(BodyWorld, GoesToSleepAndIsWokenByWhatFallsOnIt) {
   Scene scene;
   scene.add(floor_at(0));
@@ -264,6 +349,35 @@ TEST(BodyWorld, AnswersAForceWithItsMass) {
   world.book(end, {0, 0, -2});
   world.finish();
   EXPECT_NEAR(world.given(), 0.5 * 0.05 * world.speed(0).squaredNorm(), 1e-15);
+}
+
+// As where no forces were found for the arm and what it touches.
+TEST(BodyWorld, WhatIsHeldForATickOnlyLosesAndThenGoesOn) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("touched", Box{Vec3::Constant(0.03)}, 0.05, {0, 0, 0.0149}));
+  scene.add(body("falling", Sphere{0.02}, 0.05, {0.3, 0, 0.5}));
+  BodyWorld world(scene);
+  run(world, 3);  // it is being pushed out
+  const double before = world.gain(), speed = world.speed(0).norm();
+  ASSERT_GT(speed, 0);
+  const Vec3 there = world.center(0), falling = world.center(1);
+  world.touch(0);
+  world.begin(T);
+  const BodyWorld::End end = world.end_at(0, world.center(0) + Vec3(0, 0, 0.015));
+  world.push(end, {0, 0, -50});
+  world.hold_touched();
+  world.settle();
+  world.book(end, {0, 0, -50});
+  world.finish();
+  EXPECT_EQ(world.center(0), there);
+  EXPECT_EQ(world.speed(0), Vec3(Vec3::Zero()));
+  EXPECT_EQ(world.given(), 0);
+  EXPECT_LT(world.center(1).z(), falling.z());
+  world.touch(0);
+  run(world, 1);
+  EXPECT_LE(world.gain(), before + 1e-12);
+  EXPECT_EQ(world.awake(), 2);
 }
 
 TEST(BodyWorld, AKeyClicksWhereItsTableSays) {

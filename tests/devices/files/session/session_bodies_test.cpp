@@ -234,7 +234,7 @@ TEST(SessionWithBodies, OfAnotherProgramNeedNotSayMoreThanWhereTheyAre) {
   const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   for (const char* path :
        {"/energy/to_objects", "/energy/objects", "/energy/objects_gain", "/objects/awake",
-        "/objects/sweeps", "/objects/held", "/objects/state"}) {
+        "/objects/sweeps", "/objects/left_out", "/objects/held", "/objects/state"}) {
     EXPECT_GE(H5Ldelete(file, path, H5P_DEFAULT), 0) << path;
   }
   const hid_t poses = H5Dopen2(file, "/objects/pose", H5P_DEFAULT);
