@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "core/touch/triangle_mesh.h"
@@ -46,13 +47,15 @@ struct BodyGeometry::Inside {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
     btCollisionObject at;
-    btVector3 low, high;  // box around it, a little larger
-    double least = 0;     // its smallest extent [m]
+    std::optional<btVector3> level;  // of a plane: its normal
+    btVector3 low, high;             // box around it, a little larger
+    double least = 0;                // its smallest extent [m]
   };
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
+    bool single = false;  // they meet in one point at most
   };
 
   explicit Inside(const Scene& scene);
@@ -62,6 +65,8 @@ struct BodyGeometry::Inside {
   void pair(Solid& a, Solid& b);
   static void bound(Solid& solid);
   static bool overlap(const Solid& a, const Solid& b);
+  static void slide_along(const Pair& pair);
+  static void keep_deepest(const Pair& pair, void* carried);
   void meet(Pair& pair);
   void take(Pair& pair);
   BodyContact* fresh(const Pair& pair);
@@ -87,7 +92,6 @@ struct BodyGeometry::Inside {
 
 BodyGeometry::Inside::Inside(const Scene& scene)
     : configuration(sizes()), dispatcher(&configuration), pool(kMost) {
-  configuration.setConvexConvexMultipointIterations(4, 4);
   info.m_dispatchFunc = btDispatcherInfo::DISPATCH_DISCRETE;
   int body = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -145,6 +149,7 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
   for (std::size_t i = before; i < solids.size(); ++i) {
     Solid& solid = *solids[i];
     const auto* plane = std::get_if<Plane>(&o.shape);
+    if (plane != nullptr) solid.level = to_bullet(plane->normal);
     solid.at.setWorldTransform(
         to_bullet(plane != nullptr ? block_below(*plane, o.pose) : o.pose * solid.in_object));
     bound(solid);
@@ -216,6 +221,13 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
 void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   Pair p{&a, &b};
   if (!allowed(p)) return;
+  const auto ball = [](const Solid& s) {
+    return s.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  };
+  p.single = (ball(a) || ball(b)) && a.shape->isConvex() && b.shape->isConvex();
+  // Else Bullet turns the shapes a little, to find more points than the deepest.
+  const int wanted = p.single ? 0 : kPointsOfPair;
+  configuration.setConvexConvexMultipointIterations(wanted, wanted);
   const btCollisionObjectWrapper on_a(nullptr, a.shape.get(), &a.at, a.at.getWorldTransform(), -1,
                                       -1);
   const btCollisionObjectWrapper on_b(nullptr, b.shape.get(), &b.at, b.at.getWorldTransform(), -1,
@@ -254,7 +266,38 @@ bool BodyGeometry::Inside::overlap(const Solid& a, const Solid& b) {
          b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
 }
 
+// A plane is the same everywhere: its end of a point goes along below the body's, which may slide
+// as far as it likes and stays in the same contact.
+void BodyGeometry::Inside::slide_along(const Pair& p) {
+  if (!p.b->level) return;
+  const bool turned = p.manifold->getBody0() != &p.a->at;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    btManifoldPoint& point = p.manifold->getContactPoint(i);
+    btVector3& on_body = turned ? point.m_localPointB : point.m_localPointA;
+    btVector3& on_plane = turned ? point.m_localPointA : point.m_localPointB;
+    const btVector3 at = p.a->at.getWorldTransform() * on_body;
+    const btVector3 there = p.b->at.getWorldTransform() * on_plane;
+    const btVector3 level = at - *p.b->level * p.b->level->dot(at - there);
+    on_plane = p.b->at.getWorldTransform().invXform(level);
+  }
+}
+
+// A ball has one point, which goes along with it: what Bullet still has from before, beside it,
+// would turn the ball, and of two balls Bullet makes a new one every time.
+void BodyGeometry::Inside::keep_deepest(const Pair& p, void* carried) {
+  btPersistentManifold& m = *p.manifold;
+  while (m.getNumContacts() > 1) {
+    m.removeContactPoint(
+        m.getContactPoint(0).getDistance() > m.getContactPoint(1).getDistance() ? 0 : 1);
+  }
+  if (m.getNumContacts() == 1) m.getContactPoint(0).m_userPersistentData = carried;
+}
+
 void BodyGeometry::Inside::meet(Pair& p) {
+  slide_along(p);
+  void* const carried = p.single && p.manifold->getNumContacts() > 0
+                            ? p.manifold->getContactPoint(0).m_userPersistentData
+                            : nullptr;
   const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
@@ -263,6 +306,7 @@ void BodyGeometry::Inside::meet(Pair& p) {
   result.setPersistentManifold(p.manifold);
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
   result.refreshContactPoints();
+  if (p.single) keep_deepest(p, carried);
 }
 
 BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
