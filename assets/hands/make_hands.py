@@ -395,7 +395,7 @@ def seesaw():
         return toys.at("plank") + [-half * c + (top + off) * s, 0, half * s + (top + off) * c]
 
     return along([(0.45, end(lean, 0.008)), (0.2, end(lean)), (0.6, end(-lean, -0.004)),
-                  (0.5, end(lean, 0.002)), (0.13, end(-lean, -0.006)), (0.6, end(-lean, -0.006))])
+                  (0.5, end(lean, 0.002)), (0.1, end(-lean, -0.008)), (0.6, end(-lean, -0.008))])
 
 
 def cradle():
@@ -424,8 +424,8 @@ def pendulum():
     ball = toys.bodies["pendulum"]
     touch = toys.at("pendulum") - [ball["sphere"] + toys.tip, 0, 0]
     ahead = np.array([1.0, 0, 0])
-    return along([(0.4, touch - 0.01 * ahead), (0.25, touch + 0.025 * ahead), (0.2, touch),
-                  (1.3, touch)])
+    return along([(0.4, touch - 0.01 * ahead), (0.22, touch + 0.034 * ahead), (0.25, touch),
+                  (1.2, touch)])
 
 
 def held(path, start, end):

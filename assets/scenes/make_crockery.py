@@ -69,8 +69,8 @@ def bowl():
 
 def handle(s, radius, thick):
     """Two thirds of a ring at the side of the cup, closed at both ends."""
-    middle = np.array([(CUP[0] + CUP[1]) / 2 - 0.001, 0, 0.52 * CUP[2]])
-    along = np.radians(np.linspace(-100, 100, 25))
+    middle = np.array([(CUP[0] + CUP[1]) / 2 + 0.001, 0, 0.52 * CUP[2]])
+    along = np.radians(np.linspace(-96, 96, 25))
     around = np.linspace(0, 2 * np.pi, 14, endpoint=False)
     rows = []
     for i, a in enumerate(along):

@@ -33,9 +33,9 @@ SCENES = {  # scene: hand, seconds recorded (0: the session was led by the mouse
     "cradle": ("cradle", 2.9), "pendulum": ("pendulum", 1.8),
 }
 PAPERS = {"table", "free", "obstacles", "proximal"}  # under the coupling of the paper
-PICTURE_AT = {  # seconds at which a thumbnail shows a scene in which things move
-    "keys": 1.6, "switch": 1, "drawer_door": 2.4, "dial": 1.4, "dominoes": 1.25, "marbles": 1.4,
-    "stack": 1.45, "cup": 1.6, "pucks": 0.9, "seesaw": 1.2, "cradle": 1.75, "pendulum": 0.7,
+PICTURE_AT = {  # seconds of the session, for the thumbnail of a scene in which things move
+    "keys": 2.4, "switch": 0.8, "drawer_door": 2.8, "dial": 1.2, "dominoes": 1.2, "marbles": 1.4,
+    "stack": 1.64, "cup": 1.4, "pucks": 0.8, "seesaw": 2, "cradle": 1.8, "pendulum": 0.6,
 }
 SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
 PART = (300, 138)             # of the picture: its left upper corner
@@ -45,8 +45,7 @@ def limpid(program, *arguments):
     """From the project's folder, so that a session names its hand the same on every computer.
     Pictures are drawn without a display."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    subprocess.run([program, "run", *map(str, arguments)], env=environment, check=True,
-                   cwd=ASSETS.parent)
+    subprocess.run([program, *map(str, arguments)], env=environment, check=True, cwd=ASSETS.parent)
 
 
 def thumbnail(picture, out):
@@ -138,18 +137,29 @@ def ship(recording, session, rounds):
             small.attrs["rounded"] = ", ".join(f"{unit}: 2^-{n}" for unit, n in ROUNDED.items())
 
 
+def draw(program, scene, world, folder):
+    """The moment of the strongest contact; or where things move, one that says what they do."""
+    picture = folder / f"{scene}.png"
+    if scene in PICTURE_AT:
+        at = PICTURE_AT[scene]
+        limpid(program, "play", f"assets/sessions/{scene}.h5", "--video", folder / scene, "--from", at,
+               "--to", at + 0.03, "--no-plots", "--size", "1280x800")
+        picture = next((folder / scene).glob("*.png"))
+    else:
+        limpid(program, "run", *world, "--picture", picture)
+    thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
+
+
 def make(program, scene, folder, draws):
     world, seconds = options(scene)
     print(f"-- {scene}", flush=True)
-    if draws:
-        picture = folder / f"{scene}.png"
-        at = ["--duration", PICTURE_AT[scene]] if scene in PICTURE_AT else []
-        limpid(program, *world, *at, "--picture", picture)
-        thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
     recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
     again = ["--hand", f"assets/sessions/{scene}.h5"]
-    limpid(program, *([*world, "--duration", seconds] if seconds else again), "--record", recording)
+    limpid(program, "run", *([*world, "--duration", seconds] if seconds else again), "--record",
+           recording)
     ship(recording, session, scene in PICTURE_AT)
+    if draws:
+        draw(program, scene, world, folder)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
 
 

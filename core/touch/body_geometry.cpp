@@ -4,6 +4,7 @@
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -28,6 +29,11 @@ btTransform to_bullet(const Pose& pose) {
       to_bullet(Vec3(pose.translation())));
 }
 
+Vec3 middle(const btManifoldPoint& point) {
+  return 0.5 *
+         (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
+}
+
 // A plane is a large block below it: of faces and edges Bullet finds all points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
@@ -50,6 +56,7 @@ struct BodyGeometry::Inside {
     std::optional<btVector3> level;  // of a plane: its normal
     btVector3 low, high;             // box around it, a little larger
     double least = 0;                // its smallest extent [m]
+    bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
   };
   struct Pair {
     Solid *a, *b;
@@ -66,7 +73,8 @@ struct BodyGeometry::Inside {
   static void bound(Solid& solid);
   static bool overlap(const Solid& a, const Solid& b);
   static void slide_along(const Pair& pair);
-  static void keep_deepest(const Pair& pair, void* carried);
+  static void keep_deepest(const Pair& pair);
+  static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void meet(Pair& pair);
   void take(Pair& pair);
   BodyContact* fresh(const Pair& pair);
@@ -282,22 +290,47 @@ void BodyGeometry::Inside::slide_along(const Pair& p) {
   }
 }
 
-// A ball has one point, which goes along with it: what Bullet still has from before, beside it,
-// would turn the ball, and of two balls Bullet makes a new one every time.
-void BodyGeometry::Inside::keep_deepest(const Pair& p, void* carried) {
+// A ball has one point: what Bullet still has from before, beside it, would turn the ball.
+void BodyGeometry::Inside::keep_deepest(const Pair& p) {
   btPersistentManifold& m = *p.manifold;
   while (m.getNumContacts() > 1) {
     m.removeContactPoint(
         m.getContactPoint(0).getDistance() > m.getContactPoint(1).getDistance() ? 0 : 1);
   }
-  if (m.getNumContacts() == 1) m.getContactPoint(0).m_userPersistentData = carried;
+}
+
+// A point that is new where another one of the pair has just gone is that one, elsewhere: it goes
+// on with what that one was pressed in by. Else what rests on points that come and go would sink,
+// and of two balls Bullet makes a new point every time.
+void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
+  btPersistentManifold& m = *p.manifold;
+  const auto is_there = [&](const BodyContact* c) {
+    for (int i = 0; i < m.getNumContacts(); ++i) {
+      if (m.getContactPoint(i).m_userPersistentData == c) return true;
+    }
+    return false;
+  };
+  for (int i = 0; i < m.getNumContacts(); ++i) {
+    btManifoldPoint& point = m.getContactPoint(i);
+    if (point.m_userPersistentData != nullptr) continue;
+    const Vec3 at = middle(point);
+    BodyContact* nearest = nullptr;
+    for (BodyContact* c : before) {
+      if (is_there(c)) continue;
+      if (nearest == nullptr || (c->point - at).norm() < (nearest->point - at).norm()) nearest = c;
+    }
+    point.m_userPersistentData = nearest;
+  }
 }
 
 void BodyGeometry::Inside::meet(Pair& p) {
   slide_along(p);
-  void* const carried = p.single && p.manifold->getNumContacts() > 0
-                            ? p.manifold->getContactPoint(0).m_userPersistentData
-                            : nullptr;
+  std::array<BodyContact*, kPointsOfPair> before{};
+  std::size_t count = 0;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    auto* c = static_cast<BodyContact*>(p.manifold->getContactPoint(i).m_userPersistentData);
+    if (c != nullptr) before[count++] = c;
+  }
   const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
@@ -306,7 +339,8 @@ void BodyGeometry::Inside::meet(Pair& p) {
   result.setPersistentManifold(p.manifold);
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
   result.refreshContactPoints();
-  if (p.single) keep_deepest(p, carried);
+  if (p.single) keep_deepest(p);
+  go_on(p, {before.data(), count});
 }
 
 BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
@@ -314,6 +348,8 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   BodyContact* c = free_ones.back();
   free_ones.pop_back();
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
+  c->ball_a = p.a->ball();
+  c->ball_b = p.b->ball();
   c->used = true;
   return c;
 }
@@ -330,8 +366,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     // Bullet may have taken the pair the other way round.
     const bool turned = p.manifold->getBody0() != &p.a->at;
     c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
-    c->point =
-        0.5 * (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
+    c->point = middle(point);
     c->depth = -point.getDistance();
     c->seen = true;
     if (points.size() < kMost) points.push_back(c);
