@@ -368,9 +368,9 @@ def cup():
     # It hangs aslant: put down on its edge, it is drawn upright.
     lower = put + [0, -0.04, 0.003]
     strokes = [(0.4, brim + 0.012 * UP), (0.2, brim - 0.002 * UP), (0.6, brim + 0.04 * UP),
-               (0.55, lower + 0.03 * UP), (0.4, lower), (0.5, put), (0.1, put),
-               (0.25, put + 0.025 * UP)]
-    return held(along(strokes), 0.6, 2.72)
+               (0.6, lower + 0.03 * UP), (0.4, lower), (0.5, put), (0.2, put),
+               (0.25, put + 0.025 * UP), (0.25, put + 0.025 * UP)]
+    return held(along(strokes), 0.6, 2.85)
 
 
 def pucks():

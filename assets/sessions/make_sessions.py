@@ -29,13 +29,13 @@ SCENES = {  # scene: hand, seconds recorded (0: the session was led by the mouse
     "gears": ("gears", 4), "leaf": ("leaf", 5.2),
     "keys": ("keys", 3.3), "switch": ("switch", 2.1), "drawer_door": ("drawer_door", 3.6),
     "dial": ("dial", 2.5), "dominoes": ("dominoes", 1.7), "marbles": ("marbles", 2.4),
-    "stack": ("stack", 2), "cup": ("cup", 3), "pucks": ("pucks", 2.6), "seesaw": ("seesaw", 2.3),
+    "stack": ("stack", 2), "cup": ("cup", 3.1), "pucks": ("pucks", 2.6), "seesaw": ("seesaw", 2.3),
     "cradle": ("cradle", 2.9), "pendulum": ("pendulum", 1.8),
 }
 PAPERS = {"table", "free", "obstacles", "proximal"}  # under the coupling of the paper
 PICTURE_AT = {  # seconds of the session, for the thumbnail of a scene in which things move
     "keys": 2.4, "switch": 0.8, "drawer_door": 2.8, "dial": 1.2, "dominoes": 1.2, "marbles": 1.4,
-    "stack": 1.64, "cup": 1.4, "pucks": 0.8, "seesaw": 2, "cradle": 1.8, "pendulum": 0.6,
+    "stack": 1.56, "cup": 1.4, "pucks": 0.8, "seesaw": 2, "cradle": 1.8, "pendulum": 0.6,
 }
 SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
 PART = (300, 138)             # of the picture: its left upper corner
