@@ -109,6 +109,7 @@ class MovingScenes(unittest.TestCase):
         self.assertAlmostEqual(clicks, passed, delta=1.5)
         self.assertGreater(torque.max(), 0.8 * body["joint"]["detent"]["force"])
         self.assertLess(torque.min(), -0.4 * body["joint"]["detent"]["force"])
+        self.assertGreater(r.pushes.max(), 0.4, "too weak to be felt")
 
     def dominoes(self, r: Recorded, scene: dict) -> None:
         """All fall, one after the other, though the tip is near the first one alone."""
