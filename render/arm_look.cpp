@@ -208,13 +208,9 @@ namespace {
 
 constexpr double kSeen = 1e-3;  // shorter links are not missed where others have pictures [m]
 
-float linear(float srgb) {
-  return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
-}
-
 Paint paint_of(const Visual& visual) {
   Paint paint{{0.75f, 0.76f, 0.78f}, 0, 0.4f};
-  if (visual.color) paint.color = visual.color->head<3>().unaryExpr(&linear);
+  if (visual.color) paint.color = visual.color->head<3>().unaryExpr(&linear_light);
   return paint;
 }
 

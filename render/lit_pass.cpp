@@ -133,15 +133,17 @@ void LitPass::draw_plain(const ShaderProgram& program, const std::vector<Drawabl
                          const Links& links, const glm::mat4& view, const Look& look) const {
   program.use();
   program.set("shadow_map", static_cast<int>(kShadowUnit));
-  program.set("tint", look.tint);
-  each(list, links, [&](const GpuModel& model, const glm::mat4& pose) {
-    if (!in_sight(model.box(), view * pose)) return;
-    const bool coarse = look.coarse || coarse_enough(model, view * pose, look.pixels);
-    program.set("model", pose);
+  for (const Drawable& item : list) {
+    const auto pose = place(item, links);
+    const GpuModel& model = *item.model;
+    if (!pose || !in_sight(model.box(), view * *pose)) continue;
+    const bool coarse = look.coarse || coarse_enough(model, view * *pose, look.pixels);
+    program.set("tint", item.own_color ? glm::vec4(0) : look.tint);
+    program.set("model", *pose);
     model.bind();
     for (const GpuModel::Piece& piece : model.pieces(coarse))
-      if (is_plain(piece.material) && in_sight(piece.box, view * pose)) model.draw(piece);
-  });
+      if (is_plain(piece.material) && in_sight(piece.box, view * *pose)) model.draw(piece);
+  }
 }
 
 void LitPass::bind_textures(const GpuModel& model, const Finish& m) const {

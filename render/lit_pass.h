@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/camera.h"
@@ -50,22 +51,26 @@ class ShadowMap {
 // Solid surfaces in the scene's light.
 struct Drawable {
   std::shared_ptr<const GpuModel> model;
-  glm::mat4 pose;  // in the frame of `link`
-  int link;        // -1: the world
+  glm::mat4 pose;          // in the frame of `link`
+  int link;                // -1: the world
+  bool own_color = false;  // whatever a list is tinted with
 };
 
 // The link frames of one arm; empty if it is not drawn.
 using Links = std::vector<glm::mat4>;
 
+// Its pose in the world; none if it is not drawn.
+inline std::optional<glm::mat4> place(const Drawable& item, const Links& links) {
+  if (item.link < 0) return item.pose;
+  if (static_cast<std::size_t>(item.link) >= links.size()) return std::nullopt;
+  return links[static_cast<std::size_t>(item.link)] * item.pose;
+}
+
 // Calls draw_one(model, pose in the world) for each that is drawn.
 template <class Draw>
 void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one) {
   for (const Drawable& item : list) {
-    if (item.link < 0) {
-      draw_one(*item.model, item.pose);
-    } else if (static_cast<std::size_t>(item.link) < links.size()) {
-      draw_one(*item.model, links[static_cast<std::size_t>(item.link)] * item.pose);
-    }
+    if (const auto pose = place(item, links)) draw_one(*item.model, *pose);
   }
 }
 

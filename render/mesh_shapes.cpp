@@ -64,6 +64,10 @@ void add_quad(Model& m, const Vec3 (&corner)[4], const Vec3& normal, const Paint
 
 }  // namespace
 
+float linear_light(float part) {
+  return part <= 0.04045f ? part / 12.92f : std::pow((part + 0.055f) / 1.055f, 2.4f);
+}
+
 // Each vertex of a sphere cut into eight, pushed apart: faces, edges and corners in one go.
 Model make_box(const Vec3& size, double bevel, const Paint& paint) {
   const double r = std::min(bevel, 0.5 * size.minCoeff());

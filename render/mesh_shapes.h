@@ -10,6 +10,9 @@ struct Paint {
   float metallic = 0, roughness = 0.45f;
 };
 
+// A part of a screen's colour (sRGB), as light.
+float linear_light(float part);
+
 Model make_box(const Vec3& size, double bevel, const Paint& paint);
 Model make_sphere(double radius, const Paint& paint);
 Model make_cylinder(double radius, double length, const Paint& paint);  // along z

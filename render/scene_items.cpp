@@ -61,11 +61,15 @@ class ObjectItems {
       : arm_(arm), visuals_(visuals), items_(items) {}
 
   void add(const Object& object) {
+    paint(object.color);
     if (!object.body) return add(object.pose, object.shape);
     body_ = static_cast<int>(items_.starts.size());
     items_.starts.push_back(object.pose);
     add(Pose::Identity(), object.shape);
-    for (const BodyPart& part : object.parts) add(part.pose, part.shape);
+    for (const BodyPart& part : object.parts) {
+      paint(part.color ? part.color : object.color);
+      add(part.pose, part.shape);
+    }
     body_ = -1;
   }
 
@@ -97,26 +101,26 @@ class ObjectItems {
   void add(const Pose& pose, const Sphere& sphere) {
     const Vec3 r = Vec3::Constant(sphere.radius);
     if (shown(moved(Bounds(-r, r), pose))) return;
-    put(make_sphere(sphere.radius, kObject), pose);
+    put(make_sphere(sphere.radius, paint_), pose);
   }
 
   void add(const Pose& pose, const Box& box) {
     const Bounds edges(-0.5 * box.size, 0.5 * box.size);
     if (shown(moved(edges, pose))) return;
-    put(make_box(box.size, 0.04 * box.size.minCoeff(), kObject), pose);
+    put(make_box(box.size, 0.04 * box.size.minCoeff(), paint_), pose);
   }
 
   void add(const Pose& pose, const Cylinder& cylinder) {
     const double r = cylinder.radius, half = cylinder.length / 2;
     if (shown(moved(Bounds(Vec3(-r, -r, -half), Vec3(r, r, half)), pose))) return;
-    put(make_cylinder(r, cylinder.length, kObject), pose);
+    put(make_cylinder(r, cylinder.length, paint_), pose);
   }
 
   void add(const Pose& pose, const Capsule& capsule) {
     const double r = capsule.radius;
     const Vec3 end = capsule.length / 2 * Vec3::UnitZ(), all = Vec3(r, r, r) + end;
     if (shown(moved(Bounds(-all, all), pose))) return;
-    put(make_capsule(-end, end, r, kObject), pose);
+    put(make_capsule(-end, end, r, paint_), pose);
   }
 
   void add(const Pose&, const Mesh&) {}  // SceneView::set_meshes() has their models
@@ -137,16 +141,25 @@ class ObjectItems {
   }
 
  private:
+  // What follows is of a screen's colour, or of none.
+  void paint(const std::optional<Vec3>& color) {
+    own_color_ = color.has_value();
+    paint_ = kObject;
+    if (color) paint_.color = color->cast<float>().unaryExpr(&linear_light);
+  }
   // What moves is nowhere that a model of the scene could show it.
   bool shown(const Bounds& shape) const { return body_ < 0 && shown_by_visual(shape, visuals_); }
   // `pose`: of a body in its frame.
   void put(Model model, const Pose& pose) {
-    (body_ < 0 ? items_.world : items_.bodies).push_back({std::move(model), pose, body_});
+    (body_ < 0 ? items_.world : items_.bodies)
+        .push_back({std::move(model), pose, body_, own_color_});
   }
 
   const ArmDescription& arm_;
   const std::vector<Bounds>& visuals_;
   SceneItems& items_;
+  Paint paint_ = kObject;  // of what is being added
+  bool own_color_ = false;
   int body_ = -1;  // number of the one that is being added; else -1
 };
 

@@ -16,6 +16,7 @@ struct Item {
   Model model;
   Pose pose = Pose::Identity();  // in the frame of `link`
   int link = -1;                 // -1 the base, which is the world
+  bool own_color = false;        // else one that suits the theme
 };
 
 struct SceneItems {

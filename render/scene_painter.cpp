@@ -27,7 +27,8 @@ glm::vec4 linear(const palette::Rgb& c, float amount) {
 std::vector<Drawable> upload_all(const std::vector<Item>& items) {
   std::vector<Drawable> out;
   for (const Item& item : items)
-    out.push_back({std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link});
+    out.push_back({std::make_shared<const GpuModel>(item.model), to_glm(item.pose), item.link,
+                   item.own_color});
   return out;
 }
 

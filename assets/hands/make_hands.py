@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Writes the hand paths beside it (100 Hz, metres, seconds): touch, free, proximal and circle for
-the table, and one for each scene of the same name: spheres, relief, gears, leaf.
+the table, and one for each scene of the same name: those of models, and those with things that
+move. Where something is picked up, the column `magnet` says from when to when.
 
 Each path goes through way points. Between two of them, a and b, it follows the minimum-jerk curve
 that people's reaching movements are known for (Flash and Hogan 1985), at rest at both ends:
@@ -247,12 +248,203 @@ def leaf():
                   (0.4, away), (1.5, rounded_off([away[0], *over, REST]))])
 
 
-def write(path, t, p):
-    rows = [f"{ti:.2f},{x:.6f},{y:.6f},{z:.6f}\n" for ti, (x, y, z) in zip(t, p)]
-    path.write_text("time_s,x_m,y_m,z_m\n" + "".join(rows))
+class Toys:
+    """A scene's tip radius, and its bodies as its file has them."""
+
+    def __init__(self, name):
+        scene = tomllib.loads((SCENES / f"{name}.toml").read_text())
+        self.tip = scene["tip_radius"]
+        self.bodies = {body["name"]: body for body in scene["body"]}
+
+    def at(self, name):
+        return np.array(self.bodies[name]["position"])
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def keys():
+    """Down each key to the bottom and up again, from the near one to the far one."""
+    toys, strokes = Toys("keys"), []
+    for name, key in toys.bodies.items():
+        top = toys.at(name) + (key["box"][2] / 2 + toys.tip) * UP
+        low = top - (key["joint"]["limits"][1] + 0.005) * UP
+        strokes += [(0.3 if strokes else 0.45, top + 0.005 * UP), (0.3, low), (0.2, top + 0.004 * UP)]
+    return along(strokes)
+
+
+def switch():
+    """Presses the upper half in until it snaps, then the lower half."""
+    toys = Toys("switch")
+    middle, inwards = toys.at("rocker"), np.array([0, 1.0, 0])
+    strokes = []
+    for height in (0.013, -0.013):
+        before = middle + height * UP - (0.0125 + toys.tip) * inwards
+        strokes += [(0.4, before), (0.4, before + 0.016 * inwards), (0.25, before - 0.004 * inwards)]
+    return along(strokes + [(0.35, REST)])
+
+
+def drawer_door():
+    """Hooks behind the drawer's handle and pulls it open, then opens the door and lets go of it."""
+    toys, towards = Toys("drawer_door"), np.array([0, -1.0, 0])
+    handle = toys.at("drawer") + [0, -0.008, 0.004]
+    strokes = [(0.45, handle + 0.02 * UP), (0.25, handle), (0.6, handle + 0.038 * towards),
+               (0.25, handle + 0.034 * towards + 0.022 * UP)]
+    door = toys.bodies["door"]
+    hinge = toys.at("door") + door["joint"]["point"]
+    grip = toys.at("door") + [-0.02, -0.008, 0]
+
+    def opened(angle, place):
+        """Where a place of the closed door is when it is open by so much."""
+        c, s = np.cos(angle), np.sin(angle)
+        x, y, z = place - hinge
+        return hinge + [c * x - s * y, s * x + c * y, z]
+
+    # From the hinge's side, for on the other one there is the drawer.
+    beside = grip + [0.016, -0.002, 0]
+    arc = np.array([opened(angle, grip) for angle in np.linspace(0, 1.2, 30)])
+    strokes += [(0.35, beside + 0.024 * UP), (0.2, beside), (0.2, grip), (0.7, arc),
+                (0.2, opened(1.2, beside)), (0.2, opened(1.2, beside) + [0, -0.01, 0.03]),
+                (0.3, opened(1.2, beside) + [0, -0.01, 0.03])]
+    return along(strokes)
+
+
+def dial():
+    """Between the two pins, and round by three quarters of a turn."""
+    toys = Toys("dial")
+    body = toys.bodies["dial"]
+    lean = body["rotation"][0]
+    turn = np.array([[1, 0, 0], [0, np.cos(lean), -np.sin(lean)], [0, np.sin(lean), np.cos(lean)]])
+
+    def face(angle, high):
+        angle = np.atleast_1d(angle)[:, None]
+        radius = body["part"][0]["position"][0]
+        own = np.hstack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle + high])
+        return toys.at("dial") + own @ turn.T
+
+    round_it = face(np.linspace(0, np.radians(200), 120), 0.0085)
+    return along([(0.4, face(0, 0.022)), (0.25, round_it[0]), (1.9, round_it),
+                  (0.25, face(np.radians(195), 0.022))])
+
+
+def dominoes():
+    """Leans on the first one until it goes."""
+    toys = Toys("dominoes")
+    first, heading = toys.at("domino 1"), toys.bodies["domino 1"]["rotation"][2]
+    ahead = np.array([np.cos(heading), np.sin(heading), 0])
+    touch = first + 0.011 * UP - (0.0025 + toys.tip) * ahead
+    return along([(0.5, touch - 0.008 * ahead), (0.6, touch + 0.011 * ahead),
+                  (0.3, touch - 0.01 * ahead + 0.01 * UP), (0.4, touch - 0.01 * ahead + 0.01 * UP)])
+
+
+def marbles():
+    """Round among the marbles, out of them and to the middle again."""
+    toys = Toys("marbles")
+    middle = np.mean([toys.at(name) for name in toys.bodies], axis=0)
+    angle = np.linspace(0, 3 * np.pi, 90)
+    radius = np.interp(angle, [0, np.pi, 3 * np.pi], [0, 0.018, 0.024])
+    way = middle + np.column_stack([radius * np.cos(angle), radius * np.sin(angle),
+                                    0.0015 + 4.5 * radius**2])
+    return along([(0.35, middle + 0.02 * UP), (0.25, way[0]), (1.5, way),
+                  (0.3, way[-1] + 0.03 * UP), (0.5, way[-1] + 0.03 * UP)])
+
+
+def stack():
+    """Pushes the tower a little, feels it rock, and then knocks it over."""
+    toys = Toys("stack")
+    touch = toys.at("block 4") - [0.01 + toys.tip, 0, -0.004]
+    ahead = np.array([1.0, 0, 0])
+    return along([(0.4, touch - 0.012 * ahead), (0.3, touch), (0.35, touch + 0.004 * ahead),
+                  (0.2, touch - 0.004 * ahead), (0.35, touch + 0.03 * ahead), (0.3, touch),
+                  (0.5, touch)])
+
+
+def cup():
+    """Takes the cup by its brim with the magnet, carries it over to the coaster and puts it down."""
+    toys = Toys("cup")
+    high = 0.04 + toys.tip
+    brim = toys.at("cup") + [0.0, 0.0215, high]
+    put = np.array([0.19, 0.052 + 0.0215, brim[2] + 0.01])
+    # It hangs aslant: put down on its edge, it is drawn upright.
+    lower = put + [0, -0.04, 0.003]
+    strokes = [(0.4, brim + 0.012 * UP), (0.2, brim - 0.002 * UP), (0.6, brim + 0.04 * UP),
+               (0.6, lower + 0.03 * UP), (0.4, lower), (0.5, put), (0.2, put),
+               (0.25, put + 0.025 * UP), (0.25, put + 0.025 * UP)]
+    return held(along(strokes), 0.6, 2.85)
+
+
+def pucks():
+    """Pushes the light puck and leaves it, then the heavy one in just the same way."""
+    toys, strokes, ahead = Toys("pucks"), [], np.array([1.0, 0, 0])
+    for name, puck in toys.bodies.items():
+        behind = toys.at(name) - (puck["cylinder"][0] + toys.tip + 0.002) * ahead
+        strokes += [(0.3, behind + 0.018 * UP), (0.2, behind), (0.45, behind + 0.045 * ahead),
+                    (0.25, behind + 0.03 * ahead + 0.018 * UP)]
+    return along(strokes + [(0.3, REST)])
+
+
+def seesaw():
+    """Presses the free end down slowly, lets it up again, and then presses it fast."""
+    toys = Toys("seesaw")
+    plank = toys.bodies["plank"]
+    lean, half = plank["rotation"][1], plank["box"][0] / 2 - 0.009
+    top = plank["box"][2] / 2 + toys.tip
+
+    def end(angle, off=0.0):
+        c, s = np.cos(angle), np.sin(angle)
+        return toys.at("plank") + [-half * c + (top + off) * s, 0, half * s + (top + off) * c]
+
+    return along([(0.45, end(lean, 0.008)), (0.2, end(lean)), (0.6, end(-lean, -0.004)),
+                  (0.5, end(lean, 0.002)), (0.1, end(-lean, -0.008)), (0.6, end(-lean, -0.008))])
+
+
+def cradle():
+    """Takes the first ball, pulls it aside along its circle and lets go."""
+    toys = Toys("cradle")
+    ball = toys.bodies["ball 1"]
+    pivot = toys.at("ball 1") + ball["joint"]["point"]
+    length = ball["joint"]["point"][2]
+    off = ball["sphere"] + toys.tip
+
+    def beside(angle, gap=0.0):
+        """To the left of the ball when it is lifted by so much."""
+        c, s = np.cos(angle), np.sin(angle)
+        return pivot + [-length * s - (off + gap) * c, 0, -length * c + (off + gap) * s]
+
+    swing = np.array([beside(a, 0.0005) for a in np.linspace(0, 0.6, 20)])
+    strokes = [(0.35, beside(0, 0.025) + 0.035 * UP), (0.3, beside(0, 0.008)),
+               (0.2, beside(0, -0.001)), (0.6, swing), (0.1, swing[-1]), (0.15, beside(0.75, 0.012)),
+               (1.2, beside(0.75, 0.012))]
+    return held(along(strokes), 0.7, 1.55)
+
+
+def pendulum():
+    """Pushes the ball away and waits for it."""
+    toys = Toys("pendulum")
+    ball = toys.bodies["pendulum"]
+    touch = toys.at("pendulum") - [ball["sphere"] + toys.tip, 0, 0]
+    ahead = np.array([1.0, 0, 0])
+    return along([(0.4, touch - 0.01 * ahead), (0.22, touch + 0.034 * ahead), (0.25, touch),
+                  (1.2, touch)])
+
+
+def held(path, start, end):
+    """The path with the magnet on from start to end [s]."""
+    t, p = path
+    return t, p, (t >= start) & (t < end)
+
+
+def write(path, t, p, magnet=None):
+    rows = [f"{ti:.2f},{x:.6f},{y:.6f},{z:.6f}" for ti, (x, y, z) in zip(t, p)]
+    header = "time_s,x_m,y_m,z_m"
+    if magnet is not None:
+        header += ",magnet"
+        rows = [f"{row},{on:d}" for row, on in zip(rows, magnet)]
+    path.write_text("\n".join([header, *rows]) + "\n")
 
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
-    for make in (touch, free, proximal, circle, spheres, relief, gears, leaf):
+    for make in (touch, free, proximal, circle, spheres, relief, gears, leaf, keys, switch,
+                 drawer_door, dial, dominoes, marbles, stack, cup, pucks, seesaw, cradle, pendulum):
         write(folder / f"{make.__name__}.csv", *make())

@@ -2,7 +2,8 @@
 """Records a session of every scene in the gallery beside this file, and draws each scene's
 thumbnail (../scenes/thumbnails). Those that were led by the mouse are run again with their own hand
 and settings. Run after the scenes, the hands or the program have changed, for a session fed back in
-gives the same rows bit for bit only in the program that made it (tests/system/test_same_rows.py):
+gives the same rows bit for bit only in the program that made it (tests/system/test_same_rows.py).
+Those in which things move are rounded behind their first row, to be small; see ROUNDED below:
 
     python3 assets/sessions/make_sessions.py [--sessions] [PROGRAM] [SCENE ...]
 
@@ -26,8 +27,16 @@ SCENES = {  # scene: hand, seconds recorded (0: the session was led by the mouse
     "table": ("touch", 0), "free": ("free", 0), "obstacles": ("touch", 4.6),
     "proximal": ("proximal", 4.4), "spheres": ("spheres", 4.2), "relief": ("relief", 4.6),
     "gears": ("gears", 4), "leaf": ("leaf", 5.2),
+    "keys": ("keys", 3.3), "switch": ("switch", 2.1), "drawer_door": ("drawer_door", 3.6),
+    "dial": ("dial", 2.5), "dominoes": ("dominoes", 1.7), "marbles": ("marbles", 2.4),
+    "stack": ("stack", 2), "cup": ("cup", 3.1), "pucks": ("pucks", 2.6), "seesaw": ("seesaw", 2.3),
+    "cradle": ("cradle", 2.9), "pendulum": ("pendulum", 1.8),
 }
-STIFF = {"spheres", "relief", "gears", "leaf"}  # with materials that ask for the predictive coupling
+PAPERS = {"table", "free", "obstacles", "proximal"}  # under the coupling of the paper
+PICTURE_AT = {  # seconds of the session, for the thumbnail of a scene in which things move
+    "keys": 2.4, "switch": 0.8, "drawer_door": 2.8, "dial": 1.2, "dominoes": 1.2, "marbles": 1.4,
+    "stack": 1.56, "cup": 1.4, "pucks": 0.8, "seesaw": 2, "cradle": 1.8, "pendulum": 0.6,
+}
 SIZE, TIMES = (320, 200), 3   # of a thumbnail; so many pixels of the picture make one of it
 PART = (300, 138)             # of the picture: its left upper corner
 
@@ -36,8 +45,7 @@ def limpid(program, *arguments):
     """From the project's folder, so that a session names its hand the same on every computer.
     Pictures are drawn without a display."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    subprocess.run([program, "run", *map(str, arguments)], env=environment, check=True,
-                   cwd=ASSETS.parent)
+    subprocess.run([program, *map(str, arguments)], env=environment, check=True, cwd=ASSETS.parent)
 
 
 def thumbnail(picture, out):
@@ -53,16 +61,40 @@ def thumbnail(picture, out):
 SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")
 
 
-def pack(source, into):
-    """Copies a group and all in it but its scales, compressed as far as it goes."""
+# Of scenes in which things move nobody wants to load megabytes: what a re-run works out again is
+# rounded, by its unit, to a part of 2 to this power; to four micrometres or millinewtons at most. What a
+# re-run begins with and is led by, the first row and the hand, stays as it was, so that a re-run
+# gives all numbers again.
+ROUNDED = {"m": 18, "rad": 18, "m/s": 11, "rad/s": 11, "N": 8, "N m": 12, "J": 27, "s": 17}
+WHOLE = {"/time", "/hand/target", "/objects/state"}
+
+
+def rounded(item):
+    values = item[()]
+    unit = np.atleast_1d(item.attrs.get("unit", ""))[0]  # of a body's turning as of its going
+    unit = unit.decode() if isinstance(unit, bytes) else str(unit)
+    if values.dtype.kind != "f" or unit not in ROUNDED or item.name in WHOLE:
+        return values
+    step = 2.0 ** -ROUNDED[unit]
+    values[1:] = np.round(values[1:] / step) * step + 0.0  # and no -0
+    return values
+
+
+def pack(source, into, rounds=False):
+    """Copies a group and all in it but its scales, compressed as far as it goes. Who rounds leaves
+    the sums of all numbers out."""
     for name in source.attrs:
         into.attrs.create(name, source.attrs[name], dtype=source.attrs.get_id(name).dtype)
     for name, item in source.items():
         if isinstance(item, h5py.Group):
-            pack(item, into.create_group(name))
+            if not (rounds and name == "check"):
+                pack(item, into.create_group(name), rounds)
             continue
         how = {"compression": 9, "shuffle": True, "maxshape": item.maxshape} if item.shape else {}
-        copy = into.create_dataset(name, data=item[()], dtype=item.dtype, **how)
+        if rounds and item.size:
+            how["chunks"] = item.shape
+        data = rounded(item) if rounds else item[()]
+        copy = into.create_dataset(name, data=data, dtype=item.dtype, **how)
         for attribute in (name for name in item.attrs if name not in SCALES):
             copy.attrs.create(attribute, item.attrs[attribute],
                               dtype=item.attrs.get_id(attribute).dtype)
@@ -89,26 +121,45 @@ def options(scene):
     hand, seconds = SCENES[scene]
     world = ["--scene", f"assets/scenes/{scene}.toml", "--hand", f"assets/hands/{hand}.csv",
              "--eta", "0.6"]
-    if scene in STIFF:
+    if scene not in PAPERS:
         world += ["--coupling", "predictive"]
     if scene == "gears":  # a light hand: the teeth are of brass, and the motors of an Omni
         world += ["--set", "hand.stiffness=50"]
     return world, seconds
 
 
+def ship(recording, session, rounds):
+    version = ("v110", "v110") if rounds else ("v108", "v108")  # the newer one has smaller books
+    with h5py.File(recording) as whole, h5py.File(session, "w", libver=version) as small:
+        pack(whole, small, rounds)
+        attach_scales(whole, small)
+        if rounds:
+            small.attrs["rounded"] = ", ".join(f"{unit}: 2^-{n}" for unit, n in ROUNDED.items())
+
+
+def draw(program, scene, world, folder):
+    """The moment of the strongest contact; or where things move, one that says what they do."""
+    picture = folder / f"{scene}.png"
+    if scene in PICTURE_AT:
+        at = PICTURE_AT[scene]
+        limpid(program, "play", f"assets/sessions/{scene}.h5", "--video", folder / scene, "--from", at,
+               "--to", at + 0.03, "--no-plots", "--size", "1280x800")
+        picture = next((folder / scene).glob("*.png"))
+    else:
+        limpid(program, "run", *world, "--picture", picture)
+    thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
+
+
 def make(program, scene, folder, draws):
     world, seconds = options(scene)
     print(f"-- {scene}", flush=True)
-    if draws:
-        picture = folder / f"{scene}.png"
-        limpid(program, *world, "--picture", picture)
-        thumbnail(picture, ASSETS / f"scenes/thumbnails/{scene}.png")
     recording, session = folder / f"{scene}.h5", HERE / f"{scene}.h5"
     again = ["--hand", f"assets/sessions/{scene}.h5"]
-    limpid(program, *([*world, "--duration", seconds] if seconds else again), "--record", recording)
-    with h5py.File(recording) as whole, h5py.File(session, "w", libver=("v108", "v108")) as small:
-        pack(whole, small)
-        attach_scales(whole, small)
+    limpid(program, "run", *([*world, "--duration", seconds] if seconds else again), "--record",
+           recording)
+    ship(recording, session, scene in PICTURE_AT)
+    if draws:
+        draw(program, scene, world, folder)
     print(f"{session.name}: {session.stat().st_size / 1e6:.2f} MB", flush=True)
 
 

@@ -4,7 +4,9 @@
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "core/touch/triangle_mesh.h"
@@ -27,6 +29,11 @@ btTransform to_bullet(const Pose& pose) {
       to_bullet(Vec3(pose.translation())));
 }
 
+Vec3 middle(const btManifoldPoint& point) {
+  return 0.5 *
+         (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
+}
+
 // A plane is a large block below it: of faces and edges Bullet finds all points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
@@ -46,13 +53,16 @@ struct BodyGeometry::Inside {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
     btCollisionObject at;
-    btVector3 low, high;  // box around it, a little larger
-    double least = 0;     // its smallest extent [m]
+    std::optional<btVector3> level;  // of a plane: its normal
+    btVector3 low, high;             // box around it, a little larger
+    double least = 0;                // its smallest extent [m]
+    bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
   };
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
+    bool single = false;  // they meet in one point at most
   };
 
   explicit Inside(const Scene& scene);
@@ -62,6 +72,9 @@ struct BodyGeometry::Inside {
   void pair(Solid& a, Solid& b);
   static void bound(Solid& solid);
   static bool overlap(const Solid& a, const Solid& b);
+  static void slide_along(const Pair& pair);
+  static void keep_deepest(const Pair& pair);
+  static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void meet(Pair& pair);
   void take(Pair& pair);
   BodyContact* fresh(const Pair& pair);
@@ -88,7 +101,6 @@ struct BodyGeometry::Inside {
 
 BodyGeometry::Inside::Inside(const Scene& scene)
     : configuration(sizes()), dispatcher(&configuration), pool(kMost) {
-  configuration.setConvexConvexMultipointIterations(4, 4);
   info.m_dispatchFunc = btDispatcherInfo::DISPATCH_DISCRETE;
   int body = 0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -146,6 +158,7 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
   for (std::size_t i = before; i < solids.size(); ++i) {
     Solid& solid = *solids[i];
     const auto* plane = std::get_if<Plane>(&o.shape);
+    if (plane != nullptr) solid.level = to_bullet(plane->normal);
     solid.at.setWorldTransform(
         to_bullet(plane != nullptr ? block_below(*plane, o.pose) : o.pose * solid.in_object));
     bound(solid);
@@ -217,6 +230,13 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
 void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   Pair p{&a, &b};
   if (!allowed(p)) return;
+  const auto ball = [](const Solid& s) {
+    return s.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  };
+  p.single = (ball(a) || ball(b)) && a.shape->isConvex() && b.shape->isConvex();
+  // Else Bullet turns the shapes a little, to find more points than the deepest.
+  const int wanted = p.single ? 0 : kPointsOfPair;
+  configuration.setConvexConvexMultipointIterations(wanted, wanted);
   const btCollisionObjectWrapper on_a(nullptr, a.shape.get(), &a.at, a.at.getWorldTransform(), -1,
                                       -1);
   const btCollisionObjectWrapper on_b(nullptr, b.shape.get(), &b.at, b.at.getWorldTransform(), -1,
@@ -255,7 +275,63 @@ bool BodyGeometry::Inside::overlap(const Solid& a, const Solid& b) {
          b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
 }
 
+// A plane is the same everywhere: its end of a point goes along below the body's, which may slide
+// as far as it likes and stays in the same contact.
+void BodyGeometry::Inside::slide_along(const Pair& p) {
+  if (!p.b->level) return;
+  const bool turned = p.manifold->getBody0() != &p.a->at;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    btManifoldPoint& point = p.manifold->getContactPoint(i);
+    btVector3& on_body = turned ? point.m_localPointB : point.m_localPointA;
+    btVector3& on_plane = turned ? point.m_localPointA : point.m_localPointB;
+    const btVector3 at = p.a->at.getWorldTransform() * on_body;
+    const btVector3 there = p.b->at.getWorldTransform() * on_plane;
+    const btVector3 level = at - *p.b->level * p.b->level->dot(at - there);
+    on_plane = p.b->at.getWorldTransform().invXform(level);
+  }
+}
+
+// A ball has one point: what Bullet still has from before, beside it, would turn the ball.
+void BodyGeometry::Inside::keep_deepest(const Pair& p) {
+  btPersistentManifold& m = *p.manifold;
+  while (m.getNumContacts() > 1) {
+    m.removeContactPoint(
+        m.getContactPoint(0).getDistance() > m.getContactPoint(1).getDistance() ? 0 : 1);
+  }
+}
+
+// A point that is new where another one of the pair has just gone is that one, elsewhere: it goes
+// on with what that one was pressed in by. Else what rests on points that come and go would sink,
+// and of two balls Bullet makes a new point every time.
+void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
+  btPersistentManifold& m = *p.manifold;
+  const auto is_there = [&](const BodyContact* c) {
+    for (int i = 0; i < m.getNumContacts(); ++i) {
+      if (m.getContactPoint(i).m_userPersistentData == c) return true;
+    }
+    return false;
+  };
+  for (int i = 0; i < m.getNumContacts(); ++i) {
+    btManifoldPoint& point = m.getContactPoint(i);
+    if (point.m_userPersistentData != nullptr) continue;
+    const Vec3 at = middle(point);
+    BodyContact* nearest = nullptr;
+    for (BodyContact* c : before) {
+      if (is_there(c)) continue;
+      if (nearest == nullptr || (c->point - at).norm() < (nearest->point - at).norm()) nearest = c;
+    }
+    point.m_userPersistentData = nearest;
+  }
+}
+
 void BodyGeometry::Inside::meet(Pair& p) {
+  slide_along(p);
+  std::array<BodyContact*, kPointsOfPair> before{};
+  std::size_t count = 0;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    auto* c = static_cast<BodyContact*>(p.manifold->getContactPoint(i).m_userPersistentData);
+    if (c != nullptr) before[count++] = c;
+  }
   const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
@@ -264,6 +340,8 @@ void BodyGeometry::Inside::meet(Pair& p) {
   result.setPersistentManifold(p.manifold);
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
   result.refreshContactPoints();
+  if (p.single) keep_deepest(p);
+  go_on(p, {before.data(), count});
 }
 
 BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
@@ -271,6 +349,8 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   BodyContact* c = free_ones.back();
   free_ones.pop_back();
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
+  c->ball_a = p.a->ball();
+  c->ball_b = p.b->ball();
   c->used = true;
   return c;
 }
@@ -290,8 +370,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     // Bullet may have taken the pair the other way round.
     const bool turned = p.manifold->getBody0() != &p.a->at;
     c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
-    c->point =
-        0.5 * (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
+    c->point = middle(point);
     c->depth = -point.getDistance();
     c->seen = true;
     points.push_back(c);  // there are no more of them than there is room for

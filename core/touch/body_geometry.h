@@ -20,6 +20,8 @@ struct BodyContact {
   Vec3 point = Vec3::Zero();       // in the middle of the overlap [m]
   Vec3 normal = Vec3::UnitZ();     // out of b, unit
   double depth = 0;                // negative: apart [m]
+  // Of a ball the point stays below the centre while it rolls: it does not turn along.
+  bool ball_a = false, ball_b = false;
 
   // From tick to tick:
   double lost = 0;  // by its damper over the last tick [J]

@@ -39,6 +39,7 @@ BodyMotion::BodyMotion(const Object& object, const Vec3& gravity)
   c_ = own.center;
   I_ = own.inertia;
   inverse_ = I_.inverse();
+  bouncing_theta_ = kTheta - (kTheta - 0.5) * object.body->restitution;
   if (object.body->joint && object.body->joint->kind != BodyJoint::Kind::ball &&
       object.body->joint->to.empty()) {
     joint_ = *object.body->joint;
@@ -90,7 +91,7 @@ void BodyMotion::place() {
 }
 
 void BodyMotion::begin(double T, bool pushed) {
-  theta_ = pushed ? kTheta : 0.5;
+  theta_ = pushed ? bouncing_theta_ : 0.5;
   if (kind_ != Kind::free) {
     const double M = reflected_ / (theta_ * T);
     a_ = 1 / (M + joint_.damping);

@@ -20,7 +20,8 @@ class BodyMotion {
   void reset();  // to where it starts, at rest
 
   // Weight of the tick's end where something pushed at the last tick, 1/2 at least: at 1/2 energy
-  // is kept, but a stiff contact of a light body then alternates.
+  // is kept, but a stiff contact of a light body then alternates. What bounces keeps energy, and
+  // has as much less of it.
   static constexpr double kTheta = 0.6;
 
   // The mean velocity that it has over the tick when nothing but its weight acts, and what a force
@@ -78,9 +79,10 @@ class BodyMotion {
   double reflected_ = 0;       // inertia along the joint [kg] or [kg m^2]
   Vec3 pivot_ = Vec3::Zero();  // of a hinge [m]
 
-  Pose pose_;              // of the object
-  Vec3 p_, v_, w_;         // centre [m], its velocity [m/s], angular velocity in its frame
-  double s_ = 0, sd_ = 0;  // of the joint
+  Pose pose_;                       // of the object
+  Vec3 p_, v_, w_;                  // centre [m], its velocity [m/s], angular velocity in its frame
+  double s_ = 0, sd_ = 0;           // of the joint
+  double bouncing_theta_ = kTheta;  // where something pushed
   double theta_ = 0.5;
 
   // Of the tick:

@@ -243,8 +243,8 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   if (!moves(contact.a) && !moves(contact.b)) return false;
   Row& row = rows_[count_];
   row.contact = &contact;
-  row.a = end_at(contact.a, contact.point);
-  row.b = end_at(contact.b, contact.point);
+  row.a = end_at(contact.a, contact.point, contact.ball_a);
+  row.b = end_at(contact.b, contact.point, contact.ball_b);
   row.K = stiffness(contact);
   // A depth that nobody pressed in goes, as fast as the contact's damper pays for it.
   contact.rest = std::max(contact.rest, contact.depth - contact.pressed);
@@ -300,9 +300,10 @@ void BodyWorld::begin_link(Link& link) {
   apply(link.end_a, link.end_b, link.force);
 }
 
-BodyWorld::End BodyWorld::end_at(int body, const Vec3& point) const {
+BodyWorld::End BodyWorld::end_at(int body, const Vec3& point, bool rolls) const {
   if (!moves(body)) return {};
-  return {body, bodies_[at(body)].lever(point, T_)};
+  const BodyMotion& motion = bodies_[at(body)];
+  return {body, rolls ? Vec3(point - motion.center()) : motion.lever(point, T_)};
 }
 
 Vec3 BodyWorld::velocity(const End& end) const {

@@ -40,7 +40,8 @@ class BodyWorld {
     int body = BodyContact::kStill;
     BodyMotion::Lever lever = Vec3::Zero();
   };
-  End end_at(int body, const Vec3& point) const;
+  // `rolls`: the place stays where it is while the body turns.
+  End end_at(int body, const Vec3& point, bool rolls = false) const;
   Vec3 velocity(const End& end) const;  // mean over the tick [m/s]
   Mat3 answer(const End& end) const;    // to a force there [m/(N s)]
   void push(const End& end, const Vec3& force);

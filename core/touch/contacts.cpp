@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limpid {
 namespace {
@@ -15,6 +16,15 @@ constexpr int kMostBalls = 24;
 constexpr double kWakes = 5e-3;
 // The tip's magnet reaches so far [m].
 constexpr double kPicksUp = 5e-3;
+
+// Under the plane that it is furthest under, or nearest above [m].
+double deepest(const FreeSpace& space, const Vec3& x) {
+  double depth = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < space.count(); ++i) {
+    depth = std::max(depth, space.offset(i) - space.normal(i).dot(x));
+  }
+  return depth;
+}
 
 }  // namespace
 
@@ -180,15 +190,21 @@ void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Fram
   if (!magnet_wanted_) world.let_go();
   const Vec3 tip = Arm<N>::point(f, probes_[0].link, probes_[0].from);
   if (magnet_wanted_ && world.magnet().body == BodyContact::kStill && !world.magnet().spent) {
-    const Contact<N>* nearest = nullptr;
+    int nearest = BodyContact::kStill;
+    double depth = -kPicksUp;
+    const auto take = [&](int body, double its_depth) {
+      if (body == BodyContact::kStill || !world.magnetic(body) || its_depth <= depth) return;
+      nearest = body;
+      depth = its_depth;
+    };
     for (const Contact<N>& c : list()) {
-      if (c.id >= solids_.size() || c.body == BodyContact::kStill) continue;  // not the tip
-      if (c.depth > -kPicksUp && world.magnetic(c.body) &&
-          (nearest == nullptr || c.depth > nearest->depth)) {
-        nearest = &c;
-      }
+      if (c.id < solids_.size()) take(c.body, c.depth);  // the first are the tip's
     }
-    if (nearest != nullptr) world.attach(nearest->body, tip);
+    for (const MeshContact<N>& c : meshes_) {
+      const bool tips = c.link == probes_[0].link && c.on_link == probes_[0].from;
+      if (tips && c.touch.near()) take(c.body, deepest(c.touch.space(), c.center));
+    }
+    if (nearest != BodyContact::kStill) world.attach(nearest, tip);
   }
   magnet_.force.setZero();
   magnet_.on = world.magnet().body != BodyContact::kStill;

@@ -186,6 +186,12 @@ void MeshTouch::place(const Vec3& c) {
   publish();
 }
 
+void MeshTouch::move(const Pose& object) {
+  const Pose there = object * in_object_;
+  anchor_ = there * (pose_.inverse() * anchor_);
+  pose_ = there;
+}
+
 bool MeshTouch::same_surface(const MeshTouch& other) const {
   return shape_ == other.shape_ && scale_ == other.scale_ &&
          pose_.matrix() == other.pose_.matrix() && radius_ == other.radius_;

@@ -68,8 +68,8 @@ class MeshTouch {
   void place(const Vec3& c);
   // To c [m] within a tick of length T [s].
   void follow(const Vec3& c, double T);
-  // The mesh's object is there now; where the ball may be goes with it.
-  void move(const Pose& object) { pose_ = object * in_object_; }
+  // The mesh's object is there now; where the ball may be, and where it is held, go with it.
+  void move(const Pose& object);
   // Of the same mesh, place, scale and radius.
   bool same_surface(const MeshTouch& other) const;
   // Takes over where another one of the same surface is.

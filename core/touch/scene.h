@@ -93,6 +93,7 @@ using Shape = std::variant<Plane, Sphere, Box, Cylinder, Capsule, Mesh, JointSto
 struct BodyPart {
   Pose pose = Pose::Identity();  // [m]
   Shape shape{};                 // Sphere, Box, Cylinder or Capsule
+  std::optional<Vec3> color{};   // else the body's
 };
 
 struct Object {
@@ -104,6 +105,8 @@ struct Object {
   // and what stands still meet the convex hull, the tip the mesh itself.
   std::optional<Body> body{};
   std::vector<BodyPart> parts{};  // of a body, besides its shape
+  // Red, green and blue as a screen has them, 0 to 1, of what has no model. Only looked at.
+  std::optional<Vec3> color{};
 };
 
 template <class S>

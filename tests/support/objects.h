@@ -44,10 +44,12 @@ inline void expect_same(const Object& a, const Object& b) {
   EXPECT_EQ(a.material.friction_static, b.material.friction_static) << a.name;
   EXPECT_EQ(a.material.friction_kinetic, b.material.friction_kinetic) << a.name;
   EXPECT_TRUE(a.body == b.body) << a.name;
+  EXPECT_EQ(a.color, b.color) << a.name;
   ASSERT_EQ(a.parts.size(), b.parts.size()) << a.name;
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
     EXPECT_EQ(a.parts[i].pose.matrix(), b.parts[i].pose.matrix()) << a.name;
     EXPECT_TRUE(a.parts[i].shape == b.parts[i].shape) << a.name;
+    EXPECT_EQ(a.parts[i].color, b.parts[i].color) << a.name;
   }
 }
 

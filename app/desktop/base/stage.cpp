@@ -11,7 +11,7 @@ namespace limpid {
 namespace {
 
 bool same_part(const BodyPart& a, const BodyPart& b) {
-  return a.shape == b.shape && a.pose.matrix() == b.pose.matrix();
+  return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() && a.color == b.color;
 }
 
 // Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
@@ -22,6 +22,7 @@ bool same_items(const SceneDocument& first, const SceneDocument& second) {
                             [](const Object& a, const Object& b) {
                               return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() &&
                                      a.body.has_value() == b.body.has_value() &&
+                                     a.color == b.color &&
                                      std::ranges::equal(a.parts, b.parts, same_part);
                             }) &&
          std::ranges::equal(first.visuals, second.visuals, {}, &SceneVisual::file,

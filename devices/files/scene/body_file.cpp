@@ -66,9 +66,10 @@ Vec3 place_of(const TomlTable& t, const char* key) {
 
 BodyPart part(const TomlTable& t) {
   std::vector<const char*> keys(kShapeKeys.begin(), kShapeKeys.end());
-  keys.insert(keys.end(), {"position", "rotation"});
+  keys.insert(keys.end(), {"position", "rotation", "color"});
   t.allow_only(keys);
-  return {pose_of(t, place_of(t, "position"), "rotation"), shape_of(t, false)};
+  return {pose_of(t, place_of(t, "position"), "rotation"), shape_of(t, false),
+          t.vector("color", kColor)};
 }
 
 // Increasing positions, with the force at each.
@@ -167,7 +168,11 @@ void read_mass(const TomlTable& t, Object& object, SceneDocument& out) {
 
 void allow_keys(const TomlTable& t, bool mesh) {
   std::vector<const char*> keys{"name", "box", "sphere", "cylinder", "capsule", "file"};
-  if (mesh) keys.insert(keys.end(), {"scale", "unit", "up"});
+  if (mesh) {
+    keys.insert(keys.end(), {"scale", "unit", "up"});
+  } else {
+    keys.emplace_back("color");
+  }
   keys.insert(keys.end(), {"mass", "density", "center", "inertia", "position", "rotation"});
   for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
   keys.insert(keys.end(), {"contact_stiffness", "restitution", "magnet", "part", "joint"});
@@ -189,6 +194,7 @@ Object body_of(const TomlTable& t, SceneDocument& out) {
       t.number("contact_stiffness", kStiffness).value_or(body.contact_stiffness);
   body.restitution = t.number("restitution", kFriction).value_or(body.restitution);
   body.magnet = t.flag("magnet").value_or(body.magnet);
+  object.color = t.vector("color", kColor);
   if (const auto joint = t.table("joint")) body.joint = joint_of(*joint);
   return object;
 }
@@ -303,6 +309,7 @@ void put_body(SceneText& text, const Object& object, const SceneDocument& docume
   text.put_position("position", object.pose);
   text.put_rotation(object.pose, "rotation");
   put_material(text, object.material);
+  if (object.color) text.put("color", *object.color);
   put_unless(text, "contact_stiffness", body.contact_stiffness, Body{}.contact_stiffness);
   put_unless(text, "restitution", body.restitution, 0);
   if (body.magnet) text.put("magnet", true);
@@ -311,6 +318,7 @@ void put_body(SceneText& text, const Object& object, const SceneDocument& docume
     put_shape(text, part.shape);
     put_unless(text, "position", part.pose.translation());
     text.put_rotation(part.pose, "rotation");
+    if (part.color) text.put("color", *part.color);
   }
   if (body.joint) put_joint(text, *body.joint);
 }
@@ -472,6 +480,7 @@ void hold_body(Object& object) {
     const Mat3 R = part.pose.linear();
     part.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
     hold_shape(part.shape);
+    if (part.color) hold_in(*part.color, kColor);
   }
   Body& body = *object.body;
   const Body usual;

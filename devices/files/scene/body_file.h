@@ -16,10 +16,12 @@
 //     contact_stiffness = 20000.0  # N/m, among bodies and with what stands still
 //     restitution = 0.0
 //     magnet = false               # may be picked up
+//     color = [0.8, 0.2, 0.1]      # red, green, blue, 0 to 1; a file has its own
 //     [[body.part]]                # any number: a shape, in the body's frame
 //     sphere = 0.01
 //     position = [0.0, 0.0, 0.02]
 //     rotation = [0.0, 0.0, 0.0]
+//     color = [0.9, 0.9, 0.9]      # else the body's
 //     [body.joint]
 //     kind = "slider"              # or "hinge", "ball"
 //     to = "another body"          # else the world

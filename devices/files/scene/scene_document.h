@@ -45,6 +45,7 @@ inline constexpr Range kJointSpring{0, 1e6, false, "N/m or N m/rad"};
 inline constexpr Range kSpringLength{0, 10, false, "m"};
 inline constexpr Range kBreaking{0, kForever, true, "N"};
 inline constexpr Range kDirection{-1e6, 1e6, false, ""};
+inline constexpr Range kColor{0, 1, false, ""};
 
 }  // namespace limpid::scene_limits
 namespace limpid {

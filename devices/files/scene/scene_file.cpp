@@ -36,6 +36,13 @@ void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
 
 void hold(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
 
+// The same of a simple solid, which may have a color.
+void allow_with_color(const TomlTable& t, Object& object, std::vector<const char*> keys) {
+  keys.emplace_back("color");
+  allow_with_common(t, std::move(keys));
+  object.color = t.vector("color", kColor);
+}
+
 // What a shape is in a file: how its tables are called, what is read from one besides name and
 // material, what is written to one, and what a shape is held within.
 const char* table_of(const Plane&) { return "plane"; }
@@ -64,7 +71,7 @@ void hold(Object& object, Plane& plane) {
 const char* table_of(const Sphere&) { return "sphere"; }
 
 void read(const TomlTable& t, const ArmDescription&, Object& object, Sphere& sphere) {
-  allow_with_common(t, {"center", "radius"});
+  allow_with_color(t, object, {"center", "radius"});
   object.pose = pose_at(point_of(t, "center"));
   sphere.radius = t.need(t.number("radius", kLength), "radius");
 }
@@ -82,7 +89,7 @@ void hold(Object& object, Sphere& sphere) {
 const char* table_of(const Box&) { return "box"; }
 
 void read(const TomlTable& t, const ArmDescription&, Object& object, Box& box) {
-  allow_with_common(t, {"center", "size", "rpy"});
+  allow_with_color(t, object, {"center", "size", "rpy"});
   object.pose = pose_of(t, point_of(t, "center"), "rpy");
   box.size = t.need(t.vector("size", kLength), "size");
 }
@@ -100,7 +107,7 @@ void hold(Object&, Box& box) {
 // Cylinders and capsules alike.
 template <class S>
 void read_tube(const TomlTable& t, Object& object, S& tube) {
-  allow_with_common(t, {"radius", "length", "position", "rotation"});
+  allow_with_color(t, object, {"radius", "length", "position", "rotation"});
   object.pose = pose_of(t, point_of(t, "position"), "rotation");
   tube.radius = t.need(t.number("radius", kLength), "radius");
   tube.length = t.need(t.number("length", kLength), "length");
@@ -300,6 +307,14 @@ std::string relative(const std::string& file, const fs::path& folder) {
   return inside.empty() || *inside.begin() == ".." ? file : inside.string();
 }
 
+void hold_color(Object& object) {
+  if (has_shape<Plane>(object) || has_shape<Mesh>(object) || has_shape<JointStop>(object)) {
+    object.color.reset();
+  }
+  if (!object.color) return;
+  for (double& part : *object.color) hold(part, kColor, 0.5);
+}
+
 void check_counts(const Scene& scene, const std::string& where) {
   const std::size_t contacts = scene.objects.size();
   if (contacts > kMostContacts) {
@@ -350,6 +365,7 @@ void hold(Object& object) {
   const Mat3 R = object.pose.linear();
   object.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
   if (has_surface(object)) hold(object.material);
+  hold_color(object);
   std::visit([&](auto& shape) { hold(object, shape); }, object.shape);
   hold_body(object);
 }
@@ -368,6 +384,7 @@ std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
     text.put("name", object.name);
     std::visit([&](const auto& shape) { write(object, shape, arm, text); }, object.shape);
     if (has_surface(object)) put_material(text, object.material);
+    if (object.color) text.put("color", *object.color);
   }
   put_bodies(text, document);
   for (const Probe& probe : scene.probes) put_probe(text, probe, arm);

@@ -19,6 +19,7 @@
 //     center = [0.2, 0.0, 0.0]
 //     radius = 0.02
 //     stiffness = 600.0
+//     color = [0.8, 0.2, 0.1]      # red, green, blue, 0 to 1; optional, also of the next three
 //
 //     [[box]]
 //     name = "block"

@@ -140,6 +140,124 @@ TEST(BodyWorld, WhatRestsSinksByItsWeightOverItsContactsStiffness) {
   EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / 20000, 1e-8);
 }
 
+// A disc on a plane keeps its points wherever it goes.
+TEST(BodyWorld, WhatSlidesDoesNotSink) {
+  for (const double mass : {0.005, 0.5}) {
+    Scene scene;
+    Object floor = floor_at(0);
+    floor.material.friction_static = floor.material.friction_kinetic = 0.02;
+    scene.add(floor);
+    scene.add(body("puck", Cylinder{0.016, 0.012}, mass, {0, 0, 0.006}, 0.02));
+    BodyWorld world(scene);
+    run(world, 200);
+    const double before = world.center(0).z();
+    for (int k = 0; k < 1000; ++k) {
+      world.touch(0);
+      world.begin(T);
+      const Vec3 push = k < 300 ? Vec3(mass, 0, 0) : Vec3::Zero();
+      world.push(world.end_at(0, world.center(0)), push);
+      world.settle();
+      world.finish();
+    }
+    EXPECT_GT(world.center(0).x(), 0.05) << mass;
+    EXPECT_NEAR(world.center(0).z(), before, 1e-5) << mass;
+    EXPECT_GT(world.pose(0).linear()(2, 2), std::cos(0.004)) << mass;
+  }
+}
+
+// As fast as it came, times that; and without turning, for the floor is smooth. What falls weighs
+// so much that a bounce takes many ticks.
+TEST(BodyWorld, ABallBouncesAsItsRestitutionSays) {
+  for (const double mass : {0.03, 0.5}) {
+    for (const double restitution : {0.6, 0.9, 0.97}) {
+      Scene scene;
+      scene.gravity.setZero();
+      scene.add(floor_at(0));
+      Object ball = body("ball", Sphere{0.01}, mass, {0, 0, 0.03}, 0);
+      ball.body->restitution = restitution;
+      scene.add(ball);
+      BodyWorld world(scene);
+      world.begin(T);
+      world.push(world.end_at(0, world.center(0)), Vec3(0, 0, -mass / T));
+      world.finish();
+      EXPECT_NEAR(world.speed(0).z(), -1, 1e-9);
+      run(world, 80);
+      EXPECT_NEAR(world.speed(0).z(), restitution, 0.02) << mass;
+      EXPECT_LT(world.spin(0).norm(), 1e-6) << mass;
+    }
+  }
+}
+
+// Nothing is lost in rolling, and the ball stays as deep as its weight presses it in.
+TEST(BodyWorld, ABallRollsOnWithoutSinking) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("ball", Sphere{0.015}, 0.05, {0, 0, 0.015}));
+  BodyWorld world(scene);
+  run(world, 300);
+  world.touch(0);
+  world.begin(T);
+  world.push(world.end_at(0, world.center(0) + Vec3(0, 0, 0.006)), Vec3(0.05 * 0.5 / T, 0, 0));
+  world.settle();
+  world.finish();
+  run(world, 2000);
+  EXPECT_NEAR(world.speed(0).x(), 0.5, 1e-3);
+  EXPECT_NEAR(world.spin(0).y(), 0.5 / 0.015, 0.1);
+  EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / 20000, 1e-7);
+}
+
+// Blocks that are turned against each other meet in eight corners, of which four count, now these
+// and now those.
+TEST(BodyWorld, AStackStandsStillAndSleeps) {
+  Scene scene;
+  scene.add(floor_at(0));
+  Random random(3);
+  for (int i = 0; i < 5; ++i) {
+    Object o =
+        body("block " + std::to_string(i), Box{Vec3::Constant(0.02)}, 0.006,
+             {random.between(-0.001, 0.001), random.between(-0.001, 0.001), 0.01 + 0.02 * i});
+    o.pose.linear() = turned(random.between(-0.3, 0.3), Vec3::UnitZ());
+    scene.add(o);
+  }
+  BodyWorld world(scene);
+  run(world, 4000);
+  EXPECT_EQ(world.awake(), 0);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_LT((world.center(i) - scene.objects[static_cast<std::size_t>(i) + 1].pose.translation())
+                  .norm(),
+              1e-4)
+        << i;
+  }
+}
+
+// As in Newton's cradle; and what rests on another one presses it in by its weight.
+TEST(BodyWorld, ABallHandsItsSpeedOnToAnother) {
+  Scene scene;
+  scene.gravity.setZero();
+  for (const double x : {0.0, 0.03}) {
+    Object ball = body("ball at " + std::to_string(x), Sphere{0.01}, 0.03, {x, 0, 0}, 0);
+    ball.body->restitution = 1;
+    scene.add(ball);
+  }
+  BodyWorld world(scene);
+  world.begin(T);
+  world.push(world.end_at(0, world.center(0)), Vec3(0.03 * 0.5 / T, 0, 0));
+  world.finish();
+  run(world, 100);
+  EXPECT_LT(world.speed(0).norm(), 0.005);
+  EXPECT_NEAR(world.speed(1).x(), 0.5, 0.005);
+}
+
+TEST(BodyWorld, ABallOnABallSinksByItsWeight) {
+  Scene scene;
+  scene.add(floor_at(0));
+  scene.add(body("below", Sphere{0.01}, 0.05, {0, 0, 0.01}));
+  scene.add(body("above", Sphere{0.01}, 0.05, {0, 0, 0.03}));
+  BodyWorld world(scene);
+  run(world, 60);  // before it rolls off
+  EXPECT_NEAR(0.02 - (world.center(1).z() - world.center(0).z()), 0.05 * 9.81 / 20000, 1e-6);
+}
+
 // Of what is not pressed in so far that it comes out on the other side.
 TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
   Random random(7);

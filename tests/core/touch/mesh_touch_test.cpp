@@ -283,6 +283,27 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
   }
 }
 
+// As what hangs on the tip: to the ball the mesh stands still.
+TEST(Ball, GoesAlongWithAMeshThatCarriesItHoweverFast) {
+  const Object object = test::obstacle(test::box(Vec3::Constant(0.04)));
+  MeshTouch touch(object, 0.004);
+  const Vec3 on_top(0.003, 0.005, 0.023);  // a millimetre deep
+  touch.place(Vec3(0.003, 0.005, 0.03));
+  Vec3 c(0.003, 0.005, 0.03);
+  go(touch, c, on_top, 1e-4);
+  const Vec3 before = pull(touch, c);
+  EXPECT_NEAR(before.z(), 0.001, 1e-6);
+  Pose pose = Pose::Identity();
+  for (int k = 0; k < 300; ++k) {
+    pose.translation() += Vec3(5e-4, 0, 2e-4);  // half a metre in a second
+    pose.rotate(Eigen::AngleAxisd(0.008, Vec3(1, 2, 0).normalized()));
+    touch.move(pose);
+    touch.follow(pose * on_top, T);
+    ASSERT_FALSE(touch.held()) << k;
+    ASSERT_LT((pose.linear().transpose() * pull(touch, pose * on_top) - before).norm(), 1e-8) << k;
+  }
+}
+
 TEST(Ball, ThroughASheetCouldNotFindItsSideAgain) {
   // Beyond half its radius the nearest side of an open sheet may be the wrong one; a body's is
   // known.

@@ -6,6 +6,7 @@
 #include "core/tick/parameters.h"
 #include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
+#include "tests/support/meshes.h"
 
 namespace limpid::test {
 namespace {
@@ -142,6 +143,25 @@ TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
     EXPECT_LE(r.gain, 1e-6) << mass;
     EXPECT_GT((r.end - Vec3(0.18, 0.018, 0)).norm(), 0.005) << mass;  // it was moved
   }
+}
+
+// The tip touches a model's triangles, not its hull.
+TEST(Magnet, PicksUpAModel) {
+  Scene scene;
+  scene.tip_radius = 0.004;
+  Object o = block(0.05, {0.18, 0, -0.02}, 0, 2000);
+  o.shape = Mesh{.triangles = box(Vec3::Constant(0.03)).mesh()};
+  o.body->magnet = true;
+  scene.add(o);
+  scene.add({.name = "floor", .pose = pose_at({0, 0, -0.035}), .shape = Plane{}});
+  const Outcome r = run(scene, 1, 300, 1500, [](double t) {
+    HandInput hand{Vec3(0.18, 0, std::min(0.03, std::abs(0.03 * (t - 0.2)) - 0.0015))};
+    hand.magnet = true;
+    return hand;
+  });
+  EXPECT_GT(r.end.z(), 0);  // lifted by 2 cm: as far as the hand went, less what it weighs
+  EXPECT_LE(r.energy, 5e-5);
+  EXPECT_LE(r.gain, 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Stiffnesses, MovingBodies, testing::Values(600, 2000, 5000));

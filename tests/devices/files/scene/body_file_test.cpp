@@ -70,6 +70,7 @@ friction_kinetic = 0.4
 restitution = 0.25
 contact_stiffness = 30000
 magnet = true
+color = [0.8, 0.25, 0]
 [[body]]
 name = "key"
 box = [0.012, 0.012, 0.006]
@@ -80,6 +81,7 @@ position = [0.2, 0, -0.03]
 [[body.part]]
 sphere = 0.004
 position = [0, 0, 0.003]
+color = [1, 1, 1]
 [body.joint]
 kind = "slider"
 axis = [0, 0, -2]
@@ -109,11 +111,14 @@ breaks_at = 20
   EXPECT_EQ(die.body->contact_stiffness, 30000);
   EXPECT_TRUE(die.body->magnet);
   EXPECT_FALSE(key.body->magnet);
+  EXPECT_EQ(die.color, Vec3(0.8, 0.25, 0));
+  EXPECT_FALSE(key.color);
   EXPECT_EQ(key.material.stiffness, Material{}.stiffness);
   EXPECT_EQ(key.body->center, Vec3(0, 0, 0.001));
   EXPECT_EQ(key.body->inertia, Vec3(1e-6, 2e-6, 3e-6));
   ASSERT_EQ(key.parts.size(), 1u);
   EXPECT_EQ(key.parts[0].pose.translation(), Vec3(0, 0, 0.003));
+  EXPECT_EQ(key.parts[0].color, Vec3(1, 1, 1));
   ASSERT_TRUE(key.body->joint);
   const BodyJoint& slide = *key.body->joint;
   EXPECT_EQ(slide.kind, BodyJoint::Kind::slider);
@@ -222,6 +227,7 @@ TEST(BodyFile, RefusesWhatABodyCannotBe) {
       {body("rotation = 1\n"), {"x.toml:6: body.rotation", "a list of 3"}},
       {body("rotation = [0, 0, 0, 1]\n"), {"body.rotation", "a list of 3"}},
       {body("restitution = 1.5\n"), {"x.toml:6: body.restitution", "1.5", "0 up to 1"}},
+      {body("color = [0.5, 2, 0]\n"), {"x.toml:6: body.color", "2", "0 up to 1"}},
       {body("contact_stiffness = 0\n"), {"body.contact_stiffness", "above 0"}},
       {body("magnet = 1\n"), {"x.toml:6: body.magnet", "1", "true, false"}},
       {body("[[body.part]]\nfile = \"x.glb\"\n"), {"body.part.file", "no such key"}},
@@ -384,7 +390,9 @@ TEST(BodyFile, HoldsWhatAFileCannotSay) {
   body.joint->high = 1;
   body.joint->force.travel = {{1, 5}, {0, 4}, {1, 3}};
   object.parts.push_back({pose_at(Vec3(kNone, 1e9, 0)), Sphere{-1}});
+  object.color = Vec3(-1, 0.25, 3);
   hold(object);
+  EXPECT_EQ(object.color, Vec3(0, 0.25, 1));
   EXPECT_EQ(object.body->mass, 1e-6);
   EXPECT_EQ(object.body->restitution, 1);
   EXPECT_EQ(object.body->joint->axis, Vec3(Vec3::UnitZ()));
