@@ -138,7 +138,10 @@ Desktop::Desktop(Settings first, const AskForPriority& ask)
           live, notices, ask,
           {.open = [this](std::unique_ptr<Device> device) { world.open_device(std::move(device)); },
            .close = [this] { world.close_device(); },
-           .toggle_coupling = [this] { tuning.next_law(); }}),
+           .toggle_coupling =
+               [this] {
+                 if (!blind) tuning.next_law();
+               }}),
       identify(live, devices, notices),
       playback(notices),
       sweep(notices),
@@ -213,7 +216,7 @@ void Desktop::follow_pads(std::vector<Pad> plugged, bool focused, double dt) {
       std::move(plugged), {.device = !devices.hub().in_use().empty(), .listens = listens},
       shown.camera, dt);
   if (asked_for.cut) cut_force();
-  if (asked_for.next_law) tuning.next_law();
+  if (asked_for.next_law && !blind) tuning.next_law();
 }
 
 Focus Desktop::focus() const {
