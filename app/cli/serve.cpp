@@ -119,7 +119,7 @@ bool input_has_ended() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return false;
   std::array<char, 256> bytes{};
-  return read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0;
+  return ::read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0;
 }
 
 int serve(const ServeOptions& options) {
