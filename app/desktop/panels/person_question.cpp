@@ -27,11 +27,10 @@ std::optional<std::size_t> PersonQuestion::chosen() const {
   return std::nullopt;
 }
 
-// It has no cross: only an answer, or whoever asks, ends it.
+// Its cross and Esc are no answer: whoever asks opens it again.
 void PersonQuestion::draw(bool& open) {
   if (!asking()) open = false;
-  bool stays = open;
-  if (!begin_modal(kTitle, stays, {0, 0})) return;
+  if (!begin_modal(kTitle, open, {0, 0})) return;
   std::optional<std::size_t> choice = chosen();
   ImGui::PushTextWrapPos(34 * ImGui::GetFontSize());
   ImGui::TextUnformatted(text_.c_str());

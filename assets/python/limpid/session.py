@@ -43,12 +43,16 @@ class Session:
         self._channels: Dict[str, Any] = {}
         self._units: Dict[str, str] = {}
         self._about: Dict[str, str] = {}
+        self._changes: List[Tuple[int, str]] = []
         try:
             with h5py.File(self.file, "r", swmr=self.file.endswith(".part")) as opened:
                 if opened.attrs.get("format") != "limpid-session":
                     raise LimpidError(f"{self.file}: is no session of Limpid")
                 self.attributes: Dict[str, Any] = dict(opened.attrs)
                 opened.visititems(self._take)
+                if "events/row" in opened:
+                    texts = (bytes(text).decode(errors="replace") for text in opened["events/setting"])
+                    self._changes = [(int(row), text) for row, text in zip(opened["events/row"], texts)]
         except OSError as error:
             raise LimpidError(f"{self.file}: cannot be read as a session: {error}") from error
         rows = min(len(data) for data in self._channels.values())
@@ -153,16 +157,11 @@ class Session:
                                  float(size[hardest]), point))  # fmt: skip
         return found
 
+    @property
     def changes(self) -> List[Tuple[float, str]]:
         """When a setting changed while recording [s], and to what: "coupling.eta = 0.5"."""
-        import h5py
-
-        with h5py.File(self.file, "r") as opened:
-            if "events/row" not in opened:
-                return []
-            rows, texts = opened["events/row"][()], opened["events/setting"][()]
-        return [(float(self.time[min(int(row), len(self) - 1)]), bytes(text).decode(errors="replace"))
-                for row, text in zip(rows, texts)]  # fmt: skip
+        last = len(self) - 1
+        return [(float(self.time[min(row, last)]), text) for row, text in self._changes]
 
 
 def session(file: PathLike) -> Session:

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/devices/files/test_files.h"
+#include "tests/support/built_in.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
