@@ -4,7 +4,7 @@
 
 A study is a plain function that asks for one trial after the other. Every answer is written to one
 CSV before the next trial begins; started again with the same words, the study takes the answers that
-are there and goes on behind them. The three scripts in assets/python/studies are examples.
+are there and goes on behind them. The three modules of limpid.studies are examples.
 """
 
 from limpid.study.fits import Fit, fit, mean_interval, proportion_interval

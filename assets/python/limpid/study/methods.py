@@ -6,7 +6,7 @@ import math
 import random
 from typing import List, Optional, Sequence, Tuple
 
-from limpid.study.fits import chance_of
+from limpid.study.fits import Fit, chance_of
 
 
 class Staircase:
@@ -102,6 +102,11 @@ class Quest:
                 wanted.pop(0)
         ends += [math.exp(self._grid[-1])] * len(wanted)
         return ends[0], ends[1]
+
+    def found(self) -> Fit:
+        """The threshold with the interval of its posterior. fit() takes answers for as many as they
+        are wherever they were asked; those that all lie near the threshold say less of its ends."""
+        return Fit(self.level, *self.interval(), self._count)
 
 
 class ConstantStimuli:
