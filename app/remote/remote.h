@@ -113,15 +113,4 @@ class Remote {
   LineServer server_;  // last: it goes first
 };
 
-// `value` as JSON for a setting; `p` with it. What a client may not do is refused: limits that keep
-// motors and their energy low are only ever lowered, `highest` being what a person has allowed.
-// Errors: RemoteError, ParameterError.
-void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,
-                   const Parameters& highest);
-// The settings with what they leave to the arm said in numbers, where it is a limit.
-Parameters with_limits_of(const ArmDescription& arm, Parameters p);
-// Settings that come from a file, with limits no higher than a person has chosen for the arm.
-void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm);
-nlohmann::json value_of(const Parameters& p, const ParameterInfo& info);
-
 }  // namespace limpid

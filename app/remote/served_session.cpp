@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/device/device_store.h"
+#include "app/remote/remote_settings.h"
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
 #include "app/view/row_view.h"

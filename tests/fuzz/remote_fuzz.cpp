@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "app/remote/protocol.h"
-#include "app/remote/remote.h"
+#include "app/remote/remote_settings.h"
 
 namespace {
 

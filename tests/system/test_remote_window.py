@@ -48,7 +48,7 @@ class TestRemoteWindow(WindowTest):
 
     def asked(self, *choices: str):
         result, thread = self.beside(lambda: self.loop.ask("Which one is stiffer?", choices))
-        self.wait("the question", lambda s: s["dialog"] == "question" and s["question"])
+        self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
         self.settled()
         return result, thread
 
@@ -91,7 +91,7 @@ class TestRemoteWindow(WindowTest):
         self.key("Escape")
         self.key("9")
         state = self.settled()
-        self.assertEqual(state["dialog"], "question")
+        self.assertEqual(state["dialog"], "ask")
         self.assertEqual(result, [])
         self.click(*state["question"]["the first"])
         thread.join(20)
@@ -114,7 +114,7 @@ class TestRemoteWindow(WindowTest):
     def test_a_question_goes_with_whoever_asked(self) -> None:
         other = limpid.Client(self.path)
         result, thread = self.beside(lambda: other.ask("Who?", ["I"], timeout=1))
-        self.wait("the question", lambda s: s["dialog"] == "question")
+        self.wait("the question", lambda s: s["dialog"] == "ask")
         thread.join(20)
         self.assertIsInstance(result[0], limpid.ProgramError)
         other.close()

@@ -265,7 +265,7 @@ constexpr std::array kDialogs{
     DialogKind{"layouts", kModal, layout_list},
     DialogKind{"presets", kModal, preset_list},
     DialogKind{"identify", kModal, identify},
-    DialogKind{"question", kModal, question},
+    DialogKind{"ask", kModal, question},
 };
 
 }  // namespace

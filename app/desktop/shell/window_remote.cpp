@@ -9,6 +9,7 @@
 
 #include "app/base/folders.h"
 #include "app/desktop/shell/commands.h"
+#include "app/remote/remote_settings.h"
 
 namespace limpid {
 namespace {
@@ -64,7 +65,7 @@ bool WindowRemote::turn() {
   const bool any = remote_.turn();
   // Esc and other dialogs leave the question open.
   if (d_.question.asking() && d_.dialog.kind() == nullptr && !d_.document.asking())
-    d_.dialog.open("question");
+    d_.dialog.open("ask");
   return any;
 }
 
@@ -290,7 +291,7 @@ Answer WindowRemote::twin(const Keys& keys) {
 Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
   if (hides_ && *hides_ != client) throw RemoteError("blind: another program has asked for it");
   const bool on = keys.flag_or("on", true);
-  if (on && d_.dialog.kind() != nullptr && d_.dialog.name() != "question") d_.dialog.close();
+  if (on && d_.dialog.kind() != nullptr && d_.dialog.name() != "ask") d_.dialog.close();
   d_.blind = on;
   hides_ = on ? std::optional(client) : std::nullopt;
   return json{{"on", on}};
@@ -305,7 +306,7 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   if (!choices || choices->empty()) choices = {"Go on"};
   d_.question.ask(keys.text("text"), *choices);
   asks_ = client;
-  d_.dialog.open("question");
+  d_.dialog.open("ask");
   return Answer::Later([this]() -> std::optional<json> {
     const auto answer = d_.question.take();
     if (!answer) return std::nullopt;
@@ -341,7 +342,7 @@ void WindowRemote::gone(LineServer::Client client) {
   if (asks_ != client) return;
   asks_.reset();
   d_.question.withdraw();
-  if (d_.dialog.name() == "question") d_.dialog.close();
+  if (d_.dialog.name() == "ask") d_.dialog.close();
 }
 
 }  // namespace limpid

@@ -12,10 +12,11 @@ import os
 import select
 import socket
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Type
+from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Type
 
 from limpid.errors import LimpidError, ProgramError, RequestError
 from limpid.program import PathLike, find_program, setting_words
@@ -70,7 +71,7 @@ class Client:
         self._next_id = 0
         self._answers: Dict[int, Dict[str, Any]] = {}
         self._rows: Deque[Dict[str, Any]] = collections.deque(maxlen=KEPT_MESSAGES)
-        self._process: Optional["subprocess.Popen[str]"] = None
+        self._process: Optional["subprocess.Popen[bytes]"] = None
         try:
             self.about: Dict[str, Any] = self.request("hello")
             if self.about.get("protocol") != PROTOCOL:
@@ -293,22 +294,23 @@ def serve(scene: Optional[PathLike] = None, hand: Optional[PathLike] = None,
         words += ["--live", live] if live else ["--live"]
     words += setting_words(dict(settings or {}))
     path = control_path(name)
-    process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True)  # fmt: skip
-    try:
-        client = _reach(path, process, timeout)
-    except BaseException:
-        _end(process)
-        raise
+    with tempfile.TemporaryFile("w+", errors="replace") as said:
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        try:
+            client = _reach(path, process, said, timeout)
+        except BaseException:
+            _end(process)
+            raise
     client._process = process
     return client
 
 
-def _reach(path: Path, process: "subprocess.Popen[str]", timeout: float) -> Client:
+def _reach(path: Path, process: "subprocess.Popen[bytes]", errors: IO[str], timeout: float) -> Client:
     end = time.monotonic() + STARTING
     while True:
         if process.poll() is not None:
-            said = process.stderr.read().strip() if process.stderr else ""
+            errors.seek(0)
+            said = errors.read().strip()
             raise ProgramError(said or f"limpid ended with status {process.returncode}")
         try:
             return Client(path, timeout)
@@ -318,7 +320,7 @@ def _reach(path: Path, process: "subprocess.Popen[str]", timeout: float) -> Clie
             time.sleep(0.02)
 
 
-def _end(process: "subprocess.Popen[str]") -> None:
+def _end(process: "subprocess.Popen[bytes]") -> None:
     """As Ctrl-C does: what is recorded is complete then."""
     process.terminate()
     try:

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/remote/remote_settings.h"
 #include "tests/support/built_in.h"
 #include "tests/support/temp_dir.h"
 
