@@ -193,7 +193,7 @@ class Live(unittest.TestCase):
         import limpid as package
 
         self.plug()
-        with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="replay") as loop:
+        with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="socket:replay") as loop:
             self.assertTrue(loop.state()["device"])
             loop.set({"coupling.eta": 0.8, "coupling.kind": "predictive"})
             loop.start_over()
@@ -217,7 +217,7 @@ class Live(unittest.TestCase):
         self.assertEqual(abs(session["device/motor_torque"]).max(), 0)
 
     def test_serve_leaves_the_hand_to_a_person(self) -> None:
-        result = limpid("serve", "x", "--live", "replay", "--hand", ASSETS / "hands/touch.csv")
+        result = limpid("serve", "x", "--live", "socket:replay", "--hand", ASSETS / "hands/touch.csv")
         self.assertEqual(result.status, 2)
         self.assertIn("--hand: not beside --live", result.err)
 

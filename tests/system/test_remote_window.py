@@ -41,9 +41,8 @@ class TestRemoteWindow(WindowTest):
             except limpid.LimpidError as error:
                 result.append(error)
 
-        thread = threading.Thread(target=carry_out)
+        thread = threading.Thread(target=carry_out, daemon=True)  # which may wait for an answer
         thread.start()
-        self.addCleanup(thread.join)
         return result, thread
 
     def asked(self, *choices: str):
@@ -55,8 +54,9 @@ class TestRemoteWindow(WindowTest):
     def keep_picture(self, name: str) -> None:
         """For whoever looks at them: in the folder LIMPID_PICTURES, if that is set."""
         folder = os.environ.get("LIMPID_PICTURES")
-        if folder:
-            self.loop.picture(Path(folder, f"{name}.png"))
+        if folder:  # beside the client that may wait for an answer
+            with limpid.Client(self.path) as other:
+                other.picture(Path(folder, f"{name}.png"))
 
     def test_says_that_it_has_a_window_and_ends_with_it(self) -> None:
         self.assertEqual(self.loop.about["kind"], "window")
