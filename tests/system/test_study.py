@@ -3,6 +3,7 @@ along, all with simulated participants."""
 
 from __future__ import annotations
 
+import ast
 import csv
 import math
 import os
@@ -309,6 +310,23 @@ class TestStudies(unittest.TestCase):
     def test_studies_are_short(self) -> None:
         for script in (PACKAGE / "limpid/studies").glob("[a-z]*.py"):
             self.assertLess(len(script.read_text().splitlines()), 120, script.name)
+
+
+class TestPackage(unittest.TestCase):
+    def test_is_written_in_the_python_that_it_promises(self) -> None:
+        for file in (PACKAGE / "limpid").rglob("*.py"):
+            ast.parse(file.read_text(), str(file), feature_version=(3, 9))
+
+    def test_leads_a_program_with_the_standard_library_alone(self) -> None:
+        """Without numpy, h5py and scipy it is imported, and says what reading a session needs."""
+        code = ("import sys\n"
+                "for name in ('numpy', 'h5py', 'scipy'): sys.modules[name] = None\n"
+                "import limpid, limpid.study\n"
+                "try: limpid.session('a.h5')\n"
+                "except limpid.LimpidError as error: print(error)\n")
+        said = subprocess.run([sys.executable, "-c", code], check=True, text=True, capture_output=True,
+                              env={**os.environ, "PYTHONPATH": str(PACKAGE)}).stdout
+        self.assertIn("sessions are read with h5py and numpy; h5py is missing", said)
 
 
 class TestFigures(unittest.TestCase):

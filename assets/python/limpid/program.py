@@ -14,7 +14,8 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 def find_program() -> str:
-    """The program: $LIMPID, else that of the source tree this package is in, else `limpid` of PATH.
+    """The program: $LIMPID, else the one that was built or installed with this package, else `limpid`
+    of PATH.
 
     Raises ProgramError where there is none."""
     named = os.environ.get("LIMPID")
@@ -22,10 +23,11 @@ def find_program() -> str:
         if not os.access(named, os.X_OK):
             raise ProgramError(f"LIMPID: {named} is no program that can be started")
         return named
-    tree = Path(__file__).resolve().parents[3] / "build"
-    built = [tree / preset / "app" / "limpid" for preset in ("release", "dev")]
-    for program in built:
-        if os.access(program, os.X_OK):
+    # In a source tree this is assets/python/limpid, installed it is lib/python3/dist-packages/limpid.
+    tree, prefix = list(Path(__file__).resolve().parents)[3:5]
+    for program in (tree / "build/release/app/limpid", tree / "build/dev/app/limpid",
+                    prefix / "bin/limpid"):  # fmt: skip
+        if program.is_file() and os.access(program, os.X_OK):
             return str(program)
     installed = shutil.which("limpid")
     if installed is None:
