@@ -231,14 +231,14 @@ class TestTrials(unittest.TestCase):
     def test_half_a_row_is_no_answer(self) -> None:
         self.carry_out(study.Simulated(1.0))
         file = self.folder / "test-003.csv"
-        whole = file.read_bytes()
+        whole, rows = file.read_bytes(), self.rows(3)
         for cut in (1, 10, 40):
             file.write_bytes(whole[:-cut])
             self.carry_out(study.Simulated(1.0))
-            self.assertEqual(file.read_bytes().count(b"\n"), whole.count(b"\n"))
+            self.assertEqual(self.rows(3), rows)
         file.write_bytes(b"study,parti")
         self.carry_out(study.Simulated(1.0))
-        self.assertEqual(len(self.rows(3)), whole.count(b"\n") - 1)
+        self.assertEqual(self.rows(3), rows)
 
     def test_a_study_that_is_another_one_by_now_says_so(self) -> None:
         self.carry_out(study.Simulated(1.0))
@@ -255,6 +255,13 @@ class TestTrials(unittest.TestCase):
         self.assertEqual({row["order"] for row in rows}, {"1", "2"})
         self.assertEqual([row["practice"] for row in rows[:3]], ["1", "1", "0"])
         self.assertEqual({row["level"] for row in rows if row["practice"] == "1"}, {"2.0"})
+
+    def test_one_who_perceives_everything_is_always_right_in_either_order(self) -> None:
+        self.carry_out(study.Simulated(1e-9, lapse=0))
+        rows = [row for row in self.rows(3) if row["kind"] == "2ifc"]
+        self.assertEqual({row["correct"] for row in rows}, {"1"})
+        self.assertEqual({(row["order"], row["answer"]) for row in rows},
+                         {("1", "the first"), ("2", "the second")})
 
     def test_participants_meet_conditions_in_balanced_orders(self) -> None:
         orders = []

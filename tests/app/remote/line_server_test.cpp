@@ -193,6 +193,21 @@ TEST_F(LineServerTest, TakesTheLastLineOfOneThatHasHungUp) {
   EXPECT_EQ(event()->line, std::nullopt);
 }
 
+TEST_F(LineServerTest, TakesAllThatOneHasSaidBeforeItHungUp) {
+  Peer peer(path);
+  constexpr int kLines = 12;  // more than is read at once
+  std::string all;
+  for (int i = 0; i < kLines; ++i) all += std::string(4000, static_cast<char>('a' + i)) + "\n";
+  ASSERT_TRUE(peer.say(all));
+  peer.hang_up();
+  for (int i = 0; i < kLines; ++i) {
+    const auto each = event();
+    ASSERT_TRUE(each && each->line) << i;
+    EXPECT_EQ((*each->line)[0], 'a' + i);
+  }
+  EXPECT_EQ(event()->line, std::nullopt);
+}
+
 TEST_F(LineServerTest, AnswersOneThatSaysNothingMore) {
   Peer peer(path);
   ASSERT_TRUE(peer.say("last\n"));
