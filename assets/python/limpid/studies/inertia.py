@@ -6,12 +6,15 @@
 The first is for a person at a window, `limpid --listen NAME`, the second for a simulated one.
 
 The arm is shaken in the air under two values of eta of the predictive law; which one is heavier? The
-simulated participant shakes it by the same motion and judges the force that this takes, with an error.
+simulated participant shakes it by the same motion and judges the inertia by the torque that goes with
+the acceleration, with an error.
 """
 
 import argparse
 import math
 from pathlib import Path
+
+import numpy
 
 import limpid
 from limpid import study
@@ -24,7 +27,7 @@ SHAKES = 2.0  # [Hz]
 SCENE = 'title = "Nothing"\n'
 
 
-def shaking(seconds: float = 2.0, size: float = 0.03) -> list:
+def shaking(seconds: float = 2.0, size: float = 0.02) -> list:
     """A hand that shakes the arm to and fro."""
     rows = []
     for i in range(int(100 * seconds) + 1):
@@ -35,16 +38,18 @@ def shaking(seconds: float = 2.0, size: float = 0.03) -> list:
 
 
 def felt(eta: float, scene: Path) -> float:
-    """What the motion takes of the hand, in units of eta: torque (root of the mean square) over that
-    at the standard."""
+    """What of the hand's torque about the vertical goes with the acceleration, and not with the speed:
+    the inertia that is felt, in units of eta, by that at the standard."""
 
-    def effort(value: float) -> float:
+    def inertia(value: float) -> float:
         session = limpid.run(scene=scene, hand=shaking(), coupling=LAW, eta=value)
-        torque = session.channel("hand/torque")[1000:]
-        return float((torque**2).sum(axis=1).mean() ** 0.5)
+        velocity = session["device/velocity"][1000:, 0]
+        acceleration = numpy.gradient(velocity, session.tick)
+        shares = numpy.stack([acceleration, velocity], axis=1)
+        return float(numpy.linalg.lstsq(shares, session["hand/torque"][1000:, 0], rcond=None)[0][0])
 
-    felt.standard = getattr(felt, "standard", None) or effort(STANDARD)
-    return STANDARD * effort(eta) / felt.standard
+    felt.standard = getattr(felt, "standard", None) or inertia(STANDARD)
+    return STANDARD * inertia(eta) / felt.standard
 
 
 def participant(arguments: argparse.Namespace, scene: Path):

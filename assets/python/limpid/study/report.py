@@ -73,8 +73,16 @@ class Axes:
         """Of a function over the whole axis."""
         low, high = self._x_range
         xs = [low + (high - low) * i / 160 for i in range(161)]
-        path = "L".join(f"{self.x(x):.1f} {self.y(f(x)):.1f}" for x in xs)
-        self._parts.append(f'<path d="M{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        self.line(xs, [f(x) for x in xs], colour, name)
+
+    def line(self, xs: Sequence[float], ys: Sequence[float], colour: str, name: str = "") -> None:
+        """Through points, with its name in the legend; of many points as many as there are pixels."""
+        step = max(1, len(xs) // (2 * WIDTH))
+        low, high = self._y_range
+        points = " ".join(f"{self.x(float(x)):.1f},{self.y(min(max(float(y), low), high)):.1f}"
+                          for x, y in zip(xs[::step], ys[::step]))  # fmt: skip
+        self._parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" '
+                           'stroke-width="2"/>')  # fmt: skip
         if name:
             self._text(WIDTH - RIGHT - 4, HEIGHT - BOTTOM - 10 - 16 * self._legend, name, "end")
             self._parts[-1] = self._parts[-1].replace("<text", f'<text fill="{colour}"', 1)
