@@ -10,8 +10,8 @@
 namespace limpid {
 
 // Sets `key` of `p` to a value. Limits of motors and of their energy are at most as they are in
-// `highest`, which is what a person has chosen; what is fixed while a loop runs stays. Errors, after
-// which `p` is as it was: RemoteError, ParameterError.
+// `highest`, which is what a person has chosen; what is fixed while a loop runs stays. Errors,
+// after which `p` is as it was: RemoteError, ParameterError.
 void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,
                    const Parameters& highest);
 // The settings with what they leave to the arm said in numbers, where it is a limit.
