@@ -188,6 +188,30 @@ class TestRemoteWindow(WindowTest):
         self.wait("no recording", lambda s: not s["recording"])
         self.assertTrue((self.home / "b.h5").exists())
 
+    def test_a_person_takes_part_in_a_study(self) -> None:
+        """A trial of two intervals, each a session; the answer is a row."""
+        from limpid import study
+
+        who = study.Person(self.loop, seconds=0.3)
+        run = study.Study("window", self.home / "answers", 0, who)
+        result, thread = self.beside(lambda: run.two_intervals(
+            study.ConstantStimuli([0.2], 1, "a"), "standard", 0.5,
+            lambda eta: study.Stimulus(eta, {"coupling.eta": eta}), "Which one is heavier?"))
+        for key in ("Return", "Return", "2"):
+            self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+            self.settled()
+            self.keep_picture(f"study_{key}")
+            self.key(key)
+            self.wait("an answer", lambda s: not s["question"])
+        thread.join(20)
+        [[(level, right)]] = result
+        [row] = run.rows
+        self.assertEqual((level, row["answer"], right), (0.2, "the second", row["order"] == "2"))
+        etas = [limpid.session(self.home / "answers" / name)["coupling/eta"][0]
+                for name in row["sessions"].split()]
+        self.assertEqual(etas, [0.5, 0.7] if row["order"] == "2" else [0.7, 0.5])
+        self.assertGreater(float(row["seconds"]), 0)
+
     def test_scenes_and_sessions_are_opened(self) -> None:
         self.assertEqual(self.loop.open(scene="spheres.toml")["scene"], "Soft and hard")
         self.assertTrue(self.loop.open(session="table.h5")["playing"])
