@@ -17,6 +17,9 @@ class WindowRemote {
  public:
   // Listens at `socket` from now on. Errors: ListenError.
   WindowRemote(const std::filesystem::path& socket, Desktop& desktop);
+  ~WindowRemote() { d_.live.on_row = nullptr; }
+  WindowRemote(const WindowRemote&) = delete;
+  WindowRemote& operator=(const WindowRemote&) = delete;
 
   // Once a turn of the window. True if anything was asked for.
   bool turn();
