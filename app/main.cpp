@@ -47,6 +47,7 @@ UsageError unexpected(const CLI::App& app) {
 std::map<std::string, Command> declare_commands(CLI::App& app, char** argv) {
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
+  commands["serve"] = declare_serve(app);
   commands["experiment"] = declare_experiment(app);
   commands["sweep"] = declare_sweep(app);
   commands["analyze"] = declare_analyze(app);

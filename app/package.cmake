@@ -20,6 +20,9 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
 install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
   ${PROJECT_SOURCE_DIR}/assets/python/read_session.py DESTINATION share/doc/limpid/examples)
+# Where Debian's Python looks, below /usr; elsewhere PYTHONPATH has to say so.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets/python/limpid DESTINATION lib/python3/dist-packages
+  PATTERN "__pycache__" EXCLUDE)
 install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install.cmake)
 
@@ -44,7 +47,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, fonts-inter, libegl1, libgl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, libgl1-mesa-dri, rtkit")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3, python3-h5py, python3-numpy, python3-scipy")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "touch a virtual world through a haptic device
 A haptic device, a small robot arm in the hand, is tied to its avatar in a
 simulated world by a virtual coupling. Limpid runs the usual spring and

@@ -15,6 +15,7 @@ namespace limpid {
 using Command = std::function<int()>;
 
 Command declare_run(CLI::App& app);
+Command declare_serve(CLI::App& app);
 Command declare_experiment(CLI::App& app);
 Command declare_sweep(CLI::App& app);
 Command declare_analyze(CLI::App& app);

@@ -103,7 +103,9 @@ void add_positional(const Position& at, Completions& into) {
   std::size_t left = at.positionals;
   for (const CLI::Option* option : at.command->get_options()) {
     if (!option->get_positional() || left-- > 0) continue;
-    add_values(value_name(*option), into);
+    const std::string name = value_name(*option);
+    if (name == "NAME" && at.command->get_name() != "experiment") return;  // of one's own choice
+    add_values(name, into);
     return;
   }
 }

@@ -7,6 +7,7 @@
 #include "app/cli/options.h"
 #include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
+#include "app/remote/line_server.h"
 #include "app/study/sweep_table.h"
 
 namespace limpid {
@@ -17,6 +18,7 @@ struct WindowOptions {
   DesktopOptions desktop;
   std::string session;
   std::vector<std::string> files;  // to open
+  std::string listen;              // name of a socket; empty: none
   VideoOptions video;
 };
 
@@ -28,6 +30,14 @@ void add(CLI::App& command, WindowOptions& options) {
                   "size of text and panels; default: the screen's")
       ->type_name("0.5..4")
       ->check(CLI::Range(0.5, 4.0).description(""));
+  command
+      .add_option_function<std::string>(
+          "--listen",
+          [&options](const std::string& name) { options.listen = name.empty() ? "control" : name; },
+          "let programs of this user lead the window, through the socket "
+          "$XDG_RUNTIME_DIR/limpid/NAME.control; default: control. See `limpid serve`")
+      ->type_name("[NAME]")
+      ->expected(0, 1);
   command.add_flag("--print-state", options.desktop.print_state,
                    "print the state as a line of JSON ten times a second");
 }
@@ -38,6 +48,7 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   if (behind.desktop.ui_scale == DesktopOptions{}.ui_scale) {
     behind.desktop.ui_scale = before.desktop.ui_scale;
   }
+  if (behind.listen.empty()) behind.listen = before.listen;
   behind.desktop.print_state |= before.desktop.print_state;
   return behind;
 }
@@ -54,10 +65,19 @@ std::optional<Parameters> checked_parameters(const InputOptions& input) {
   return make_parameters(input, arm);
 }
 
+std::filesystem::path socket_called(const std::string& name) {
+  try {
+    return control_path(name);
+  } catch (const ListenError& e) {
+    throw UsageError(e.what());
+  }
+}
+
 int open_window(const WindowOptions& options) {
   DesktopOptions desktop = options.desktop;
   const InputOptions& input = options.input;
   desktop.parameters = checked_parameters(input);
+  if (!options.listen.empty()) desktop.listen = socket_called(options.listen);
   desktop.in_use = device_named(input.device);
   if (desktop.in_use.empty()) desktop.device = input.device;
   desktop.tip = input.tip;
@@ -96,6 +116,7 @@ void check_no_world(const InputOptions& input) {
 int play(const WindowOptions& options, const MakeVideo& make_video) {
   if (options.video.out.empty()) return open_window(options);
   check_no_world(options.input);
+  if (!options.listen.empty()) throw UsageError("--listen: is of the window");
   if (options.desktop.print_state) throw UsageError("--print-state: is of the window");
   return make_video(options.session, options.video, options.desktop.ui_scale);
 }

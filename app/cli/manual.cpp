@@ -119,6 +119,9 @@ sessions; below \fBXDG_DATA_HOME\fR if that is set
 .TP
 \fI~/.cache/limpid\fR
 small pictures of sessions; below \fBXDG_CACHE_HOME\fR if that is set
+.TP
+\fI$XDG_RUNTIME_DIR/limpid/NAME.control\fR
+socket of \fBlimpid \-\-listen NAME\fR and \fBlimpid serve NAME\fR, for programs of the same user
 )";
 
 std::string see_also(const CLI::App& app, const CLI::App& command) {

@@ -9,21 +9,18 @@
 #include <optional>
 #include <span>
 
-#include "app/base/folders.h"
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
+#include "app/cli/still_picture.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/simulate.h"
 #include "app/run/summary.h"
-#include "app/view/row_view.h"
 #include "devices/files/config_file.h"
-#include "render/gl/offscreen.h"
-#include "render/scene_view.h"
 
 namespace limpid {
 
@@ -36,33 +33,6 @@ struct LiveRunOptions {
   std::string record, picture;
   bool force = false;
 };
-
-// Draws the plan's arm in its scene as `row` has it, 1280 x 800, with a twin's proxy beside it if
-// there is one. Errors: std::runtime_error where OpenGL cannot be had or the file cannot be
-// written.
-void save_picture(const std::filesystem::path& png, const RunPlan& plan,
-                  std::span<const double> row, std::span<const double> twin = {}) {
-  constexpr int kWidth = 1280, kHeight = 800;
-  const OffscreenContext context(kWidth, kHeight);
-  SceneView picture(data_dir() / "shaders", plan.arm, plan.document.scene,
-                    visual_pictures(plan.document));
-  picture.set_quality(Quality::level(0));  // there is time
-  picture.set_meshes(mesh_pictures(plan.document.scene, plan.models));
-  const RowLayout layout = plan.layout();
-  const RowView rows(plan.arm, plan.document.scene);
-  ViewState view = rows.view(layout, row);
-  if (!twin.empty()) {
-    view.rerun = rows.pose(layout.in(twin, Column::proxy_position));
-    view.other_bodies = rows.bodies(layout, twin);
-  }
-  ViewMemory().update(view, rows.contacts(layout, row), 0);
-  Camera camera;
-  camera.resize(kWidth, kHeight);
-  camera.reset(picture.bounds());
-  camera.finish();
-  picture.draw(view, camera, 0, 0, kWidth, kHeight);
-  write_png(png, kWidth, kHeight, read_rgba(kWidth, kHeight));
-}
 
 int run_live(const LiveRunOptions& options) {
   LiveBench bench(options.live, options.input);

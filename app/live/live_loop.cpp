@@ -48,6 +48,8 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
 void LiveLoop::begin(RigStart start, const Parameters& p) {
   const auto stride = static_cast<std::size_t>(rig_->layout().stride());
   trace_ = std::make_unique<TraceRing>(kTraceRows, 2 * stride);
+  next_tick_ = drained_from_ = seen_dropped_ = gap_ = 0;
+  before_gap_ = 0;
   rows_.assign(2 * stride, 0.0);
   row_ = std::span(rows_).first(stride);
   of_twin_ = std::span(rows_).subspan(stride);
@@ -77,6 +79,8 @@ void LiveLoop::close() {
   has_let_go_.store(true, std::memory_order_relaxed);
   worlds_.clear();
   slots_.clear();
+  paths_.clear();
+  delete std::exchange(path_, nullptr);
   if (rig_) rig_->plug(nullptr);
   delete std::exchange(slot_, nullptr);
   plugged_ = false;
@@ -86,6 +90,21 @@ void LiveLoop::close() {
 }
 
 LiveLoop::~LiveLoop() { close(); }
+
+// Rows are refused while the ring is full, so that all that it holds then is older.
+std::size_t LiveLoop::drain(std::span<double> into) {
+  if (!trace_) return 0;
+  if (const std::uint64_t dropped = trace_->dropped(); before_gap_ == 0) {
+    gap_ = dropped - std::exchange(seen_dropped_, dropped);
+    if (gap_ > 0) before_gap_ = trace_->size();
+  }
+  if (before_gap_ > 0) into = into.first(std::min(into.size(), before_gap_ * trace_->stride()));
+  const std::size_t count = trace_->pop(into);
+  drained_from_ = next_tick_;
+  next_tick_ += count;
+  if (before_gap_ > 0 && (before_gap_ -= count) == 0) next_tick_ += gap_;
+  return count;
+}
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
@@ -105,9 +124,21 @@ void LiveLoop::take_in() {
     pace_.start();
     slots_.give_back(std::exchange(slot_, slot));
   }
+  if (LedPath* path = paths_.take()) {
+    paths_.give_back(std::exchange(path_, path));
+    path_tick_ = 0;
+    path_runs_ = !path->waits;
+  }
 }
 
-// The mouse leads the hand; a guide does while the mouse does not.
+HandInput LiveLoop::follow_path() {
+  const HandPath& path = path_->hand;
+  const std::size_t k = path_runs_ ? path_tick_++ : path_tick_;
+  const double T = parameters_.tick;
+  return {path.sample(k, T), path.grip_sample(k, T), {}, path.magnet_sample(k, T)};
+}
+
+// A path that was given leads the hand, or else the mouse; a guide does while the mouse does not.
 HandInput LiveLoop::hand_input(const Controls& controls) {
   const Vec3 tip = rig_->tip();
   const double T = parameters_.tick;
@@ -116,6 +147,7 @@ HandInput LiveLoop::hand_input(const Controls& controls) {
     connected_ = connected_ && rig_->device_reading(guide_);
     return {tip, 1};
   }
+  if (path_ != nullptr && !path_->hand.time.empty()) return follow_path();
   connected_ = connected_ && slot_->device->read(guide_);
   Vec3 goal = controls.goal;
   bool grab = controls.grab;
@@ -161,6 +193,8 @@ void LiveLoop::start_over(const Parameters& p) {
   twin_.begin_anew();
   hand_.reset(home_.target);
   led_ = false;  // else the guide would pull it back
+  path_tick_ = 0;
+  path_runs_ = path_ != nullptr && !path_->waits;
 }
 
 // Whether the arm's next tick comes now. A device's time cannot be stopped.
@@ -197,7 +231,7 @@ void LiveLoop::tick(const TickTiming& timing) {
     if (recording_to_ != nullptr) recording_to_->changed(parameters_);
   }
   HandInput hand = hand_input(controls);
-  hand.magnet = controls.magnet;
+  hand.magnet = hand.magnet || controls.magnet;
   follow_recorder(hand.target);
   const RigInput input = rig_input(timing, hand);
   if (!in_place_) twin_.step(controls.twin, controls.twin_parameters, *rig_, input, of_twin_);
@@ -226,6 +260,7 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   Recorder* offered = offered_recorder_.exchange(nullptr, std::memory_order_acq_rel);
   if (offered == nullptr) return;
   recording_to_ = offered;
+  if (!std::exchange(path_runs_, true)) path_tick_ = 1;  // its first point is the first row's
   rig_->rebase(parameters_, rebase_, target);
   twin_.rebase(target);
   offered->changed(parameters_);
@@ -250,6 +285,7 @@ void LiveLoop::publish(const TickTiming& timing) {
   snapshot.force_state = rig_->force().why();
   snapshot.connected = connected_;
   snapshot.reading = guide_;
+  snapshot.led = static_cast<double>(path_tick_) * parameters_.tick;
   snapshots_.publish();
 }
 

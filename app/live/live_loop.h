@@ -13,6 +13,7 @@
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
 #include "core/realtime/triple_buffer.h"
+#include "devices/files/session/hand_file.h"
 #include "devices/simulated/hands.h"
 #include "devices/simulated/rig.h"
 
@@ -52,6 +53,13 @@ struct Snapshot {
   ForceState force_state = ForceState::off;
   bool connected = false;  // the device that is plugged in answers
   DeviceReading reading;   // its newest
+  double led = 0;          // how far the hand's path has been followed [s]
+};
+
+// A path for the virtual arm's hand; one without samples leaves the hand to the controls again.
+struct LedPath {
+  HandPath hand;
+  bool waits = false;  // at its first point, until a recording begins
 };
 
 // Lets go of a device, which may take seconds if it hangs.
@@ -103,6 +111,9 @@ class LiveLoop {
   // Another device, or none: a hand's guide, or, of a loop with a device in the arm's place, that
   // one back again.
   void plug(std::unique_ptr<Device> device);
+  // The virtual arm's hand follows a path from its beginning on, and rests at its end; starting
+  // over begins it again. close() forgets it.
+  void lead(std::unique_ptr<LedPath> path) { paths_.offer(std::move(path)); }
   bool device_in_place() const { return in_place_; }
   bool device_plugged() const { return plugged_; }  // by the window; it may be lost
   // One that is done with may be in the loop's hands still: it is free once this is false.
@@ -110,7 +121,7 @@ class LiveLoop {
 
   // Asks for force; nothing else does. What was asked before open() is forgotten.
   void arm() { arms_.fetch_add(1, std::memory_order_relaxed); }
-  // No force, from the next tick on; wins where both are asked within one.
+  // No force, from the next tick on; wins where both are asked within one. Any thread may.
   void cut() { cuts_.fetch_add(1, std::memory_order_relaxed); }
 
   // Also says that somebody is there: where motors are guarded the force fades when this is not
@@ -124,12 +135,15 @@ class LiveLoop {
   bool update() {
     worlds_.collect();
     slots_.collect();
+    paths_.collect();
     return snapshots_.update();
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
   // Every tick since the last call, as far as `into` holds; returns how many. Each is its row, and
   // the twin's behind it, of no numbers without one.
-  std::size_t drain(std::span<double> into) { return trace_ ? trace_->pop(into) : 0; }
+  std::size_t drain(std::span<double> into);
+  // Which tick the first row of the last drain() was of, counted since open().
+  std::uint64_t drained_from() const { return drained_from_; }
   std::uint64_t trace_dropped() const { return trace_ ? trace_->dropped() : 0; }
   const RowLayout& layout() const { return rig_->layout(); }
 
@@ -161,6 +175,7 @@ class LiveLoop {
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
   bool due(const Controls& controls);              // the loop's
+  HandInput follow_path();                         // the loop's
   void begin(RigStart start, const Parameters& p);
   bool recorder_is_free();
 
@@ -168,9 +183,14 @@ class LiveLoop {
   TripleBuffer<Controls> controls_;
   TripleBuffer<Snapshot> snapshots_;
   std::unique_ptr<TraceRing> trace_;
+  // The window's count of ticks: of what the ring holds so many rows stand before those that found
+  // no room.
+  std::uint64_t next_tick_ = 0, drained_from_ = 0, seen_dropped_ = 0, gap_ = 0;
+  std::size_t before_gap_ = 0;
   HandOver<TouchWorlds> worlds_;
   int held_ = 0;  // devices in plugs; these go before it
   HandOver<DeviceSlot> slots_;
+  HandOver<LedPath> paths_;
   bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
   bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
@@ -197,6 +217,9 @@ class LiveLoop {
   MouseHand hand_;
   GuidedHand guided_;
   bool led_ = false;  // by the guide, since it was last touched
+  LedPath* path_ = nullptr;
+  std::size_t path_tick_ = 0;  // of it, the next
+  bool path_runs_ = false;
   Parameters parameters_;
   SafetyLimits limits_;
   RigStart home_;

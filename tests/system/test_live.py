@@ -188,6 +188,39 @@ class Live(unittest.TestCase):
             self.assertIn(run.returncode, (0, 1), said)
             self.assertRegex(said, "stopped|is gone" if what == "Ctrl-C" else "is gone|no reading")
 
+    def test_nobody_arms_a_device_through_the_socket(self) -> None:
+        sys.path.insert(0, str(ASSETS / "python"))
+        import limpid as package
+
+        self.plug()
+        with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="socket:replay") as loop:
+            self.assertTrue(loop.state()["device"])
+            loop.set({"coupling.eta": 0.8, "coupling.kind": "predictive"})
+            loop.start_over()
+            loop.open(scene="table.toml")
+            file = loop.record(self.folder / "served.h5")
+            loop.mark("here")
+            time.sleep(0.5)
+            loop.stop()
+            for verb, keys, said in (
+                    ("twin", {}, "virtual arm"), ("open", {"hand": "touch.csv"}, "a person's hand leads it"),
+                    ("open", {"arm": "omni.urdf"}, "real device"),
+                    ("set", {"values": {"device.torque_limit": 100}}, "Only a person raises a limit"),
+                    ("arm", {}, "is not known")):
+                with self.subTest(verb=verb), self.assertRaisesRegex(package.RequestError, said):
+                    loop.request(verb, **keys)
+            self.assertFalse(loop.state()["force"])
+            loop.cut()
+        session = package.session(file)
+        self.assertGreater(len(session), 100)
+        self.assertEqual(set(session["device/force_wanted"]), {0})
+        self.assertEqual(abs(session["device/motor_torque"]).max(), 0)
+
+    def test_serve_leaves_the_hand_to_a_person(self) -> None:
+        result = limpid("serve", "x", "--live", "socket:replay", "--hand", ASSETS / "hands/touch.csv")
+        self.assertEqual(result.status, 2)
+        self.assertIn("--hand: not beside --live", result.err)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -57,6 +57,15 @@ class Package(Run):
         (deb,) = out.glob("*.deb")
         return deb
 
+    def test_python_finds_its_package_and_the_program(self) -> None:
+        modules = self.root / "usr/lib/python3/dist-packages"
+        self.assertEqual({path.name for path in modules.rglob("*") if path.suffix != ".py"},
+                         {"limpid", "study", "studies", "py.typed", "README.md"})
+        environment = {key: value for key, value in os.environ.items() if key != "LIMPID"}
+        said = self.must("python3", "-c", "import limpid; print(limpid.program.find_program())",
+                         env={**environment, "PYTHONPATH": str(modules), "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertEqual(said.strip(), str(self.root / "usr/bin/limpid"))
+
     def test_lintian_accepts_it(self) -> None:
         said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", self.deb)
         # That there is no home page, which appstream 1.0 asks for.

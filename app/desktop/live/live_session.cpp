@@ -1,11 +1,9 @@
 #include "app/desktop/live/live_session.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 
 #include "app/device/device_store.h"
@@ -200,6 +198,7 @@ void LiveSession::take_rows() {
     for (std::size_t i = 0; i < count; ++i) {
       const auto both = std::span<const double>(rows_).subspan(2 * i * stride, 2 * stride);
       stage_->append(both.first(stride), both.subspan(stride));
+      if (on_row) on_row(both.first(stride), both.subspan(stride), loop_.drained_from() + i);
     }
   }
 }
@@ -225,16 +224,15 @@ bool LiveSession::may_record() {
   return !closing_.valid();
 }
 
-void LiveSession::record(const RunPlan& plan, const fs::path& folder) {
-  const std::string name =
-      fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+void LiveSession::record(const RunPlan& plan, const fs::path& file) {
+  last_ = {.file = file};
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
-  opening_ = file_tasks_.run([file = folder / name, info = std::move(about),
-                              initial = plan.parameters, twin = plan.beside] {
-    return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
-                                      twin.empty() ? nullptr : &twin[0].parameters);
-  });
+  opening_ = file_tasks_.run(
+      [file, info = std::move(about), initial = plan.parameters, twin = plan.beside] {
+        return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
+                                          twin.empty() ? nullptr : &twin[0].parameters);
+      });
 }
 
 void LiveSession::follow_recording() {
@@ -246,6 +244,7 @@ void LiveSession::follow_recording() {
     if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
     if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
       recorded_ = done->out();
+      last_ = {done->out(), done->rows(), done->dropped(), false};
       closing_ = file_tasks_.run([done] {
         done->finish();
         const std::uint64_t dropped = done->dropped();
@@ -255,7 +254,10 @@ void LiveSession::follow_recording() {
             dropped > 0};
       });
     }
-    if (auto notice = take_ready(closing_)) notices_.say(notice->text, notice->bad);
+    if (auto notice = take_ready(closing_)) {
+      last_.complete = true;
+      notices_.say(notice->text, notice->bad);
+    }
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);
   }

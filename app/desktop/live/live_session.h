@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -70,13 +71,23 @@ class LiveSession {
   bool recording() const { return loop_.recording() || opening_.valid(); }
   // False while the last one is still being opened or closed.
   bool may_record();
-  // In a new file of the folder.
-  void record(const RunPlan& plan, const std::filesystem::path& folder);
+  void record(const RunPlan& plan, const std::filesystem::path& file);
   void stop_recording() { loop_.stop_recording(); }
+  // What has been stopped is not complete yet.
+  bool closing() const { return loop_.recorder() != nullptr || closing_.valid(); }
+  struct Recorded {
+    std::filesystem::path file;
+    std::uint64_t rows = 0, dropped = 0;  // dropped: that found no room
+    bool complete = false;
+  };
+  const Recorded& last_recording() const { return last_; }
   // Waits until what is recorded is complete, after the loop has been closed. Errors: FileError.
   void complete_recording();
   // The file of the recording that has just ended, once.
   std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
+
+  // Hears of every row that the loop has made, of the twin's beside it, and of which tick they are.
+  std::function<void(std::span<const double>, std::span<const double>, std::uint64_t)> on_row;
 
   // Work on devices, which may hang; of their own, so that files never wait for it.
   TaskQueue& device_tasks() { return device_tasks_; }
@@ -118,6 +129,7 @@ class LiveSession {
   std::future<Notice> closing_;
   std::vector<std::future<PlotNotice>> saving_;
   std::optional<std::filesystem::path> recorded_;
+  Recorded last_;
 };
 
 }  // namespace limpid

@@ -199,7 +199,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   } else {
     magnifier_.hide();
   }
-  draw_signs(scene, view, camera, settings, *drawn_);
+  if (!scene.blind) draw_signs(scene, view, camera, settings, *drawn_);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   float below_names = 0;
   if (scene.split()) {
@@ -215,6 +215,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     draw_run_name(scene.names.second, right, list);
     below_names = 2.2f * font(Face::semibold)->FontSize;
   }
+  if (scene.blind) return;
   draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max,
                       legend_of(view, scene));
   draw_told(scene.told, rect, list);

@@ -192,10 +192,11 @@ constexpr Command row(const char* id, const char* text, const char* menu, const 
 // in the order here.
 constexpr std::array kCommands{
     row("force.cut", "Force off at once", nullptr, "Space", "force off at once",
-        [](Desktop& d) { d.cut_force(); }, {.reach = Reach::all_but_text, .repeats = true}),
+        [](Desktop& d) { d.cut_force(); },
+        {.reach = Reach::all_but_text, .repeats = true, .blind = true}),
     row("window.escape", "Close what is open, or force off", nullptr, "Esc",
         "closes what is open; with nothing open, and always on a real device, force off",
-        [](Desktop& d) { d.escape(); }, {.reach = Reach::all}),
+        [](Desktop& d) { d.escape(); }, {.reach = Reach::all, .blind = true}),
     row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
         [](Desktop& d) { d.dialog.open("open arm"); }, {.why_not = no_virtual_arm}),
     row("arm.built_in", "Built-in arm", "Device", nullptr, nullptr,
@@ -205,7 +206,8 @@ constexpr std::array kCommands{
         "identify the device: it moves and shows its inertia, friction and delay",
         [](Desktop& d) { show_or_close(d, "identify"); }),
     row("device.force", "Force on or off", "Device", "F", "force on or off",
-        [](Desktop& d) { d.live.toggle_force(); }, {.apart = true, .now = force_label}),
+        [](Desktop& d) { d.live.toggle_force(); },
+        {.apart = true, .now = force_label, .blind = true}),
     row("hand.magnet", "Magnet at the tip", "Device", "H",
         "magnet at the tip: picks up what it touches, or lets go",
         [](Desktop& d) { d.live.toggle_magnet(); },
@@ -214,7 +216,8 @@ constexpr std::array kCommands{
                const std::string playback = in_playback(d);
                return playback.empty() ? d.live.why_no_magnet() : playback;
              },
-         .checked = [](const Desktop& d) { return d.live.controls().magnet; }}),
+         .checked = [](const Desktop& d) { return d.live.controls().magnet; },
+         .blind = true}),
     row("device.start_over", "Start over", "Device", "Backspace", "start over",
         [](Desktop& d) { d.live.start_over(); }, {.why_not = in_playback}),
     row("coupling.next", "Next coupling law", nullptr, "C", "the next coupling law",
@@ -319,11 +322,13 @@ constexpr std::array kCommands{
         "both couplings of a twin in one picture", show_or_hide<&Settings::twin_overlaid>,
         {.checked = is_shown<&Settings::twin_overlaid>}),
     row("view.front", "Front", "View", "1", "front, side, top view; reset the camera",
-        [](Desktop& d) { d.shown.look(Camera::View::front); }, {.apart = true}),
-    row("view.side", "Side", "View", "2", "", [](Desktop& d) { d.shown.look(Camera::View::side); }),
-    row("view.top", "Top", "View", "3", "", [](Desktop& d) { d.shown.look(Camera::View::top); }),
+        [](Desktop& d) { d.shown.look(Camera::View::front); }, {.apart = true, .blind = true}),
+    row("view.side", "Side", "View", "2", "", [](Desktop& d) { d.shown.look(Camera::View::side); },
+        {.blind = true}),
+    row("view.top", "Top", "View", "3", "", [](Desktop& d) { d.shown.look(Camera::View::top); },
+        {.blind = true}),
     row("view.reset", "Reset camera", "View", "0, Home", "",
-        [](Desktop& d) { d.shown.reset_view(); }),
+        [](Desktop& d) { d.shown.reset_view(); }, {.blind = true}),
     row("view.light", "Light theme", "View", nullptr, nullptr, change_theme,
         {.apart = true,
          .checked = [](const Desktop& d) { return d.settings.theme == Theme::light; }}),
@@ -341,7 +346,7 @@ constexpr std::array kCommands{
         {.checked = [](const Desktop& d) { return d.settings.picture_quality == "low"; }}),
     row("window.full_screen", "Full screen", "View", "F11", "full screen",
         [](Desktop& d) { d.asked.toggle_full_screen = true; },
-        {.checked = [](const Desktop& d) { return d.full_screen; }}),
+        {.checked = [](const Desktop& d) { return d.full_screen; }, .blind = true}),
     row("session.record", "Record", "Session", "R", "record, stop recording",
         [](Desktop& d) { d.world.toggle_recording(); }, {.now = record_label}),
     row("session.play", "Play or pause", "Session", "P", "play, pause", play_or_pause),
@@ -403,7 +408,7 @@ constexpr std::array kCommands{
         nullptr, save_and_leave, {.reach = Reach::question, .why_not = no_question}),
     row("scene.discard_and_leave", "Discard the changes and go on", nullptr, "D", nullptr,
         [](Desktop& d) { d.document.discard_and_leave(); },
-        {.reach = Reach::question, .why_not = no_question}),
+        {.reach = Reach::question, .why_not = no_question, .blind = true}),
     row("scene.open_kept", "Open the scene that was kept", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.world.open_scene(d.kept.take()); }, {.why_not = nothing_kept}),
     row("scene.leave_kept", "Leave the scene that was kept for later", nullptr, nullptr, nullptr,
@@ -517,14 +522,17 @@ const Command* find_command(std::string_view id) {
   return found == kCommands.end() ? nullptr : found;
 }
 
-std::string why_not(const Command& command, const Desktop& desktop) {
+std::string why_not(const Command& command, const Desktop& desktop, Asker who) {
+  if (desktop.blind && who == Asker::person && !command.how.blind) {
+    return "A program hides law, settings and plots until it is done.";
+  }
   return command.how.why_not != nullptr ? command.how.why_not(desktop) : std::string();
 }
 
-std::string run_command(std::string_view id, Desktop& desktop) {
+std::string run_command(std::string_view id, Desktop& desktop, Asker who) {
   const Command* command = find_command(id);
   if (command == nullptr) return fmt::format("There is no command \"{}\".", id);
-  std::string why = why_not(*command, desktop);
+  std::string why = why_not(*command, desktop, who);
   if (why.empty()) command->run(desktop);
   return why;
 }

@@ -39,6 +39,7 @@ struct Command {
     Label (*now)(const Desktop&) = nullptr;            // what the menu says instead of its text
     std::string (*why_not)(const Desktop&) = nullptr;  // for people; empty or null: it can be run
     bool (*checked)(const Desktop&) = nullptr;         // its mark in the menu
+    bool blind = false;  // also while a program hides law, settings and plots
   };
 
   const char* id;    // never changes: "edit.undo"
@@ -53,11 +54,13 @@ struct Command {
 // In the order of menus and help.
 std::span<const Command> commands();
 const Command* find_command(std::string_view id);  // null: there is none
+// Who runs a command: programs on the control socket are not kept from what they hide.
+enum class Asker : std::uint8_t { person, program };
 // Why it cannot be run now, for people; empty: it can.
-std::string why_not(const Command& command, const Desktop& desktop);
+std::string why_not(const Command& command, const Desktop& desktop, Asker who = Asker::person);
 // Returns why it was not run, for people: there is none of that id, or it cannot be run now; empty
 // if it was. Errors: as what it does.
-std::string run_command(std::string_view id, Desktop& desktop);
+std::string run_command(std::string_view id, Desktop& desktop, Asker who = Asker::person);
 // The same for who looks at the window: a notice says why.
 void run_or_say(std::string_view id, Desktop& desktop);
 

@@ -213,12 +213,16 @@ void Desktop::follow_pads(std::vector<Pad> plugged, bool focused, double dt) {
       std::move(plugged), {.device = !devices.hub().in_use().empty(), .listens = listens},
       shown.camera, dt);
   if (asked_for.cut) cut_force();
-  if (asked_for.next_law) tuning.next_law();
+  if (asked_for.next_law && !blind) tuning.next_law();
   if (asked_for.magnet) run_or_say("hand.magnet", *this);
 }
 
 void Desktop::pick_up_or_next_law() {
-  live.why_no_magnet().empty() ? live.toggle_magnet() : tuning.next_law();
+  if (live.why_no_magnet().empty()) {
+    live.toggle_magnet();
+  } else if (!blind) {
+    tuning.next_law();
+  }
 }
 
 Focus Desktop::focus() const {

@@ -14,6 +14,7 @@
 #include "app/desktop/live/identify_controller.h"
 #include "app/desktop/live/live_session.h"
 #include "app/desktop/panels/over_view.h"
+#include "app/desktop/panels/person_question.h"
 #include "app/desktop/panels/transform_tool.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
@@ -113,6 +114,10 @@ class Desktop {
   KeptScenes kept;
   World world;
   WindowRequests asked;
+  // Of programs on the control socket: what one asks whoever is here, and that one hides the law,
+  // the settings and the plots, and all commands that show or change them.
+  PersonQuestion question;
+  bool blind = false;
   // Of the system's window: how it is, and the work of its last frame, without waiting [s].
   bool full_screen = false;
   double frame_time = 0;

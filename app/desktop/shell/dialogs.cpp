@@ -241,6 +241,10 @@ DrawDialog preset_list(Desktop& d) {
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }
 
+DrawDialog question(Desktop& d) {
+  return [&d](bool& open, ScreenRect) { d.question.draw(open); };
+}
+
 DrawDialog identify(Desktop& d) {
   return [&d, dialog = std::make_shared<IdentifyDialog>()](bool& open, ScreenRect) {
     dialog->draw(open, d.identify, d.settings.parameters.down, d.live.stage().arm());
@@ -268,6 +272,7 @@ constexpr std::array kDialogs{
     DialogKind{"layouts", kModal, layout_list},
     DialogKind{"presets", kModal, preset_list},
     DialogKind{"identify", kModal, identify},
+    DialogKind{"ask", kModal, question},
 };
 
 }  // namespace

@@ -16,10 +16,22 @@
 #include "app/style/theme.h"
 
 namespace limpid {
+namespace {
+
+// Of what the picture shows, what tells how far device and proxy are apart, or which law has
+// friction.
+Settings without_signs(Settings settings) {
+  settings.show_ghost = settings.show_lens = settings.show_forces = settings.show_joints = false;
+  settings.twin_overlaid = false;
+  return settings;
+}
+
+}  // namespace
 
 void Frame::draw() {
   const auto part = [this](auto&& work) { guard(desktop_.notices, work); };
   Settings& settings = desktop_.settings;
+  if (desktop_.blind) return draw_blind();
   part([&] { draw_menu_bar(desktop_, files_); });
   const Layout at = lay_out();
   part([&] { draw_view(at.view); });
@@ -52,6 +64,17 @@ void Frame::draw() {
   // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
   dialogs_.draw(true, at.view);
   draw_notices(desktop_.notices, at.view, below_banners_);
+}
+
+// The picture and what cannot be missed: nothing that tells one coupling from another.
+void Frame::draw_blind() {
+  int width = 0, height = 0;
+  window_.size(width, height);
+  const ScreenRect view{{0, 0}, {static_cast<float>(width), static_cast<float>(height)}};
+  const auto part = [this](auto&& work) { guard(desktop_.notices, work); };
+  part([&] { draw_view(view); });
+  part([&] { draw_banners(desktop_.banners(), view, {view.min, view.min}, act_); });
+  dialogs_.draw(true, view);
 }
 
 // What notices leave free: the legend's corner, or all that is at the top of the view.
@@ -93,6 +116,8 @@ ViewScene Frame::view_scene() {
   }
   if (!scene.recorded) scene.twin = desktop_.live.twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();
+  scene.blind = desktop_.blind;
+  if (scene.blind && !scene.twin.empty()) scene.names = {"left", "right", true};
   scene.pad = desktop_.pads.leading();
   scene.overlaid = desktop_.settings.twin_overlaid;
   return scene;
@@ -111,13 +136,16 @@ void Frame::draw_view(ScreenRect rect) {
     desktop_.shown.reset_view();
     camera.finish();
   }
+  Settings without = without_signs(desktop_.settings);
+  Settings& settings = desktop_.blind ? without : desktop_.settings;
   desktop_.shown.picture = scene.split() ? half_of(rect, false) : rect;
-  const bool taken = !scene.recorded && !scene.split() && draw_handles(scene, rect);
+  const bool acts = !scene.recorded && !desktop_.blind;
+  const bool taken = acts && !scene.split() && draw_handles(scene, rect);
   const ViewRequest asked =
-      view_.draw(scene, camera, desktop_.live.controls(), desktop_.settings, rect, taken);
+      view_.draw(scene, camera, desktop_.live.controls(), settings, rect, taken);
   if (asked.turned) desktop_.shown.keep_view();
-  if (asked.clicked) select_under(*asked.clicked, scene);
-  if (asked.asked) {
+  if (asked.clicked && acts) select_under(*asked.clicked, scene);
+  if (asked.asked && acts) {
     select_under(*asked.asked, scene);
     ImGui::OpenPopup(kObjectMenu);
   }
@@ -143,8 +171,10 @@ bool Frame::differs() {
     const PlayedSession* session = desktop_.playback.shown();
     const bool filled = seen_of_sweep_ != desktop_.sweep.revision();
     seen_of_sweep_ = desktop_.sweep.revision();
-    different = filled || (session != nullptr && session->player().playing()) ||
-                view_.differs(view_scene(), desktop_.shown.camera, desktop_.settings);
+    different =
+        filled || (session != nullptr && session->player().playing()) ||
+        view_.differs(view_scene(), desktop_.shown.camera,
+                      desktop_.blind ? without_signs(desktop_.settings) : desktop_.settings);
   });
   return different;
 }

@@ -33,6 +33,7 @@ class Frame {
   }
 
  private:
+  void draw_blind();
   Layout lay_out();
   ViewScene view_scene();
   ScreenRect signs_box(ScreenRect view);

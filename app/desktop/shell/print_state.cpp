@@ -133,6 +133,19 @@ nlohmann::json places_of(Desktop& d) {
           {"objects", objects}};
 }
 
+// Of the question that a program asks: where its answers are [px]; null: none.
+nlohmann::json question_of(const Desktop& d) {
+  if (!d.question.asking()) return nullptr;
+  nlohmann::json places = nlohmann::json::object();
+  for (std::size_t i = 0; i < d.question.choices(); ++i) {
+    const std::string& label = d.question.choice(i);
+    if (const auto at = noted_place(PersonQuestion::kTitle, label.c_str())) {
+      places[label] = place(*at);
+    }
+  }
+  return places;
+}
+
 std::string told(Desktop& d) {
   const StoryStep* step = d.playback.on() ? d.playback.shown()->step() : nullptr;
   return step != nullptr ? step->caption : "";
@@ -169,7 +182,8 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
       "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
       "\"closing\": {}, "
-      "\"recorded\": {}, \"places\": {}, \"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
+      "\"recorded\": {}, \"places\": {}, \"blind\": {}, \"question\": {}, "
+      "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
@@ -186,8 +200,8 @@ void print_state(Desktop& d, const WindowState& window) {
       d.playback.video().busy(), d.pads.all().size(), window.frames, window.input_waits,
       d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
       state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
-      banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(),
-      p.hand_stiffness, p.hand_damping);
+      banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(), d.blind,
+      question_of(d).dump(), p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }
 

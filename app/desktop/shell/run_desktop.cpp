@@ -15,6 +15,7 @@
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/print_state.h"
 #include "app/desktop/shell/window.h"
+#include "app/desktop/shell/window_remote.h"
 #include "app/live/rtkit.h"
 #include "core/realtime/realtime.h"
 
@@ -59,6 +60,7 @@ class Application {
         window_(prepare_window()),
         frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {}
   ~Application() {  // pictures go before the window they are drawn in
+    remote_.reset();
     frame_.drop_pictures();
     desktop_.drop_pictures();
   }
@@ -88,6 +90,7 @@ class Application {
   Window window_;
   Frame frame_;
   double last_ = 0;
+  std::optional<WindowRemote> remote_;
   double printed_ = 0;  // the state
   long frames_ = 0;
   bool leaving_ = false;
@@ -112,6 +115,7 @@ void Application::open() {
         "This window was started with a file, so that it connects to no device by itself.");
   }
   if (!options_.in_use.empty()) desktop_.devices.use(options_.in_use);
+  if (!options_.listen.empty()) remote_.emplace(options_.listen, desktop_);
 }
 
 void Application::run(const std::string& complaint) {
@@ -177,13 +181,17 @@ void Application::turn() {
   Notices& notices = desktop_.notices;
   if (interrupted) window_.close();
   const double now = glfwGetTime();
-  bool drawing = window_.due();
+  bool asked_for = false;
+  guard(notices, [&] { asked_for = remote_ && remote_->turn(); });
+  bool drawing = window_.due() || asked_for;
   if (drawing) {
     window_.begin_frame(desktop_.focus());
     desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                            desktop_.transform.follows());
     guard(notices, [&] { handle_keys(window_.keys(), desktop_); });
-    guard(notices, [&] { desktop_.world.open_files(window_.dropped()); });
+    guard(notices, [&] {
+      if (!desktop_.blind) desktop_.world.open_files(window_.dropped());
+    });
   }
   guard(notices, [&] { desktop_.follow_pads(plugged_pads(), window_.focused(), now - last_); });
   guard(notices, [&] { desktop_.update(now - last_); });
@@ -217,6 +225,7 @@ void Application::carry_out(const WindowRequests& asked) {
 }
 
 void Application::say_what_was_saved() {
+  if (remote_) remote_->saved(window_.saved());
   for (const SavedPicture& picture : window_.saved()) {
     if (picture.error.empty()) {
       desktop_.notices.say("Saved " + picture.file.string());

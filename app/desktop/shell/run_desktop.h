@@ -19,6 +19,7 @@ struct DesktopOptions {
   std::vector<std::filesystem::path> files;  // to open at once, as if dropped
   bool print_state = false;                  // one line of JSON ten times a second
   double ui_scale = 0;                       // 0: the screen's
+  std::filesystem::path listen;              // a socket for programs; empty: none
 };
 
 // Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the

@@ -1,8 +1,10 @@
 #include "app/desktop/shell/world.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <functional>
 #include <tuple>
 #include <utility>
@@ -436,17 +438,24 @@ void World::take_up(const SceneEditor& editor) {
 }
 
 void World::toggle_recording() {
-  if (d_.live.loop().recording()) return d_.live.stop_recording();
+  d_.live.loop().recording() ? d_.live.stop_recording() : record({});
+}
+
+void World::record(const fs::path& file) {
   if (!d_.live.may_record()) return;
   try {
-    start_recording();
+    start_recording(file);
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
   }
 }
 
-void World::start_recording() {
+void World::start_recording(fs::path file) {
   d_.playback.close();
+  if (file.empty()) {
+    file = sessions_dir() /
+           fmt::format("session-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::time(nullptr)));
+  }
   RunPlan plan;
   plan.arm = d_.live.stage().arm();
   plan.document = d_.document.editor().document();
@@ -460,7 +469,7 @@ void World::start_recording() {
                    true);
     return;
   }
-  d_.live.record(plan, sessions_dir());
+  d_.live.record(plan, file);
 }
 
 void World::open_files(const std::vector<fs::path>& files) {

@@ -51,7 +51,8 @@ class World {
   void open_device(std::unique_ptr<Device> device);
   void close_device();
 
-  void toggle_recording();  // of all that is there now
+  void toggle_recording();  // of all that is there now, in a new file of the user's sessions
+  void record(const std::filesystem::path& file);  // the same in this one; empty: a new one
   std::string why_fixed() const;
 
   // Once a frame: what is ready goes into loop and document, what was changed to picture and loop.
@@ -75,7 +76,7 @@ class World {
   void take_up_set_aside(const ArmDescription& arm);
   void open_sweep(const std::filesystem::path& table);  // in its map
   void run_hand(const std::filesystem::path& file);
-  void start_recording();
+  void start_recording(std::filesystem::path file);
   Workplace workplace() const;
   void leave_for_scene(std::function<void()> then);
   void show_scene();

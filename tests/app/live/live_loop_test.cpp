@@ -50,6 +50,83 @@ void let_live(LiveLoop& loop, std::int64_t ticks) {
   ASSERT_TRUE(loop.status().running) << loop.status().failure;
 }
 
+// A tick's number and the hand's target at it, of all rows since the last call.
+std::vector<std::pair<std::uint64_t, Vec3>> targets(LiveLoop& loop) {
+  const RowLayout& layout = loop.layout();
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  std::vector<double> rows(1024 * 2 * stride);
+  std::vector<std::pair<std::uint64_t, Vec3>> all;
+  while (const std::size_t count = loop.drain(rows)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto row = std::span<const double>(rows).subspan(2 * i * stride, stride);
+      const auto target = layout.in(row, Column::hand_target);
+      all.emplace_back(loop.drained_from() + i, Vec3(target[0], target[1], target[2]));
+    }
+  }
+  return all;
+}
+
+std::unique_ptr<LedPath> path_of(bool waits) {
+  auto path = std::make_unique<LedPath>();
+  path->hand = hand_through({0, 0.1}, {kHome, kHome + Vec3(0.01, 0, 0)}, "test");
+  path->waits = waits;
+  return path;
+}
+
+TEST(LiveLoop, LeadsTheHandAlongAPathTickByTick) {
+  LiveLoop loop({});
+  loop.open(test::omni(), test::omni_scene("table.toml"), {}, kHome);
+  loop.lead(path_of(false));
+  let_live(loop, 150);
+  const auto all = targets(loop);
+  const HandPath path = path_of(false)->hand;
+  const auto moves = [](const auto& each) { return each.second != kHome; };
+  const auto first = std::ranges::find_if(all, moves);
+  ASSERT_TRUE(first != all.end());
+  for (std::size_t k = 1; first + static_cast<std::ptrdiff_t>(k) - 1 != all.end(); ++k) {
+    const auto& [tick, target] = *(first + static_cast<std::ptrdiff_t>(k) - 1);
+    EXPECT_EQ(target, path.sample(k, 0.001)) << k;
+    EXPECT_EQ(tick, all[0].first + static_cast<std::uint64_t>(&*first - &all[0]) + k - 1);
+  }
+}
+
+TEST(LiveLoop, HoldsTheHandAtAPathsBeginningUntilARecordingBegins) {
+  const test::TempDir dir;
+  const ArmDescription arm = test::omni();
+  const SceneDocument table = test::omni_document("table.toml");
+  LiveLoop loop({});
+  loop.open(arm, table.scene, {}, kHome);
+  loop.lead(path_of(true));
+  let_live(loop, 150);
+  for (const auto& each : targets(loop)) ASSERT_EQ(each.second, kHome);
+  loop.record(recorder(dir / "a.h5", arm, table, {}));
+  let_live(loop, 200);
+  loop.finish_recording();
+  const Session session = read_session(dir / "a.h5");
+  const HandPath path = path_of(true)->hand;
+  ASSERT_GT(session.size(), 100u);
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const auto target = session.at(k, Column::hand_target);
+    ASSERT_EQ(Vec3(target[0], target[1], target[2]), path.sample(k, 0.001)) << k;
+  }
+}
+
+TEST(LiveLoop, CountsTicksOverThoseThatFoundNoRoom) {
+  LiveLoop loop({});
+  Parameters fast;
+  fast.tick = 0.0002;
+  loop.open(test::omni(), test::omni_scene("table.toml"), fast, kHome);
+  while (loop.trace_dropped() == 0 && loop.status().running) std::this_thread::sleep_for(10ms);
+  const auto before = targets(loop);
+  const std::uint64_t lost = loop.trace_dropped();
+  let_live(loop, 50);
+  const auto after = targets(loop);
+  ASSERT_FALSE(before.empty() || after.empty());
+  EXPECT_EQ(before.front().first, 0u);
+  EXPECT_GE(after.back().first, before.size() + lost);
+  EXPECT_LE(after.back().first + 1, static_cast<std::uint64_t>(loop.status().ticks));
+}
+
 TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   const test::TempDir dir;
   const ArmDescription arm = test::omni();

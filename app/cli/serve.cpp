@@ -1,0 +1,199 @@
+// `limpid serve`: the live loop without a window, led by programs.
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "app/base/folders.h"
+#include "app/base/interrupt.h"
+#include "app/cli/commands.h"
+#include "app/cli/live_bench.h"
+#include "app/cli/options.h"
+#include "app/cli/still_picture.h"
+#include "app/live/rtkit.h"
+#include "app/remote/served_session.h"
+#include "app/run/own_world.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+// Between two turns: often enough for whoever waits for an answer, and seldom enough that one who
+// asks all the time takes no time from the loop. Requests cut it short, but not below the second.
+constexpr auto kTurn = 5ms, kShortestTurn = 2ms;
+
+struct ServeOptions {
+  std::string name = "control";
+  InputOptions input;
+  std::optional<std::string> device;
+  bool until_eof = false;
+};
+
+// The file that a client names: a path, or something that came along with the program.
+std::string file_of(const std::string& named, const char* key, const char* kind) {
+  if (named.empty() || fs::path(named).is_absolute()) return named;
+  const fs::path own = data_dir() / "assets" / kind / named;
+  if (named.find('/') == std::string::npos && fs::exists(own)) return own;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(data_dir() / "assets" / kind)) {
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  throw UsageError(
+      fmt::format("open: {}: \"{}\" is not there; allowed: a path from / on, or one of {}", key,
+                  named.substr(0, 100), fmt::join(names, ", ")));
+}
+
+// What is open follows what clients have opened, one after the other.
+class Worlds {
+ public:
+  explicit Worlds(InputOptions input) : input_(std::move(input)) {}
+
+  ServedSession::World first() const { return world_of(input_); }
+
+  ServedSession::World operator()(const OpenRequest& asked, const Parameters& now) {
+    InputOptions next = input_;
+    if (!asked.session.empty()) {
+      next.hand = file_of(asked.session, "session", "sessions");
+      next.scene.clear();
+      next.device.clear();
+      next.tip.clear();
+    }
+    if (!asked.arm.empty()) {
+      next.device = file_of(asked.arm, "arm", "devices");
+      next.tip = asked.tip;
+      if (asked.session.empty()) next.hand.clear();
+    }
+    if (!asked.scene.empty()) next.scene = file_of(asked.scene, "scene", "scenes");
+    if (!asked.hand.empty()) next.hand = file_of(asked.hand, "hand", "hands");
+    ServedSession::World world = world_of(next);
+    const bool same_arm = asked.arm.empty() && asked.session.empty();
+    if (same_arm) world.plan.parameters = now;
+    input_ = next;
+    return world;
+  }
+
+ private:
+  static ServedSession::World world_of(const InputOptions& input) {
+    return {make_plan(input), !input.hand.empty()};
+  }
+
+  InputOptions input_;
+};
+
+// A device in the arm's place, with its arm, its world and its limits.
+struct RealDevice {
+  RealDevice(const std::string& id, const InputOptions& input, ServedSession::World& world) {
+    if (!input.hand.empty()) throw UsageError("--hand: not beside --live; the hand is yours");
+    DeviceHub hub(device_store_file(), by_rtkit());
+    device = open_device(id, hub, "");
+    const DeviceTraits& traits = device->traits();
+    if (!traits.pushes) throw UsageError(traits.name + ": has no motors");
+    RunPlan& plan = world.plan;
+    plan.arm = hub.arm_for(traits, arm_of(input));
+    const fs::path scene = input.scene.empty() ? scene_of_device(plan.arm) : fs::path(input.scene);
+    plan.document = read_scene(scene, plan.arm);
+    plan.models = build_meshes(plan.document);
+    const DeviceNotes& notes = hub.notes(hub.in_use());
+    Parameters usual = make_parameters(input, plan.arm);
+    static_cast<CompensationSettings&>(usual) = notes.compensation;
+    plan.parameters = make_parameters(input, usual);
+    limits = notes.limits;
+  }
+
+  std::unique_ptr<Device> device;
+  SafetyLimits limits;
+};
+
+bool input_has_ended() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (poll(&input, 1, 0) <= 0) return false;
+  std::array<char, 256> bytes{};
+  return ::read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0;
+}
+
+int serve(const ServeOptions& options) {
+  catch_interrupts();
+  auto worlds = std::make_shared<Worlds>(options.input);
+  ServedSession::World world;
+  std::optional<RealDevice> real;
+  if (options.device) {
+    real.emplace(*options.device, options.input, world);
+  } else {
+    world = worlds->first();
+  }
+  const fs::path socket = control_path(options.name);
+  ServedSession session(std::move(world), real ? std::move(real->device) : nullptr,
+                        real ? real->limits : SafetyLimits{},
+                        {.open = [worlds](const OpenRequest& asked,
+                                          const Parameters& now) { return (*worlds)(asked, now); },
+                         .draw = [](const fs::path& png, const RunPlan& plan,
+                                    std::span<const double> row) { save_picture(png, plan, row); },
+                         .folder = user_data_dir() / "sessions",
+                         .ask = by_rtkit()});
+  if (!session.realtime()) yield_to_haptics();
+  Remote remote(socket, session.host(), [&session] { session.cut(); });
+  fmt::print("limpid listens on {}\n", socket.string());
+  std::fflush(stdout);
+  while (!interrupted && !(options.until_eof && input_has_ended())) {
+    const auto began = std::chrono::steady_clock::now();
+    session.turn(remote);
+    remote.turn();
+    std::this_thread::sleep_until(began + kShortestTurn);
+    remote.wait_until(began + kTurn);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command declare_serve(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("serve", "the live loop without a window, led by programs on a socket");
+  auto options = std::make_shared<ServeOptions>();
+  command
+      ->add_option("NAME", options->name,
+                   "of the socket, $XDG_RUNTIME_DIR/limpid/NAME.control; default: control")
+      ->type_name("");
+  options->input.add_world(*command);
+  command
+      ->add_option("--hand", options->input.hand,
+                   "the virtual arm's hand: its path, or a recorded session; default: nobody holds "
+                   "the arm")
+      ->type_name("FILE.csv|FILE.h5");
+  command
+      ->add_option_function<std::string>(
+          "--live", [options](const std::string& id) { options->device = id; },
+          "a real device and your hand on it: its id, as `limpid devices` lists it; default: the "
+          "one in use. Its second button arms the force, and nothing else here does")
+      ->type_name("[ID]")
+      ->expected(0, 1);
+  command->add_flag("--until-eof", options->until_eof,
+                    "end as soon as standard input does, as that of a program that has ended");
+  options->input.add_parameters(*command);
+  command->footer(
+      "One JSON object a line each way, as {\"id\": 1, \"do\": \"set\", \"values\": "
+      "{\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists what can be asked. The Python package "
+      "limpid speaks it. Only the user who\nstarts the program can connect. Nobody arms a real "
+      "device through it, or raises a limit; cut is always taken.\n\n" +
+      parameter_help());
+  return [options] {
+    try {
+      return serve(*options);
+    } catch (const ListenError& e) {
+      throw UsageError(e.what());
+    }
+  };
+}
+
+}  // namespace limpid

@@ -1,0 +1,17 @@
+// A picture of one row, drawn without a window.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "app/run/simulate.h"
+
+namespace limpid {
+
+// Draws the plan's arm in its scene as `row` has it, 1280 x 800, with a twin's proxy beside it if
+// there is one. Errors: std::runtime_error where OpenGL cannot be had or the file cannot be
+// written.
+void save_picture(const std::filesystem::path& png, const RunPlan& plan,
+                  std::span<const double> row, std::span<const double> twin = {});
+
+}  // namespace limpid

@@ -1,0 +1,348 @@
+#include "app/desktop/shell/window_remote.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "app/base/folders.h"
+#include "app/desktop/shell/commands.h"
+#include "app/remote/remote_settings.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+fs::path file_of(const Keys& keys, const char* key, const char* kind) {
+  const std::string named = keys.text(key);
+  const fs::path own = data_dir() / "assets" / kind / named;
+  const fs::path file =
+      named.find('/') == std::string::npos && fs::exists(own) ? own : fs::path(named);
+  if (!file.is_absolute() || !fs::exists(file)) {
+    throw keys.error(key, fmt::format("{} is not there; allowed: a path from / on, or one that "
+                                      "came along with the program",
+                                      shown(named)));
+  }
+  return file;
+}
+
+fs::path new_file(const Keys& keys, const char* suffix) {
+  const fs::path file = keys.text("file");
+  if (!file.is_absolute() || file.extension() != suffix) {
+    throw keys.error("file",
+                     fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
+                                 shown(file.string()), suffix));
+  }
+  return file;
+}
+
+std::string limits_of(const Parameters& p) {
+  return parameter_text(p, *find_parameter("device.torque_limit")) + " " +
+         parameter_text(p, *find_parameter("ledger.energy"));
+}
+
+}  // namespace
+
+WindowRemote::WindowRemote(const fs::path& socket, Desktop& desktop)
+    : d_(desktop),
+      highest_(desktop.settings.parameters),
+      limits_(limits_of(highest_)),
+      remote_(socket, host(), [&desktop] { desktop.live.loop().cut(); }) {
+  d_.live.on_row = [this](std::span<const double> row, std::span<const double> twin,
+                          std::uint64_t tick) {
+    tick_ = tick;
+    remote_.row(row, twin, tick);
+  };
+}
+
+bool WindowRemote::turn() {
+  follow_limits();
+  if (const Stage* now = &d_.live.stage(); std::exchange(stage_, now) != now) remote_.reopened();
+  const bool any = remote_.turn();
+  // Esc and other dialogs leave the question open.
+  if (d_.question.asking() && d_.dialog.kind() == nullptr && !d_.document.asking())
+    d_.dialog.open("ask");
+  return any;
+}
+
+// What a person has set with a slider or a preset is what may be set from here.
+void WindowRemote::follow_limits() {
+  const Parameters& now = d_.settings.parameters;
+  if (std::string limits = limits_of(now); limits != limits_) {
+    highest_ = now;
+    limits_ = std::move(limits);
+  }
+}
+
+void WindowRemote::saved(std::span<const SavedPicture> pictures) {
+  saved_.insert(saved_.end(), pictures.begin(), pictures.end());
+  constexpr std::size_t kKept = 32;  // some are saved by the window's own key
+  if (saved_.size() > kKept) saved_.erase(saved_.begin(), saved_.end() - kKept);
+}
+
+RemoteHost WindowRemote::host() {
+  RemoteHost host;
+  host.kind = "window";
+  host.state = [this] { return state(); };
+  host.parameters = [this]() -> const Parameters& { return d_.settings.parameters; };
+  host.twin = [this]() -> const Parameters* {
+    return d_.settings.twin.on ? &d_.settings.twin.parameters : nullptr;
+  };
+  host.highest = [this] { return with_limits_of(d_.live.stage().arm(), highest_); };
+  host.set = [this](const Parameters& p, bool of_twin) { set(p, of_twin); };
+  host.channels = [this]() -> const TraceChannels& { return d_.live.stage().channels(); };
+  host.row = [this] { return d_.live.row(); };
+  host.twin_row = [this] { return d_.live.twin_row(); };
+  host.tick = [this] { return tick_; };
+  host.gone = [this](LineServer::Client client) { gone(client); };
+  add_actions(host);
+  return host;
+}
+
+void WindowRemote::add_actions(RemoteHost& host) {
+  using Client = LineServer::Client;
+  auto& actions = host.actions;
+  actions["open"] = [this](const Keys& keys, Client) { return open(keys); };
+  actions["record"] = [this](const Keys& keys, Client) { return record(keys); };
+  actions["stop"] = [this](const Keys&, Client) { return stop(); };
+  actions["start_over"] = [this](const Keys&, Client) { return start_over(); };
+  actions["mark"] = [this](const Keys& keys, Client) { return mark(keys); };
+  actions["twin"] = [this](const Keys& keys, Client) { return twin(keys); };
+  actions["blind"] = [this](const Keys& keys, Client client) { return blind(keys, client); };
+  actions["ask"] = [this](const Keys& keys, Client client) { return ask(keys, client); };
+  actions["picture"] = [this](const Keys& keys, Client) { return picture(keys); };
+  actions["cut"] = [this](const Keys&, Client) -> Answer {
+    d_.cut_force();
+    return json::object();
+  };
+}
+
+// As its key does it, also where keys do nothing while a program hides the settings.
+void WindowRemote::run(const char* command) {
+  if (const std::string why = run_command(command, d_, Asker::program); !why.empty()) {
+    throw RemoteError(why);
+  }
+}
+
+// What the window says of work beside it that has failed.
+std::string WindowRemote::last_complaint(const char* otherwise) const {
+  const auto& all = d_.notices.all();
+  const auto bad = std::find_if(all.rbegin(), all.rend(), [](const Notice& n) { return n.bad; });
+  return bad != all.rend() ? bad->text : otherwise;
+}
+
+json WindowRemote::state() const {
+  const Stage& stage = d_.live.stage();
+  const LoopStatus status = d_.live.loop().status();
+  const Snapshot& now = d_.live.loop().snapshot();
+  return {{"arm", stage.arm().name},
+          {"joints", stage.arm().dof()},
+          {"scene", stage.document().title},
+          {"file", d_.document.file()},
+          {"objects", d_.document.scene().objects.size()},
+          {"device", d_.live.loop().device_in_place()},
+          {"force", d_.live.force_armed()},
+          {"why_no_force", explain(now.force_state)},
+          {"recording", d_.live.recording()},
+          {"playing", d_.playback.on()},
+          {"unstable", now.diverged},
+          {"ticks", status.ticks},
+          {"late", status.late},
+          {"missed", status.missed},
+          {"slipped", status.slipped},
+          {"rate", status.rate},
+          {"twin", d_.settings.twin.on},
+          {"blind", d_.blind},
+          {"hand", nullptr}};
+}
+
+void WindowRemote::set(const Parameters& p, bool of_twin) {
+  d_.tuning.end_break();
+  (of_twin ? d_.settings.twin.parameters : d_.settings.parameters) = p;
+  if (!of_twin) limits_ = limits_of(p);
+}
+
+Answer WindowRemote::open(const Keys& keys) {
+  if (d_.live.recording()) throw RemoteError("open: stop the recording before");
+  if (d_.document.editor().dirty() && !keys.has("session")) {
+    throw RemoteError(
+        "open: the scene has changes that nobody has saved; a person decides on them");
+  }
+  const bool arm = keys.has("arm");
+  const int asked = static_cast<int>(keys.has("scene")) + static_cast<int>(arm) +
+                    static_cast<int>(keys.has("session")) + static_cast<int>(keys.has("hand"));
+  if (asked != 1) throw RemoteError("open: allowed: one of scene, arm, session, hand");
+  if (keys.has("tip") && !arm) throw keys.error("tip", "belongs to an arm");
+  if (keys.has("wait"))
+    throw keys.error("wait", "needs `limpid serve`; here hands are run at once");
+  if (keys.has("scene")) return open_scene(file_of(keys, "scene", "scenes"));
+  if (arm) return open_arm(file_of(keys, "arm", "devices"), keys.text_if("tip").value_or(""));
+  return play(keys.has("session") ? file_of(keys, "session", "sessions")
+                                  : file_of(keys, "hand", "hands"));
+}
+
+Answer WindowRemote::open_scene(const fs::path& file) {
+  d_.notices.clear();
+  d_.world.open_scene(file);
+  return Answer::Later([this, before = stage_]() -> std::optional<json> {
+    if (d_.document.loader().busy()) return std::nullopt;
+    if (&d_.live.stage() == before)
+      throw RemoteError(last_complaint("open: the scene did not come"));
+    return state();
+  });
+}
+
+Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
+  if (d_.live.loop().device_in_place()) {
+    throw RemoteError("open: a real device is in the arm's place");
+  }
+  d_.notices.clear();
+  d_.world.open_arm(file, tip);
+  return Answer::Later([this, before = stage_]() -> std::optional<json> {
+    if (d_.document.loader().busy()) return std::nullopt;
+    if (&d_.live.stage() == before) throw RemoteError(last_complaint("open: the arm did not come"));
+    hold_limits(d_.settings.parameters, highest_, d_.live.stage().arm());
+    limits_ = limits_of(d_.settings.parameters);
+    return state();
+  });
+}
+
+Answer WindowRemote::play(const fs::path& file) {
+  d_.playback.close();
+  d_.notices.clear();
+  d_.world.open_files({file});
+  return Answer::Later([this]() -> std::optional<json> {
+    if (d_.playback.loading()) return std::nullopt;
+    if (!d_.playback.on()) throw RemoteError(last_complaint("open: the session did not come"));
+    return state();
+  });
+}
+
+Answer WindowRemote::record(const Keys& keys) {
+  if (d_.live.recording()) throw RemoteError("record: a recording is under way; stop it before");
+  if (!d_.live.may_record()) throw RemoteError("record: the last one is being closed");
+  fs::path file;
+  if (keys.has("file")) {
+    file = new_file(keys, ".h5");
+    if (fs::exists(file)) throw keys.error("file", file.string() + " exists already");
+  }
+  d_.notices.clear();
+  d_.world.record(file);
+  return Answer::Later([this]() -> std::optional<json> {
+    if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));
+    const LiveLoop& loop = d_.live.loop();
+    if (!loop.recording() || !loop.snapshot().recording) return std::nullopt;
+    return json{{"file", loop.recorder()->out().string()}};
+  });
+}
+
+Answer WindowRemote::stop() {
+  if (!d_.live.recording()) throw RemoteError("stop: nothing is being recorded");
+  return Answer::Later([this, asked = false]() mutable -> std::optional<json> {
+    if (d_.live.recording()) {
+      if (d_.live.loop().recording()) run("session.record");  // which stops it
+      asked = true;
+      return std::nullopt;
+    }
+    if (d_.live.closing()) return std::nullopt;
+    const LiveSession::Recorded& last = d_.live.last_recording();
+    if (!last.complete) throw RemoteError(last_complaint("stop: it could not be completed"));
+    return json{{"file", last.file.string()}, {"rows", last.rows}, {"dropped", last.dropped}};
+  });
+}
+
+// The key of both is the same.
+Answer WindowRemote::start_over() {
+  if (d_.live.recording()) throw RemoteError("start_over: stop the recording before");
+  run(d_.playback.on() ? "session.back_to_live" : "device.start_over");
+  return place();
+}
+
+json WindowRemote::place() const {
+  const double time = d_.live.loop().layout().in(d_.live.row(), Column::time)[0];
+  return {{"tick", tick_}, {"time", time}};
+}
+
+Answer WindowRemote::mark(const Keys& keys) {
+  d_.live.mark(keys.text("text"), "remote");
+  return place();
+}
+
+Answer WindowRemote::twin(const Keys& keys) {
+  const bool on = keys.flag_or("on", true);
+  Parameters p = d_.settings.twin.parameters;
+  if (on && keys.has("values")) {
+    const json& values = keys.of("values");
+    if (!values.is_object()) {
+      throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
+    }
+    const Parameters most = with_limits_of(d_.live.stage().arm(), highest_);
+    for (const auto& [key, value] : values.items()) set_by_remote(p, key, value, most);
+  }
+  if (on != d_.settings.twin.on) run("session.twin");
+  if (on && keys.has("values")) set(p, true);
+  return json{{"on", on}};
+}
+
+Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
+  if (hides_ && *hides_ != client) throw RemoteError("blind: another program has asked for it");
+  const bool on = keys.flag_or("on", true);
+  if (on && d_.dialog.kind() != nullptr && d_.dialog.name() != "ask") d_.dialog.close();
+  d_.blind = on;
+  hides_ = on ? std::optional(client) : std::nullopt;
+  return json{{"on", on}};
+}
+
+Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
+  if (d_.question.asking()) throw RemoteError("ask: another question is open");
+  if (d_.document.asking() || d_.identify.busy()) {
+    throw RemoteError("ask: the window has a question of its own");
+  }
+  auto choices = keys.texts_if("choices", PersonQuestion::kMostChoices);
+  if (!choices || choices->empty()) choices = {"Go on"};
+  d_.question.ask(keys.text("text"), *choices);
+  asks_ = client;
+  d_.dialog.open("ask");
+  return Answer::Later([this]() -> std::optional<json> {
+    const auto answer = d_.question.take();
+    if (!answer) return std::nullopt;
+    asks_.reset();
+    return json{{"answer", d_.question.choice(answer->choice)},
+                {"index", answer->choice},
+                {"seconds", answer->seconds},
+                {"tick", tick_}};
+  });
+}
+
+Answer WindowRemote::picture(const Keys& keys) {
+  const fs::path file = new_file(keys, ".png");
+  std::erase_if(saved_, [&](const SavedPicture& each) { return each.file == file; });
+  if (!d_.asked.picture.empty()) throw RemoteError("picture: another one is being saved");
+  d_.asked.picture = file;
+  return Answer::Later([this, file]() -> std::optional<json> {
+    const auto done = std::ranges::find(saved_, file, &SavedPicture::file);
+    if (done == saved_.end()) return std::nullopt;
+    const SavedPicture result = *done;
+    saved_.erase(done);
+    if (!result.error.empty()) throw RemoteError("picture: " + result.error);
+    return json{{"file", file.string()}};
+  });
+}
+
+// What it has hidden or asked for ends with it.
+void WindowRemote::gone(LineServer::Client client) {
+  if (hides_ == client) {
+    d_.blind = false;
+    hides_.reset();
+  }
+  if (asks_ != client) return;
+  asks_.reset();
+  d_.question.withdraw();
+  if (d_.dialog.name() == "ask") d_.dialog.close();
+}
+
+}  // namespace limpid

@@ -1,0 +1,63 @@
+// The window, led by programs on the control socket: what they ask for is done as menus and keys
+// do it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "app/desktop/shell/desktop.h"
+#include "app/desktop/shell/window.h"
+#include "app/remote/remote.h"
+
+namespace limpid {
+
+class WindowRemote {
+ public:
+  // Listens at `socket` from now on. Errors: ListenError.
+  WindowRemote(const std::filesystem::path& socket, Desktop& desktop);
+  ~WindowRemote() { d_.live.on_row = nullptr; }
+  WindowRemote(const WindowRemote&) = delete;
+  WindowRemote& operator=(const WindowRemote&) = delete;
+
+  // Once a turn of the window. True if anything was asked for.
+  bool turn();
+  // Pictures that the window has written, or could not write.
+  void saved(std::span<const SavedPicture> pictures);
+
+ private:
+  RemoteHost host();
+  void add_actions(RemoteHost& host);
+  nlohmann::json state() const;
+  void set(const Parameters& p, bool of_twin);
+  Answer open(const Keys& keys);
+  Answer open_scene(const std::filesystem::path& file);
+  Answer open_arm(const std::filesystem::path& file, const std::string& tip);
+  Answer play(const std::filesystem::path& file);
+  Answer record(const Keys& keys);
+  Answer stop();
+  Answer start_over();
+  Answer mark(const Keys& keys);
+  Answer twin(const Keys& keys);
+  Answer blind(const Keys& keys, LineServer::Client client);
+  Answer ask(const Keys& keys, LineServer::Client client);
+  Answer picture(const Keys& keys);
+  nlohmann::json place() const;
+  void run(const char* command);
+  std::string last_complaint(const char* otherwise) const;
+  void follow_limits();
+  void gone(LineServer::Client client);
+
+  Desktop& d_;
+  Parameters highest_;  // of the settings whose limits a person has chosen
+  std::string limits_;  // as they were last seen, or set from here
+  const Stage* stage_ = nullptr;
+  std::uint64_t tick_ = 0;                   // of the newest row
+  std::optional<LineServer::Client> hides_;  // the client that asked for it
+  std::optional<LineServer::Client> asks_;   // the same of the question
+  std::vector<SavedPicture> saved_;          // that somebody waits for
+  Remote remote_;                            // last: it goes first
+};
+
+}  // namespace limpid

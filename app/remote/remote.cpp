@@ -1,0 +1,262 @@
+#include "app/remote/remote.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "app/base/version.h"
+#include "app/remote/remote_settings.h"
+
+namespace limpid {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kRowsInALine = 128;
+constexpr std::size_t kMostSettings = 200;  // in a line
+constexpr std::string_view kTwinPrefix = "twin/";
+
+json number(double x) { return std::isfinite(x) ? json(x) : json(); }
+
+}  // namespace
+
+Remote::Remote(const std::filesystem::path& path, RemoteHost host, std::function<void()> cut)
+    : host_(std::move(host)), server_(path, [cut = std::move(cut)](std::string_view line) {
+        if (asks_for_cut(line)) cut();
+      }) {}
+
+bool Remote::turn() {
+  bool any = false;
+  // Those that come meanwhile wait for the next turn.
+  constexpr std::size_t kMost = LineServer::kMostClients * LineServer::kMostUnanswered;
+  for (std::size_t i = 0; i < kMost; ++i) {
+    const auto event = server_.take();
+    if (!event) break;
+    take(*event);
+    any = true;
+  }
+  follow_up();
+  for (auto& [client, follower] : followers_) flush(client, follower);
+  return any;
+}
+
+void Remote::take(const LineServer::Event& event) {
+  if (!event.line) {
+    followers_.erase(event.from);
+    std::erase_if(pending_, [&](const Pending& p) { return p.client == event.from; });
+    host_.gone(event.from);
+    return;
+  }
+  json id;
+  try {
+    const Request request = read_request(*event.line, id);
+    Answer answer = act(request, event.from);
+    if (answer.later) {
+      pending_.push_back({event.from, id, request.verb->name, std::move(answer.later)});
+      return;
+    }
+    server_.answer(event.from, answer_line(id, answer.now));
+    if (request.verb->name == std::string_view("bye")) server_.part_from(event.from);
+  } catch (const std::exception& e) {
+    server_.answer(event.from, error_line(id, e.what()));
+  }
+}
+
+Answer Remote::act(const Request& request, Client client) {
+  const std::string_view verb = request.verb->name;
+  const Keys keys(request);
+  if (verb == "hello") return hello();
+  if (verb == "get") return get(keys);
+  if (verb == "set") return set(keys);
+  if (verb == "row") return newest(keys);
+  if (verb == "follow") return follow(keys, client);
+  if (verb == "bye") return json::object();
+  const auto found = host_.actions.find(std::string(verb));
+  if (found != host_.actions.end()) return found->second(keys, client);
+  throw RemoteError(fmt::format("{}: needs a window; `limpid --listen` has one", verb));
+}
+
+// What was asked for before, and is done, or has failed, by now.
+void Remote::follow_up() {
+  std::vector<Pending> left;
+  for (Pending& p : std::exchange(pending_, {})) {
+    try {
+      if (const auto done = p.later()) {
+        server_.answer(p.client, answer_line(p.id, *done));
+      } else {
+        left.push_back(std::move(p));
+      }
+    } catch (const std::exception& e) {
+      server_.answer(p.client, error_line(p.id, e.what()));
+    }
+  }
+  pending_.insert(pending_.begin(), std::make_move_iterator(left.begin()),
+                  std::make_move_iterator(left.end()));
+}
+
+json Remote::hello() const {
+  json all = json::object();
+  for (const Verb& verb : verbs()) {
+    const bool own = host_.actions.contains(verb.name);
+    const bool here = std::ranges::count(
+        std::array<std::string_view, 6>{"hello", "get", "set", "row", "follow", "bye"}, verb.name);
+    if (own || here) all[verb.name] = verb.help;
+  }
+  return {{"program", "limpid"},
+          {"version", program_version()},
+          {"protocol", kProtocol},
+          {"kind", host_.kind},
+          {"verbs", all}};
+}
+
+json Remote::get(const Keys& keys) const {
+  json values = json::object(), twin;
+  const auto wanted = keys.texts_if("keys", kMostSettings);
+  const Parameters* second = host_.twin();
+  if (second != nullptr) twin = json::object();
+  const auto add = [&](const ParameterInfo& info) {
+    values[info.key] = value_of(host_.parameters(), info);
+    if (second != nullptr) twin[info.key] = value_of(*second, info);
+  };
+  if (wanted) {
+    for (const std::string& key : *wanted) {
+      const ParameterInfo* info = find_parameter(key);
+      if (info == nullptr) throw keys.error("keys", shown(key) + " is no setting");
+      add(*info);
+    }
+  } else {
+    for (const ParameterInfo& info : parameter_table()) add(info);
+  }
+  json answer{{"values", values}, {"state", host_.state()}};
+  if (second != nullptr) answer["twin"] = twin;
+  return answer;
+}
+
+json Remote::set(const Keys& keys) {
+  const json& values = keys.of("values");
+  if (!values.is_object() || values.size() > kMostSettings) {
+    throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
+  }
+  const bool of_twin = keys.flag_or("twin", false);
+  if (of_twin && host_.twin() == nullptr) throw keys.error("twin", "there is none");
+  Parameters p = of_twin ? *host_.twin() : host_.parameters();
+  const Parameters highest = host_.highest();
+  for (const auto& [key, value] : values.items()) set_by_remote(p, key, value, highest);
+  host_.set(p, of_twin);
+  json now = json::object();
+  for (const auto& [key, value] : values.items()) now[key] = value_of(p, *find_parameter(key));
+  return {{"values", now}};
+}
+
+std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
+                                         const std::string& verb) const {
+  const TraceChannels& channels = host_.channels();
+  std::vector<Wanted> found;
+  for (const std::string& name : names) {
+    const bool of_twin = name.starts_with(kTwinPrefix);
+    const auto channel = channels.find(of_twin ? name.substr(kTwinPrefix.size()) : name);
+    if (!channel) {
+      throw RemoteError(fmt::format(
+          "{}: channels: {} is no channel of this arm and scene; `row` without channels lists all",
+          verb, shown(name)));
+    }
+    found.push_back({*channel, of_twin});
+  }
+  return found;
+}
+
+json Remote::newest(const Keys& keys) const {
+  const TraceChannels& channels = host_.channels();
+  const auto row = host_.row(), twin_row = host_.twin_row();
+  if (row.empty()) throw RemoteError("row: there is none yet");
+  std::vector<double> values(static_cast<std::size_t>(channels.count()));
+  std::vector<double> of_twin = values;
+  channels.values(row, values);
+  if (!twin_row.empty()) channels.values(twin_row, of_twin);
+  json all = json::object();
+  if (const auto names = keys.texts_if("channels", kMostSettings)) {
+    const auto wanted = find(*names, "row");
+    for (std::size_t i = 0; i < names->size(); ++i) {
+      if (wanted[i].of_twin && twin_row.empty()) {
+        throw RemoteError(fmt::format("row: channels: {}: there is no twin", shown((*names)[i])));
+      }
+      all[(*names)[i]] = number(
+          (wanted[i].of_twin ? of_twin : values)[static_cast<std::size_t>(wanted[i].channel)]);
+    }
+  } else {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      all[channels.infos()[i].key] = number(values[i]);
+  }
+  const double time = channels.layout().in(row, Column::time)[0];
+  return {{"tick", host_.tick()}, {"time", time}, {"values", all}};
+}
+
+json Remote::follow(const Keys& keys, Client client) {
+  const double tick = host_.parameters().tick;
+  const auto names = keys.texts_if("channels", kMostChannels);
+  const double rate = keys.number_or("rate", std::min(kUsualRate, 1 / tick), 0.1, 1 / tick + 1e-6);
+  if (!names || names->empty()) {
+    followers_.erase(client);
+    return {{"channels", json::array()}};
+  }
+  Follower follower;
+  follower.names = *names;
+  follower.wanted = find(*names, "follow");
+  follower.every = static_cast<std::uint64_t>(std::max(1LL, std::llround(1 / (rate * tick))));
+  json units = json::array();
+  for (const Wanted& w : follower.wanted) {
+    units.push_back(host_.channels().infos()[static_cast<std::size_t>(w.channel)].unit);
+  }
+  json answer{{"channels", *names}, {"units", units}, {"every", follower.every}, {"tick", tick}};
+  followers_[client] = std::move(follower);
+  return answer;
+}
+
+void Remote::row(std::span<const double> row, std::span<const double> twin, std::uint64_t tick) {
+  bool worked_out = false;
+  for (auto& [client, f] : followers_) {
+    if (tick % f.every != 0) continue;
+    if (!std::exchange(worked_out, true)) {
+      const TraceChannels& channels = host_.channels();
+      values_.resize(static_cast<std::size_t>(channels.count()));
+      twin_values_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
+      channels.values(row, values_);
+      if (!twin.empty() && !std::isnan(twin[0])) channels.values(twin, twin_values_);
+    }
+    if (f.last && tick > *f.last) f.dropped += (tick - *f.last) / f.every - 1;
+    f.last = tick;
+    json each = json::array({tick});
+    for (const Wanted& w : f.wanted) {
+      each.push_back(
+          number((w.of_twin ? twin_values_ : values_)[static_cast<std::size_t>(w.channel)]));
+    }
+    f.rows.push_back(std::move(each));
+    if (f.rows.size() >= kRowsInALine) flush(client, f);
+  }
+}
+
+void Remote::flush(Client client, Follower& f) {
+  if (f.rows.empty()) return;
+  const std::size_t count = f.rows.size();
+  json message{{"rows", std::exchange(f.rows, json::array())}, {"dropped", f.dropped}};
+  if (!server_.offer(client, json_line(message))) f.dropped += count;
+}
+
+void Remote::reopened() {
+  for (auto each = followers_.begin(); each != followers_.end();) {
+    Follower& f = each->second;
+    f.last.reset();
+    try {
+      f.wanted = find(f.names, "follow");
+      ++each;
+    } catch (const std::exception& e) {
+      server_.offer(each->first, error_line(nullptr, e.what()));
+      each = followers_.erase(each);
+    }
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,83 @@
+#include "app/remote/remote_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "app/remote/protocol.h"
+
+namespace limpid {
+namespace {
+
+using nlohmann::json;
+
+// What bounds what a person can be done by motors. Other bounds are the device's own settings,
+// which cannot be reached from here at all.
+constexpr std::array kLimits{"device.torque_limit", "ledger.energy"};
+
+ParameterValue parameter_value(const std::string& key, const json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{1} << 53) {
+    return value.get<double>();
+  }
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  throw RemoteError(fmt::format(
+      "set: {}: {} is not allowed; allowed: a number, a text, true or false", key, shown(value)));
+}
+
+}  // namespace
+
+json value_of(const Parameters& p, const ParameterInfo& info) {
+  if (parameter_text(p, info).empty()) return nullptr;  // left to the arm, or to eta
+  const double x = parameter_number(p, info);
+  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    return choice->words[static_cast<std::size_t>(x)];
+  }
+  if (std::holds_alternative<bool Parameters::*>(info.field)) return x != 0;
+  if (std::holds_alternative<int Parameters::*>(info.field)) return static_cast<std::int64_t>(x);
+  return std::isfinite(x) ? json(x) : json();
+}
+
+void set_by_remote(Parameters& p, const std::string& key, const json& value,
+                   const Parameters& highest) {
+  const Parameters before = p;
+  set_parameter(p, key, parameter_value(key, value));
+  const ParameterInfo& info = *find_parameter(key);
+  if (!info.live && parameter_text(before, info) != parameter_text(p, info)) {
+    p = before;
+    throw RemoteError(fmt::format(
+        "set: {}: stays as it is while the loop runs; it is chosen when the program starts", key));
+  }
+  if (std::ranges::count(kLimits, key) == 0) return;
+  const double asked = parameter_number(p, info);
+  const double most = parameter_number(highest, info);
+  const double now = parameter_number(before, info);
+  if (asked == now || asked <= most) return;
+  p = before;
+  throw RemoteError(fmt::format(
+      "set: {}: {} is not allowed; allowed: up to {} {}. Only a person raises a limit, in the "
+      "window or when the program starts",
+      key, shown(value), most, info.unit));
+}
+
+Parameters with_limits_of(const ArmDescription& arm, Parameters p) {
+  if (!std::isnan(p.torque_limit)) return p;
+  p.torque_limit = std::ranges::min(arm.joints, {}, &Joint::effort).effort;
+  return p;
+}
+
+void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm) {
+  const Parameters most = with_limits_of(arm, chosen);
+  for (const char* key : kLimits) {
+    const ParameterInfo& info = *find_parameter(key);
+    if (parameter_number(p, info) <= parameter_number(most, info)) continue;
+    set_parameter_number(p, info, parameter_number(chosen, info));
+  }
+}
+
+}  // namespace limpid

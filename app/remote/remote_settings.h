@@ -1,0 +1,24 @@
+// Settings as JSON has them, and what programs on the control socket may not set.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/dynamics/arm_description.h"
+#include "core/tick/parameters.h"
+
+namespace limpid {
+
+// Sets `key` of `p` to a value. Limits of motors and of their energy are at most as they are in
+// `highest`, which is what a person has chosen; what is fixed while a loop runs stays. Errors,
+// after which `p` is as it was: RemoteError, ParameterError.
+void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,
+                   const Parameters& highest);
+// The settings with what they leave to the arm said in numbers, where it is a limit.
+Parameters with_limits_of(const ArmDescription& arm, Parameters p);
+// Settings that come from a file, with limits no higher than a person has chosen for the arm.
+void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm);
+// The value that a setting has; null where it is left to the arm, or to another setting.
+nlohmann::json value_of(const Parameters& p, const ParameterInfo& info);
+
+}  // namespace limpid

@@ -1,0 +1,101 @@
+// A live loop without a window, led by programs on the control socket.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/live/live_loop.h"
+#include "app/remote/remote.h"
+#include "app/run/simulate.h"
+#include "app/session/tasks.h"
+#include "devices/device.h"
+
+namespace limpid {
+
+// What a client wants to be opened; empty: what is there stays, or its default.
+struct OpenRequest {
+  std::string scene, arm, tip, session, hand;
+};
+
+class ServedSession {
+ public:
+  struct World {
+    RunPlan plan;      // arm, scene, settings, hand
+    bool led = false;  // by the plan's hand; else nobody holds the virtual arm
+  };
+  struct Options {
+    // Of the files that are named; called beside the loop. `now`: the settings at present, which
+    // stay where the arm does.
+    std::function<World(const OpenRequest& asked, const Parameters& now)> open;
+    // Draws a row of the plan into a file; called beside the loop.
+    std::function<void(const std::filesystem::path& png, const RunPlan&, std::span<const double>)>
+        draw;
+    std::filesystem::path folder;  // of recordings without a name
+    AskForPriority ask;
+  };
+
+  // `device`: in the arm's place, within these limits; null: the virtual arm. Errors: as
+  // LiveLoop::open().
+  ServedSession(World world, std::unique_ptr<Device> device, const SafetyLimits& limits,
+                Options options);
+  ~ServedSession();  // what is recorded is complete then
+
+  bool realtime() const { return loop_.status().realtime.realtime(); }
+  // What programs can ask for. Valid as long as this is.
+  RemoteHost host();
+  // No force, from any thread.
+  void cut() { loop_.cut(); }
+  // Once a turn, at least every SafetyLimits::kSilence / 4; hands the rows that came to `remote`.
+  // Errors: std::runtime_error where the loop has ended.
+  void turn(Remote& remote);
+
+ private:
+  struct Recording {
+    std::future<std::unique_ptr<Recorder>> opening;
+    std::future<void> closing;
+    std::filesystem::path file;
+    std::uint64_t rows = 0, dropped = 0;  // dropped: that found no room
+    std::string failure;
+    bool complete = false;
+  };
+
+  void begin(World world, bool hand_waits);
+  nlohmann::json state() const;
+  void set(const Parameters& p, bool of_twin);
+  Answer open(const Keys& keys);
+  Answer record(const Keys& keys);
+  Answer stop();
+  Answer start_over();
+  Answer mark(const Keys& keys) const;
+  Answer twin(const Keys& keys);
+  Answer picture(const Keys& keys);
+  nlohmann::json place() const;
+  void follow_recording();
+  bool recording() const { return loop_.recording() || recording_.opening.valid(); }
+  void watch_buttons();
+  std::string source() const;
+
+  Options options_;
+  World world_;
+  Controls controls_;
+  Parameters highest_;  // of the settings: what a person has chosen
+  TraceChannels channels_;
+  std::vector<double> rows_, newest_;  // drained; the last of them with its twin
+  std::uint64_t tick_ = 0;             // of that
+  bool reopened_ = false;
+  Recording recording_;
+  // Asked for by a client that may have gone; one of each at a time.
+  std::shared_ptr<std::future<World>> opening_;
+  std::shared_ptr<std::future<bool>> drawing_;
+  ButtonPresses buttons_;
+  std::optional<Parameters> of_twin_;
+  TaskQueue recordings_, files_;  // beside the loop
+  LiveLoop loop_;                 // last: it goes first
+};
+
+}  // namespace limpid

@@ -1,0 +1,14 @@
+"""What can go wrong, each with a message for people."""
+
+
+class LimpidError(Exception):
+    """Anything that this package refuses or that the program cannot do."""
+
+
+class RequestError(LimpidError):
+    """The program refused what was asked for: the message names the key, what was found and what is
+    allowed."""
+
+
+class ProgramError(LimpidError):
+    """The program is missing, did not start, refused its input or has ended."""

@@ -1,0 +1,57 @@
+"""Where the program is, and how it is run to its end."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Sequence, Union
+
+from limpid.errors import ProgramError
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+def find_program() -> str:
+    """The program: $LIMPID, else the one that was built or installed with this package, else `limpid`
+    of PATH.
+
+    Raises ProgramError where there is none."""
+    named = os.environ.get("LIMPID")
+    if named:
+        if not os.access(named, os.X_OK):
+            raise ProgramError(f"LIMPID: {named} is no program that can be started")
+        return named
+    # In a source tree this is assets/python/limpid, installed it is lib/python3/dist-packages/limpid.
+    tree, prefix = list(Path(__file__).resolve().parents)[3:5]
+    for program in (tree / "build/release/app/limpid", tree / "build/dev/app/limpid",
+                    prefix / "bin/limpid"):  # fmt: skip
+        if program.is_file() and os.access(program, os.X_OK):
+            return str(program)
+    installed = shutil.which("limpid")
+    if installed is None:
+        raise ProgramError("limpid is not installed; set LIMPID to the program")
+    return installed
+
+
+def carry_out(words: Sequence[PathLike]) -> str:
+    """Runs `limpid WORDS` to its end and returns what it printed.
+
+    Raises ProgramError with what it said where it fails."""
+    command = [find_program(), *(os.fspath(word) for word in words)]
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace",
+                          stdin=subprocess.DEVNULL, check=False)  # fmt: skip
+    if done.returncode != 0:
+        said = done.stderr.strip() or done.stdout.strip() or f"exit status {done.returncode}"
+        raise ProgramError(said)
+    return done.stdout
+
+
+def setting_words(values: "dict[str, object]") -> "list[str]":
+    """Settings as the command line has them: {"coupling.eta": 0.5} becomes --set coupling.eta=0.5."""
+    words: "list[str]" = []
+    for key, value in values.items():
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+        words += ["--set", f"{key}={text}"]
+    return words

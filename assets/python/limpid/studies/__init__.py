@@ -1,0 +1,1 @@
+"""Studies that are run as they are, and are examples of how one is written."""

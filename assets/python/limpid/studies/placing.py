@@ -1,0 +1,119 @@
+"""Does the drift of the standard coupling hurt placing? A task of Fitts' kind on a table.
+
+    python3 -m limpid.studies.placing --out DIR [--participant N] [--connect NAME]
+    python3 -m limpid.studies.placing --out DIR --simulate
+
+The first is for a person at a window, `limpid --listen NAME`, the second for a simulated one.
+
+The tip, pressed on the table, is brought beside one of two balls as fast as it can be; what counts is
+the proxy, which the person sees, and the time until it is there. The simulated participant leads the
+hand to the place with an error, looks, and leads it on by what is missing until it is there.
+"""
+
+import argparse
+import math
+import random
+from pathlib import Path
+
+import limpid
+from limpid import study
+from limpid.study.report import Report, intervals
+
+LAWS = ("standard", "proposed", "predictive")
+DISTANCES = (0.02, 0.05)  # from x = START [m]
+WIDTH = 0.002  # of the place [m]
+START, ABOVE, PRESSED = 0.17, 0.0, -0.05  # the table is at -0.04 [m]
+FIRST, ANOTHER, LOOK = 0.6, 0.3, 0.2  # of the simulated participant's motions, and a look [s]
+ERROR = 0.05  # of them: a share of the way
+BALL = '[[sphere]]\nname = "to {cm:g} cm"\ncenter = [{x}, 0.015, -0.039]\nradius = 0.001\nstiffness = 1000\n'
+TABLE = 'title = "Places"\n[[plane]]\nname = "table"\npoint = [0, 0, -0.04]\nnormal = [0, 0, 1]\n'
+
+
+def scene_in(folder: Path) -> str:
+    """A table without friction, with a ball at the beginning and one beside each place."""
+    file = (folder / "places.toml").resolve()
+    file.write_text(TABLE + "stiffness = 1000\n" + "".join(
+        BALL.format(cm=100 * d, x=START + d) for d in (0.0, *DISTANCES)))
+    return str(file)
+
+
+def simulated(scene: str, law: str, distance: float, chance: random.Random, out: Path) -> float:
+    """Until the proxy is at the place [s]."""
+    place, goal = START + distance, START + distance * (1 + chance.gauss(0, ERROR))
+    path = [(0, START, 0, ABOVE), (0.3, START, 0, PRESSED), (0.5, START, 0, PRESSED)]
+    taken = FIRST
+    for _ in range(10):
+        moved, rested = 0.5 + taken, 0.5 + taken + LOOK
+        path += [(moved, goal, 0, PRESSED), (rested, goal, 0, PRESSED)]
+        out.unlink(missing_ok=True)
+        session = limpid.run(scene=scene, hand=path, coupling=law, record=out)
+        missing = place - float(session.proxy_tip[-20:, 0].mean())
+        if abs(missing) < WIDTH / 2:
+            break
+        goal += missing * (1 + chance.gauss(0, ERROR))
+        taken += LOOK + ANOTHER
+    return taken
+
+
+def person(loop: limpid.Client, distance: float, out: Path) -> float:
+    """The same of a person, who says when the tip is there; outside of the place it is done again."""
+    while True:
+        out.unlink(missing_ok=True)
+        loop.ask("Hold the tip on the table beside the first ball. Enter begins: then bring it beside "
+                 f"the ball {100 * distance:g} cm further as fast as you can.")
+        loop.record(out)
+        taken = loop.ask("Enter, as soon as the tip is there.").seconds
+        loop.stop()
+        off = limpid.session(out).proxy_tip[-20:, 0].mean() - (START + distance)
+        if abs(off) < WIDTH / 2:
+            return taken
+        loop.ask(f"It was {1000 * abs(off):.1f} mm off the place; once more.")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, required=True, help="folder of answers, sessions, report")
+    parser.add_argument("--participant", type=int, default=0, help="number, from 0 on")
+    parser.add_argument("--connect", default="control", help="name of the program's socket")
+    parser.add_argument("--simulate", action="store_true", help="a simulated participant")
+    parser.add_argument("--repeats", type=int, default=8, help="of each distance, for each law")
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    scene = scene_in(arguments.out)
+    loop = None if arguments.simulate else limpid.connect(arguments.connect)
+    if loop:
+        loop.open(scene=scene)
+    who = study.Person(loop) if loop else study.Simulated(1.0)
+    run = study.Study("placing", arguments.out, arguments.participant, who)
+    found = {}
+    for law in run.blocks(LAWS):
+        if loop:
+            loop.set({"coupling.kind": law})
+        plan = study.ConstantStimuli(DISTANCES, arguments.repeats, f"{arguments.participant} {law}")
+        rates = []
+        while not plan.done:
+            distance, trial, chance = plan.level, len(rates), run.chance()
+            out = arguments.out / f"placing-{arguments.participant:03d}-{law}-{trial:03d}.h5"
+
+            def measure() -> tuple:
+                return (person(loop, distance, out) if loop
+                        else simulated(scene, law, distance, chance, out)), [out.name]
+
+            taken = run.value(law, trial, measure, distance)
+            rates.append(math.log2(distance / WIDTH + 1) / taken)
+            plan.answer(True)
+        found[law] = study.mean_interval(rates)
+    report = Report("Placing under each law", arguments.out)
+    report.text(f"Throughput of a task of Fitts' kind, places {1000 * WIDTH:g} mm wide; "
+                f"{len(DISTANCES) * arguments.repeats} trials a law.")
+    report.figure("placing", intervals("Placing", "throughput [bit/s]", found),
+                  "Mean with its interval of 95 %.")
+    report.table(["law", "throughput [bit/s]", "from", "to"],
+                 [[law, *(f"{x:.2f}" for x in numbers)] for law, numbers in found.items()])
+    report.write("placing")
+    for law, (mean, low, high) in found.items():
+        print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,93 @@
+"""Just noticeable difference of stiffness under each law, by 1-up-3-down staircases.
+
+    python3 -m limpid.studies.stiffness --out DIR [--participant N] [--connect NAME]
+    python3 -m limpid.studies.stiffness --out DIR --simulate
+
+The first is for a person at a window, `limpid --listen NAME`, the second for a simulated one.
+
+Two walls are felt one after the other; which one is stiffer? The simulated participant presses with
+the same hand on both, judges force over the way that the device has gone, and errs by 15 %.
+"""
+
+import argparse
+from pathlib import Path
+
+import limpid
+from limpid import study
+from limpid.study.report import threshold_report
+
+STANDARD = 300.0  # of the wall [N/m]
+LAWS = ("standard", "proposed", "predictive")
+WEBER = 0.15  # of the simulated participant
+WALL = """title = "Wall"
+[[plane]]
+name = "wall"
+point = [0, 0, -0.04]
+normal = [0, 0, 1]
+stiffness = {stiffness!r}
+"""
+PRESS = [(0, 0.19, 0, 0), (0.2, 0.19, 0, 0), (0.7, 0.19, 0, -0.05), (1.2, 0.19, 0, -0.05)]
+
+
+class Walls:
+    """A scene for each stiffness."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def file(self, stiffness: float) -> str:
+        file = self.folder / f"wall-{stiffness:.6g}.toml"
+        file.write_text(WALL.format(stiffness=stiffness))
+        return str(file.resolve())
+
+    def felt(self, law: str, stiffness: float) -> float:
+        """Force over the device's way into the wall [N/m], as a hand finds it that presses."""
+        session = limpid.run(scene=self.file(stiffness), hand=PRESS, coupling=law)
+        force = session.contact_force[-100:, 2].mean()
+        return float(force / (-0.04 - session.device_tip[-100:, 2].mean()))
+
+
+def participant(arguments: argparse.Namespace, walls: Walls):
+    """A person at a window, or the simulated one, whose percepts are runs of the loop."""
+    if not arguments.simulate:
+        return study.Person(limpid.connect(arguments.connect))
+    known = {}
+
+    def percept(stimulus: study.Stimulus) -> float:
+        key = (stimulus.settings["coupling.kind"], round(stimulus.level, 1))
+        if key not in known:
+            known[key] = walls.felt(*key)
+        return known[key]
+
+    return study.Simulated(WEBER * STANDARD, seed=arguments.participant, percept=percept)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, required=True, help="folder of answers, sessions, report")
+    parser.add_argument("--participant", type=int, default=0, help="number, from 0 on")
+    parser.add_argument("--connect", default="control", help="name of the program's socket")
+    parser.add_argument("--simulate", action="store_true", help="a simulated participant")
+    parser.add_argument("--trials", type=int, default=60, help="at most, for each law")
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    walls = Walls(arguments.out)
+    run = study.Study("stiffness", arguments.out, arguments.participant, participant(arguments, walls))
+    run.tell("Press on the wall twice. Which one is stiffer?")
+    answers = {}
+    for law in run.blocks(LAWS):
+        answers[law] = run.two_intervals(
+            study.Staircase(start=STANDARD, low=1, high=3 * STANDARD, trials=arguments.trials),
+            law, STANDARD,
+            lambda k, law=law: study.Stimulus(k, {"coupling.kind": law}, walls.file(k)),
+            "Which wall is stiffer?", practice=3, pause_every=20)
+        run.question("How sure were you?", ["guessed", "mostly sure", "sure"], law)
+    fits = threshold_report("Just noticeable difference of stiffness", arguments.out, "N/m", answers,
+                            f"Two-interval forced choice beside a wall of {STANDARD:g} N/m; 1-up-3-down "
+                            f"staircases; participant {arguments.participant}.", "stiffness")
+    for law, found in fits.items():
+        print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,21 @@
+"""Psychophysics on a running program: methods, trials that survive a crash, fits and a report.
+
+    from limpid import study
+
+A study is a plain function that asks for one trial after the other. Every answer is written to one
+CSV before the next trial begins; started again with the same words, the study takes the answers that
+are there and goes on behind them. The three modules of limpid.studies are examples.
+"""
+
+from limpid.study.fits import Fit, fit, mean_interval, proportion_interval
+from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
+from limpid.study.orders import latin_square, order_for
+from limpid.study.participants import Person, Simulated, Stimulus
+from limpid.study.report import Report
+from limpid.study.trials import Study, StudyError
+
+__all__ = [
+    "Adjustment", "ConstantStimuli", "Fit", "Person", "Quest", "Report", "Simulated", "Staircase",
+    "Stimulus", "Study", "StudyError", "fit", "latin_square", "mean_interval", "order_for",
+    "proportion_interval",
+]  # fmt: skip

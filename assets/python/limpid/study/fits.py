@@ -1,0 +1,134 @@
+"""From answers to thresholds with intervals.
+
+A participant who compares two intervals perceives each with an error of normal distribution and
+standard deviation sigma, and names the larger one: for a difference d the answer is right with the
+chance Phi(d / (sqrt(2) sigma)) (Green and Swets 1966), less what is lost by slips (the lapse). The
+threshold, or just noticeable difference, is the d of 75 % right answers without slips.
+"""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+from typing import Iterable, List, NamedTuple, Sequence, Tuple
+
+LEVEL = 0.75  # of right answers, at the threshold
+_QUARTILE = NormalDist().inv_cdf(LEVEL)
+_CHI2 = {0.95: 3.841458820694124, 0.99: 6.6348966010212145, 0.9: 2.705543454095404}  # of 1 freedom
+
+
+class Fit(NamedTuple):
+    """A threshold, in the unit of the levels, and the interval that has it with 95 %."""
+
+    threshold: float
+    low: float
+    high: float
+    trials: int
+
+    def __str__(self) -> str:
+        return f"{self.threshold:.3g} ({self.low:.3g} to {self.high:.3g}, {self.trials} trials)"
+
+
+def chance_of(level: float, threshold: float, lapse: float = 0.02) -> float:
+    """That an answer to this difference is right."""
+    right = 0.5 * math.erfc(-_QUARTILE * level / threshold / math.sqrt(2))
+    return 0.5 * lapse + (1 - lapse) * right
+
+
+def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float = 0.95) -> Fit:
+    """The threshold of the greatest likelihood for answers (level, right), with the interval of all
+    those whose likelihood is not significantly less (its ratio by the chi-square distribution).
+
+    Where the answers do not bound it, as where all are right, an end is 0 or infinite. Raises
+    ValueError for fewer than 5 answers or levels that are not above 0."""
+    counted = _counted(answers)
+    trials = sum(right + wrong for _, right, wrong in counted)
+    if trials < 5:
+        raise ValueError(f"a threshold needs at least 5 answers; found: {trials}")
+    if not all(level > 0 and math.isfinite(level) for level, _, _ in counted):
+        raise ValueError("levels are differences above 0")
+
+    def loss(log_threshold: float) -> float:
+        threshold, total = math.exp(log_threshold), 0.0
+        for level, right, wrong in counted:
+            chance = chance_of(level, threshold, lapse)
+            total -= right * math.log(chance) + wrong * math.log1p(-chance)
+        return total
+
+    # Beyond these no level tells one threshold from another any more.
+    first = math.log(min(level for level, _, _ in counted)) - 5
+    last = math.log(max(level for level, _, _ in counted)) + 5
+    grid = [first + (last - first) * i / 120 for i in range(121)]
+    best = min(range(121), key=lambda i: loss(grid[i]))
+    top = _least(loss, grid[max(best - 1, 0)], grid[min(best + 1, 120)])
+    bound = loss(top) + 0.5 * _CHI2[part]
+    low = 0.0 if loss(first) <= bound else math.exp(_crossing(loss, bound, top, first))
+    high = math.inf if loss(last) <= bound else math.exp(_crossing(loss, bound, top, last))
+    return Fit(math.exp(top), low, high, trials)
+
+
+def _counted(answers: Iterable[Tuple[float, bool]]) -> List[Tuple[float, int, int]]:
+    counts: "dict[float, List[int]]" = {}
+    for level, right in answers:
+        counts.setdefault(float(level), [0, 0])[0 if right else 1] += 1
+    return [(level, right, wrong) for level, (right, wrong) in sorted(counts.items())]
+
+
+def _least(f, a: float, b: float) -> float:  # type: ignore[no-untyped-def]
+    """By golden sections."""
+    golden = (math.sqrt(5) - 1) / 2
+    c, d = b - golden * (b - a), a + golden * (b - a)
+    while b - a > 1e-7:
+        if f(c) < f(d):
+            b, d = d, c
+            c = b - golden * (b - a)
+        else:
+            a, c = c, d
+            d = a + golden * (b - a)
+    return 0.5 * (a + b)
+
+
+def _crossing(f, bound: float, inside: float, outside: float) -> float:  # type: ignore[no-untyped-def]
+    """Where f reaches the bound between a point below it and one above it."""
+    for _ in range(60):
+        middle = 0.5 * (inside + outside)
+        if f(middle) <= bound:
+            inside = middle
+        else:
+            outside = middle
+    return 0.5 * (inside + outside)
+
+
+def proportion_interval(right: int, of: int, part: float = 0.95) -> Tuple[float, float]:
+    """Of a chance, by Wilson (1927)."""
+    if of < 1 or not 0 <= right <= of:
+        raise ValueError(f"a proportion is so many of at least 1; found: {right} of {of}")
+    z = NormalDist().inv_cdf(0.5 + part / 2)
+    centre = (right + z * z / 2) / (of + z * z)
+    half = z / (of + z * z) * math.sqrt(right * (of - right) / of + z * z / 4)
+    return max(0.0, centre - half), min(1.0, centre + half)
+
+
+def mean_interval(values: Sequence[float]) -> Tuple[float, float, float]:
+    """Mean and the ends of its interval of 95 %, by Student's distribution."""
+    n = len(values)
+    if n < 2:
+        raise ValueError(f"an interval needs at least 2 values; found: {n}")
+    mean = sum(values) / n
+    deviation = math.sqrt(sum((x - mean) ** 2 for x in values) / (n - 1))
+    half = _student(n - 1) * deviation / math.sqrt(n)
+    return mean, mean - half, mean + half
+
+
+def _student(freedom: int) -> float:
+    """97.5 % of Student's distribution: of scipy where that is installed, else its expansion for
+    large numbers (Abramowitz and Stegun 26.7.5), exact to 1 % from 3 degrees of freedom on."""
+    try:
+        from scipy.stats import t  # type: ignore[import-not-found,import-untyped]
+    except ImportError:
+        if freedom < 3:
+            return (12.706, 4.303)[freedom - 1]
+        z, v = NormalDist().inv_cdf(0.975), float(freedom)
+        return z + (z**3 + z) / (4 * v) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * v * v) + (
+            3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / (384 * v**3)  # fmt: skip
+    return float(t.ppf(0.975, freedom))

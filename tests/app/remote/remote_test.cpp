@@ -1,0 +1,240 @@
+// What is asked for is done as the loop's owner does it, now or later, and nobody raises a limit.
+#include "app/remote/remote.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "app/remote/remote_settings.h"
+#include "tests/support/built_in.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::HasSubstr;
+
+// An owner whose loop has three joints, and one client.
+class RemoteTest : public testing::Test {
+ protected:
+  RemoteTest() : row(static_cast<std::size_t>(layout.stride()), 1.0) {
+    host.kind = "test";
+    host.state = [] { return json{{"arm", "none"}}; };
+    host.parameters = [this]() -> const Parameters& { return parameters; };
+    host.twin = [this]() -> const Parameters* { return twin ? &*twin : nullptr; };
+    host.highest = [this] { return highest; };
+    host.set = [this](const Parameters& p, bool of_twin) { (of_twin ? *twin : parameters) = p; };
+    host.channels = [this]() -> const TraceChannels& { return channels; };
+    host.row = [this]() -> std::span<const double> { return row; };
+    host.twin_row = [] { return std::span<const double>(); };
+    host.tick = [] { return std::uint64_t{7}; };
+    host.actions["record"] = [this](const Keys&, LineServer::Client) {
+      return Answer::Later([this]() -> std::optional<json> {
+        if (--turns_left > 0) return std::nullopt;
+        return json{{"file", "a.h5"}};
+      });
+    };
+    host.actions["cut"] = [](const Keys&, LineServer::Client) -> Answer { return json::object(); };
+    host.gone = [this](LineServer::Client) { ++gone; };
+    highest.torque_limit = 0.5;
+  }
+
+  void start() {
+    remote = std::make_unique<Remote>(path, host, [this] { ++cuts; });
+    file = socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.string().copy(address.sun_path, sizeof(address.sun_path) - 1);
+    ASSERT_EQ(connect(file, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  }
+  ~RemoteTest() override {
+    if (file >= 0) close(file);
+  }
+
+  void say(const std::string& line) const {
+    const std::string text = line + "\n";
+    ASSERT_EQ(send(file, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+  }
+  // The next line, after turns of the owner.
+  json hear() {
+    const auto end = std::chrono::steady_clock::now() + 5s;
+    while (received.find('\n') == std::string::npos && std::chrono::steady_clock::now() < end) {
+      remote->turn();
+      std::array<char, 4096> bytes{};
+      const ssize_t size = recv(file, bytes.data(), bytes.size(), MSG_DONTWAIT);
+      if (size > 0) received.append(bytes.data(), static_cast<std::size_t>(size));
+      if (size < 0) remote->wait_until(std::chrono::steady_clock::now() + 1ms);
+    }
+    const std::size_t at = received.find('\n');
+    if (at == std::string::npos) return json();
+    json line = json::parse(received.substr(0, at));
+    received.erase(0, at + 1);
+    return line;
+  }
+  json ask(const std::string& line) {
+    say(line);
+    return hear();
+  }
+
+  test::TempDir dir;
+  std::filesystem::path path = dir / "s" / "a.control";
+  RowLayout layout{3};
+  TraceChannels channels{layout};
+  std::vector<double> row;
+  Parameters parameters, highest;
+  std::optional<Parameters> twin;
+  RemoteHost host;
+  std::unique_ptr<Remote> remote;
+  int file = -1, cuts = 0, gone = 0, turns_left = 3;
+  std::string received;
+};
+
+TEST_F(RemoteTest, SaysWhatItIsAndWhatCanBeAsked) {
+  start();
+  const json ok = ask(R"({"id":1,"do":"hello"})")["ok"];
+  EXPECT_EQ(ok["protocol"], 1);
+  EXPECT_EQ(ok["kind"], "test");
+  EXPECT_TRUE(ok["verbs"].contains("record") && ok["verbs"].contains("follow"));
+  EXPECT_FALSE(ok["verbs"].contains("ask"));
+  EXPECT_THAT(ask(R"({"do":"ask","text":"?"})")["error"].get<std::string>(),
+              HasSubstr("needs a window"));
+}
+
+TEST_F(RemoteTest, SetsAllOrNothing) {
+  start();
+  EXPECT_EQ(ask(R"({"do":"set","values":{"coupling.eta":0.5,"coupling.kind":"standard"}})")["ok"],
+            json({{"values", {{"coupling.eta", 0.5}, {"coupling.kind", "standard"}}}}));
+  EXPECT_EQ(parameters.eta, 0.5);
+  const json error = ask(R"({"do":"set","values":{"coupling.eta":0.7,"coupling.k_vc":"much"}})");
+  EXPECT_THAT(error["error"].get<std::string>(), HasSubstr("coupling.k_vc"));
+  EXPECT_EQ(parameters.eta, 0.5);
+  EXPECT_TRUE(ask(R"({"do":"set","twin":true,"values":{"coupling.eta":2}})").contains("error"));
+  twin.emplace();
+  EXPECT_TRUE(ask(R"({"do":"set","twin":true,"values":{"coupling.eta":2}})").contains("ok"));
+  EXPECT_EQ(twin->eta, 2);
+}
+
+TEST_F(RemoteTest, GivesSettingsAsTheyAreSet) {
+  start();
+  const json values = ask(R"({"do":"get"})")["ok"]["values"];
+  EXPECT_EQ(values.size(), parameter_table().size());
+  for (const ParameterInfo& info : parameter_table()) {
+    const json& value = values[info.key];
+    if (value.is_null() || !info.live) continue;
+    Parameters again;
+    EXPECT_NO_THROW(set_by_remote(again, info.key, value, parameters)) << info.key;
+    EXPECT_TRUE(again == parameters) << info.key;
+  }
+  EXPECT_TRUE(ask(R"({"do":"get","keys":["no.such"]})").contains("error"));
+}
+
+TEST_F(RemoteTest, AnswersLaterWhatTakesItsTimeAndMeanwhileTheRest) {
+  turns_left = 1000;
+  start();
+  say(R"({"id":1,"do":"record"})");
+  EXPECT_EQ(ask(R"({"id":2,"do":"get","keys":[]})")["id"], 2);
+  turns_left = 1;
+  EXPECT_EQ(hear(), json({{"id", 1}, {"ok", {{"file", "a.h5"}}}}));
+}
+
+TEST_F(RemoteTest, CutsBeforeTheOwnerHasItsTurn) {
+  start();
+  say(R"({"do":"cut"})");
+  const auto end = std::chrono::steady_clock::now() + 5s;
+  while (cuts == 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(cuts, 1);
+  EXPECT_TRUE(hear().contains("ok"));
+}
+
+TEST_F(RemoteTest, SendsRowsAtTheirRateAndCountsThoseThatAreMissing) {
+  start();
+  const json ok =
+      ask(R"({"do":"follow","channels":["coupling/eta","twin/coupling/eta"],"rate":500})")["ok"];
+  EXPECT_EQ(ok["every"], 2);
+  for (const std::uint64_t tick : {10u, 11u, 12u, 13u, 20u}) remote->row(row, {}, tick);
+  EXPECT_EQ(hear(), json({{"rows", {{10, 1.0, nullptr}, {12, 1.0, nullptr}, {20, 1.0, nullptr}}},
+                          {"dropped", 3}}));
+  EXPECT_TRUE(ask(R"({"do":"follow"})").contains("ok"));
+  remote->row(row, {}, 30);
+  EXPECT_EQ(ask(R"({"id":5,"do":"get","keys":[]})")["id"], 5);
+}
+
+TEST_F(RemoteTest, DropsRowsOfOneThatDoesNotReadAndSaysHowMany) {
+  start();
+  ask(R"({"do":"follow","channels":["coupling/eta"],"rate":1000})");
+  for (std::uint64_t tick = 0; tick < 400'000; ++tick) remote->row(row, {}, tick);
+  std::uint64_t seen = 0, dropped = 0;
+  for (json line = hear(); dropped == 0 && line.contains("rows"); line = hear()) {
+    seen += line["rows"].size();
+    dropped = line["dropped"].get<std::uint64_t>();
+    remote->row(row, {}, 400'000 + seen);
+  }
+  EXPECT_GT(dropped, 0u);
+}
+
+TEST_F(RemoteTest, ForgetsAClientThatIsGone) {
+  start();
+  ask(R"({"do":"follow","channels":["coupling/eta"]})");
+  say(R"({"do":"record"})");
+  close(std::exchange(file, -1));
+  const auto end = std::chrono::steady_clock::now() + 5s;
+  while (gone == 0 && std::chrono::steady_clock::now() < end) {
+    remote->turn();
+    remote->wait_until(std::chrono::steady_clock::now() + 1ms);
+  }
+  EXPECT_EQ(gone, 1);
+  remote->row(row, {}, 1);
+  remote->turn();
+}
+
+TEST(SetByRemote, LowersLimitsOnly) {
+  Parameters highest;
+  highest.torque_limit = 0.5;
+  highest.energy = 0.005;
+  for (const char* key : {"device.torque_limit", "ledger.energy"}) {
+    Parameters p = highest;
+    const double most = parameter_number(highest, *find_parameter(key));
+    EXPECT_THROW(set_by_remote(p, key, 1.01 * most, highest), RemoteError) << key;
+    EXPECT_TRUE(p == highest);
+    set_by_remote(p, key, 0.5 * most, highest);
+    set_by_remote(p, key, most, highest);
+    EXPECT_TRUE(p == highest);
+  }
+}
+
+TEST(SetByRemote, KnowsTheArmsOwnLimits) {
+  const ArmDescription arm = test::omni();
+  const double own = std::ranges::min(arm.joints, {}, &Joint::effort).effort;
+  const Parameters highest = with_limits_of(arm, {});
+  Parameters p;
+  set_by_remote(p, "device.torque_limit", own, highest);
+  EXPECT_THROW(set_by_remote(p, "device.torque_limit", 1.1 * own, highest), RemoteError);
+  // Of a file that says otherwise, no more than a person has chosen is taken.
+  Parameters of_file;
+  of_file.torque_limit = 100;
+  hold_limits(of_file, Parameters{}, arm);
+  EXPECT_TRUE(std::isnan(of_file.torque_limit));
+  of_file.torque_limit = 0.5 * own;
+  hold_limits(of_file, Parameters{}, arm);
+  EXPECT_EQ(of_file.torque_limit, 0.5 * own);
+}
+
+TEST(SetByRemote, LeavesWhatIsFixedWhileTheLoopRuns) {
+  Parameters p;
+  EXPECT_THROW(set_by_remote(p, "loop.tick", 0.002, p), RemoteError);
+  EXPECT_NO_THROW(set_by_remote(p, "loop.tick", 0.001, p));
+  for (const json& value : {json::array(), json(), json::object()}) {
+    EXPECT_THROW(set_by_remote(p, "coupling.eta", value, p), RemoteError);
+  }
+  EXPECT_THROW(set_by_remote(p, "coupling.eta", 1e300, p), ParameterError);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,235 @@
+"""The window, led by a program: what it asks a person, and what it hides from one."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+from support import ASSETS, LIMPID
+from window import WindowTest
+
+sys.path.insert(0, str(ASSETS / "python"))
+os.environ["LIMPID"] = str(LIMPID)
+
+import limpid  # noqa: E402
+
+
+class TestRemoteWindow(WindowTest):
+    def prepare(self) -> None:
+        runtime = self.home / "run"
+        runtime.mkdir(mode=0o700)
+        self.environment["XDG_RUNTIME_DIR"] = str(runtime)
+        self.words = ["--listen", "test"]
+        self.path = runtime / "limpid" / "test.control"
+
+    def start(self) -> None:
+        super().start()
+        self.loop = limpid.Client(self.path)
+        self.addCleanup(self.loop.close)
+
+    def beside(self, work):
+        """Does it on a thread; its result or what it raises is in the list that comes back."""
+        result: list = []
+
+        def carry_out() -> None:
+            try:
+                result.append(work())
+            except limpid.LimpidError as error:
+                result.append(error)
+
+        thread = threading.Thread(target=carry_out, daemon=True)  # which may wait for an answer
+        thread.start()
+        return result, thread
+
+    def asked(self, *choices: str):
+        result, thread = self.beside(lambda: self.loop.ask("Which one is stiffer?", choices))
+        self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+        self.settled()
+        return result, thread
+
+    def keep_picture(self, name: str) -> None:
+        """For whoever looks at them: in the folder LIMPID_PICTURES, if that is set."""
+        folder = os.environ.get("LIMPID_PICTURES")
+        if folder:  # beside the client that may wait for an answer
+            with limpid.Client(self.path) as other:
+                other.picture(Path(folder, f"{name}.png"))
+
+    def test_says_that_it_has_a_window_and_ends_with_it(self) -> None:
+        self.assertEqual(self.loop.about["kind"], "window")
+        self.assertIn("ask", self.loop.about["verbs"])
+        self.stop(self.app)
+        with self.assertRaises(limpid.ProgramError):
+            self.loop.state()
+        self.assertFalse(self.path.exists())
+
+    def test_settings_move_the_sliders_and_the_loop(self) -> None:
+        self.loop.set({"coupling.kind": "predictive", "coupling.eta": 0.5})
+        self.wait("the setting", lambda s: s["kind"] == 2 and s["eta"] == 0.5)
+        self.key("ctrl+z")  # as a slider, it is undone
+        self.wait("undone", lambda s: s["kind"] == 0)
+        self.key("c")
+        self.wait("the next law", lambda s: s["kind"] == 1)
+        self.assertEqual(self.loop.get("coupling.kind"), {"coupling.kind": "proposed"})
+
+    def test_a_person_answers_with_a_key(self) -> None:
+        result, thread = self.asked("the first", "the second")
+        self.keep_picture("ask")
+        time.sleep(1)
+        self.key("2")
+        thread.join(20)
+        [answer] = result
+        self.assertEqual((answer.answer, answer.index), ("the second", 1))
+        self.assertGreater(answer.seconds, 0.5)
+        self.wait("the question to go", lambda s: not s["asking"])
+
+    def test_a_person_answers_with_the_mouse_and_esc_is_no_answer(self) -> None:
+        result, thread = self.asked("the first", "the second")
+        self.key("Escape")
+        self.key("9")
+        state = self.settled()
+        self.assertEqual(state["dialog"], "ask")
+        self.assertEqual(result, [])
+        self.click(*state["question"]["the first"])
+        thread.join(20)
+        self.assertEqual(result[0].index, 0)
+
+    def test_enter_goes_on_where_there_is_one_answer(self) -> None:
+        result, thread = self.asked()
+        self.key("Return")
+        thread.join(20)
+        self.assertEqual(result[0].answer, "Go on")
+
+    def test_space_cuts_the_force_during_a_question(self) -> None:
+        result, thread = self.asked("yes", "no")
+        self.key("space")
+        self.wait("no force", lambda s: not s["force"])
+        self.assertEqual(result, [])
+        self.key("1")
+        thread.join(20)
+
+    def test_a_question_goes_with_whoever_asked(self) -> None:
+        other = limpid.Client(self.path)
+        result, thread = self.beside(lambda: other.ask("Who?", ["I"], timeout=1))
+        self.wait("the question", lambda s: s["dialog"] == "ask")
+        thread.join(20)
+        self.assertIsInstance(result[0], limpid.ProgramError)
+        other.close()
+        self.wait("the question to go", lambda s: s["dialog"] == "")
+
+    def test_blind_hides_the_law_and_all_that_changes_it(self) -> None:
+        self.loop.set({"coupling.kind": "predictive"})
+        self.loop.blind()
+        self.wait("blind", lambda s: s["blind"])
+        self.settled()
+        self.keep_picture("blind")
+        for key in ("c", "bracketright", "F2", "n", "ctrl+g", "b", "p", "question", "BackSpace"):
+            self.key(key)
+        state = self.settled()
+        self.assertEqual((state["kind"], state["eta"], state["dialog"], state["twin"]),
+                         (2, 1, "", False))
+        self.key("space")  # the force is the person's all the same
+        self.wait("no force", lambda s: not s["force"])
+        self.keep_picture("blind_force_off")
+        self.key("f")
+        self.wait("force", lambda s: s["force"])
+        self.loop.set({"coupling.kind": "standard"})  # what hides it may change it
+        self.wait("the law", lambda s: s["kind"] == 0)
+        self.loop.blind(False)
+        self.wait("seen", lambda s: not s["blind"])
+        self.key("c")
+        self.wait("the next law", lambda s: s["kind"] == 1)
+
+    def test_blind_ends_with_the_client(self) -> None:
+        other = limpid.Client(self.path)
+        other.blind()
+        with self.assertRaisesRegex(limpid.RequestError, "another program"):
+            self.loop.blind(False)
+        other.close()
+        self.wait("seen", lambda s: not s["blind"])
+
+    def test_a_question_is_asked_of_a_person_who_sees_nothing_else(self) -> None:
+        self.loop.blind()
+        result, thread = self.asked("the first", "the second")
+        self.keep_picture("ask_blind")
+        self.key("1")
+        thread.join(20)
+        self.assertEqual(result[0].index, 0)
+
+    def test_twin_and_start_over_are_those_of_their_keys(self) -> None:
+        self.loop.twin({"coupling.kind": "predictive"})
+        self.wait("the twin", lambda s: s["twin"])
+        self.assertEqual(self.loop.row(["twin/coupling/kind"])["twin/coupling/kind"], 2)
+        self.key("b")
+        self.wait("no twin", lambda s: not s["twin"])
+        self.loop.start_over()
+        self.wait_for_notice("Started over")
+
+    def test_recordings_have_the_name_that_is_asked_for(self) -> None:
+        file = self.loop.record(self.home / "a.h5")
+        self.wait("recording", lambda s: s["recording"])
+        self.loop.mark("here")
+        self.go_on(0.5)
+        with self.assertRaisesRegex(limpid.RequestError, "stop the recording before"):
+            self.loop.open(scene="spheres.toml")
+        done = self.loop.stop()
+        self.assertEqual((done["file"], done["dropped"]), (file, 0))
+        self.assertEqual(len(limpid.session(file)), done["rows"])
+        self.check_rerun_is_the_same(Path(file))
+        # One that a person begins is ended from here, and the other way round.
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        self.assertIn("sessions/session-", self.loop.stop()["file"])
+        self.loop.record(self.home / "b.h5")
+        self.key("r")
+        self.wait("no recording", lambda s: not s["recording"])
+        self.assertTrue((self.home / "b.h5").exists())
+
+    def test_a_person_takes_part_in_a_study(self) -> None:
+        """A trial of two intervals, each a session; the answer is a row."""
+        from limpid import study
+
+        who = study.Person(self.loop, seconds=0.3)
+        run = study.Study("window", self.home / "answers", 0, who)
+        result, thread = self.beside(lambda: run.two_intervals(
+            study.ConstantStimuli([0.2], 1, "a"), "standard", 0.5,
+            lambda eta: study.Stimulus(eta, {"coupling.eta": eta}), "Which one is heavier?"))
+        for key in ("Return", "Return", "2"):
+            self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+            self.settled()
+            self.keep_picture(f"study_{key}")
+            self.key(key)
+            self.wait("an answer", lambda s: not s["question"])
+        thread.join(20)
+        [[(level, right)]] = result
+        [row] = run.rows
+        self.assertEqual((level, row["answer"], right), (0.2, "the second", row["order"] == "2"))
+        etas = [limpid.session(self.home / "answers" / name)["coupling/eta"][0]
+                for name in row["sessions"].split()]
+        self.assertEqual(etas, [0.5, 0.7] if row["order"] == "2" else [0.7, 0.5])
+        self.assertGreater(float(row["seconds"]), 0)
+
+    def test_scenes_and_sessions_are_opened(self) -> None:
+        self.assertEqual(self.loop.open(scene="spheres.toml")["scene"], "Soft and hard")
+        self.assertTrue(self.loop.open(session="table.h5")["playing"])
+        self.loop.start_over()
+        self.wait("live", lambda s: not s["playing"])
+        broken = self.home / "broken.toml"
+        broken.write_text("[[sphere]]\nradius = -1\n")
+        with self.assertRaisesRegex(limpid.RequestError, "broken.toml:1: sphere.center: missing"):
+            self.loop.open(scene=broken)
+
+    def test_rows_are_followed_and_pictures_saved(self) -> None:
+        self.loop.follow(["coupling/eta"], rate=1000)
+        rows = self.loop.rows(seconds=1)
+        self.assertEqual({b - a for a, b in zip(rows.ticks, rows.ticks[1:])}, {1})
+        self.loop.follow([])
+        file = Path(self.loop.picture(self.home / "a.png"))
+        self.assertEqual(file.read_bytes()[:4], b"\x89PNG")
+
+
+if __name__ == "__main__":
+    unittest.main()

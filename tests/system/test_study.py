@@ -1,0 +1,354 @@
+"""Studies in Python: methods, orders, trials that survive a crash, fits, and the three that come
+along, all with simulated participants."""
+
+from __future__ import annotations
+
+import ast
+import csv
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+from pathlib import Path
+
+from support import ASSETS, LIMPID
+
+PACKAGE = ASSETS / "python"
+sys.path.insert(0, str(PACKAGE))
+os.environ["LIMPID"] = str(LIMPID)
+
+from limpid import study  # noqa: E402
+from limpid.study import fits  # noqa: E402
+from limpid.study.report import binned, nice_ticks  # noqa: E402
+
+
+def answers_of(method, who: study.Simulated, chance: random.Random) -> list[tuple[float, bool]]:
+    """As of a participant whose errors are normal, drawn independently of the package's own one."""
+    found = []
+    while not method.done:
+        level = method.level
+        if chance.random() < who.lapse:
+            right = chance.random() < 0.5
+        else:
+            right = chance.gauss(level, 0) + chance.gauss(0, who.sigma) > chance.gauss(0, who.sigma)
+        method.answer(right)
+        found.append((level, right))
+    return found
+
+
+def binomial_ends(count: int, chance: float, part: float) -> tuple[int, int]:
+    """Numbers of successes beyond which less than this part lies, on either side."""
+    mass = [math.comb(count, k) * chance**k * (1 - chance) ** (count - k) for k in range(count + 1)]
+    low = next(k for k in range(count + 1) if sum(mass[: k + 1]) > part)
+    high = next(k for k in range(count, -1, -1) if sum(mass[k:]) > part)
+    return low, high
+
+
+class TestThresholds(unittest.TestCase):
+    """Of 300 simulated participants with a threshold of 1, the interval has it for 95 %. Were it less
+    or more often, as many hits as are found would come in less than one of a thousand tries."""
+
+    RUNS = 300
+
+    def check(self, name: str, make, find) -> None:
+        hits, middle = 0, []
+        for k in range(self.RUNS):
+            who = study.Simulated(1.0, seed=k)
+            method = make(k)
+            answers = answers_of(method, who, random.Random(f"{name} {k}"))
+            found = find(method, answers)
+            hits += found.low <= 1 <= found.high
+            middle.append(found.threshold)
+            self.assertLessEqual(found.low, found.threshold)
+            self.assertLessEqual(found.threshold, found.high)
+        low, high = binomial_ends(self.RUNS, 0.95, 0.001)
+        self.assertTrue(low <= hits <= high, f"{name}: {hits} of {self.RUNS}; allowed: {low} to {high}")
+        self.assertAlmostEqual(sorted(middle)[self.RUNS // 2], 1, delta=0.12, msg=name)
+
+    def test_of_staircases(self) -> None:
+        self.check("staircase", lambda k: study.Staircase(3.0, trials=80),
+                   lambda method, answers: study.fit(answers))
+
+    def test_of_constant_stimuli(self) -> None:
+        levels = [0.25, 0.5, 0.75, 1, 1.5, 2, 3]
+        self.check("constant", lambda k: study.ConstantStimuli(levels, 12, str(k)),
+                   lambda method, answers: study.fit(answers))
+
+    def test_of_quest(self) -> None:
+        self.check("quest", lambda k: study.Quest(1.6, trials=60), lambda method, answers: method.found())
+
+    def test_an_interval_has_no_end_where_the_answers_give_none(self) -> None:
+        self.assertEqual(study.fit([(1.0, True)] * 20).low, 0)
+        self.assertEqual(study.fit([(1.0, False), (1.0, True)] * 10).high, math.inf)
+        with self.assertRaisesRegex(ValueError, "at least 5 answers; found: 2"):
+            study.fit([(1.0, True)] * 2)
+        with self.assertRaisesRegex(ValueError, "above 0"):
+            study.fit([(0.0, True)] * 9)
+
+    def test_the_simulated_participant_is_right_as_often_as_it_should(self) -> None:
+        who = study.Simulated(2.0, lapse=0.1, seed=1)
+        for level in (1.0, 2.0, 4.0):
+            right = sum(who.compare([study.Stimulus(5), study.Stimulus(5 + level)], "?", ("1", "2"),
+                                    Path(), f"{level} {k}")[0].index for k in range(2000))
+            expected = fits.chance_of(level, 2.0, 0.1)
+            low, high = study.proportion_interval(right, 2000, 0.999)
+            self.assertTrue(low <= expected <= high, f"{level}: {right} of 2000, {expected:.3f}")
+
+    def test_three_quarters_are_right_at_the_threshold(self) -> None:
+        self.assertAlmostEqual(fits.chance_of(2.0, 2.0, 0), 0.75)
+        self.assertAlmostEqual(fits.chance_of(1e-9, 2.0, 0.1), 0.5)
+        self.assertAlmostEqual(fits.chance_of(1e9, 2.0, 0.1), 0.95)
+
+
+class TestMethods(unittest.TestCase):
+    def test_a_staircase_goes_down_after_three_and_up_after_one(self) -> None:
+        stairs = study.Staircase(8.0, steps=(2.0,), reversals=3)
+        for right, level in ((True, 8), (True, 8), (True, 4), (True, 4), (False, 8), (True, 8), (True, 8),
+                             (True, 4), (False, 8)):
+            self.assertFalse(stairs.done)
+            stairs.answer(right)
+            self.assertEqual(stairs.level, level)
+        self.assertTrue(stairs.done)
+        self.assertEqual(stairs.turned, [4, 8, 4])
+
+    def test_a_staircase_rests_where_it_should(self) -> None:
+        """Its reversals are about where 79.4 % are right (Levitt 1971)."""
+        found = []
+        for k in range(60):
+            who = study.Simulated(1.0, lapse=0, seed=k)
+            stairs = study.Staircase(3.0, steps=(2.0, 1.4, 1.1), reversals=24, trials=400)
+            answers_of(stairs, who, random.Random(k))
+            found.append(math.log(stairs.threshold()))
+        level = math.exp(sum(found) / len(found))
+        self.assertAlmostEqual(fits.chance_of(level, 1.0, 0), 0.5 ** (1 / 3), delta=0.03)
+
+    def test_levels_stay_within_their_limits(self) -> None:
+        stairs = study.Staircase(1.0, low=0.5, high=1.5)
+        for _ in range(9):
+            stairs.answer(False)
+        self.assertEqual(stairs.level, 1.5)
+
+    def test_constant_stimuli_are_each_equally_often_and_the_same_for_a_seed(self) -> None:
+        def levels(seed: str) -> list[float]:
+            plan, found = study.ConstantStimuli([1, 2, 3], 4, seed), []
+            while not plan.done:
+                found.append(plan.level)
+                plan.answer(True)
+            return found
+
+        self.assertEqual(sorted(levels("a")), [1] * 4 + [2] * 4 + [3] * 4)
+        self.assertEqual(levels("a"), levels("a"))
+        self.assertNotEqual(levels("a"), levels("b"))
+
+    def test_an_adjustment_comes_near_and_ends_when_it_is_the_same(self) -> None:
+        adjusted = study.Adjustment(4.0)
+        while not adjusted.done:
+            off = math.log(adjusted.level)
+            adjusted.answer("same" if abs(off) < 0.03 else "more" if off < 0 else "less")
+        self.assertAlmostEqual(adjusted.level, 1, delta=0.04)
+        with self.assertRaisesRegex(ValueError, "allowed: more, less, same"):
+            study.Adjustment(1.0).answer("perhaps")
+
+    def test_orders_are_balanced_for_what_comes_before(self) -> None:
+        for count in range(1, 9):
+            orders = study.latin_square(count)
+            self.assertEqual(len(orders), count if count % 2 == 0 else 2 * count)
+            places = [[order.index(c) for order in orders] for c in range(count)]
+            self.assertTrue(all(sorted(place) == sorted(places[0]) for place in places), count)
+            pairs = [pair for order in orders for pair in zip(order, order[1:])]
+            self.assertEqual(len({pairs.count(pair) for pair in pairs}), 1 if count > 1 else 0)
+            self.assertEqual(len(set(pairs)), count * (count - 1))
+
+    def test_intervals_of_a_mean_are_students(self) -> None:
+        """Tables: 97.5 % at 4, 9 and 30 degrees of freedom."""
+        for freedom, table in ((1, 12.706), (2, 4.303), (4, 2.776), (9, 2.262), (30, 2.042)):
+            self.assertAlmostEqual(fits._student(freedom), table, delta=0.01 * table)
+        self.assertEqual(study.mean_interval([1.0, 1.0, 1.0]), (1, 1, 1))
+
+    def test_intervals_of_a_proportion_are_wilsons(self) -> None:
+        """Newcombe (1998), table I: 81 of 263 and 0 of 20."""
+        for right, of, low, high in ((81, 263, 0.2553, 0.3662), (0, 20, 0, 0.1611)):
+            found = study.proportion_interval(right, of)
+            self.assertAlmostEqual(found[0], low, places=4)
+            self.assertAlmostEqual(found[1], high, places=4)
+
+
+class Crash(Exception):
+    """Of the program that runs the study."""
+
+
+class TestTrials(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def carry_out(self, who, participant: int = 3) -> study.Study:
+        run = study.Study("test", self.folder, participant, who)
+        for condition in run.blocks(["a", "b"]):
+            run.two_intervals(study.Staircase(2.0, trials=12), condition, 5.0,
+                              lambda value: study.Stimulus(value), "?", practice=2, pause_every=5)
+            run.question("How was it?", ["good", "bad"], condition)
+        return run
+
+    def test_goes_on_after_a_crash_without_losing_an_answer(self) -> None:
+        """Cut off behind every answer once, it asks for each of them once, and all is as it is without
+        a crash."""
+        asked: list[str] = []
+
+        class Failing(study.Simulated):
+            def compare(self, stimuli, question, choices, folder, name):
+                if len(asked) >= self.most:
+                    raise Crash
+                asked.append(name)
+                return super().compare(stimuli, question, choices, folder, name)
+
+        who = Failing(1.0)
+        for who.most in range(1, 40):
+            try:
+                self.carry_out(who)
+                break
+            except Crash:
+                continue
+        self.assertEqual(len(asked), len(set(asked)))
+        rows = self.rows(3)
+        shutil.rmtree(self.folder)
+        self.carry_out(study.Simulated(1.0))
+        self.assertEqual(rows, self.rows(3))
+        self.assertEqual(len(rows), 2 * (12 + 2 + 1))
+
+    def rows(self, participant: int) -> list[dict]:
+        with open(self.folder / f"test-{participant:03d}.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            del row["time"]
+        return rows
+
+    def test_half_a_row_is_no_answer(self) -> None:
+        self.carry_out(study.Simulated(1.0))
+        file = self.folder / "test-003.csv"
+        whole, rows = file.read_bytes(), self.rows(3)
+        for cut in (1, 10, 40):
+            file.write_bytes(whole[:-cut])
+            self.carry_out(study.Simulated(1.0))
+            self.assertEqual(self.rows(3), rows)
+        file.write_bytes(b"study,parti")
+        self.carry_out(study.Simulated(1.0))
+        self.assertEqual(self.rows(3), rows)
+
+    def test_a_study_that_is_another_one_by_now_says_so(self) -> None:
+        self.carry_out(study.Simulated(1.0))
+        run = study.Study("test", self.folder, 3, study.Simulated(1.0))
+        with self.assertRaisesRegex(study.StudyError, "test-003.csv: row 1: .* needed: "):
+            run.two_intervals(study.Staircase(7.0), "a", 5.0, study.Stimulus, "?")
+        (self.folder / "test-004.csv").write_text("a,b\n1,2\n")
+        with self.assertRaisesRegex(study.StudyError, "other columns"):
+            study.Study("test", self.folder, 4, study.Simulated(1.0))
+
+    def test_both_orders_come_and_practice_does_not_count(self) -> None:
+        self.carry_out(study.Simulated(1.0))
+        rows = [row for row in self.rows(3) if row["kind"] == "2ifc"]
+        self.assertEqual({row["order"] for row in rows}, {"1", "2"})
+        self.assertEqual([row["practice"] for row in rows[:3]], ["1", "1", "0"])
+        self.assertEqual({row["level"] for row in rows if row["practice"] == "1"}, {"2.0"})
+
+    def test_one_who_perceives_everything_is_always_right_in_either_order(self) -> None:
+        self.carry_out(study.Simulated(1e-9, lapse=0))
+        rows = [row for row in self.rows(3) if row["kind"] == "2ifc"]
+        self.assertEqual({row["correct"] for row in rows}, {"1"})
+        self.assertEqual({(row["order"], row["answer"]) for row in rows},
+                         {("1", "the first"), ("2", "the second")})
+
+    def test_participants_meet_conditions_in_balanced_orders(self) -> None:
+        orders = []
+        for participant in range(2):
+            self.carry_out(study.Simulated(1.0), participant)
+            orders.append(list(dict.fromkeys(row["condition"] for row in self.rows(participant))))
+        self.assertEqual(sorted(orders), [["a", "b"], ["b", "a"]])
+
+
+class TestStudies(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def run_study(self, name: str, *words: str) -> str:
+        environment = {**os.environ, "PYTHONPATH": str(PACKAGE)}
+        done = subprocess.run([sys.executable, "-m", f"limpid.studies.{name}", "--out", self.folder,
+                               "--simulate", *words], text=True, capture_output=True,
+                              env=environment, timeout=280)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def check_report(self, name: str) -> None:
+        page = (self.folder / f"{name}.html").read_text()
+        self.assertIn("<table>", page)
+        for figure in self.folder.glob("*.svg"):
+            xml.etree.ElementTree.parse(figure)
+            self.assertNotIn("nan", figure.read_text())
+
+    def test_stiffness_is_told_apart_worse_under_the_standard_coupling(self) -> None:
+        """Its spring is in series with the wall: a wall of 300 N/m feels like one of 132."""
+        printed = self.run_study("stiffness", "--trials", "40")
+        found = {line.split(":")[0].strip(): float(line.split(":")[1].split()[0])
+                 for line in printed.splitlines()}
+        self.assertGreater(found["standard"], 2 * found["predictive"])
+        self.assertGreater(found["standard"], 2 * found["proposed"])
+        self.check_report("stiffness")
+        self.assertEqual(self.run_study("stiffness", "--trials", "40"), printed)  # of the same answers
+
+    def test_a_difference_of_inertia_is_found(self) -> None:
+        self.assertIn("eta: 0.", self.run_study("inertia", "--trials", "20"))
+        self.check_report("inertia")
+
+    def test_placing_takes_longer_with_the_standard_coupling(self) -> None:
+        printed = self.run_study("placing", "--repeats", "6")
+        rate = {line.split(":")[0].strip(): float(line.split(":")[1].split()[0])
+                for line in printed.splitlines()}
+        self.assertLess(rate["standard"], rate["proposed"])
+        self.assertLess(rate["standard"], rate["predictive"])
+        self.check_report("placing")
+        self.assertEqual(len(list(self.folder.glob("*.h5"))), 36)
+
+    def test_studies_are_short(self) -> None:
+        for script in (PACKAGE / "limpid/studies").glob("[a-z]*.py"):
+            self.assertLess(len(script.read_text().splitlines()), 120, script.name)
+
+
+class TestPackage(unittest.TestCase):
+    def test_is_written_in_the_python_that_it_promises(self) -> None:
+        for file in (PACKAGE / "limpid").rglob("*.py"):
+            ast.parse(file.read_text(), str(file), feature_version=(3, 9))
+
+    def test_leads_a_program_with_the_standard_library_alone(self) -> None:
+        """Without numpy, h5py and scipy it is imported, and says what reading a session needs."""
+        code = ("import sys\n"
+                "for name in ('numpy', 'h5py', 'scipy'): sys.modules[name] = None\n"
+                "import limpid, limpid.study\n"
+                "try: limpid.session('a.h5')\n"
+                "except limpid.LimpidError as error: print(error)\n")
+        said = subprocess.run([sys.executable, "-c", code], check=True, text=True, capture_output=True,
+                              env={**os.environ, "PYTHONPATH": str(PACKAGE)}).stdout
+        self.assertIn("sessions are read with h5py and numpy; h5py is missing", said)
+
+
+class TestFigures(unittest.TestCase):
+    def test_ticks_are_round_numbers_within_the_axis(self) -> None:
+        self.assertEqual(nice_ticks(0, 1, 5), [0, 0.2, 0.4, 0.6, 0.8, 1.0])
+        self.assertEqual(nice_ticks(0.3, 1.0, 6), [0.4, 0.6, 0.8, 1.0])
+        self.assertTrue(all(-3 <= tick <= 47 for tick in nice_ticks(-3, 47)))
+
+    def test_groups_of_levels_have_all_answers(self) -> None:
+        answers = [(random.Random(k).random(), k % 3 > 0) for k in range(50)]
+        groups = binned(answers)
+        self.assertEqual(sum(of for _, _, of in groups), 50)
+        self.assertEqual(sum(right for _, right, _ in groups), sum(right for _, right in answers))
+        self.assertLessEqual(len(groups), 7)
+
+
+if __name__ == "__main__":
+    unittest.main()
