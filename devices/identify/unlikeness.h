@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/dynamics/arm_description.h"
-#include "core/math/sizes.h"
 
 namespace limpid {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "app/run/scene_meshes.h"
 #include "core/touch/scene.h"
 #include "render/camera.h"
-#include "render/model/model.h"
 
 namespace limpid {
 
