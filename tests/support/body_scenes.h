@@ -19,11 +19,11 @@ namespace limpid::test {
 
 struct BodyBench {
   std::string name;
-  Scene scene;
+  Scene scene{};
   double grip = 300;   // of its hand [N/m]
   double seconds = 2;  // of its run
   double held = 2;     // from when on the hand stands still and nothing is to move [s]
-  std::function<HandInput(double t)> hand;
+  std::function<HandInput(double t)> hand{};
 };
 
 // What bodies are like in them.

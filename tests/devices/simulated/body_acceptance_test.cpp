@@ -155,7 +155,9 @@ TEST(LateMotorsWithBodies, GiveTheHandNoMoreThanTheLedgerAllows) {
         EXPECT_FALSE(r.diverged);
         EXPECT_LE(r.given, p.energy);
         EXPECT_LE(r.gain, 1e-6);
-        if (stiffness == 600) EXPECT_LE(r.beyond, p.energy);
+        if (stiffness == 600) {
+          EXPECT_LE(r.beyond, p.energy);
+        }
       }
     }
   }
