@@ -26,7 +26,9 @@ using namespace std::chrono_literals;
 constexpr std::size_t kDrained = 256;  // rows at a time
 
 TraceChannels channels_of(const RunPlan& plan) {
-  return TraceChannels(plan.layout(), slides_of(plan.arm), body_names(plan.document.scene));
+  TraceChannels channels(plan.layout(), slides_of(plan.arm), body_names(plan.document.scene));
+  channels.know(plan.arm);
+  return channels;
 }
 
 template <class T>
