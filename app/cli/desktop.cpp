@@ -4,11 +4,13 @@
 #include <filesystem>
 
 #include "app/cli/commands.h"
+#include "app/cli/complete.h"
 #include "app/cli/options.h"
 #include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
 #include "app/remote/line_server.h"
 #include "app/study/sweep_table.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -17,8 +19,9 @@ struct WindowOptions {
   InputOptions input;
   DesktopOptions desktop;
   std::string session;
-  std::vector<std::string> files;  // to open
-  std::string listen;              // name of a socket; empty: none
+  std::vector<std::string> files;     // to open
+  std::vector<std::string> commands;  // that there are besides
+  std::string listen;                 // name of a socket; empty: none
   VideoOptions video;
 };
 
@@ -84,9 +87,10 @@ int open_window(const WindowOptions& options) {
   desktop.scene = input.scene;
   for (const std::string& file : options.files) {
     if (!std::filesystem::exists(file)) {
+      const auto meant = nearest(file, options.commands);
       throw UsageError(fmt::format(
-          "\"{}\": not expected: no command, and no file to open; `limpid --help` lists what is",
-          file));
+          "\"{}\": not expected: no command, and no file to open; {}`limpid --help` lists what is",
+          file, meant ? fmt::format("did you mean {}? ", *meant) : ""));
     }
     desktop.files.emplace_back(file);
   }
@@ -142,7 +146,11 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
       "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
       "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
   return {
-      [options] { return open_window(*options); },
+      [options, &app] {
+        for (const CLI::App* each : shown_commands(app))
+          options->commands.push_back(each->get_name());
+        return open_window(*options);
+      },
       [options, played, make_video = std::move(make_video)] {
         if (!options->files.empty()) {
           throw UsageError(fmt::format("\"{}\": not expected before play", options->files.front()));

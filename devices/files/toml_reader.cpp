@@ -104,8 +104,10 @@ void TomlTable::allow_only(const std::vector<const char*>& keys) const {
   for (const auto& [key, node] : table_) {
     const auto same = [&, name = key.str()](const char* allowed) { return name == allowed; };
     if (std::any_of(keys.begin(), keys.end(), same)) continue;
-    throw FileError(fmt::format("{}:{}: {}: no such key; allowed: {}", where_,
-                                key.source().begin.line, full(key.str()), fmt::join(keys, ", ")));
+    const auto meant = nearest(std::string(key.str()), {keys.begin(), keys.end()});
+    throw FileError(fmt::format(
+        "{}:{}: {}: no such key{}; allowed: {}", where_, key.source().begin.line, full(key.str()),
+        meant ? fmt::format("; did you mean {}?", *meant) : "", fmt::join(keys, ", ")));
   }
 }
 

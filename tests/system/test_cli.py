@@ -35,6 +35,13 @@ class Help(SystemTest):
         for command in COMMANDS:
             self.assertIn(command, text)
 
+    def test_a_command_that_is_nearly_one_is_guessed(self) -> None:
+        for wrong, meant in (("anlyze", "analyze"), ("experimnt", "experiment"), ("rnu", "run")):
+            refused = limpid(wrong)
+            self.assertEqual(refused.status, 2)
+            self.assertIn(f"did you mean {meant}?", refused.err)
+        self.assertNotIn("did you mean", limpid("banana").err)
+
     def test_the_help_of_run_names_every_option(self) -> None:
         text = limpid("run", "--help").out
         for option in (

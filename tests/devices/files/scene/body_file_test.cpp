@@ -207,7 +207,8 @@ TEST(BodyFile, RefusesWhatABodyCannotBe) {
   const std::string start = "[[body]]\nname = \"a\"\nposition = [0, 0, 0]\n";
   expect_refused({
       {"gravity = 9.81\n", {"x.toml:1: gravity", "9.81", "a list of 3"}},
-      {body("colour = 1\n"), {"x.toml:6: body.colour", "no such key", "contact_stiffness"}},
+      {body("colour = 1\n"),
+       {"x.toml:6: body.colour", "no such key; did you mean color?", "contact_stiffness"}},
       {body("scale = 2\n"), {"x.toml:6: body.scale", "no such key"}},
       {start + "mass = 1\n", {"x.toml:1: body.shape", "missing", "box, sphere"}},
       {start + "mass = 1\nbox = [1, 1, 1]\nsphere = 1\n",
