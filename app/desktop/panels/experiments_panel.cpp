@@ -79,11 +79,15 @@ fs::path ExperimentsPanel::draw(bool& open) {
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
   if (begin_dialog("Experiments", open, ImGuiWindowFlags_None)) {
-    ImGui::BeginChild("list", {19 * ImGui::GetFontSize(), 0});
+    ImGui::BeginGroup();
+    const float buttons = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().ItemSpacing.y;
+    ImGui::BeginChild("list", {19 * ImGui::GetFontSize(), -buttons});
     draw_list();
+    ImGui::EndChild();
+    draw_buttons();
     ImGui::SameLine();
     close_button("Close (Esc)", open);
-    ImGui::EndChild();
+    ImGui::EndGroup();
     ImGui::SameLine();
     ImGui::BeginChild("verdict", {0, 0});
     const auto found = shown_ == nullptr ? verdicts_.end() : verdicts_.find(shown_->name);
@@ -150,7 +154,9 @@ void ExperimentsPanel::draw_list() {
     }
     ImGui::EndTable();
   }
-  ImGui::Spacing();
+}
+
+void ExperimentsPanel::draw_buttons() {
   if (running_.busy()) {
     if (ImGui::Button("Stop")) {
       queue_.clear();

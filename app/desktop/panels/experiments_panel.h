@@ -35,6 +35,7 @@ class ExperimentsPanel {
   void start(const Experiment& experiment);
   void take();
   void draw_list();
+  void draw_buttons();
   void draw_state(const Experiment& experiment);
   void show_figure(Verdict& verdict);
   std::filesystem::path draw_verdict(Verdict& verdict);
