@@ -106,7 +106,7 @@ class SceneWindow(WindowTest):
 
     def test_a_recording_keeps_the_scene_and_the_scene_stays_as_it_is(self) -> None:
         self.add_pyramid()
-        self.key("r")
+        self.key("ctrl+r")  # R turns what is selected
         self.wait("recording", lambda s: s["recording"])
         self.key("Delete")
         self.key("ctrl+z")
@@ -114,7 +114,7 @@ class SceneWindow(WindowTest):
         self.go_on(0.5)
         self.xdotool("mouseup", "1")
         self.assertEqual(self.settled()["objects"], 2, "not changed while recording")
-        self.key("r")
+        self.key("ctrl+r")
         self.wait("the end of the recording", lambda s: not s["recording"])
         (self.home / "pyramid.glb").unlink()
         sessions = self.home / "data/limpid/sessions"

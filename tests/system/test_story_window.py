@@ -32,9 +32,11 @@ class Story(WindowTest):
         taken = self.state()
         self.move(*IN_VIEW)
         self.xdotool("mousedown", "1")
-        self.wait("the arm to be the user's", lambda s: not s["playing"] and s["grip"] == 1)
+        self.wait("the arm to be the user's", lambda s: not s["playing"])
         self.xdotool("mouseup", "1")
         self.wait_for_notice("P gives it back")
+        self.hold_tip()
+        self.xdotool("mouseup", "1")
 
         self.key("p")
         again = self.wait("the story again", lambda s: s["playing"] and s["told"])

@@ -1,7 +1,6 @@
 #include "app/desktop/base/stage.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "app/base/folders.h"
 #include "app/view/row_view.h"
@@ -16,15 +15,19 @@ bool same_part(const BodyPart& a, const BodyPart& b) {
 
 // Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
 bool same_items(const SceneDocument& first, const SceneDocument& second) {
-  const auto seen = [](const Object& object) { return object.body || !has_shape<Mesh>(object); };
-  return std::ranges::equal(first.scene.objects | std::views::filter(seen),
-                            second.scene.objects | std::views::filter(seen),
-                            [](const Object& a, const Object& b) {
-                              return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() &&
-                                     a.body.has_value() == b.body.has_value() &&
-                                     a.color == b.color &&
-                                     std::ranges::equal(a.parts, b.parts, same_part);
-                            }) &&
+  const auto seen = [](const SceneDocument& document) {
+    std::vector<const Object*> objects;
+    for (const Object& object : document.scene.objects) {
+      if (object.body || !has_shape<Mesh>(object)) objects.push_back(&object);
+    }
+    return objects;
+  };
+  const auto same = [](const Object* a, const Object* b) {
+    return a->shape == b->shape && a->pose.matrix() == b->pose.matrix() &&
+           a->body.has_value() == b->body.has_value() && a->color == b->color &&
+           std::ranges::equal(a->parts, b->parts, same_part);
+  };
+  return std::ranges::equal(seen(first), seen(second), same) &&
          std::ranges::equal(first.visuals, second.visuals, {}, &SceneVisual::file,
                             &SceneVisual::file);
 }

@@ -89,6 +89,11 @@ void TransformTool::start(Document& document, const Object& now, const Eigen::Ve
 
 void TransformTool::follow(Document& document, const Camera& camera, const Eigen::Vector2d& mouse,
                            ImDrawList& list) {
+  // What ends it changes nothing more: that would be a step of undo of its own.
+  if (by_key_ && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return give_up(document);
+  const bool done = by_key_ ? ImGui::IsMouseClicked(ImGuiMouseButton_Left)
+                            : !ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (done) return accept();
   transform_->axis = axis_;
   const auto [object, text] = transform_->to(camera, begin_, mouse, ImGui::GetIO().KeyCtrl);
   const Object& present = document.scene().objects[place_];
@@ -104,10 +109,6 @@ void TransformTool::follow(Document& document, const Camera& camera, const Eigen
                      {corner.x + size.x + 0.3f * em, corner.y + size.y + 0.2f * em},
                      colour(colours.backdrop, 0.8f), 3);
   list.AddText(face, em, corner, colour(colours.text), text.c_str());
-  const bool done = by_key_ ? ImGui::IsMouseClicked(ImGuiMouseButton_Left)
-                            : !ImGui::IsMouseDown(ImGuiMouseButton_Left);
-  if (by_key_ && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return give_up(document);
-  if (done) accept();
 }
 
 // Returns the one that is nearest to the mouse.

@@ -347,7 +347,7 @@ constexpr std::array kCommands{
     row("window.full_screen", "Full screen", "View", "F11", "full screen",
         [](Desktop& d) { d.asked.toggle_full_screen = true; },
         {.checked = [](const Desktop& d) { return d.full_screen; }, .blind = true}),
-    row("session.record", "Record", "Session", "R", "record, stop recording",
+    row("session.record", "Record", "Session", "R, Ctrl+R", "record, stop recording",
         [](Desktop& d) { d.world.toggle_recording(); }, {.now = record_label}),
     row("session.play", "Play or pause", "Session", "P", "play, pause", play_or_pause),
     row("session.twin", "Twin: two couplings on one hand", "Session", "B",

@@ -56,6 +56,7 @@ const Case kCases[] = {
     {"F", GLFW_KEY_F, 0, "device.force", "device.force"},
     {"Backspace", GLFW_KEY_BACKSPACE, 0, "device.start_over", "session.back_to_live"},
     {"R", GLFW_KEY_R, 0, "session.record", "session.record", false, "object.turn", "object.turn"},
+    {"Ctrl+R", GLFW_KEY_R, kControl, "session.record", "session.record"},
     {"P", GLFW_KEY_P, 0, "session.play", "session.play"},
     {"K", GLFW_KEY_K, 0, "loop.pause", "loop.pause"},
     {"Left", GLFW_KEY_LEFT, 0, "", "session.tick_back", true},
