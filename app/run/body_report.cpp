@@ -143,8 +143,8 @@ void warn(const Object& object, const Scene& scene, const Vec3& root, double rea
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
   }
-  double thick = std::numeric_limits<double>::infinity();
-  for (const Placed& piece : pieces(object)) thick = std::min(thick, 2 * half_width(piece.shape));
+  double thick = 0;  // of its thickest part: what is thin on it only marks it
+  for (const Placed& piece : pieces(object)) thick = std::max(thick, 2 * half_width(piece.shape));
   if (thick < kThinBody) {
     report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
                                           object.name, 1e3 * thick));

@@ -22,8 +22,9 @@ Vec3 nearby(const Mat3& R) {
 
 double half_turn_on(double angle) { return angle > 0 ? angle - kHalfTurn : angle + kHalfTurn; }
 
-// The number `steps` further among the doubles.
+// The number `steps` further among the doubles; zero stays what it is.
 double further(double x, int steps) {
+  if (x == 0) return 0;
   const double towards = steps < 0 ? -10 : 10;
   for (int i = 0; i < std::abs(steps); ++i) x = std::nextafter(x, towards);
   return x;
@@ -58,7 +59,7 @@ Vec3 rpy_of(const Mat3& R) {
       for (int y = -far; y <= far; ++y) {
         for (int z = -far; z <= far; ++z) {
           const Vec3 tried(further(about.x(), x), further(about.y(), y), further(about.z(), z));
-          if (rotation(tried) == R) return tried;
+          if (rotation(tried) == R) return tried + Vec3::Zero();
         }
       }
     }

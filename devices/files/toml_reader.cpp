@@ -106,8 +106,8 @@ void TomlTable::allow_only(const std::vector<const char*>& keys) const {
     if (std::any_of(keys.begin(), keys.end(), same)) continue;
     const auto meant = nearest(std::string(key.str()), {keys.begin(), keys.end()});
     throw FileError(fmt::format(
-        "{}:{}: {}: no such key{}; allowed: {}", where_, key.source().begin.line, full(key.str()),
-        meant ? fmt::format("; did you mean {}?", *meant) : "", fmt::join(keys, ", ")));
+        "{}:{}: {}: no such key{} allowed: {}", where_, key.source().begin.line, full(key.str()),
+        meant ? fmt::format("; did you mean {}?", *meant) : ";", fmt::join(keys, ", ")));
   }
 }
 

@@ -21,7 +21,7 @@ inline RunPlan plan(const char* scene, const char* hand_file, double seconds) {
 }
 
 inline Rows rows_of(const RunPlan& plan) {
-  Rows rows(RowLayout(plan.arm.dof()));
+  Rows rows(plan.layout());
   simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
     rows.add(row);
     return true;

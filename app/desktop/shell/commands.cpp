@@ -165,6 +165,11 @@ std::string no_virtual_arm(const Desktop& d) {
              : "";
 }
 
+std::string no_magnet(const Desktop& d) {
+  const std::string playback = in_playback(d);
+  return playback.empty() ? d.live.why_no_magnet() : playback;
+}
+
 std::string time_fixed(const Desktop& d) {
   const std::string playback = in_playback(d);
   return playback.empty() ? d.live.why_time_is_fixed() : playback;
@@ -211,11 +216,7 @@ constexpr std::array kCommands{
     row("hand.magnet", "Magnet at the tip", "Device", "H",
         "magnet at the tip: picks up what it touches, or lets go",
         [](Desktop& d) { d.live.toggle_magnet(); },
-        {.why_not =
-             [](const Desktop& d) {
-               const std::string playback = in_playback(d);
-               return playback.empty() ? d.live.why_no_magnet() : playback;
-             },
+        {.why_not = no_magnet,
          .checked = [](const Desktop& d) { return d.live.controls().magnet; },
          .blind = true}),
     row("device.start_over", "Start over", "Device", "Backspace", "start over",

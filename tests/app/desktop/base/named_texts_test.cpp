@@ -129,7 +129,7 @@ TEST(Layout, ThatIsWrongSaysWhereAndChangesNothing) {
   EXPECT_THAT(complaint("left = 200\n[[plot]]\nkind = \"pie\""), HasSubstr("plot.kind: \"pie\""));
   EXPECT_THAT(complaint("[[plot]]\nchannels = [1]"), HasSubstr("plot.channels"));
   EXPECT_THAT(complaint("[[plot]]\nchanels = []"),
-              HasSubstr("plot.chanels: no such key; allowed: title"));
+              HasSubstr("plot.chanels: no such key; did you mean channels? allowed: title"));
   EXPECT_THAT(complaint("plot = 3"), HasSubstr("Mine:1: plot: 3"));
 }
 

@@ -48,9 +48,9 @@ TEST(RowLayout, HasRoomForWhatMoves) {
     EXPECT_FALSE(none.has(c));
     EXPECT_TRUE(two.has(c));
   }
-  // A pose and a velocity each; and what all bodies share: three energies, awake, sweeps, held
-  // and the magnet of the hand.
-  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 7);
+  // A pose and a velocity each; and what all bodies share: three energies, awake, sweeps, points
+  // left out, held and the magnet of the hand.
+  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 8);
   EXPECT_EQ(none.offset(Column::body_pose), two.offset(Column::body_pose));
 }
 
