@@ -138,6 +138,11 @@ class WindowTest(unittest.TestCase):
     def hold_tip(self) -> tuple[float, float]:
         """By the mouse, which is there then."""
         x, y = self.state()["places"]["tip"]
+        while True:  # the view may be on its way, and the arm
+            before = x, y
+            x, y = self.go_on(0.3)["places"]["tip"]
+            if max(abs(x - before[0]), abs(y - before[1])) < 1:
+                break
         self.move(x, y)
         self.settled()
         self.xdotool("mousedown", "1")

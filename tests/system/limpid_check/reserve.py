@@ -250,10 +250,12 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
     along = np.diff(path, axis=0, prepend=path[:1])
     held = _springs(s) + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
     leak, cancelled = _leaks(s, p, locked), _share_cancelled(s)
-    pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1)
-    touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed])
+    held_now = s["/objects/held"] > 0  # by the magnet: a contact as long as it lasts
+    pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1) & ~(held_now[:-1] & ~held_now[1:])
+    touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed]) | held_now
     b_v, energy = (s.number(key)[:, 0] for key in ("coupling.b_v", "ledger.energy"))
     least, most = s.possible_delays
+    to_objects = s["/energy/to_objects"]  # they are a second port
 
     network, clock, account = _Network(t, n), _Clock(n), _Account()
     out = np.zeros((5, rows))
@@ -268,6 +270,7 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
                 network.lose(-lost @ along[k])
             ticks = clock.changed(moved[k], step[k])
             account.add(sent, k, along[k], np.sum(damping[k] * moved[k] ** 2 / ticks) / t)
+            account.energy -= to_objects[k] - to_objects[k - 1]
         network.turn(eta[k])
         stored = held[k] + network.stored
         if k == 0:  # as an earlier part of the run has left it

@@ -60,8 +60,10 @@ _LATER = (
     "/energy/contact_potential",
 )
 
-# Of sessions with compensation, and with ticks solved in another way than the usual; nothing where they lack it.
-_OR_NOTHING = {"/device/compensation_torque": 0, "/energy/compensation": 1, "/coupling/solved": 1}
+# Of sessions with compensation, with ticks solved in another way than the usual, and with objects that move; nothing
+# where they lack it.
+_OR_NOTHING = {"/device/compensation_torque": 0, "/energy/compensation": 1, "/coupling/solved": 1,
+               "/energy/to_objects": 1, "/objects/held": 1}
 
 ATTRIBUTES = (
     "format", "version", "tick", "dof", "created", "app_version",
