@@ -199,8 +199,8 @@ std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene)
     found.emplace_back(i, j);
   }
   std::ranges::sort(found);
-  const auto twice = std::ranges::unique(found);
-  found.erase(twice.begin(), twice.end());
+  const auto twice = std::unique(found.begin(), found.end());
+  found.erase(twice, found.end());
   return found;
 }
 

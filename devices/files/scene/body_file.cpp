@@ -368,8 +368,9 @@ void hold_force(JointForce& force) {
     hold_in(F, kTravelPoint, 0);
   }
   std::ranges::stable_sort(force.travel, {}, [](const auto& point) { return point[0]; });
-  const auto same = std::ranges::unique(force.travel, {}, [](const auto& p) { return p[0]; });
-  force.travel.erase(same.begin(), same.end());
+  const auto same = std::unique(force.travel.begin(), force.travel.end(),
+                                [](const auto& a, const auto& b) { return a[0] == b[0]; });
+  force.travel.erase(same, force.travel.end());
 }
 
 void hold_joint(BodyJoint& joint) {
