@@ -53,6 +53,7 @@ std::string list(std::span<const char* const> words) {
 
 std::string names_of_verbs() {
   std::vector<const char*> names;
+  names.reserve(std::size(kVerbs));
   for (const Verb& verb : kVerbs) names.push_back(verb.name);
   return list(names);
 }

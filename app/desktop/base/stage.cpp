@@ -40,7 +40,7 @@ const ArmDescription& with_look(ArmDescription& arm) {
 
 }  // namespace
 
-Stage::Stage(ArmDescription arm, SceneDocument document, MeshModels models, History past,
+Stage::Stage(ArmDescription arm, SceneDocument document, const MeshModels& models, History past,
              double shown)
     : picture(data_dir() / "shaders", with_look(arm), document.scene, visual_pictures(document)),
       history(std::move(past)),

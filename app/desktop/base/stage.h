@@ -20,7 +20,7 @@ class Stage {
   // `models` are what the scene's meshes look like; `history`: of the arm's channels, or twice as
   // many, for a second run beside the first; `shown`: how much of it at first [s]. Needs a current
   // OpenGL context. Errors: std::runtime_error naming the file of a picture.
-  Stage(ArmDescription arm, SceneDocument document, MeshModels models, History history,
+  Stage(ArmDescription arm, SceneDocument document, const MeshModels& models, History history,
         double shown);
 
   // The same arm in another scene; `highlighted` is the number of a mesh. Errors as above; the

@@ -172,7 +172,7 @@ ViewRequest ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& co
   const ImVec2 size = under.size();
   if (size.x < 8 || size.y < 8) return {};
   camera.resize(size.x, size.y);
-  const ViewRequest asked = handle_mouse(scene, camera, controls, settings, under, taken);
+  ViewRequest asked = handle_mouse(scene, camera, controls, settings, under, taken);
   scene.stage.picture.set_pixel_scale(scene.pixel_scale * static_cast<double>(current_scale()));
   scene.stage.draw_at(scene.quality);
   drawn_ = split ? half_of(rect, false) : rect;

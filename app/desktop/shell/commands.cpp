@@ -154,7 +154,7 @@ void begin_transform(Desktop& d) {
 
 template <TransformKind kKind>
 std::string cannot(const Desktop& d) {
-  const std::string why = selection_fixed(d);
+  std::string why = selection_fixed(d);
   if (!why.empty() || can(kKind, *d.document.editor().selected_object())) return why;
   return "This object cannot be changed in that way.";
 }
@@ -474,7 +474,7 @@ Key key_of(std::string_view text) {
   } else if (text.size() > 1) {  // "F12"
     all.key = GLFW_KEY_F1 - 1 + std::stoi(std::string(text.substr(1)));
   } else {
-    all.key = text[0];
+    all.key = static_cast<unsigned char>(text[0]);
   }
   return all;
 }
@@ -568,6 +568,7 @@ std::string key_text(const Command& command) {
 
 std::vector<Shortcut> shortcuts() {
   std::vector<Shortcut> all;
+  all.reserve(kBefore.size() + kCommands.size() + kAfter.size());
   for (const Hint& hint : kBefore) all.push_back({hint.with, hint.what});
   for (const Command& command : kCommands) {
     if (command.keys == nullptr || command.how.reach == Reach::question) continue;

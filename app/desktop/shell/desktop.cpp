@@ -12,6 +12,7 @@
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/base/window_layout.h"
+#include "app/desktop/shell/commands.h"
 #include "core/tick/arming.h"
 
 namespace limpid {

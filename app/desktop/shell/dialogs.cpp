@@ -295,9 +295,9 @@ Dialogs::Dialogs(Desktop& desktop) : desktop_(desktop) {
 
 void Dialogs::draw(bool modal, ScreenRect view) {
   if (modal && desktop_.document.asking() && desktop_.dialog.modal()) desktop_.dialog.close();
-  for (const auto& [kind, draw_it] : drawn_) {
-    if (kind->modal() != modal) continue;
-    guard(desktop_.notices, [&] { draw(*kind, draw_it, view); });
+  for (const auto& each : drawn_) {
+    if (each.first->modal() != modal) continue;
+    guard(desktop_.notices, [&] { draw(*each.first, each.second, view); });
   }
   if (modal) guard(desktop_.notices, [this] { draw_question(); });
 }

@@ -20,8 +20,7 @@ using nlohmann::json;
 fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   const std::string named = keys.text(key);
   const fs::path own = data_dir() / "assets" / kind / named;
-  const fs::path file =
-      named.find('/') == std::string::npos && fs::exists(own) ? own : fs::path(named);
+  fs::path file = named.find('/') == std::string::npos && fs::exists(own) ? own : fs::path(named);
   if (!file.is_absolute() || !fs::exists(file)) {
     throw keys.error(key, fmt::format("{} is not there; allowed: a path from / on, or one that "
                                       "came along with the program",
@@ -31,7 +30,7 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
 }
 
 fs::path new_file(const Keys& keys, const char* suffix) {
-  const fs::path file = keys.text("file");
+  fs::path file = keys.text("file");
   if (!file.is_absolute() || file.extension() != suffix) {
     throw keys.error("file",
                      fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
