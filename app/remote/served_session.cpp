@@ -49,7 +49,7 @@ Vec3 middle_of(const ArmDescription& arm) {
 }
 
 fs::path absolute_file(const Keys& keys, const char* key, const char* suffix) {
-  const fs::path file = keys.text(key);
+  fs::path file = keys.text(key);
   if (!file.is_absolute() || file.extension() != suffix) {
     throw keys.error(key, fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
                                       shown(file.string()), suffix));

@@ -31,6 +31,7 @@ constexpr std::size_t kListed = 4;  // more values are told by the first and the
 
 std::string values(const std::set<double>& set, const std::string& unit) {
   std::vector<std::string> words;
+  words.reserve(set.size());
   for (const double value : set) words.push_back(fmt::format("{:.4g}", value));
   if (words.size() > kListed) return fmt::format("{} to {} {}", words.front(), words.back(), unit);
   if (words.size() < 2) return fmt::format("{} {}", words.front(), unit);
@@ -74,7 +75,7 @@ std::string Conditions::arms() const {
 }
 
 std::string Conditions::motors() const {
-  const std::string own = own_limits_.empty() ? "" : "the arm's own, " + values(own_limits_, "N m");
+  std::string own = own_limits_.empty() ? "" : "the arm's own, " + values(own_limits_, "N m");
   if (limits_.empty()) return own;
   return (own.empty() ? "" : own + "; and ") + values(limits_, "N m");
 }
