@@ -103,6 +103,7 @@ std::vector<double> pressed_in(const Stack& stack, const Session& s) {
 Outcome stack(Laboratory& lab) {
   const std::vector<Stack> all = stacks();
   std::vector<Trial> trials;
+  trials.reserve(all.size());
   for (const Stack& one : all) trials.push_back(stack_pressed(one));
   const std::vector<TrialResult> results = lab.run(trials);
 
