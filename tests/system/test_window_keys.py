@@ -198,7 +198,7 @@ class WhatGoesWrong(WindowTest):
         import numpy
 
         make_a_change(self)
-        self.key("r")
+        self.key("ctrl+r")  # R turns what is selected
         self.wait("recording", lambda s: s["recording"])
         self.go_on(2)
         self.app.send_signal(signal.SIGTERM)
@@ -241,7 +241,7 @@ class WhatGoesWrong(WindowTest):
         make_a_change(self)
         self.key("bracketleft")
         eta = self.wait("a smaller eta", lambda s: s["eta"] < 1)["eta"]
-        self.key("r")
+        self.key("ctrl+r")  # R turns what is selected
         self.wait("recording", lambda s: s["recording"])
         self.go_on(1)
         self.xvfb.kill()
