@@ -16,7 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kRowsInALine = 128;
-constexpr std::size_t kMostSettings = 200;  // in a line
 constexpr std::string_view kTwinPrefix = "twin/";
 
 json number(double x) { return std::isfinite(x) ? json(x) : json(); }
@@ -136,18 +135,21 @@ json Remote::get(const Keys& keys) const {
 }
 
 json Remote::set(const Keys& keys) {
-  const json& values = keys.of("values");
-  if (!values.is_object() || values.size() > kMostSettings) {
-    throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
-  }
   const bool of_twin = keys.flag_or("twin", false);
   if (of_twin && host_.twin() == nullptr) throw keys.error("twin", "there is none");
-  Parameters p = of_twin ? *host_.twin() : host_.parameters();
-  const Parameters highest = host_.highest();
-  for (const auto& [key, value] : values.items()) set_by_remote(p, key, value, highest);
+  const auto changed = [&] {
+    Parameters p = of_twin ? *host_.twin() : host_.parameters();
+    set_values(p, keys, host_.highest());
+    return p;
+  };
+  changed();  // what is refused changes nothing
+  host_.before_set();
+  const Parameters p = changed();
   host_.set(p, of_twin);
   json now = json::object();
-  for (const auto& [key, value] : values.items()) now[key] = value_of(p, *find_parameter(key));
+  for (const auto& [key, value] : keys.of("values").items()) {
+    now[key] = value_of(p, *find_parameter(key));
+  }
   return {{"values", now}};
 }
 

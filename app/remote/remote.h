@@ -44,6 +44,8 @@ struct RemoteHost {
   std::function<const Parameters*()> twin;  // null: there is none
   // What a person has chosen, as with_limits_of() has it.
   std::function<Parameters()> highest;
+  // Ends what has put other settings in their place for a while.
+  std::function<void()> before_set = [] {};
   // The whole of them; the second run's where `of_twin`.
   std::function<void(const Parameters&, bool of_twin)> set;
   std::function<const TraceChannels&()> channels;

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "app/remote/protocol.h"
-
 namespace limpid {
 namespace {
 
@@ -63,6 +61,16 @@ void set_by_remote(Parameters& p, const std::string& key, const json& value,
       "set: {}: {} is not allowed; allowed: up to {} {}. Only a person raises a limit, in the "
       "window or when the program starts",
       key, shown(value), most, info.unit));
+}
+
+void set_values(Parameters& p, const Keys& keys, const Parameters& highest) {
+  const json& values = keys.of("values");
+  if (!values.is_object() || values.size() > kMostSettings) {
+    throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
+  }
+  Parameters all = p;
+  for (const auto& [key, value] : values.items()) set_by_remote(all, key, value, highest);
+  p = all;
 }
 
 Parameters with_limits_of(const ArmDescription& arm, Parameters p) {

@@ -175,7 +175,9 @@ void ServedSession::turn(Remote& remote) {
 
 // A device's own second button arms it, and takes its force away; nothing else here arms it.
 void ServedSession::watch_buttons() {
-  if (!loop_.device_in_place() || !loop_.snapshot().connected) return;
+  if (!loop_.device_in_place()) return;
+  // A button that is held while it comes back asks for nothing.
+  if (!loop_.snapshot().connected) return buttons_.forget();
   const std::uint32_t pressed = buttons_.take(loop_.snapshot().reading.buttons);
   if ((pressed & 2) == 0) return;
   const Arming now = loop_.snapshot().arming;
@@ -354,14 +356,7 @@ Answer ServedSession::twin(const Keys& keys) {
     return json{{"on", false}};
   }
   Parameters p = of_twin_.value_or(controls_.parameters);
-  if (keys.has("values")) {
-    const json& values = keys.of("values");
-    if (!values.is_object()) {
-      throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
-    }
-    for (const auto& [key, value] : values.items())
-      set_by_remote(p, key, value, with_limits_of(world_.plan.arm, highest_));
-  }
+  if (keys.has("values")) set_values(p, keys, with_limits_of(world_.plan.arm, highest_));
   of_twin_ = p;
   controls_.twin = true;
   set(p, true);

@@ -92,6 +92,7 @@ RemoteHost WindowRemote::host() {
     return d_.settings.twin.on ? &d_.settings.twin.parameters : nullptr;
   };
   host.highest = [this] { return with_limits_of(d_.live.stage().arm(), highest_); };
+  host.before_set = [this] { d_.tuning.end_break(); };
   host.set = [this](const Parameters& p, bool of_twin) { set(p, of_twin); };
   host.channels = [this]() -> const TraceChannels& { return d_.live.stage().channels(); };
   host.row = [this] { return d_.live.row(); };
@@ -160,7 +161,6 @@ json WindowRemote::state() const {
 }
 
 void WindowRemote::set(const Parameters& p, bool of_twin) {
-  d_.tuning.end_break();
   (of_twin ? d_.settings.twin.parameters : d_.settings.parameters) = p;
   if (!of_twin) limits_ = limits_of(p);
 }
@@ -273,17 +273,13 @@ Answer WindowRemote::mark(const Keys& keys) {
 
 Answer WindowRemote::twin(const Keys& keys) {
   const bool on = keys.flag_or("on", true);
+  const bool sets = on && keys.has("values");
   Parameters p = d_.settings.twin.parameters;
-  if (on && keys.has("values")) {
-    const json& values = keys.of("values");
-    if (!values.is_object()) {
-      throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
-    }
-    const Parameters most = with_limits_of(d_.live.stage().arm(), highest_);
-    for (const auto& [key, value] : values.items()) set_by_remote(p, key, value, most);
-  }
+  if (sets) set_values(p, keys, with_limits_of(d_.live.stage().arm(), highest_));
   if (on != d_.settings.twin.on) run("session.twin");
-  if (on && keys.has("values")) set(p, true);
+  if (!sets) return json{{"on", on}};
+  d_.tuning.end_break();
+  set(p, true);
   return json{{"on", on}};
 }
 

@@ -121,6 +121,18 @@ TEST_F(RemoteTest, SetsAllOrNothing) {
   EXPECT_EQ(twin->eta, 2);
 }
 
+// As passivity that is broken puts other settings in their place: these are not kept by a request.
+TEST_F(RemoteTest, SetsOnTopOfWhatIsThereOnceWhatIsForAWhileHasEnded) {
+  parameters.hand_stiffness = 3000;
+  host.before_set = [this] { parameters.hand_stiffness = 300; };
+  start();
+  EXPECT_TRUE(ask(R"({"do":"set","values":{"coupling.eta":-1}})").contains("error"));
+  EXPECT_EQ(parameters.hand_stiffness, 3000) << "what is refused ends nothing";
+  EXPECT_TRUE(ask(R"({"do":"set","values":{"coupling.eta":0.5}})").contains("ok"));
+  EXPECT_EQ(parameters.hand_stiffness, 300);
+  EXPECT_EQ(parameters.eta, 0.5);
+}
+
 TEST_F(RemoteTest, GivesSettingsAsTheyAreSet) {
   start();
   const json values = ask(R"({"do":"get"})")["ok"]["values"];
