@@ -195,9 +195,11 @@ class Live(unittest.TestCase):
         self.plug()
         with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="socket:replay") as loop:
             self.assertTrue(loop.state()["device"])
-            loop.set({"coupling.eta": 0.8, "coupling.kind": "predictive"})
-            loop.start_over()
-            loop.open(scene="table.toml")
+            for step in (lambda: loop.set({"coupling.eta": 0.8, "coupling.kind": "predictive"}),
+                         loop.start_over, lambda: loop.open(scene="table.toml")):
+                step()
+                time.sleep(0.2)  # ticks of the loop
+                self.assertFalse(loop.state()["force"])
             file = loop.record(self.folder / "served.h5")
             loop.mark("here")
             time.sleep(0.5)
