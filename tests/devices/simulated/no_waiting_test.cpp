@@ -131,6 +131,14 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
   return scene;
 }
 
+// All joints at zero, at rest; the rig as well.
+RigStart start_at_zero(Rig& rig, int joints) {
+  RigStart start;
+  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(joints);
+  rig.start(Parameters{}, start);
+  return start;
+}
+
 class NoWaiting : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Arms, NoWaiting, testing::Values(1, 3, 7, 32));
 
@@ -138,9 +146,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   const int n = GetParam();
   const ArmDescription arm = random_arm(n, 151);
   Rig rig(arm, Scene{});
-  RigStart start;
-  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(n);
-  rig.start(Parameters{}, start);
+  RigStart start = start_at_zero(rig, n);
   const Vec3 home = rig.tip();
   Rig crowded(arm, crowd(arm, home));
   start.target = home;
@@ -223,9 +229,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksWithBodiesThatMove) {
   const int n = GetParam();
   const ArmDescription arm = random_arm(n, 151);
   Rig rig(arm, Scene{});
-  RigStart start;
-  start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(n);
-  rig.start(Parameters{}, start);
+  RigStart start = start_at_zero(rig, n);
   start.target = rig.tip();
   Rig heaped(arm, heap(rig.tip()));
   heaped.start(Parameters{}, start);

@@ -10,7 +10,6 @@ the proxy, which the person sees, and the time until it is there. The simulated 
 hand to the place with an error, looks, and leads it on by what is missing until it is there.
 """
 
-import argparse
 import math
 import random
 from pathlib import Path
@@ -71,14 +70,7 @@ def person(loop: limpid.Client, distance: float, out: Path) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, required=True, help="folder of answers, sessions, report")
-    parser.add_argument("--participant", type=int, default=0, help="number, from 0 on")
-    parser.add_argument("--connect", default="control", help="name of the program's socket")
-    parser.add_argument("--simulate", action="store_true", help="a simulated participant")
-    parser.add_argument("--repeats", type=int, default=8, help="of each distance, for each law")
-    arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    arguments = study.words(__doc__, "repeats", 8, "of each distance, for each law")
     scene = scene_in(arguments.out)
     loop = None if arguments.simulate else limpid.connect(arguments.connect)
     if loop:

@@ -63,14 +63,7 @@ def participant(arguments: argparse.Namespace, walls: Walls):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, required=True, help="folder of answers, sessions, report")
-    parser.add_argument("--participant", type=int, default=0, help="number, from 0 on")
-    parser.add_argument("--connect", default="control", help="name of the program's socket")
-    parser.add_argument("--simulate", action="store_true", help="a simulated participant")
-    parser.add_argument("--trials", type=int, default=60, help="at most, for each law")
-    arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    arguments = study.words(__doc__, "trials", 60, "at most, for each law")
     walls = Walls(arguments.out)
     run = study.Study("stiffness", arguments.out, arguments.participant, participant(arguments, walls))
     run.tell("Press on the wall twice. Which one is stiffer?")

@@ -13,9 +13,10 @@ from limpid.study.orders import latin_square, order_for
 from limpid.study.participants import Person, Simulated, Stimulus
 from limpid.study.report import Report
 from limpid.study.trials import Study, StudyError
+from limpid.study.words import words
 
 __all__ = [
     "Adjustment", "ConstantStimuli", "Fit", "Person", "Quest", "Report", "Simulated", "Staircase",
     "Stimulus", "Study", "StudyError", "fit", "latin_square", "mean_interval", "order_for",
-    "proportion_interval",
+    "proportion_interval", "words",
 ]  # fmt: skip
