@@ -50,6 +50,8 @@ struct Snapshot {
   bool diverged = false;
   bool recording = false;
   Arming arming = Arming::off;
+  // Force is on, or will be as soon as nothing keeps it off.
+  bool armed() const { return arming != Arming::off && arming != Arming::tripped; }
   ForceState force_state = ForceState::off;
   bool connected = false;  // the device that is plugged in answers
   DeviceReading reading;   // its newest

@@ -172,6 +172,15 @@ std::string Keys::text(const char* key) const {
   return *std::move(text);
 }
 
+std::filesystem::path Keys::file(std::string_view ending) const {
+  std::filesystem::path named = text("file");
+  if (!named.is_absolute() || named.extension() != ending) {
+    throw error("file", fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
+                                    shown(named.string()), ending));
+  }
+  return named;
+}
+
 double Keys::number_or(const char* key, double usual, double least, double most) const {
   const auto found = keys_.find(key);
   if (found == keys_.end()) return usual;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -59,6 +60,8 @@ class Keys {
   const nlohmann::json& of(const char* key) const;  // one that is needed
   std::string text(const char* key) const;          // the same, a text that is not empty
   std::optional<std::string> text_if(const char* key) const;
+  // "file", to be written: a path from / on with this ending.
+  std::filesystem::path file(std::string_view ending) const;
   double number_or(const char* key, double usual, double least, double most) const;
   bool flag_or(const char* key, bool usual) const;
   // Texts, at most so many; none: there is no such key.

@@ -22,6 +22,22 @@ json number(double x) { return std::isfinite(x) ? json(x) : json(); }
 
 }  // namespace
 
+json loop_state(const LiveLoop& loop, const ArmDescription& arm) {
+  const Snapshot& now = loop.snapshot();
+  const LoopStatus status = loop.status();
+  return {{"arm", arm.name},
+          {"joints", arm.dof()},
+          {"device", loop.device_in_place()},
+          {"force", now.armed()},
+          {"why_no_force", explain(now.force_state)},
+          {"unstable", now.diverged},
+          {"ticks", status.ticks},
+          {"late", status.late},
+          {"missed", status.missed},
+          {"slipped", status.slipped},
+          {"rate", status.rate}};
+}
+
 Remote::Remote(const std::filesystem::path& path, RemoteHost host, std::function<void()> cut)
     : host_(std::move(host)), server_(path, [cut = std::move(cut)](std::string_view line) {
         if (asks_for_cut(line)) cut();

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "app/live/live_loop.h"
 #include "app/remote/line_server.h"
 #include "app/remote/protocol.h"
 #include "app/session/trace_channels.h"
@@ -55,6 +56,9 @@ struct RemoteHost {
   std::map<std::string, Action> actions;
   std::function<void(LineServer::Client)> gone = [](LineServer::Client) {};
 };
+
+// What a state says of the loop, whoever has it.
+nlohmann::json loop_state(const LiveLoop& loop, const ArmDescription& arm);
 
 class Remote {
  public:

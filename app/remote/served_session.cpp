@@ -13,8 +13,6 @@
 #include "app/remote/remote_settings.h"
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
-#include "app/view/row_view.h"
-#include "core/dynamics/arm.h"
 
 namespace limpid {
 namespace {
@@ -26,9 +24,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kDrained = 256;  // rows at a time
 
 TraceChannels channels_of(const RunPlan& plan) {
-  TraceChannels channels(plan.layout(), slides_of(plan.arm), body_names(plan.document.scene));
-  channels.know(plan.arm);
-  return channels;
+  return {plan.arm, plan.layout(), body_names(plan.document.scene)};
 }
 
 template <class T>
@@ -40,21 +36,6 @@ bool ready(const std::future<T>& work) {
 template <class T>
 bool busy(const std::shared_ptr<std::future<T>>& work) {
   return work && work->valid() && !ready(*work);
-}
-
-// Where the tip is in the middle of the arm's limits.
-Vec3 middle_of(const ArmDescription& arm) {
-  const Eigen::VectorXd x = rest_pose(arm);
-  return RowView(arm).tip({x.data(), static_cast<std::size_t>(x.size())});
-}
-
-fs::path absolute_file(const Keys& keys, const char* key, const char* suffix) {
-  fs::path file = keys.text(key);
-  if (!file.is_absolute() || file.extension() != suffix) {
-    throw keys.error(key, fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
-                                      shown(file.string()), suffix));
-  }
-  return file;
 }
 
 }  // namespace
@@ -97,7 +78,7 @@ ServedSession::~ServedSession() {
 void ServedSession::begin(World world, bool hand_waits) {
   RunPlan& plan = world.plan;
   hold_limits(plan.parameters, highest_, plan.arm);
-  const Vec3 home = world.led ? plan.hand.position.front() : middle_of(plan.arm);
+  const Vec3 home = world.led ? plan.hand.position.front() : rest_tip(plan.arm);
   loop_.open(plan.arm, plan.document.scene, plan.parameters, home);
   auto path = std::make_unique<LedPath>();
   if (world.led) path->hand = plan.hand;
@@ -180,33 +161,19 @@ void ServedSession::watch_buttons() {
   if (!loop_.snapshot().connected) return buttons_.forget();
   const std::uint32_t pressed = buttons_.take(loop_.snapshot().reading.buttons);
   if ((pressed & 2) == 0) return;
-  const Arming now = loop_.snapshot().arming;
-  now == Arming::off || now == Arming::tripped ? loop_.arm() : loop_.cut();
+  loop_.snapshot().armed() ? loop_.cut() : loop_.arm();
 }
 
 json ServedSession::state() const {
-  const Snapshot& now = loop_.snapshot();
-  const LoopStatus status = loop_.status();
-  const bool armed = now.arming != Arming::off && now.arming != Arming::tripped;
-  json state{{"arm", world_.plan.arm.name},
-             {"joints", world_.plan.arm.dof()},
-             {"scene", world_.plan.document.title},
-             {"objects", world_.plan.document.scene.objects.size()},
-             {"device", loop_.device_in_place()},
-             {"force", armed},
-             {"why_no_force", explain(now.force_state)},
-             {"recording", recording()},
-             {"unstable", now.diverged},
-             {"ticks", status.ticks},
-             {"late", status.late},
-             {"missed", status.missed},
-             {"slipped", status.slipped},
-             {"rate", status.rate},
-             {"twin", of_twin_.has_value()},
-             {"hand", nullptr}};
+  json state = loop_state(loop_, world_.plan.arm);
+  state.update({{"scene", world_.plan.document.title},
+                {"objects", world_.plan.document.scene.objects.size()},
+                {"recording", recording()},
+                {"twin", of_twin_.has_value()},
+                {"hand", nullptr}});
   if (world_.led) {
     state["hand"] = {{"source", world_.plan.hand.source},
-                     {"time", now.led},
+                     {"time", loop_.snapshot().led},
                      {"duration", world_.plan.hand.duration()}};
   }
   return state;
@@ -266,7 +233,7 @@ Answer ServedSession::record(const Keys& keys) {
     throw RemoteError("record: the last one is being closed");
   fs::path file;
   if (keys.has("file")) {
-    file = absolute_file(keys, "file", ".h5");
+    file = keys.file(".h5");
   } else {
     fs::create_directories(options_.folder);
     file = options_.folder /
@@ -364,7 +331,7 @@ Answer ServedSession::twin(const Keys& keys) {
 }
 
 Answer ServedSession::picture(const Keys& keys) {
-  const fs::path file = absolute_file(keys, "file", ".png");
+  const fs::path file = keys.file(".png");
   if (newest_.empty()) throw RemoteError("picture: there is no row yet");
   std::vector<double> row(newest_.begin(),
                           newest_.begin() + static_cast<std::ptrdiff_t>(newest_.size() / 2));

@@ -196,6 +196,12 @@ TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& s
   add_tips();
 }
 
+TraceChannels::TraceChannels(const ArmDescription& arm, const RowLayout& layout,
+                             const std::vector<std::string>& bodies)
+    : TraceChannels(layout, slides_of(arm), bodies) {
+  tips_.emplace(arm);
+}
+
 void TraceChannels::add_tips() {
   struct Side {
     std::string path;

@@ -55,11 +55,13 @@ class TraceChannels {
   // what the objects that move are called; those without a name go by their number.
   explicit TraceChannels(const RowLayout& layout, const std::vector<bool>& slides = {},
                          const std::vector<std::string>& bodies = {});
+  // The same of an arm: which joints slide, and where its tips are; without one what is worked out
+  // of the tips is no number.
+  TraceChannels(const ArmDescription& arm, const RowLayout& layout,
+                const std::vector<std::string>& bodies);
 
   // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
-  // From now on its tips are known; before, what is worked out of them is no number.
-  void know(const ArmDescription& arm) { tips_.emplace(arm); }
   // Whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 

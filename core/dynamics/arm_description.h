@@ -85,5 +85,7 @@ struct ArmDescription {
 // The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
 // tip a direction in which it cannot move, as an arm stretched out has [rad].
 Eigen::VectorXd rest_pose(const ArmDescription& arm);
+// Where the tip is then [m].
+Vec3 rest_tip(const ArmDescription& arm);
 
 }  // namespace limpid

@@ -59,4 +59,8 @@ Eigen::VectorXd rest_pose(const ArmDescription& description) {
   return x;
 }
 
+Vec3 rest_tip(const ArmDescription& description) {
+  return Any(description).tip_at(Vec<kAnyDof>(rest_pose(description)));
+}
+
 }  // namespace limpid

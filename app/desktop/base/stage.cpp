@@ -48,9 +48,7 @@ Stage::Stage(ArmDescription arm, SceneDocument document, const MeshModels& model
       arm_(std::move(arm)),
       document_(std::move(document)),
       rows_(arm_, document_.scene),
-      channels_(row_layout(arm_.dof(), document_.scene), slides_of(arm_),
-                body_names(document_.scene)) {
-  channels_.know(arm_);
+      channels_(arm_, row_layout(arm_.dof(), document_.scene), body_names(document_.scene)) {
   choose_plots(default_plots());
   show_meshes(models, std::nullopt);
 }

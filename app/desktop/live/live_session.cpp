@@ -16,12 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kDrainRows = 512;
 
-// Where a new loop rests: the tip as at the middle of the arm's limits.
-Vec3 home(const ArmDescription& arm) {
-  const Eigen::VectorXd x = rest_pose(arm);
-  return RowView(arm).tip({x.data(), static_cast<std::size_t>(x.size())});
-}
-
 }  // namespace
 
 LiveSession::~LiveSession() {
@@ -51,7 +45,7 @@ void LiveSession::complete_recording() {
 void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshModels& models,
                        const Parameters& p, double shown, std::unique_ptr<Device> device) {
   auto fresh = make_stage(std::move(arm), std::move(document), models, p, shown);
-  const Vec3 rest = home(fresh->arm());
+  const Vec3 rest = rest_tip(fresh->arm());
   if (device) {
     loop_.open(fresh->arm(), fresh->document().scene, p, std::move(device));
   } else {
@@ -99,11 +93,6 @@ void LiveSession::drop_pictures() {
 
 std::span<const double> LiveSession::row() const {
   return std::span(loop_.snapshot().row).first(static_cast<std::size_t>(loop_.layout().stride()));
-}
-
-bool LiveSession::force_armed() const {
-  const Arming now = loop_.snapshot().arming;
-  return now != Arming::off && now != Arming::tripped;
 }
 
 std::string LiveSession::why_time_is_fixed() const {

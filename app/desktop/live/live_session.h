@@ -49,8 +49,7 @@ class LiveSession {
   // Why there can be no twin now, or the present one has to stay; empty if it may change.
   std::string why_twin_is_fixed() const;
 
-  // Whether force is on, or will be as soon as nothing keeps it off.
-  bool force_armed() const;
+  bool force_armed() const { return loop_.snapshot().armed(); }
   void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
   // The virtual arm's time: why it goes on as it is, for people, empty if it can be changed;
   // whether it stands still; one tick, or more, of it.

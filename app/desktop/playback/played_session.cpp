@@ -24,8 +24,7 @@ constexpr double kOfStory = 12;  // that the plots show at once: about a step [s
 // there, else every setting that changes is marked.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
                    std::span<const double> again, const std::vector<StoryStep>& steps) {
-  TraceChannels channels(session.layout, slides_of(arm), session.info.bodies);
-  channels.know(arm);
+  TraceChannels channels(arm, session.layout, session.info.bodies);
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
   const double length = static_cast<double>(session.size()) * session.info.tick;

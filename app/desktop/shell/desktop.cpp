@@ -110,7 +110,7 @@ std::optional<Banner> live_force(const LiveSession& live) {
   if (now.arming == Arming::waiting) {
     return force_banner("Force waits, and fades in with the hand", why, false);
   }
-  if (now.arming != Arming::off && now.arming != Arming::tripped) return std::nullopt;
+  if (now.armed()) return std::nullopt;
   const bool recording = live.loop().recording();
   Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
                                recording || now.arming == Arming::tripped);

@@ -29,16 +29,6 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   return file;
 }
 
-fs::path new_file(const Keys& keys, const char* suffix) {
-  fs::path file = keys.text("file");
-  if (!file.is_absolute() || file.extension() != suffix) {
-    throw keys.error("file",
-                     fmt::format("{} is not allowed; allowed: a path from / on, ending in {}",
-                                 shown(file.string()), suffix));
-  }
-  return file;
-}
-
 std::string limits_of(const Parameters& p) {
   return parameter_text(p, *find_parameter("device.torque_limit")) + " " +
          parameter_text(p, *find_parameter("ledger.energy"));
@@ -137,27 +127,16 @@ std::string WindowRemote::last_complaint(const char* otherwise) const {
 
 json WindowRemote::state() const {
   const Stage& stage = d_.live.stage();
-  const LoopStatus status = d_.live.loop().status();
-  const Snapshot& now = d_.live.loop().snapshot();
-  return {{"arm", stage.arm().name},
-          {"joints", stage.arm().dof()},
-          {"scene", stage.document().title},
-          {"file", d_.document.file()},
-          {"objects", d_.document.scene().objects.size()},
-          {"device", d_.live.loop().device_in_place()},
-          {"force", d_.live.force_armed()},
-          {"why_no_force", explain(now.force_state)},
-          {"recording", d_.live.recording()},
-          {"playing", d_.playback.on()},
-          {"unstable", now.diverged},
-          {"ticks", status.ticks},
-          {"late", status.late},
-          {"missed", status.missed},
-          {"slipped", status.slipped},
-          {"rate", status.rate},
-          {"twin", d_.settings.twin.on},
-          {"blind", d_.blind},
-          {"hand", nullptr}};
+  json state = loop_state(d_.live.loop(), stage.arm());
+  state.update({{"scene", stage.document().title},
+                {"file", d_.document.file()},
+                {"objects", d_.document.scene().objects.size()},
+                {"recording", d_.live.recording()},
+                {"playing", d_.playback.on()},
+                {"twin", d_.settings.twin.on},
+                {"blind", d_.blind},
+                {"hand", nullptr}});
+  return state;
 }
 
 void WindowRemote::set(const Parameters& p, bool of_twin) {
@@ -226,7 +205,7 @@ Answer WindowRemote::record(const Keys& keys) {
   if (!d_.live.may_record()) throw RemoteError("record: the last one is being closed");
   fs::path file;
   if (keys.has("file")) {
-    file = new_file(keys, ".h5");
+    file = keys.file(".h5");
     if (fs::exists(file)) throw keys.error("file", file.string() + " exists already");
   }
   d_.notices.clear();
@@ -314,7 +293,7 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
 }
 
 Answer WindowRemote::picture(const Keys& keys) {
-  const fs::path file = new_file(keys, ".png");
+  const fs::path file = keys.file(".png");
   std::erase_if(saved_, [&](const SavedPicture& each) { return each.file == file; });
   if (!d_.asked.picture.empty()) throw RemoteError("picture: another one is being saved");
   d_.asked.picture = file;

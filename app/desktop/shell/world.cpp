@@ -383,8 +383,7 @@ Workplace World::workplace() const {
   Workplace at;
   at.base = arm.joints.front().origin.translation();
   at.reach = reach(arm);
-  const Eigen::VectorXd x = rest_pose(arm);
-  at.rest = stage.rows().tip({x.data(), static_cast<std::size_t>(x.size())});
+  at.rest = rest_tip(arm);
   const RowLayout& layout = d_.live.loop().layout();
   at.tips = {stage.rows().tip(layout.in(d_.live.row(), Column::device_position)),
              stage.rows().tip(layout.in(d_.live.row(), Column::proxy_position))};
