@@ -136,8 +136,9 @@ Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed)
       .title = "Coordination error |x1 - x2|", .x_label = "time [s]", .y_label = "error [mrad]"};
   for (const auto& [s, label, color] :
        {std::tuple(&a, "standard", kStandardInk), std::tuple(&b, "proposed", kProposedInk)}) {
-    force.series.push_back(over_time(*s, label, color, Series::Style::line,
-                                     [&](auto k) { return contact_torque(*s, k); }));
+    force.series.push_back(
+        over_time(*s, label, color, Series::Style::line,
+                  [&session = *s](auto k) { return contact_torque(session, k); }));
     error.series.push_back(error_over_time(*s, label, color));
   }
   FigurePanel scatter{.title = "Coordination error against contact torque",

@@ -183,15 +183,15 @@ struct Divide {
     template <int R>
     [[gnu::always_inline]] void operator()(Index r) const {
       const Factors f = all.F.of_columns_from(c);
-      const double* const scale = all.scale == nullptr ? nullptr : all.scale + c;
+      const double* const factors = all.scale == nullptr ? nullptr : all.scale + c;
       Tile<R, W> tile;
       tile.load(all.X + c * p + r, p);
       if constexpr (Rising) {
         tile.take(all.X + r, p, f, 0, c);
-        tile.finish_rising(f, c, scale);
+        tile.finish_rising(f, c, factors);
       } else {
         tile.take(all.X + r, p, f, c + W, columns<N>(all.n));
-        tile.finish_falling(f, c, scale);
+        tile.finish_falling(f, c, factors);
       }
       tile.store(all.X + c * p + r, p);
     }
