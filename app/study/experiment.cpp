@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
-#include <thread>
 #include <vector>
 
+#include "app/base/in_parallel.h"
 #include "app/base/markup.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
@@ -132,7 +131,7 @@ namespace fs = std::filesystem;
 
 Laboratory::Laboratory(std::string experiment, Options options)
     : experiment_(std::move(experiment)), options_(std::move(options)) {
-  if (options_.threads == 0) options_.threads = std::max(1u, std::thread::hardware_concurrency());
+  options_.threads = threads_for(options_.threads);
   if (options_.program == 0) options_.program = program_digest();
 }
 
@@ -173,33 +172,16 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
 }
 
 void Laboratory::each(std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
   std::size_t done = 0;
   std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work_on = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-        return;
-      }
-      const std::lock_guard lock(mutex);
-      ++done;
-      if (options_.progress) {
-        options_.progress(static_cast<double>(done) / static_cast<double>(count));
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    const auto most = std::min<std::size_t>(options_.threads, count);
-    for (std::size_t i = 0; i < most; ++i) threads.emplace_back(work_on);
-  }
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(count, options_.threads, [&](std::size_t i, const std::atomic<bool>&) {
+    work(i);
+    const std::lock_guard lock(mutex);
+    ++done;
+    const double part = static_cast<double>(done) / static_cast<double>(count);
+    if (options_.progress) options_.progress(part);
+    return true;
+  });
 }
 
 void Laboratory::run(const std::vector<Trial>& trials,

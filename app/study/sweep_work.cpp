@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <mutex>
-#include <thread>
+#include <optional>
 
+#include "app/base/in_parallel.h"
 #include "app/study/sweep_table.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/session/hdf5_reading.h"
@@ -136,78 +136,36 @@ fs::path plan_behind(const fs::path& dir) {
 
 namespace {
 
-// Blocks that threads take one after the other.
-class Team {
- public:
-  Team(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
-       const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done, const TakeBlock& take)
-      : plan_(plan), rows_(rows), folder_(folder), stop_(stop), done_(done), take_(take) {}
-
-  // False if stopped.
-  bool work(const std::vector<std::uint64_t>& blocks, unsigned threads) {
-    next_ = 0;
-    {
-      std::vector<std::jthread> all;
-      const auto count = std::min<std::size_t>(threads, blocks.size());
-      for (std::size_t i = 0; i < count; ++i) all.emplace_back([&] { work_on(blocks); });
-    }
-    if (failure_) std::rethrow_exception(failure_);
-    return !stop_.load();
-  }
-
- private:
-  void work_on(const std::vector<std::uint64_t>& blocks) {
-    try {
-      for (std::size_t i = next_++; i < blocks.size(); i = next_++) {
-        if (!do_block(blocks[i])) return;
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-      over_ = true;
-    }
-  }
-
-  bool do_block(std::uint64_t number) {
-    const SweepBlock block = rows_.block(number);
-    std::vector<double> values;
-    if (auto found = folder_.read(block)) {
-      values = *std::move(found);
-      done_ += block.size;
-    } else {
-      for (std::uint64_t i = 0; i < block.size; ++i) {
-        if (over_) return false;
-        const auto one = measure_point(plan_, rows_.point(block.first + i), stop_);
-        if (!one) return false;
-        values.insert(values.end(), one->begin(), one->end());
-        ++done_;
-      }
-      folder_.write(block, values);
-    }
-    const std::lock_guard lock(mutex_);
-    if (take_) take_(number, values);
-    return true;
-  }
-
-  const SweepPlan& plan_;
-  const SweepRows& rows_;
-  const SweepFolder& folder_;
-  const std::atomic<bool>& stop_;
-  std::atomic<std::uint64_t>& done_;
-  const TakeBlock& take_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> over_{false};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
+// Who may end the work on a block.
+struct Ends {
+  const std::atomic<bool>&stop, &over;
 };
+
+// As the folder has it, or measured, and written there; none if it was ended.
+std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepRows& rows,
+                                             const SweepFolder& folder, const SweepBlock& block,
+                                             const Ends& ends, std::atomic<std::uint64_t>& done) {
+  if (auto found = folder.read(block)) {
+    done += block.size;
+    return found;
+  }
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < block.size; ++i) {
+    if (ends.over) return std::nullopt;
+    const auto one = measure_point(plan, rows.point(block.first + i), ends.stop);
+    if (!one) return std::nullopt;
+    values.insert(values.end(), one->begin(), one->end());
+    ++done;
+  }
+  folder.write(block, values);
+  return values;
+}
 
 }  // namespace
 
 bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
               const SweepShare& share, const std::atomic<bool>& stop,
               std::atomic<std::uint64_t>& done, const TakeBlock& take) {
-  const unsigned threads =
-      share.threads > 0 ? share.threads : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::uint64_t> own, others;
   const std::uint64_t begin = rows.first_block(), count = rows.blocks() - begin;
   // Each begins elsewhere with what others may be doing, too.
@@ -217,8 +175,20 @@ bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& f
     const std::uint64_t turned = begin + (b + from) % count;
     if (turned % share.shards != share.shard) others.push_back(turned);
   }
-  Team team(plan, rows, folder, stop, done, take);
-  return team.work(own, threads) && (!share.helps || team.work(others, threads));
+  std::mutex taking;
+  const auto work = [&](const std::vector<std::uint64_t>& blocks) {
+    in_parallel(blocks.size(), threads_for(share.threads),
+                [&](std::size_t i, const std::atomic<bool>& over) {
+                  const auto values =
+                      values_of(plan, rows, folder, rows.block(blocks[i]), {stop, over}, done);
+                  if (!values) return false;
+                  const std::lock_guard lock(taking);
+                  if (take) take(blocks[i], *values);
+                  return true;
+                });
+    return !stop.load();
+  };
+  return work(own) && (!share.helps || work(others));
 }
 
 std::uint64_t SweepBook::missing() const {
