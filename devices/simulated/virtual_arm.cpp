@@ -10,8 +10,8 @@ namespace limpid {
 
 namespace {
 
-// The hand's force at an arm that moves so, to the change of what it is where the arm was looked
-// at.
+// The hand's force at an arm that moves so, to the change of what it is where the arm was
+// linearized.
 template <int M>
 [[gnu::always_inline]] inline void hold(const WideSubsteps& s, Four& force) {
   const Eigen::Index p = wide::rows<M>(s.n);
@@ -33,7 +33,7 @@ template <int M>
 }
 
 template <int M>
-[[gnu::always_inline]] inline void go_wide(const WideSubsteps& s) {
+[[gnu::always_inline]] inline void wide_substeps(const WideSubsteps& s) {
   using namespace wide;
   const Eigen::Index p = rows<M>(s.n);
   Vec3 force = s.force;
@@ -55,7 +55,7 @@ template <int M>
 // The same by dv = r - E v + K f, of what A^-1 makes of the rest: of few joints that costs as much
 // as the solves of five substeps, and what each of them waits for is less.
 template <int M>
-[[gnu::always_inline]] inline void go_prepared(const WideSubsteps& s) {
+[[gnu::always_inline]] inline void prepared_substeps(const WideSubsteps& s) {
   using namespace wide;
   constexpr Eigen::Index p = rows<M>(M);
   double E[M * p] = {}, K[3 * p] = {}, r[p] = {};
@@ -113,29 +113,29 @@ LIMPID_WIDE void stiffen<7>(Eigen::Index n, double by, double answer, const doub
 }
 
 template <>
-LIMPID_WIDE void go<kAnyDof>(const WideSubsteps& steps) {
-  go_wide<kByFours>(steps);
+LIMPID_WIDE void run_substeps<kAnyDof>(const WideSubsteps& steps) {
+  wide_substeps<kByFours>(steps);
 }
 
 template <>
-LIMPID_WIDE void go<7>(const WideSubsteps& steps) {
+LIMPID_WIDE void run_substeps<7>(const WideSubsteps& steps) {
   if (steps.count > 2) {
-    go_prepared<7>(steps);
+    prepared_substeps<7>(steps);
   } else {
-    go_wide<7>(steps);
+    wide_substeps<7>(steps);
   }
 }
 
 namespace {
 
-constexpr int kShare = 5;                // substeps that share a look
-constexpr double kFar = 0.05;            // looks this far apart say nothing of what comes [rad]
+constexpr int kShare = 5;      // substeps that share a linearization
+constexpr double kFar = 0.05;  // linearizations this far apart say nothing of what comes [rad]
 constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
 constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
 
 template <int N>
-Going<N, Pair> side_by_side(const std::array<Going<N, double>, 2>& goings) {
-  const auto& [one, two] = goings;
+SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
+  const auto& [one, two] = states;
   return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
 }
 
@@ -163,11 +163,11 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
   target_ = target;
   hand_torque_ = Vec<N>::Zero(x.size());
   renewed_ = 0;
-  looks_.x = x.template cast<Pair>();
-  looks_.v = v.template cast<Pair>();
+  linear_.x = x.template cast<Pair>();
+  linear_.v = v.template cast<Pair>();
   const auto angles = arm_.angles(x);
-  looks_.angles = {angles.sin.template cast<Pair>(), angles.cos.template cast<Pair>()};
-  look(true, std::nullopt);
+  linear_.angles = {angles.sin.template cast<Pair>(), angles.cos.template cast<Pair>()};
+  linearize(true, std::nullopt);
 }
 
 template <int N>
@@ -201,21 +201,21 @@ Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
 
 // What the arm is like at both places.
 template <int N>
-void VirtualArm<N>::look(bool drift, const std::optional<Vec3>& gravity) {
+void VirtualArm<N>::linearize(bool drift, const std::optional<Vec3>& gravity) {
   const int last = arm_.dof() - 1;
   typename Arm<N>::template FramesOf<Pair> frames;
   typename Arm<N>::template Bodies<Pair> bodies;
-  arm_.frames(looks_.angles, frames);
-  arm_.inertia(frames, bodies, looks_.M);
-  arm_.bias(frames, bodies, looks_.v, looks_.Cv);
-  looks_.tip = arm_.tip(frames);
-  arm_.point_jacobian(frames, last, looks_.tip, looks_.J);
-  looks_.drift = Vec3Of<Pair>::Zero();
-  if (drift) looks_.drift = arm_.point_drift(frames, last, looks_.tip, looks_.v);
+  arm_.frames(linear_.angles, frames);
+  arm_.inertia(frames, bodies, linear_.M);
+  arm_.bias(frames, bodies, linear_.v, linear_.Cv);
+  linear_.tip = arm_.tip(frames);
+  arm_.point_jacobian(frames, last, linear_.tip, linear_.J);
+  linear_.drift = Vec3Of<Pair>::Zero();
+  if (drift) linear_.drift = arm_.point_drift(frames, last, linear_.tip, linear_.v);
   if (gravity) {
     typename Arm<N>::Frames own[2];
     for (int i = 0; i < 2; ++i) arm_.take(frames, i, own[i]);
-    looks_.Cv += paired<N>(arm_.weight(own[0], *gravity), arm_.weight(own[1], *gravity));
+    linear_.Cv += paired<N>(arm_.weight(own[0], *gravity), arm_.weight(own[1], *gravity));
   }
 }
 
@@ -229,13 +229,13 @@ bool VirtualArm<N>::within_stops(const Vec<N>& x) const {
 // A substep with what friction, springs and stops add to A and b around its middle.
 template <int N>
 template <class Under>
-void VirtualArm<N>::go_resisted(const Drive<N>& d, const Under& stride, double t,
-                                Going<N, double>& at) const {
-  Mat<N> A = stride.A();
-  const double h = stride.h();
-  Vec<N> b = stride.b(t + h / 2, at.u, at.v);
+void VirtualArm<N>::resisted_substep(const Drive<N>& d, const Under& model, double t,
+                                     SubstepState<N, double>& at) const {
+  Mat<N> A = model.A();
+  const double h = model.h();
+  Vec<N> b = model.b(t + h / 2, at.u, at.v);
   for (Eigen::Index i = 0; i < b.size(); ++i) {
-    const double middle = stride.x()[i] + at.u[i] + h / 2 * at.v[i];
+    const double middle = model.x()[i] + at.u[i] + h / 2 * at.v[i];
     const double beyond = std::max(middle - upper_[i], 0.0) + std::min(middle - lower_[i], 0.0);
     double damping = 0, stiffness = 0;
     if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(at.v[i]), kStictionSpeed);
@@ -245,7 +245,7 @@ void VirtualArm<N>::go_resisted(const Drive<N>& d, const Under& stride, double t
     }
     if (beyond != 0) {
       stiffness = effort_[i] / kStopDepth;
-      damping += std::sqrt(stiffness * stride.M(i));
+      damping += std::sqrt(stiffness * model.M(i));
     }
     b[i] -= stiffness * beyond + damping * at.v[i];
     A(i, i) += damping / 2 + h / 4 * stiffness;
@@ -257,46 +257,44 @@ void VirtualArm<N>::go_resisted(const Drive<N>& d, const Under& stride, double t
 // at the start and then at the end.
 template <int N>
 template <class Under>
-[[gnu::always_inline]] inline Going<N, double> VirtualArm<N>::gone(const Drive<N>& d,
-                                                                   const Under& stride,
-                                                                   const Going<N, double>& from,
-                                                                   double t, int substeps,
-                                                                   bool& within) const {
+[[gnu::always_inline]] inline SubstepState<N, double> VirtualArm<N>::state_after(
+    const Drive<N>& d, const Under& model, const SubstepState<N, double>& from, double t,
+    int substeps, bool& within) const {
   if (within && !d.rubs && !d.springy) {
-    Going<N, double> to = stride.gone(from, t, substeps);
-    within = within_stops(stride.x() + to.u);
+    SubstepState<N, double> to = model.state_after(from, t, substeps);
+    within = within_stops(model.x() + to.u);
     if (within) return to;
   }
-  Going<N, double> at = from;
-  for (int s = 0; s < substeps; ++s) go_resisted(d, stride, t + s * stride.h(), at);
-  within = within_stops(stride.x() + at.u);
+  SubstepState<N, double> at = from;
+  for (int s = 0; s < substeps; ++s) resisted_substep(d, model, t + s * model.h(), at);
+  within = within_stops(model.x() + at.u);
   return at;
 }
 
 // Looks at where the arm will be on average over so many substeps from s on, and over as many after
-// them. It gets there in two big steps, by what the last two looks would have become.
+// them. It gets there in two big steps, by what the last two linearizations would have become.
 template <int N>
-void VirtualArm<N>::look_ahead(const Drive<N>& d, int s, int share, bool within) {
+void VirtualArm<N>::linearize_ahead(const Drive<N>& d, int s, int share, bool within) {
   // From the middle of the last share to that of the next two, in shares.
   bool near = true;
-  for (const Pair& x : looks_.x) near &= std::abs(x[1] - x[0]) < kFar;
-  const Look<N, double> last = beyond(looks_, near ? 1.5 : 0);
+  for (const Pair& x : linear_.x) near &= std::abs(x[1] - x[0]) < kFar;
+  const Linearization<N, double> last = beyond(linear_, near ? 1.5 : 0);
   const double h = share * d.h;
-  const Stride<N> stride(d, h, last);
-  Going<N, double> at{x_ - last.x, v_, Vec<N>::Zero(x_.size())};
+  const LinearSubsteps<N> model(d, h, last);
+  SubstepState<N, double> at{x_ - last.x, v_, Vec<N>::Zero(x_.size())};
   std::array<Vec<N>, 2> u, v;  // on average
   for (std::size_t i = 0; i < 2; ++i) {
-    const Going<N, double> from = at;
-    at = gone(d, stride, from, s * d.h + static_cast<double>(i) * h, 1, within);
+    const SubstepState<N, double> from = at;
+    at = state_after(d, model, from, s * d.h + static_cast<double>(i) * h, 1, within);
     const Vec<N> dv = at.v - from.v;
     u[i] = from.u + h / 2 * (from.v + 1. / 3 * dv);
     v[i] = from.v + 0.5 * dv;
   }
   const VecOf<N, Pair> dx = paired<N>(u[0], u[1]);
-  looks_.v = paired<N>(v[0], v[1]);
-  looks_.x = last.x.template cast<Pair>() + dx;
-  looks_.angles = arm_.turned(last.angles, dx);
-  look(d.mass > 0, d.gravity);
+  linear_.v = paired<N>(v[0], v[1]);
+  linear_.x = last.x.template cast<Pair>() + dx;
+  linear_.angles = arm_.turned(last.angles, dx);
+  linearize(d.mass > 0, d.gravity);
 }
 
 template <int N>
@@ -304,27 +302,27 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   const NoSubnormals fast_at_rest;
   const Drive<N> d = drive(p, torque, hand);
   renewed_ = renewed_ + 1 < x_.size() ? renewed_ + 1 : 0;  // turned angles drift
-  arm_.renew(renewed_, looks_.x[renewed_][1], looks_.angles);
+  arm_.renew(renewed_, linear_.x[renewed_][1], linear_.angles);
   hand_torque_.setZero();
   bool within = within_stops(x_);
   for (int s = 0; s < p.substeps;) {
     const int share = std::min(kShare, (p.substeps - s + 1) / 2);
-    look_ahead(d, s, share, within);
-    const Strides<N> strides(d, looks_);
+    linearize_ahead(d, s, share, within);
+    const LinearSubstepsOfTwo<N> models(d, linear_);
     const std::array<int, 2> substeps{share, std::min(share, p.substeps - s - share)};
-    std::array<Going<N, double>, 2> from, to;
+    std::array<SubstepState<N, double>, 2> from, to;
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto& stride = strides[static_cast<int>(i)];
-      from[i] = {x_ - stride.x(), v_, Vec<N>::Zero(x_.size())};
-      to[i] =
-          gone(d, stride, from[i], (s + static_cast<int>(i) * share) * d.h, substeps[i], within);
-      x_ = stride.x() + to[i].u;
+      const auto& model = models[static_cast<int>(i)];
+      from[i] = {x_ - model.x(), v_, Vec<N>::Zero(x_.size())};
+      to[i] = state_after(d, model, from[i], (s + static_cast<int>(i) * share) * d.h, substeps[i],
+                          within);
+      x_ = model.x() + to[i].u;
       v_ = to[i].v;
     }
     const Pair started(s * d.h, (s + share) * d.h), steps(substeps[0], substeps[1]);
     const VecOf<N, Pair> of_hand =
-        looks_.J.transpose() *
-        hand_force<N, Pair>(d, looks_, started, steps, side_by_side<N>(from), side_by_side<N>(to));
+        linear_.J.transpose() *
+        hand_force<N, Pair>(d, linear_, started, steps, side_by_side<N>(from), side_by_side<N>(to));
     for (Eigen::Index i = 0; i < x_.size(); ++i) hand_torque_[i] += of_hand[i][0] + of_hand[i][1];
     s += substeps[0] + substeps[1];
   }

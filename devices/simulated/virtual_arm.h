@@ -1,4 +1,4 @@
-// Several substeps of the virtual arm under one look at where it is and how heavy.
+// Several substeps of the virtual arm under one linearization: where it is, and how heavy.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 
 namespace limpid {
 
-// Where the arm was looked at, and what it was like. S: double, or Pair for two places.
+// Where the arm was linearized, and what it was like. S: double, or Pair for two places.
 template <int N, class S>
-struct Look {
+struct Linearization {
   VecOf<N, S> x, v;
   typename Arm<N>::template AnglesOf<S> angles;
   MatOf<N, S> M;
@@ -23,17 +23,17 @@ struct Look {
   JacobianOf<N, S> J;    // of the tip
 };
 
-// One of two, as far as strides ask for it.
+// One of two, as far as substeps ask for it.
 template <int N>
-Look<N, double> one(const Look<N, Pair>& looks, int which) {
-  Look<N, double> look;
-  take(looks.x, which, look.x);
-  take(looks.M, which, look.M);
-  take(looks.Cv, which, look.Cv);
-  take(looks.tip, which, look.tip);
-  take(looks.drift, which, look.drift);
-  take(looks.J, which, look.J);
-  return look;
+Linearization<N, double> one(const Linearization<N, Pair>& two, int which) {
+  Linearization<N, double> at;
+  take(two.x, which, at.x);
+  take(two.M, which, at.M);
+  take(two.Cv, which, at.Cv);
+  take(two.tip, which, at.tip);
+  take(two.drift, which, at.drift);
+  take(two.J, which, at.J);
+  return at;
 }
 
 // The second of two, with a model that is as far beyond its own as that is from the first's, times
@@ -47,17 +47,17 @@ void take_beyond(const Both& both, double on, One& one) {
   }
 }
 template <int N>
-Look<N, double> beyond(const Look<N, Pair>& looks, double on) {
-  Look<N, double> look;
-  take(looks.x, 1, look.x);
-  take(looks.angles.sin, 1, look.angles.sin);
-  take(looks.angles.cos, 1, look.angles.cos);
-  take(looks.tip, 1, look.tip);
-  take(looks.drift, 1, look.drift);
-  take_beyond(looks.M, on, look.M);
-  take_beyond(looks.Cv, on, look.Cv);
-  take_beyond(looks.J, on, look.J);
-  return look;
+Linearization<N, double> beyond(const Linearization<N, Pair>& two, double on) {
+  Linearization<N, double> at;
+  take(two.x, 1, at.x);
+  take(two.angles.sin, 1, at.angles.sin);
+  take(two.angles.cos, 1, at.angles.cos);
+  take(two.tip, 1, at.tip);
+  take(two.drift, 1, at.drift);
+  take_beyond(two.M, on, at.M);
+  take_beyond(two.Cv, on, at.Cv);
+  take_beyond(two.J, on, at.J);
+  return at;
 }
 
 // What acts on the arm over a tick, and the substep that the tick is taken in.
@@ -74,18 +74,18 @@ struct Drive {
   // What the hand makes of the tip's velocity, and of its change, over a substep of dt [N s/m].
   double along_rate(double dt) const { return grip + dt / 2 * stiffness; }
   double answer(double dt) const { return grip / 2 + dt / 4 * stiffness + mass / dt; }
-  // Its force at t on an arm that stays where it was looked at [N].
+  // Its force at t on an arm that stays where it was linearized [N].
   template <class S>
-  Vec3Of<S> force_there(const Look<N, S>& look, const S& t) const {
+  Vec3Of<S> force_there(const Linearization<N, S>& at, const S& t) const {
     const Vec3 at_start = stiffness * target + grip * target_rate, rate = stiffness * target_rate;
-    return at_start.cast<S>() + t * rate.cast<S>() - S(stiffness) * look.tip - S(mass) * look.drift;
+    return at_start.cast<S>() + t * rate.cast<S>() - S(stiffness) * at.tip - S(mass) * at.drift;
   }
 };
 
-// Where substeps have got to under a look.
+// Where substeps have got to under a linearization.
 template <int N, class S>
-struct Going {
-  VecOf<N, S> u, v;   // x less the look's; v
+struct SubstepState {
+  VecOf<N, S> u, v;   // x less the linearization's; v
   VecOf<N, S> sum_u;  // of u over the substeps that were taken, each where it began
 
   void take(double h, const VecOf<N, S>& dv) {
@@ -97,13 +97,14 @@ struct Going {
 
 // The hand's force at the tip, summed over so many substeps that led from one to the other [N].
 template <int N, class S>
-Vec3Of<S> hand_force(const Drive<N>& d, const Look<N, S>& look, const S& t, const S& substeps,
-                     const Going<N, S>& from, const Going<N, S>& to) {
+Vec3Of<S> hand_force(const Drive<N>& d, const Linearization<N, S>& at, const S& t,
+                     const S& substeps, const SubstepState<N, S>& from,
+                     const SubstepState<N, S>& to) {
   const VecOf<N, S> dv = to.v - from.v;
   const VecOf<N, S> sum_v = S(1 / d.h) * (to.u - from.u) - S(0.5) * dv;
   const VecOf<N, S> moved =
       S(d.stiffness) * to.sum_u + S(d.along_rate(d.h)) * sum_v + S(d.answer(d.h)) * dv;
-  return substeps * d.force_there(look, t + S(0.5 * d.h) * substeps) - look.J * moved;
+  return substeps * d.force_there(at, t + S(0.5 * d.h) * substeps) - at.J * moved;
 }
 
 // Substeps of more than three joints, in columns as wide as they are made up to whole fours: n and
@@ -113,12 +114,12 @@ struct WideSubsteps {
   const double *lower, *corners;
   const double *J_T, *steady, *damping;  // 3 columns; what does not change [N m]; of the joints
   double h, stiffness, along_rate;       // see Drive
-  Vec3 force, force_step;                // of the hand where the arm was looked at; its change [N]
+  Vec3 force, force_step;                // of the hand where the arm was linearized; its change [N]
   double *u, *v, *sum_u, *dv;
   int count;
 };
 template <int N>
-void go(const WideSubsteps& steps);
+void run_substeps(const WideSubsteps& steps);
 // A times `by` and J^T J times `answer` more.
 template <int N>
 void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
@@ -127,22 +128,22 @@ void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double
 // it there, and the change that it makes of v then corrects:
 //     A dv = b(t, u, v), x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
 template <int N>
-class Stride {
+class LinearSubsteps {
  public:
   // Both are to live on.
-  Stride(const Drive<N>& drive, double h, const Look<N, double>& look)
-      : d_(drive), h_(h), look_(look), A_(widened<N>(look.M)) {
+  LinearSubsteps(const Drive<N>& drive, double h, const Linearization<N, double>& at)
+      : d_(drive), h_(h), linear_(at), A_(widened<N>(at.M)) {
     if constexpr (N == 3) {
       A_ *= 1 / h;
       for (Eigen::Index j = 0; j < A_.cols(); ++j) {
-        const Vec3 held = d_.answer(h) * look_.J.col(j);
-        for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += look_.J.col(i).dot(held);
+        const Vec3 held = d_.answer(h) * linear_.J.col(j);
+        for (Eigen::Index i = j; i < A_.rows(); ++i) A_(i, j) += linear_.J.col(i).dot(held);
         A_(j, j) += d_.damping[j] / 2;
       }
     } else {
       const Eigen::Index n = A_.cols();
       J_T_.resize(A_.rows(), Eigen::NoChange);
-      J_T_.topRows(n) = look_.J.transpose();
+      J_T_.topRows(n) = linear_.J.transpose();
       J_T_.bottomRows(A_.rows() - n).setZero();
       stiffen<N>(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
       A_.diagonal() += 0.5 * d_.damping;
@@ -151,19 +152,19 @@ class Stride {
   }
 
   double h() const { return h_; }
-  const Vec<N>& x() const { return look_.x; }  // of the look
-  double M(Eigen::Index joint) const { return look_.M(joint, joint); }
+  const Vec<N>& x() const { return linear_.x; }  // of the linearization
+  double M(Eigen::Index joint) const { return linear_.M(joint, joint); }
   Mat<N> A() const { return narrowed<N>(A_); }  // its lower triangle
   [[gnu::always_inline]] Vec<N> b(double t, const Vec<N>& u, const Vec<N>& v) const {
     const Vec3 force =
-        d_.force_there(look_, t) - look_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
-    Vec<N> b = d_.torque - look_.Cv - d_.damping.cwiseProduct(v);
-    b.noalias() += look_.J.transpose() * force;
+        d_.force_there(linear_, t) - linear_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
+    Vec<N> b = d_.torque - linear_.Cv - d_.damping.cwiseProduct(v);
+    b.noalias() += linear_.J.transpose() * force;
     return b;
   }
 
   // Where so many substeps lead from t on.
-  Going<N, double> gone(Going<N, double> at, double t, int substeps) const {
+  SubstepState<N, double> state_after(SubstepState<N, double> at, double t, int substeps) const {
     if constexpr (N == 3) {
       for (int s = 0; s < substeps; ++s) {
         at.take(h_, factor_.solve(b(t + (s + 0.5) * h_, at.u, at.v)));
@@ -171,14 +172,14 @@ class Stride {
       return at;
     } else {
       const Eigen::Index n = at.u.size(), p = whole_fours(static_cast<int>(n));
-      const WideVec<N> steady = widened_vector<N>(d_.torque - look_.Cv);
+      const WideVec<N> steady = widened_vector<N>(d_.torque - linear_.Cv);
       const WideVec<N> damping = widened_vector<N>(d_.damping);
       WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
       WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
-      go<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(), damping.data(), h_,
-             d_.stiffness, d_.along_rate(h_), d_.force_there(look_, t + 0.5 * h_),
-             h_ * d_.stiffness * d_.target_rate, u.data(), v.data(), sum_u.data(), dv.data(),
-             substeps});
+      run_substeps<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(),
+                       damping.data(), h_, d_.stiffness, d_.along_rate(h_),
+                       d_.force_there(linear_, t + 0.5 * h_), h_ * d_.stiffness * d_.target_rate,
+                       u.data(), v.data(), sum_u.data(), dv.data(), substeps});
       return {u.head(n), v.head(n), sum_u.head(n)};
     }
   }
@@ -186,38 +187,42 @@ class Stride {
  private:
   const Drive<N>& d_;
   double h_;
-  const Look<N, double>& look_;
+  const Linearization<N, double>& linear_;
   Wide<N> A_;
   Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T_;
   SymmetricFactor<N> factor_;
 };
 
-// Strides under both looks.
+// Substeps under each of two linearizations.
 template <int N>
-class Strides {
+class LinearSubstepsOfTwo {
  public:
-  Strides(const Drive<N>& drive, const Look<N, Pair>& looks)
-      : looks_{one(looks, 0), one(looks, 1)},
-        strides_{Stride<N>(drive, drive.h, looks_[0]), Stride<N>(drive, drive.h, looks_[1])} {}
-  Strides(const Strides&) = delete;
-  Strides& operator=(const Strides&) = delete;
-  const Stride<N>& operator[](int look) const { return strides_[static_cast<std::size_t>(look)]; }
+  LinearSubstepsOfTwo(const Drive<N>& drive, const Linearization<N, Pair>& two)
+      : linear_{one(two, 0), one(two, 1)},
+        both_of_them_{LinearSubsteps<N>(drive, drive.h, linear_[0]),
+                      LinearSubsteps<N>(drive, drive.h, linear_[1])} {}
+  LinearSubstepsOfTwo(const LinearSubstepsOfTwo&) = delete;
+  LinearSubstepsOfTwo& operator=(const LinearSubstepsOfTwo&) = delete;
+  const LinearSubsteps<N>& operator[](int which) const {
+    return both_of_them_[static_cast<std::size_t>(which)];
+  }
 
  private:
-  std::array<Look<N, double>, 2> looks_;
-  std::array<Stride<N>, 2> strides_;
+  std::array<Linearization<N, double>, 2> linear_;
+  std::array<LinearSubsteps<N>, 2> both_of_them_;
 };
 
 // Of three joints both are prepared side by side as dv = P u + Q v + r + t s.
 template <>
-class Strides<3> {
+class LinearSubstepsOfTwo<3> {
  public:
-  Strides(const Drive<3>& drive, const Look<3, Pair>& looks) : d_(drive), looks_(looks) {
+  LinearSubstepsOfTwo(const Drive<3>& drive, const Linearization<3, Pair>& two)
+      : d_(drive), linear_(two) {
     Mat3Of<Pair> G;
     for (Eigen::Index j = 0; j < 3; ++j) {
       for (Eigen::Index i = j; i < 3; ++i) {
-        G(i, j) = G(j, i) = looks.J.col(i).dot(looks.J.col(j));
-        A_(i, j) = Pair(1 / d_.h) * looks.M(i, j) + Pair(d_.answer(d_.h)) * G(i, j);
+        G(i, j) = G(j, i) = two.J.col(i).dot(two.J.col(j));
+        A_(i, j) = Pair(1 / d_.h) * two.M(i, j) + Pair(d_.answer(d_.h)) * G(i, j);
       }
       A_(j, j) += d_.damping[j] / 2;
     }
@@ -226,36 +231,37 @@ class Strides<3> {
     P_ = Pair(-d_.stiffness) * of_grip;
     Q_ = Pair(-d_.along_rate(d_.h)) * of_grip - inverse * d_.damping.cast<Pair>().asDiagonal();
     r_ = inverse *
-         (d_.torque.cast<Pair>() - looks.Cv + looks.J.transpose() * d_.force_there(looks, Pair(0)));
+         (d_.torque.cast<Pair>() - two.Cv + two.J.transpose() * d_.force_there(two, Pair(0)));
     const Vec3 rate = d_.stiffness * d_.target_rate;
-    s_ = inverse * (looks.J.transpose() * rate.cast<Pair>());
+    s_ = inverse * (two.J.transpose() * rate.cast<Pair>());
   }
 
   // One of them.
   class Under {
    public:
-    Under(const Strides& both, int look) : both_(both), look_(look) {
-      take(both.looks_.x, look, x_);
+    Under(const LinearSubstepsOfTwo& both, int which) : both_(both), which_(which) {
+      take(both.linear_.x, which, x_);
       for (Eigen::Index j = 0; j < 3; ++j) {
-        P_.col(j) = packed(both.P_.col(j), look);
-        Q_.col(j) = packed(both.Q_.col(j), look);
+        P_.col(j) = packed(both.P_.col(j), which);
+        Q_.col(j) = packed(both.Q_.col(j), which);
       }
-      r_ = packed(both.r_, look);
-      s_ = packed(both.s_, look);
+      r_ = packed(both.r_, which);
+      s_ = packed(both.s_, which);
     }
     double h() const { return both_.d_.h; }
     const Vec3& x() const { return x_; }
-    double M(Eigen::Index joint) const { return both_.looks_.M(joint, joint)[look_]; }
+    double M(Eigen::Index joint) const { return both_.linear_.M(joint, joint)[which_]; }
     Mat3 A() const {
       Mat3 A;
-      take(both_.A_, look_, A);
+      take(both_.A_, which_, A);
       return A;
     }
     Vec3 b(double t, const Vec3& u, const Vec3& v) const {
       const Column dv = product(P_, packed(u)) + product(Q_, packed(v)) + r_ + Pair(t) * s_;
       return A().selfadjointView<Eigen::Lower>() * single(dv);
     }
-    Going<3, double> gone(const Going<3, double>& at, double t, int substeps) const {
+    SubstepState<3, double> state_after(const SubstepState<3, double>& at, double t,
+                                        int substeps) const {
       const double h = both_.d_.h;
       Column u = packed(at.u), v = packed(at.v), sum_u = packed(at.sum_u);
       Column now = r_ + Pair(t + h / 2) * s_;
@@ -275,25 +281,25 @@ class Strides<3> {
     using Column = Eigen::Matrix<Pair, 2, 1>;
     using Columns = Eigen::Matrix<Pair, 2, 3>;
     template <class V>
-    static Column packed(const V& v, int look = 0) {
-      return {Pair(of(v[0], look), of(v[1], look)), Pair(of(v[2], look), 0)};
+    static Column packed(const V& v, int which = 0) {
+      return {Pair(of(v[0], which), of(v[1], which)), Pair(of(v[2], which), 0)};
     }
     static Vec3 single(const Column& c) { return {c[0][0], c[0][1], c[1][0]}; }
     static Column product(const Columns& M, const Column& c) {
       return M.col(0) * Pair(c[0][0]) + M.col(1) * Pair(c[0][1]) + M.col(2) * Pair(c[1][0]);
     }
 
-    const Strides& both_;
-    int look_;
+    const LinearSubstepsOfTwo& both_;
+    int which_;
     Vec3 x_;
     Columns P_, Q_;
     Column r_, s_;
   };
-  Under operator[](int look) const { return {*this, look}; }
+  Under operator[](int which) const { return {*this, which}; }
 
  private:
   const Drive<3>& d_;
-  const Look<3, Pair>& looks_;
+  const Linearization<3, Pair>& linear_;
   Mat3Of<Pair> A_, P_, Q_;  // of A the lower triangle
   Vec3Of<Pair> r_, s_;
 };
@@ -303,10 +309,10 @@ class Strides<3> {
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
 // at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated
 // in substeps of the tick with the motor torque held: linearly implicit midpoint rule, second order
-// and without numerical damping, stable for every grip. Several substeps share one look at where
-// the arm is and how heavy, taken where it is on average over them, x + S v/2 + S dv/6, v + dv/2 if
-// v changes by dv in S seconds: what changes evenly then makes no error, and what is left is of
-// second order in the arm's way in S.
+// and without numerical damping, stable for every grip. Several substeps share one linearization:
+// where the arm is and how heavy, taken where it is on average over them, x + S v/2 + S dv/6, v +
+// dv/2 if v changes by dv in S seconds: what changes evenly then makes no error, and what is left
+// is of second order in the arm's way in S.
 template <int N>
 class VirtualArm {
  public:
@@ -314,7 +320,7 @@ class VirtualArm {
 
   // Puts it somewhere, the hand's target on the tip [rad, rad/s].
   void place(const Vec<N>& x, const Vec<N>& v, const Vec3& target);
-  // As the encoders and as a god see it.
+  // As the encoders have it, and as it is.
   Reading<N> read(double encoder_step) const;
   // Lives through one tick under this motor torque [N m].
   void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
@@ -326,22 +332,24 @@ class VirtualArm {
 
  private:
   Drive<N> drive(const Parameters& p, const Vec<N>& torque, const HandInput& hand) const;
-  void look(bool drift, const std::optional<Vec3>& gravity);
-  void look_ahead(const Drive<N>& d, int s, int share, bool within);
+  void linearize(bool drift, const std::optional<Vec3>& gravity);
+  void linearize_ahead(const Drive<N>& d, int s, int share, bool within);
   bool within_stops(const Vec<N>& x) const;
   template <class Under>
-  Going<N, double> gone(const Drive<N>& d, const Under& stride, const Going<N, double>& from,
-                        double t, int substeps, bool& within) const;
+  SubstepState<N, double> state_after(const Drive<N>& d, const Under& model,
+                                      const SubstepState<N, double>& from, double t, int substeps,
+                                      bool& within) const;
   template <class Under>
-  void go_resisted(const Drive<N>& d, const Under& stride, double t, Going<N, double>& at) const;
+  void resisted_substep(const Drive<N>& d, const Under& model, double t,
+                        SubstepState<N, double>& at) const;
 
   Arm<N> arm_;
   Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
   Vec3 gravity_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
-  Look<N, Pair> looks_;       // the newest two
-  Eigen::Index renewed_ = 0;  // joint whose sine was asked for last
+  Linearization<N, Pair> linear_;  // the newest two
+  Eigen::Index renewed_ = 0;       // joint whose sine was asked for last
 };
 
 // The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.
