@@ -1,9 +1,4 @@
-// Which way up the glTF pictures of an arm's links are.
-//
-// glTF has y up and URDF z, and so ROS turns these pictures. Some makers write them with z up all
-// the same, and a turned picture then lies across its link. Both are tried, and the one is kept in
-// which the pictures are where the links are: in the boxes of their collision shapes, or without
-// any in boxes around the frames that the links carry.
+// An arm as its makers drew it, and as a chain of capsules where they did not.
 #pragma once
 
 #include <map>
@@ -17,6 +12,13 @@
 
 namespace limpid {
 
+// Which way up the glTF pictures of an arm's links are.
+//
+// glTF has y up and URDF z, and so ROS turns these pictures. Some makers write them with z up all
+// the same, and a turned picture then lies across its link. Both are tried, and the one is kept in
+// which the pictures are where the links are: in the boxes of their collision shapes, or without
+// any in boxes around the frames that the links carry.
+
 bool is_gltf(const std::string& file);  // by its suffix
 
 // Of the glTF files among `models`, which are as they are in their files, those that have z up.
@@ -28,8 +30,6 @@ std::set<std::string> with_z_up(const ArmDescription& arm,
 
 // From y up to z up.
 void stand_upright(Model& model);
-
-// An arm as its makers drew it, and as a chain of capsules where they did not.
 
 // Reads the models of the visuals that have none yet; for the window's thread only where they are
 // small. One that cannot be read, or is empty, becomes a stand-in, with a line in the arm's

@@ -1,4 +1,4 @@
-// Times of many runs of the same thing, and what they amount to.
+// How fast the parts of the program are here, in times, ratios and instructions.
 #pragma once
 
 #include <chrono>
@@ -11,6 +11,8 @@
 #include <vector>
 
 namespace limpid::bench {
+
+// Times of many runs of the same thing, and what they amount to.
 
 class Samples {
  public:
@@ -64,8 +66,6 @@ class InstructionCounter {
 };
 
 }  // namespace limpid::bench
-// How fast the parts of the program are here, in times, ratios and instructions.
-
 namespace limpid::bench {
 
 // What one thing took.

@@ -1,4 +1,4 @@
-// A folder for what a command finds.
+// How far a piece of work is, on a terminal.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,8 @@
 
 namespace limpid {
 
+// A folder for what a command finds.
+
 // Before any work, so that none is lost on a place that cannot be written or is full: the folder is
 // there then. Errors: UsageError.
 void prepare_out(const std::filesystem::path& dir);
@@ -20,8 +22,6 @@ void prepare_out(const std::filesystem::path& dir);
 // called all along and takes the time between two looks. False once that says false. Errors:
 // UsageError at the end of what can be typed.
 bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhile);
-
-// How far a piece of work is, on a terminal.
 
 // One line on standard error, rewritten in place: "run: 41 %, 12.3 of 30.0 s, 85 times real time,
 // 4 s left". Only where that is a terminal, only once the work takes over a second; gone when the

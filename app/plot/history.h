@@ -1,4 +1,4 @@
-// Smallest and largest of some values.
+// The past of every plotted quantity: the newest minute of a running loop or a whole recording.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,8 @@
 #include <vector>
 
 namespace limpid {
+
+// Smallest and largest of some values.
 
 struct Extent {
   float low = std::numeric_limits<float>::infinity();
@@ -86,8 +88,6 @@ class MinMaxRing {
   SampleIndex end_ = 0;
   SampleIndex lap_ = 0;
 };
-
-// The past of every plotted quantity: the newest minute of a running loop or a whole recording.
 
 // A moment worth remembering, such as a change of a setting.
 struct Mark {

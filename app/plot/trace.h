@@ -1,4 +1,4 @@
-// Where a band of a plot says what.
+// What of a curve falls on which pixel: the shape that the window draws and picture files store.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,8 @@
 
 namespace limpid {
 
+// Where a band of a plot says what.
+
 // From one pixel up to another one the band's channel says the same: the number of a name.
 struct BandStretch {
   int said;
@@ -22,8 +24,6 @@ struct BandStretch {
 // interest there.
 std::vector<BandStretch> band_stretches(const Band& band, const History& history,
                                         const std::vector<SampleIndex>& rows);
-
-// What of a curve falls on which pixel: the shape that the window draws and picture files store.
 
 // A stretch of the time axis over a row of pixels. It begins at a whole multiple of a pixel's
 // duration, so that a moving window gathers the same samples in a pixel from frame to frame and

@@ -1,4 +1,4 @@
-// From when on a loop does what no arm can do, and how to say so.
+// What a run or a recording amounts to, in a few lines.
 #pragma once
 
 #include <cmath>
@@ -12,6 +12,8 @@
 #include "devices/files/session/session_units.h"
 
 namespace limpid {
+
+// From when on a loop does what no arm can do, and how to say so.
 
 // Watches rows in turn. A row is wild when a joint turns faster than 1e3 rad/s, is asked for more
 // than 1e4 N m, or device and proxy are 10 rad apart; a loop that got there may come back, and
@@ -42,8 +44,6 @@ class DivergenceWatch {
 
 // In lines for people, one for each reason.
 std::string force_tally(const Session& session);
-
-// What a run or a recording amounts to, in a few lines.
 
 // Of a loop that became unstable: what it did while it was stable, and since when it was not.
 class Summary {

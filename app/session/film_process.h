@@ -1,4 +1,4 @@
-// A video as it is asked for in the window.
+// A session's video made beside a window, by a process of its own.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,8 @@
 #include <vector>
 
 namespace limpid {
+
+// A video as it is asked for in the window.
 
 struct VideoRequest {
   enum class Kind : std::uint8_t { mp4, gif, png };  // png: a folder of them
@@ -27,8 +29,6 @@ std::vector<std::string> words_of(const VideoRequest& order);
 // A name that is free, beside the session's file or, where nothing can be written, in `otherwise`.
 std::filesystem::path video_of(const std::filesystem::path& session, VideoRequest::Kind kind,
                                const std::filesystem::path& otherwise);
-
-// A session's video made beside a window, by a process of its own.
 
 // Runs `limpid play SESSION --video OUT` with these `options` at low priority and waits for it:
 // ImGui serves one thread of a program only, and the loop keeps its processor. `part` is set to

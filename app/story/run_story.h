@@ -1,4 +1,4 @@
-// What a session keeps of the story that it tells: title and steps, to be shown with it again.
+// Runs a story, and measures what happens in each of its steps.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,8 @@
 #include "app/story/story.h"
 
 namespace limpid {
+
+// What a session keeps of the story that it tells: title and steps, to be shown with it again.
 
 struct ToldSteps {
   std::string title;
@@ -22,8 +24,6 @@ ToldSteps read_told(const std::string& text, const std::string& where);
 
 // Of a session's file. Errors: as attached_story() and read_told().
 ToldSteps told_in(const std::filesystem::path& session);
-
-// Runs a story, and measures what happens in each of its steps.
 
 // What one run did in one step.
 struct StepNumbers {

@@ -1,4 +1,4 @@
-// Under which conditions an experiment's runs were made, for its caption.
+// Experiments: the runs that they make, their checks, and what comes of them.
 #pragma once
 
 #include <algorithm>
@@ -19,6 +19,8 @@
 #include "core/tick/parameters.h"
 
 namespace limpid {
+
+// Under which conditions an experiment's runs were made, for its caption.
 
 // Gathers them from the runs themselves, so that none goes unsaid: arm, limit of the motors, grip,
 // mass of the hand, encoders, delay and tick.

@@ -1,4 +1,4 @@
-// Points spread over the unit cube.
+// The axes of a sweep's plan.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,8 @@
 #include "devices/files/toml_reader.h"
 
 namespace limpid {
+
+// Points spread over the unit cube.
 
 // `count` values in [0, 1) for each of `dimensions`: [dimension][sample]. The same seed gives the
 // same everywhere.
@@ -19,8 +21,6 @@ UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64
 // Sobol's sequence from its second point on, shifted by the seed round the cube (Cranley and
 // Patterson).
 UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
-
-// The axes of a sweep's plan.
 
 // Of [[axis]]; sampled ones are without values until all are known. Errors: FileError.
 struct AxisRange {

@@ -1,4 +1,4 @@
-// Points of many axes side by side.
+// A sweep's table as a figure.
 #pragma once
 
 #include "app/study/figure.h"
@@ -6,14 +6,14 @@
 
 namespace limpid {
 
+// Points of many axes side by side.
+
 // An upright for each axis of numbers, from its lowest value to its highest, and one for the
 // measure that the figure shows; each point a line across, in the colour of its measure: no and
 // yes, or by quarters. kMostLines at most, evenly thinned.
 FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table);
 
 inline constexpr std::size_t kMostLines = 600;
-
-// A sweep's table as a figure.
 
 // Of what is done: a map over two axes of numbers, slices over one, parallel coordinates over
 // sampled ones; a boundary over one, with the lines of theory that the plan asks for. A panel for

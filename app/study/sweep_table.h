@@ -1,4 +1,4 @@
-// HDF5 files made in memory and put in their place whole.
+// What a sweep has found so far, and its files.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,8 @@
 #include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
+
+// HDF5 files made in memory and put in their place whole.
 
 class FileImage {
  public:
@@ -34,8 +36,6 @@ class FileImage {
   std::filesystem::path path_;
   hdf5::File file_;
 };
-
-// What a sweep has found so far, and its files.
 
 // A value for every measured column of every point, row by row.
 struct SweepTable {

@@ -1,4 +1,4 @@
-// A number as a slider: what value_slider() and parameter_slider() are made of.
+// One parameter as a slider, a check box or a row of choices.
 #pragma once
 
 #include <imgui.h>
@@ -6,6 +6,8 @@
 #include "core/tick/parameters.h"
 
 namespace limpid {
+
+// A number as a slider: what value_slider() and parameter_slider() are made of.
 
 bool is_int(const ParameterInfo& info);
 
@@ -24,8 +26,6 @@ bool number_slider(const ParameterInfo& info, double& value, double usual, bool 
 
 // The frame round what is broken.
 void draw_broken_frame(ImVec2 from, ImVec2 to);
-
-// One parameter as a slider, a check box or a row of choices.
 
 // Draws the widget for `info` at ImGui's cursor over the width left, and changes `parameters`;
 // returns whether it did. `usual` is marked on the slider and a right click goes back to it

@@ -1,4 +1,4 @@
-// Tooltips that stand beside what they explain.
+// What people read of a parameter: words first, the symbol after.
 #pragma once
 
 #include <imgui.h>
@@ -9,14 +9,14 @@
 
 namespace limpid {
 
+// Tooltips that stand beside what they explain.
+
 // Of the item between two corners [ImGui's coordinates]: beside the panel that it is in, or above
 // or below it where that reaches across the window. Pairs with end_tooltip().
 void begin_tooltip(ImVec2 from, ImVec2 to);
 void end_tooltip();
 // Of ImGui's last item, while the mouse is over it.
 void tooltip(const char* text);
-
-// What people read of a parameter: words first, the symbol after.
 
 // Beside a slider: "Impedance scaling η". What has no words of its own is called by its label.
 const char* caption(const ParameterInfo& info);

@@ -1,4 +1,4 @@
-// Velocity from sampled positions: raw, low-pass, or adaptive window.
+// The human force observer, (16)-(18).
 #pragma once
 
 #include <array>
@@ -10,6 +10,8 @@
 #include "core/math/solve.h"
 
 namespace limpid {
+
+// Velocity from sampled positions: raw, low-pass, or adaptive window.
 
 // The adaptive window is the end-fit one of Janabi-Sharifi, Hayward and Chen (2000): the longest
 // window whose chord passes within one encoder step of every sample in it. Without quantisation
@@ -76,8 +78,6 @@ class VelocityEstimator {
   std::size_t known_ = 1;
   Vec<N> raw_, estimate_;
 };
-
-// The human force observer, (16)-(18).
 
 // With f1_hat = z + alpha v, (17) says f1_hat' = L (f1 - f1_hat), L = alpha M^-1: the disturbance
 //     d = M vdot + C v - tau

@@ -1,5 +1,5 @@
-// Settings that people can change, described once for the command line, configuration files,
-// sliders, tooltips and help. Whatever has settings describes them beside itself.
+// The coupling laws there are: what people read about each of them, and what can be set of it and
+// of the observer. A new one is its entry here, and a file like proposed.h that says what it does.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,9 @@
 #include <variant>
 
 namespace limpid {
+
+// Settings that people can change, described once for the command line, configuration files,
+// sliders, tooltips and help. Whatever has settings describes them beside itself.
 
 // One of a few words: an enumeration's 0, 1, ...
 template <class Owner>
@@ -55,9 +58,6 @@ constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
   ((std::copy(parts.begin(), parts.end(), all.begin() + at), at += Size), ...);
   return all;
 }
-
-// The coupling laws there are: what people read about each of them, and what can be set of it and
-// of the observer. A new one is its entry here, and a file like proposed.h that says what it does.
 
 // What people read about a law, and what it uses.
 struct LawInfo {

@@ -1,10 +1,12 @@
-// Why there is no force, or less of it.
+// Arming: when the force of a device is on, and why it is off. ForceGate is the table of transitions.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 namespace limpid {
+
+// Why there is no force, or less of it.
 
 // The order is that of the session file's /device/force_state.
 enum class ForceState : std::uint8_t {

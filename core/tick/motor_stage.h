@@ -1,9 +1,11 @@
-// How much torque may leave for the motors: so much a joint, and so much force at the tip.
+// The last stage before the motors: torques leave finite, within limits, and without jumps.
 #pragma once
 
 #include "core/dynamics/arm.h"
 
 namespace limpid {
+
+// How much torque may leave for the motors: so much a joint, and so much force at the tip.
 
 // The smallest force at the tip that makes this torque, as far as a force there can [N].
 template <int N>
@@ -34,8 +36,6 @@ struct TorqueLimits {
 extern template double tip_force<3>(const Vec<3>&, const Jacobian<3>&);
 extern template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
 extern template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);
-
-// The last stage before the motors: torques leave finite, within limits, and without jumps.
 
 // At rest it only clamps; where motors are guarded it bounds the rate as well. While a coupling is
 // being switched the torque moves at a bounded rate until it meets the new command.

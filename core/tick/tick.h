@@ -1,4 +1,4 @@
-// The paper's controller energy E_c, kept twice.
+// One tick of the loop: the paper from the reading of a device to the torque of its motors.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,8 @@
 #include "core/touch/proxy.h"
 
 namespace limpid {
+
+// The paper's controller energy E_c, kept twice.
 
 // E_c = sum over ticks of tau1 . dx1 + tau2 . dx2. Commanded: motors and proxy, what instruments
 // see. Total: with the device's own damping, -b_d/T dx1 . dx1 a tick.
@@ -44,8 +46,6 @@ struct EnergyBooks {
     return contact + stored - stored_at_first + given;
   }
 };
-
-// One tick of the loop: the paper from the reading of a device to the torque of its motors.
 
 // What a device says at t_k.
 template <int N>

@@ -1,4 +1,5 @@
-// The force of a mesh's room of planes over a whole tick, conservative like a single wall's.
+// The forces of all contacts over a tick together: walls and meshes, with damping and friction, by
+// Gauss-Seidel sweeps over forces that do exactly the work that the contacts' potentials lose.
 #pragma once
 
 #include <span>
@@ -10,6 +11,8 @@
 #include "core/touch/wall_force.h"
 
 namespace limpid {
+
+// The force of a mesh's room of planes over a whole tick, conservative like a single wall's.
 
 // A spring K and damper B that pull the centre of a ball to the nearest place that a mesh leaves
 // free, over a tick in which the centre moves by D = a + W F: a without this force [m], W what a
@@ -29,9 +32,6 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F);
 // The same force where D = a is known, and how it answers D [N/m], while the damper's directions
 // stand.
 Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D);
-
-// The forces of all contacts over a tick together: walls and meshes, with damping and friction, by
-// Gauss-Seidel sweeps over forces that do exactly the work that the contacts' potentials lose.
 
 // How all that moves answers to torques, and to a torque f2 of the contacts on the proxy. Unknown
 // are the device's motion w and how the proxy moves beside it, u - w.

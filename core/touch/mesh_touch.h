@@ -1,4 +1,4 @@
-// The room that a few planes leave, and the force of a spring back into it.
+// One ball against one mesh: where the surface lets its centre be.
 #pragma once
 
 #include <array>
@@ -8,6 +8,8 @@
 #include "core/touch/triangle_mesh.h"
 
 namespace limpid {
+
+// The room that a few planes leave, and the force of a spring back into it.
 
 // All points on the outer side of some planes, {x : n_i . x >= o_i}, with unit normals n_i and
 // offsets o_i in the unit of x. A contact of stiffness K pulls a point c back to the nearest x of
@@ -49,8 +51,6 @@ class FreeSpace {
   std::array<double, kMostPlanes> offsets_{};
   int count_ = 0;
 };
-
-// One ball against one mesh: where the surface lets its centre be.
 
 // A free point g follows the ball's centre c as near as the surface lets it (after Zilles and
 // Salisbury's god object): it never crosses the mesh, so that it knows the side, of a sheet without

@@ -1,5 +1,4 @@
-// How what can be touched pushes back. The paper's couplings render its stiffness alone (section
-// 4.1: contacts are pure stiffness), the predictive one all of it.
+// A scene: what can be touched, as shapes at poses, of materials, some of them bodies that move.
 #pragma once
 
 #include <memory>
@@ -13,6 +12,11 @@
 
 namespace limpid {
 
+// Shapes, each around the origin of its object's pose.
+
+// How what can be touched pushes back. The paper's couplings render its stiffness alone (section
+// 4.1: contacts are pure stiffness), the predictive one all of it.
+
 struct Material {
   double stiffness = 600;       // [N/m]
   double damping = 0;           // while pressed in or let out [N s/m]
@@ -23,8 +27,6 @@ struct Material {
 // What can be touched, and with what: plain data, in the device base frame (x forward, y left,
 // z up), SI.
 class TriangleMesh;
-
-// Shapes, each around the origin of its object's pose.
 
 // Everything below a level; a pose shifts it and does not turn it.
 struct Plane {

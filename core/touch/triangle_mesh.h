@@ -1,4 +1,4 @@
-// What edges of a mesh say about it: where triangles meet, and how many.
+// A triangle mesh that can be asked, at 1 kHz, what is nearest and what lies between two points.
 #pragma once
 
 #include <array>
@@ -14,6 +14,8 @@
 
 namespace limpid {
 
+// What edges of a mesh say about it: where triangles meet, and how many.
+
 // Vertices at the same place have one name: the number of the first of them. One that is not
 // finite is alone.
 std::vector<std::uint32_t> names_of(const std::vector<Eigen::Vector3f>& places);
@@ -24,8 +26,6 @@ struct EdgeCount {
 };
 // `corners`: three names a triangle, each less than `names`.
 EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names);
-
-// A triangle mesh that can be asked, at 1 kHz, what is nearest and what lies between two points.
 
 // A place on a mesh.
 struct MeshPoint {

@@ -1,4 +1,5 @@
-// Coulomb friction as a spring with an anchor that slips (implicit, dissipative).
+// The normal force of a wall over a whole tick, such that making, keeping and breaking contact
+// neither gain nor lose energy (a discrete gradient).
 #pragma once
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include "core/math/sizes.h"
 
 namespace limpid {
+
+// Coulomb friction as a spring with an anchor that slips (implicit, dissipative).
 
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
@@ -33,9 +36,6 @@ inline Vec2 friction_force(double K_t, double radius, const Vec2& z, double T, c
   for (int i = 0; i < 6; ++i) l = disc(l - rho * (stick * l - drive));
   return l;
 }
-
-// The normal force of a wall over a whole tick, such that making, keeping and breaking contact
-// neither gain nor lose energy (a discrete gradient).
 
 // The damper that a wall of stiffness K gets by itself for what touches it with the mass m_n
 // [N s/m]: `part` of m_n/T, or half of critical damping where that is less: a heavy arm needs no

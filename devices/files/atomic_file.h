@@ -1,4 +1,4 @@
-// Writing past a limit of the shell as an error, not as a signal.
+// Files that are either as they were or as they shall be, whatever happens meanwhile.
 #pragma once
 
 #include <signal.h>
@@ -11,6 +11,8 @@
 #include <string_view>
 
 namespace limpid {
+
+// Writing past a limit of the shell as an error, not as a signal.
 
 // Past the file size limit of the shell (ulimit -f) the kernel sends a deadly signal with the
 // error. While this lives the thread sees the error alone.
@@ -33,8 +35,6 @@ class NoFileSizeSignal {
   sigset_t signal_{};
   sigset_t before_{};
 };
-
-// Files that are either as they were or as they shall be, whatever happens meanwhile.
 
 // Puts the bytes on the disk beside `file` and gives them its name then. Errors: FileError; the
 // file is then as it was. Pipes and devices are written into instead.

@@ -1,4 +1,4 @@
-// The one error of everything that reads or writes files.
+// Whole text files into memory, and what their lines need.
 #pragma once
 
 #include <sys/stat.h>
@@ -12,6 +12,8 @@
 #include <string_view>
 
 namespace limpid {
+
+// The one error of everything that reads or writes files.
 
 // What is in a file may hold anything; a message is one line.
 inline std::string one_line(std::string text) {
@@ -33,8 +35,6 @@ inline std::string why_not_found(const std::filesystem::path& path, const std::s
   if (::stat(path.c_str(), &found) == 0) return {};
   return errno == ENOENT || errno == ENOTDIR ? absent : std::strerror(errno);
 }
-
-// Whole text files into memory, and what their lines need.
 
 // The text of a regular file, without a UTF-8 byte order mark. Errors: FileError for a file that
 // is missing, no regular file, unreadable or longer than `limit` bytes.

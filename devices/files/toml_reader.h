@@ -1,4 +1,5 @@
-// Which numbers a file may have somewhere.
+// TOML tables read strictly: what is unknown, of the wrong type or out of range is refused with
+// file, line, key, what was found and what is allowed.
 #pragma once
 
 #include <toml++/toml.h>
@@ -17,6 +18,8 @@
 
 namespace limpid {
 
+// Which numbers a file may have somewhere.
+
 struct Range {
   double minimum;
   double maximum;
@@ -31,9 +34,6 @@ struct Range {
     return std::clamp(x, least, maximum);
   }
 };
-
-// TOML tables read strictly: what is unknown, of the wrong type or out of range is refused with
-// file, line, key, what was found and what is allowed.
 
 // Errors: FileError "WHERE:LINE: ..." for text that is not TOML.
 toml::table parse_toml(std::string_view text, const std::string& where);

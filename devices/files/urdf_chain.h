@@ -1,4 +1,4 @@
-// Masses that move together.
+// From urdfdom's tree of links to the chain that the loop computes with.
 #pragma once
 
 #include <urdf_model/model.h>
@@ -10,6 +10,8 @@
 #include "devices/files/urdf_visuals.h"
 
 namespace limpid {
+
+// Masses that move together.
 
 inline bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
 
@@ -47,8 +49,6 @@ void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places);
 // of the chain are held still, at 0 or the limit next to it, with a warning, and what they moved is
 // fixed to the last link that has mass; the tip stays the tip. The first joint is left.
 void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places);
-
-// From urdfdom's tree of links to the chain that the loop computes with.
 
 // The joints of `way` that move, and everything else held still and merged into the links that they
 // move. What is missing and can be guessed is, with a warning.

@@ -1,5 +1,4 @@
-// Files in xacro are expanded by the program `xacro`, which runs code that the file contains: only
-// somebody who named the file himself can want that.
+// Arms from URDF files.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +11,9 @@
 #include "devices/files/text_file.h"
 
 namespace limpid {
+
+// Files in xacro are expanded by the program `xacro`, which runs code that the file contains: only
+// somebody who named the file himself can want that.
 
 enum class Xacro : std::uint8_t { refuse, expand };
 
@@ -44,8 +46,6 @@ struct TipsToChoose : FileError {
   std::string file;
   std::vector<ArmTip> tips;  // the ends and the links where it branches, most joints first
 };
-
-// Arms from URDF files.
 
 // A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is
 // named to the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest

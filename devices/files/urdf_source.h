@@ -1,4 +1,4 @@
-// Folders that an environment variable lists.
+// URDF files as they lie on the disk: plain ones, and xacro's, which have to be expanded.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,8 @@
 #include "devices/files/urdf_file.h"
 
 namespace limpid {
+
+// Folders that an environment variable lists.
 
 // As PATH: with colons between; none if it is not set.
 inline std::vector<std::filesystem::path> search_path(const char* variable) {
@@ -32,8 +34,6 @@ inline constexpr std::size_t kLongestXml = 16 << 20;  // [bytes]
 // Errors: FileError naming `where` for texts that are too long, nested too deep, or have too many
 // attributes in an element, as TinyXML reads them.
 void check_xml(const std::string& text, const std::string& where);
-
-// URDF files as they lie on the disk: plain ones, and xacro's, which have to be expanded.
 
 // The URDF text of a file. One that is written in xacro (FILE.xacro, or macros inside) goes through
 // the program `xacro`, if that is installed and `xacro` says that it may; any encoding becomes

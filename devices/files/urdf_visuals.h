@@ -1,4 +1,4 @@
-// Where the meshes that a URDF names are.
+// What the links of a URDF look like.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,8 @@
 class TiXmlElement;
 
 namespace limpid {
+
+// Where the meshes that a URDF names are.
 
 // Resolves names as ROS does. `package://NAME/path` is looked for in the packages of that name: by
 // walking up from the URDF's folder to a folder NAME, or one whose package.xml says NAME; in the
@@ -32,8 +34,6 @@ class MeshFinder {
   std::filesystem::path folder_;
   std::map<std::string, std::vector<std::filesystem::path>> packages_;
 };
-
-// What the links of a URDF look like.
 
 // By the link's name, each in the link's own frame.
 using LinkShapes = std::map<std::string, std::vector<Visual>>;

@@ -1,4 +1,4 @@
-// Numbers as bytes, the lowest first, whatever the computer's own order.
+// Devices that speak the open raw-HID protocol, in little-endian reports (assets/paddle is one).
 #pragma once
 
 #include <array>
@@ -12,6 +12,8 @@
 #include "devices/hid/report_descriptor.h"
 
 namespace limpid {
+
+// Numbers as bytes, the lowest first, whatever the computer's own order.
 
 // The bytes at..at + sizeof(T) - 1 must exist.
 template <std::unsigned_integral T>

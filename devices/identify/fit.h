@@ -1,4 +1,4 @@
-// The equations of motion that a record gives, for what is unknown in them.
+// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,8 @@
 #include "devices/identify/motion_record.h"
 
 namespace limpid {
+
+// The equations of motion that a record gives, for what is unknown in them.
 
 // Of a joint besides its link's: viscous, Coulomb, offset, spring.
 inline constexpr Eigen::Index kOwnParameters = 4;
@@ -52,8 +54,6 @@ class PlausibleLink {
  private:
   Eigen::Matrix4d L0_;
 };
-
-// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
 
 // A found value and its standard deviation.
 struct Found {

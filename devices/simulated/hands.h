@@ -1,4 +1,4 @@
-// A hand led by a device with six axes and no force, as a SpaceMouse.
+// A hand moved by the mouse: its 60 to 125 events a second become a smooth path at the tick rate.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include "devices/device.h"
 
 namespace limpid {
+
+// A hand led by a device with six axes and no force, as a SpaceMouse.
 
 // The cap's deflection is a speed: where the hand wants the tip moves on as long as it is pushed.
 // Little near the middle, so that it can be led finely.
@@ -40,8 +42,6 @@ class GuidedHand {
 
   Vec3 goal_ = Vec3::Zero();
 };
-
-// A hand moved by the mouse: its 60 to 125 events a second become a smooth path at the tick rate.
 
 // The target follows the mouse as a critically damped second-order system of a hand's bandwidth,
 // stepped exactly; the grip closes and opens within a twentieth of a second. The hand pulls with a

@@ -1,4 +1,4 @@
-// Several substeps of the virtual arm under one linearization: where it is, and how heavy.
+// The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,8 @@
 #include "devices/device.h"
 
 namespace limpid {
+
+// Several substeps of the virtual arm under one linearization: where it is, and how heavy.
 
 // Where the arm was linearized, and what it was like. S: double, or Pair for two places.
 template <int N, class S>
@@ -303,8 +305,6 @@ class LinearSubstepsOfTwo<3> {
   Mat3Of<Pair> A_, P_, Q_;  // of A the lower triangle
   Vec3Of<Pair> r_, s_;
 };
-
-// The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
 
 // (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
 // at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated

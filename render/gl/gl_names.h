@@ -1,4 +1,4 @@
-// The one place where Eigen's types become GLM's.
+// OpenGL objects that are deleted when they go out of scope.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -10,6 +10,8 @@
 
 namespace limpid {
 
+// The one place where Eigen's types become GLM's.
+
 inline glm::vec3 to_glm(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 inline glm::mat4 to_glm(const Eigen::Matrix4d& m) {
@@ -20,8 +22,6 @@ inline glm::mat4 to_glm(const Eigen::Matrix4d& m) {
 }
 
 inline glm::mat4 to_glm(const Pose& pose) { return to_glm(Eigen::Matrix4d(pose.matrix())); }
-
-// OpenGL objects that are deleted when they go out of scope.
 
 // `Kind` gives create() and destroy() of one sort of object.
 template <class Kind>

@@ -1,4 +1,4 @@
-// The frame of a binary glTF file.
+// The bytes of a glTF file, checked before and parsed by tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -12,6 +12,8 @@
 #include "render/model/companions.h"
 
 namespace limpid {
+
+// The frame of a binary glTF file.
 
 // To a multiple of four.
 void fill_up(std::vector<unsigned char>& bytes, unsigned char filler);
@@ -28,8 +30,6 @@ inline constexpr const char* kOldGltf =
 // std::runtime_error naming the file for what is no JSON object, nested deeper than 64, of more
 // than 8 million values or 1 million objects, or glTF 1.
 std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name);
-
-// The bytes of a glTF file, checked before and parsed by tinygltf.
 
 // The JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,

@@ -1,4 +1,4 @@
-// Pictures of a model: PNG, JPEG and WebP, within limits of size and work.
+// Materials of a glTF file, with the pictures they use.
 #pragma once
 
 #include <map>
@@ -14,6 +14,8 @@
 
 namespace limpid {
 
+// Pictures of a model: PNG, JPEG and WebP, within limits of size and work.
+
 // How a warning about one that decode() cannot read goes on.
 inline constexpr const char* kUnknownPicture =
     "no PNG, JPEG or WebP that can be read, it is left out";
@@ -27,8 +29,6 @@ class ModelImages {
  private:
   std::size_t encoded_ = 0, decoded_ = 0;  // bytes so far
 };
-
-// Materials of a glTF file, with the pictures they use.
 
 // A material as the vertices and the part of a model take it.
 struct GltfMaterial {

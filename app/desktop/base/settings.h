@@ -1,4 +1,4 @@
-// Chosen plots in TOML files: [[plot]] with title, kind, across and channels.
+// What the window remembers from one start to the next.
 #pragma once
 
 #include <toml++/toml.h>
@@ -14,12 +14,12 @@
 
 namespace limpid {
 
+// Chosen plots in TOML files: [[plot]] with title, kind, across and channels.
+
 toml::array plots_toml(const std::vector<PlotChoice>& plots);
 // Those of the array "plot" of a table; without one the default. Errors: FileError naming `where`,
 // the plot, its key and what is allowed.
 std::vector<PlotChoice> plots_of(const toml::table& table, const std::string& where);
-
-// What the window remembers from one start to the next.
 
 // A second run beside the first, on the same hand, under settings of its own.
 struct TwinSettings {

@@ -1,4 +1,4 @@
-// What was done, in order of time, whatever it was done to.
+// The scene and the settings that are worked on: changing them, undo, and the scene's file.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +17,8 @@
 #include "app/desktop/document/scene_loader.h"
 
 namespace limpid {
+
+// What was done, in order of time, whatever it was done to.
 
 // Steps between states. Changes of the same name in quick succession, or while the mouse is held
 // down, are one step: a drag is undone at once.
@@ -76,8 +78,6 @@ class UndoHistory {
   Time last_;
   bool held_ = false;
 };
-
-// The scene and the settings that are worked on: changing them, undo, and the scene's file.
 
 // A scene that waits until the device which brought its own is gone.
 struct SetAside {

@@ -1,4 +1,5 @@
-// Where a hand may be asked to go.
+// A hand led by a gamepad: the left stick moves it in the plane of the picture, triggers or the
+// right stick nearer and farther.
 #pragma once
 
 #include <string>
@@ -9,6 +10,8 @@
 
 namespace limpid {
 
+// Where a hand may be asked to go.
+
 // Held where the arm can follow.
 inline Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
   const Vec3 base = arm.joints.front().origin.translation();
@@ -16,9 +19,6 @@ inline Vec3 within_reach(const ArmDescription& arm, const Vec3& point) {
   const Vec3 out = point - base;
   return out.norm() > limit ? Vec3(base + out.normalized() * limit) : point;
 }
-
-// A hand led by a gamepad: the left stick moves it in the plane of the picture, triggers or the
-// right stick nearer and farther.
 
 // Sticks -1 to 1, right and down; triggers 0 to 1; buttons where an Xbox pad has them.
 struct PadReading {

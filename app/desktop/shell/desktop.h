@@ -1,4 +1,5 @@
-// What is on screen: the recording that is played, or else the loop, and how it is looked at.
+// What the window's program is made of. Panels, dialogs and commands work on the parts themselves;
+// here is what needs several of them.
 #pragma once
 
 #include <filesystem>
@@ -27,6 +28,8 @@
 #include "render/quality.h"
 
 namespace limpid {
+
+// What is on screen: the recording that is played, or else the loop, and how it is looked at.
 
 class Shown {
  public:
@@ -81,9 +84,6 @@ class PlotLayout {
   OpenDialog& dialog_;
   std::size_t chosen_ = 0;
 };
-
-// What the window's program is made of. Panels, dialogs and commands work on the parts themselves;
-// here is what needs several of them.
 
 // What commands ask of the system's window, for who has it.
 struct WindowRequests {

@@ -1,4 +1,4 @@
-// What there is to read: the window behind it goes on.
+// The dialogs of the window: one table, and those that there are to read.
 #pragma once
 
 #include <cstdint>

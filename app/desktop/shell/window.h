@@ -1,4 +1,4 @@
-// The display that goes while the program runs.
+// The window of the operating system with OpenGL and ImGui in it.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,8 @@
 struct GLFWwindow;
 
 namespace limpid {
+
+// The display that goes while the program runs.
 
 // X11's library ends the program when its display is gone, where `leave` is called first, once, on
 // the thread that used the display: what is to be kept is kept there, without drawing anything.
@@ -35,8 +37,6 @@ WorkArea work_area();
 
 // Inside of the area with the frame that the desktop drew round the window.
 void move_into(const WorkArea& area, GLFWwindow* window);
-
-// The window of the operating system with OpenGL and ImGui in it.
 
 // What became of a picture that was to be saved.
 struct SavedPicture {

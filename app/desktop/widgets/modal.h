@@ -1,4 +1,4 @@
-// What throws in a frame becomes a notice, and the next frame comes.
+// Dialogs: how they open and close, and where that is clicked.
 #pragma once
 
 #include <imgui.h>
@@ -8,6 +8,8 @@
 #include <utility>
 
 namespace limpid {
+
+// What throws in a frame becomes a notice, and the next frame comes.
 
 // Closes whatever ImGui windows, groups and styles an exception left open.
 class UiStack {
@@ -31,8 +33,6 @@ void guarded(Complain&& complain, Work&& work) {
     complain(e.what());
   }
 }
-
-// Dialogs: how they open and close, and where that is clicked.
 
 // One that asks something: what is behind it is dimmed and waits. To be called in every frame,
 // outside of other windows. True while the dialog is to be drawn; it pairs with ImGui::EndPopup()

@@ -1,4 +1,4 @@
-// What lies at the edges of panels.
+// Small things that panels are made of.
 #pragma once
 
 #include <imgui.h>
@@ -10,14 +10,14 @@
 
 namespace limpid {
 
+// What lies at the edges of panels.
+
 // A border between panels that can be dragged: changes `size` by the mouse's motion along one axis,
 // in `direction`, between `least` and `most` [px at scale 1].
 void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,
               double least, double most);
 // A small tab at the view's edge that folds a panel away, or brings it back.
 void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted);
-
-// Small things that panels are made of.
 
 // A panel's frame without a title bar; pairs with ImGui::End().
 void begin_panel(const char* name, ScreenRect rect);

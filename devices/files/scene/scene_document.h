@@ -1,4 +1,4 @@
-// What a scene may hold: for its file, and for whoever edits it.
+// A scene as its file has it: what can be touched, and all that goes with it.
 #pragma once
 
 #include <array>
@@ -15,6 +15,8 @@
 #include "devices/files/toml_reader.h"
 
 namespace limpid::scene_limits {
+
+// What a scene may hold: for its file, and for whoever edits it.
 
 inline constexpr std::size_t kMostContacts = 64;
 inline constexpr std::size_t kMostProbes = 64;                        // with the tip
@@ -80,8 +82,6 @@ inline std::string small_suffix(const std::filesystem::path& file) {
 inline double usual_unit(const std::filesystem::path& file) {
   return small_suffix(file) == ".stl" ? 0.001 : 1;
 }
-
-// A scene as its file has it: what can be touched, and all that goes with it.
 
 // Of any kind that is read.
 struct ModelFile {

@@ -1,4 +1,4 @@
-// The files that an OBJ model refers to: its materials, and the pictures that these name.
+// Scenes written to files, with the models that they name.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace limpid {
 
+// The files that an OBJ model refers to: its materials, and the pictures that these name.
+
 // Those that are there, relative to the model's folder, each once. What lies outside of that
 // folder, also through a symbolic link, is none of them. Errors: FileError for a model or materials
 // that cannot be read.
 std::vector<std::filesystem::path> obj_companions(const std::filesystem::path& obj);
-
-// Scenes written to files, with the models that they name.
 
 // Writes the scene to `file` at one stroke, and returns it as that file has it. Models in the
 // file's folder are named relative to it; others are copied beside it, under another name where a

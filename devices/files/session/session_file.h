@@ -1,4 +1,5 @@
-// What a session file says of itself and of its input, beside the rows.
+// One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
+// what it is called when done.
 #pragma once
 
 #include <hdf5.h>
@@ -15,6 +16,8 @@
 
 namespace limpid {
 
+// What a session file says of itself and of its input, beside the rows.
+
 // Writes the attributes of the `root` group. Errors: FileError naming `file`.
 void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem::path& file);
 
@@ -27,9 +30,6 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
 // None in a session that has none. Errors: FileError for what is no such dataset or claims more
 // than a file of this size can hold.
 SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
-
-// One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
-// what it is called when done.
 
 // A file that survives being killed, by HDF5's rules (single writer, multiple readers: everything
 // is created before writing starts) and one of its own. HDF5 rewrites some things in place: how

@@ -1,4 +1,5 @@
-// What the rows and columns of a session's datasets stand for, in HDF5's own way: dimension scales.
+// The datasets of one run in a session file: rows, what changed while they were made, and sums that
+// tell what was really written.
 #pragma once
 
 #include <array>
@@ -16,6 +17,8 @@
 #include "devices/files/session/session_units.h"
 
 namespace limpid::hdf5 {
+
+// What the rows and columns of a session's datasets stand for, in HDF5's own way: dimension scales.
 
 // The scales that the whole file has once: /joint, the names of the joints, and /axis, x, y, z.
 // Invalid in a file whose arm is not known.
@@ -56,9 +59,6 @@ void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row
 
 }  // namespace limpid::hdf5
 namespace limpid {
-
-// The datasets of one run in a session file: rows, what changed while they were made, and sums that
-// tell what was really written.
 
 // Rows go straight behind those that are there, in blocks, without a filter, so that nothing that
 // was written is ever written again. A block is a power of two of rows, 512 at 1 kHz: what the

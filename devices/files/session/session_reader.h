@@ -1,4 +1,4 @@
-// Which settings changed in a session, and when.
+// Reads session files, of this version and older ones.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,8 @@
 #include "devices/files/session/session_program.h"
 
 namespace limpid {
+
+// Which settings changed in a session, and when.
 
 // Fills the session's changes; its rows are read already. Errors: FileError.
 void read_changes(hid_t group, Session& session, const std::filesystem::path& file,

@@ -1,10 +1,4 @@
-// What tells rows that were recorded from rows that a killed program had only announced, or that
-// were damaged since: a sum over each column, for every block of rows that is written at once.
-//
-// /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
-// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all that
-// the file has but those of the timing, in which equal runs differ. The sums are over what the file
-// holds. Sessions of other programs, and of the first edition, have none.
+// The datasets of a session file, opened with distrust.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +14,14 @@
 #include "devices/files/session/session.h"
 
 namespace limpid {
+
+// What tells rows that were recorded from rows that a killed program had only announced, or that
+// were damaged since: a sum over each column, for every block of rows that is written at once.
+//
+// /check/sums, uint64, M x C: entry (b, c) is over rows [b * R, (b + 1) * R) of column c. R is the
+// attribute "rows"; the attribute "columns" holds the paths of the C columns, a line each: all that
+// the file has but those of the timing, in which equal runs differ. The sums are over what the file
+// holds. Sessions of other programs, and of the first edition, have none.
 
 inline constexpr const char* kCheckPath = "/check/sums";
 inline constexpr const char* kCheckRows = "rows";
@@ -57,8 +59,6 @@ struct CheckedRows {
 };
 // Errors: FileError for sums that are not laid out as above.
 CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file);
-
-// The datasets of a session file, opened with distrust.
 
 // One dataset with its shape checked: rows, rows x width, or rows x bodies x what each has.
 struct Source {
