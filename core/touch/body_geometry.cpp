@@ -107,6 +107,7 @@ struct BodyGeometry::Inside {
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
     bool single = false;  // they meet in one point at most
+    bool refresh = true;  // what finds its points leaves those that are gone
     int points = 0;       // of its manifold
   };
 
@@ -279,7 +280,9 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const auto ball = [](const Solid& s) {
     return s.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   };
-  p.single = (ball(a) || ball(b)) && a.shape->isConvex() && b.shape->isConvex();
+  const bool convex = a.shape->isConvex() && b.shape->isConvex();
+  p.single = (ball(a) || ball(b)) && convex;
+  p.refresh = !convex || (ball(a) && ball(b));
   // Else Bullet turns the shapes a little, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
@@ -384,7 +387,8 @@ void BodyGeometry::Inside::meet(Pair& p) {
                                       p.b->at.getWorldTransform(), -1, -1);
   Points result(&on_a, &on_b);
   result.setPersistentManifold(p.manifold);
-  p.algorithm->processCollision(&on_a, &on_b, info, &result);  // which drops those that are gone
+  p.algorithm->processCollision(&on_a, &on_b, info, &result);
+  if (p.refresh) result.refreshContactPoints();
   if (p.single) keep_deepest(p);
   p.points = p.manifold->getNumContacts();
   go_on(p, {before.data(), count});

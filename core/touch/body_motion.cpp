@@ -120,11 +120,22 @@ Mat3 BodyMotion::answer(const Lever& at) const {
     const Vec3 j = S_v_ + S_w_.cross(at);
     return a_ * j * j.transpose();
   }
-  // im - [at]x Ai [at]x, without the zeros of [at]x.
+  // im - [at]x Ai [at]x, without the zeros of [at]x. Number by number, here and where it is used: a
+  // processor waits where it reads two at once that it has just written one by one.
+  const double x = at.x(), y = at.y(), z = at.z();
+  double K[3][3];
+  for (int j = 0; j < 3; ++j) {
+    K[0][j] = y * Ai_(2, j) - z * Ai_(1, j);
+    K[1][j] = z * Ai_(0, j) - x * Ai_(2, j);
+    K[2][j] = x * Ai_(1, j) - y * Ai_(0, j);
+  }
   Mat3 W;
-  for (int i = 0; i < 3; ++i) W.col(i) = at.cross(Ai_.col(i));
-  for (int i = 0; i < 3; ++i) W.row(i) = at.cross(Vec3(W.row(i))).transpose();
-  W.diagonal().array() += im_;
+  for (int i = 0; i < 3; ++i) {
+    W(i, 0) = y * K[i][2] - z * K[i][1];
+    W(i, 1) = z * K[i][0] - x * K[i][2];
+    W(i, 2) = x * K[i][1] - y * K[i][0];
+    W(i, i) += im_;
+  }
   return W;
 }
 
@@ -226,8 +237,7 @@ void BodyMotion::read(std::span<const double, kNumbers> from) {
 }
 
 bool BodyMotion::alike(const BodyMotion& other) const {
-  return kind_ == other.kind_ && m_ == other.m_ && c_ == other.c_ && I_ == other.I_ &&
-         joint_.axis == other.joint_.axis && pivot_ == other.pivot_ &&
+  return kind_ == other.kind_ && joint_.axis == other.joint_.axis && pivot_ == other.pivot_ &&
          start_.matrix() == other.start_.matrix();
 }
 

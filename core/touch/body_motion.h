@@ -82,7 +82,7 @@ class BodyMotion {
   static constexpr int kNumbers = 20;
   void write(std::span<double, kNumbers> into) const;
   void read(std::span<const double, kNumbers> from);
-  // Of the same mass, shape and joint.
+  // It starts in the same place, on the same joint.
   bool alike(const BodyMotion& other) const;
 
  private:

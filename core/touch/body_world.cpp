@@ -20,6 +20,17 @@ constexpr double kSlow = 1e-3;                // what is slower is at rest [m/s]
 constexpr double kQuiet = 0.5;                // s of rest, after which it sleeps
 constexpr double kGone = 20;                  // further off than this nobody looks for it [m]
 
+// F^T W F, as Eigen adds it up, number by number.
+void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
+  for (int i = 0; i < 3; ++i) {
+    double T[3];
+    for (int j = 0; j < 3; ++j) {
+      T[j] = F(0, i) * W(0, j) + (F(1, i) * W(1, j) + F(2, i) * W(2, j));
+    }
+    for (int j = 0; j < 3; ++j) out(i, j) = T[0] * F(0, j) + (T[1] * F(1, j) + T[2] * F(2, j));
+  }
+}
+
 }  // namespace
 
 BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene) {
@@ -81,7 +92,18 @@ void BodyWorld::take_over(const BodyWorld& other) {
   for (int i = 0; i < count(); ++i) {
     const int theirs = other.number(names_[at(i)]);
     if (theirs == BodyContact::kStill || !bodies_[at(i)].alike(other.bodies_[at(theirs)])) continue;
-    other.bodies_[at(theirs)].write(numbers);
+    const BodyMotion& before = other.bodies_[at(theirs)];
+    before.write(numbers);
+    // Its object stays where it is, wherever its mass now is.
+    const Vec3 own = pose(i).inverse() * center(i);
+    const Vec3 moved = before.pose() * own - before.center();
+    if (moved.norm() > 1e-12) {
+      const Vec3 speed = before.spin().cross(moved);
+      for (std::size_t k = 0; k < 3; ++k) {
+        numbers[k] += moved[static_cast<int>(k)];
+        numbers[12 + k] += speed[static_cast<int>(k)];
+      }
+    }
     bodies_[at(i)].read(numbers);
     geometry_.place(i, pose(i));
   }
@@ -227,7 +249,7 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   row.frame.col(2) = contact.normal.cross(row.frame.col(1));
   Mat3 W = answer(row.a);
   if (row.b.body != BodyContact::kStill) W += answer(row.b);
-  row.W = row.frame.transpose() * W * row.frame;
+  turn_into(row.frame, W, row.W);
   const Material& one = of_objects_[static_cast<std::size_t>(contact.object_a)];
   const Material& two = of_objects_[static_cast<std::size_t>(contact.object_b)];
   const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
@@ -241,8 +263,8 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   // First the memory is turned to where the contact now is: a force that no row has would be work
   // from nowhere.
   row.force = contact.force;
-  row.friction = row.frame.rightCols<2>().transpose() * contact.friction;
-  row.anchor = row.frame.rightCols<2>().transpose() * contact.anchor;
+  row.friction.noalias() = row.frame.rightCols<2>().transpose() * contact.friction;
+  row.anchor.noalias() = row.frame.rightCols<2>().transpose() * contact.anchor;
   if (row.radius == 0) row.friction.setZero();
   apply(row.a, row.b, row.force * contact.normal + row.frame.rightCols<2>() * row.friction);
   return true;

@@ -29,7 +29,7 @@ class BodyWorld {
 
   int count() const { return static_cast<int>(bodies_.size()); }
   void reset();  // as the scene has it
-  // Takes over the books, and where bodies of the same name, mass and joint are in another scene.
+  // Takes over the books, and where bodies of the same name, start and joint are in another scene.
   void take_over(const BodyWorld& other);
 
   // The arm is near to it: it wakes up, and its rows are solved with the arm's.

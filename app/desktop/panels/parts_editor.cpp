@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <array>
+
 #include "app/desktop/panels/scene_panel.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/style/theme.h"
+#include "app/style/words.h"
 #include "devices/files/scene/scene_document.h"
 
 namespace limpid {
@@ -13,29 +15,29 @@ namespace {
 
 using namespace scene_limits;
 
-struct Kind {
+struct PartShape {
   const char* name;
   Shape shape;  // as it begins
 };
-const std::array<Kind, 4>& kinds() {
-  static const std::array<Kind, 4> all{
-      Kind{"ball", Sphere{0.01}}, Kind{"box", Box{Vec3::Constant(0.02)}},
-      Kind{"cylinder", Cylinder{0.01, 0.02}}, Kind{"capsule", Capsule{0.01, 0.02}}};
+const std::array<PartShape, 4>& part_shapes() {
+  static const std::array<PartShape, 4> all{
+      PartShape{"ball", Sphere{0.01}}, PartShape{"box", Box{Vec3::Constant(0.02)}},
+      PartShape{"cylinder", Cylinder{0.01, 0.02}}, PartShape{"capsule", Capsule{0.01, 0.02}}};
   return all;
 }
 
-const Kind& kind_of(const Shape& shape) {
-  for (const Kind& each : kinds()) {
+const PartShape& part_shape(const Shape& shape) {
+  for (const PartShape& each : part_shapes()) {
     if (each.shape.index() == shape.index()) return each;
   }
-  return kinds()[0];
+  return part_shapes()[0];
 }
 
-bool choose_shape(Shape& shape) {
+bool choose_part_shape(Shape& shape) {
   bool changed = false;
   caption("Shape", "Another one begins at 2 cm.");
-  if (!ImGui::BeginCombo("##shape", kind_of(shape).name)) return false;
-  for (const Kind& each : kinds()) {
+  if (!ImGui::BeginCombo("##shape", part_shape(shape).name)) return false;
+  for (const PartShape& each : part_shapes()) {
     const bool present = each.shape.index() == shape.index();
     if (!ImGui::Selectable(each.name, present) || present) continue;
     shape = each.shape;
@@ -47,7 +49,7 @@ bool choose_shape(Shape& shape) {
 
 std::string_view edit_part(BodyPart& part, RotationField& rotation) {
   std::string_view what;
-  if (choose_shape(part.shape)) what = "shape";
+  if (choose_part_shape(part.shape)) what = "shape";
   std::visit(
       [&]<class S>(S& shape) {
         if constexpr (requires { edit_size(shape); }) {
@@ -75,7 +77,7 @@ std::string PartsEditor::edit(Object& object) {
   heading("Parts");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::TreeNode("##part", "%zu: %s", i + 1, kind_of(parts[i].shape).name)) {
+    if (ImGui::TreeNode("##part", "%zu: %s", i + 1, part_shape(parts[i].shape).name)) {
       if (const auto changed = edit_part(parts[i], rotations_[i]); !changed.empty()) {
         what = fmt::format("part {} {}", i + 1, changed);
       }
@@ -92,7 +94,7 @@ std::string PartsEditor::edit(Object& object) {
     if (rotations_.empty()) return what;
   }
   if (ImGui::Button("Add part", {-1, 0})) {
-    parts.push_back({.shape = kinds()[0].shape});
+    parts.push_back({.shape = part_shapes()[0].shape});
     what = fmt::format("part {} added", parts.size());
   }
   tooltip("One more shape that moves with it, fixed to it.");

@@ -46,7 +46,6 @@ namespace {
 
 using namespace scene_limits;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
 
 bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
               const char* help = "Forward, left and up from the arm's base.") {

@@ -7,14 +7,12 @@
 #include <numbers>
 
 #include "app/desktop/panels/scene_panel.h"
-#include "app/style/theme.h"
+#include "app/style/words.h"
 #include "devices/files/rpy.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
 const Vec3 kFirstColor = Vec3::Constant(0.6);
 
 }  // namespace
@@ -77,13 +75,14 @@ bool edit_color(std::optional<Vec3>& color, const char* otherwise) {
 bool RotationField::edit(Pose& pose) {
   if (pose.linear() != turned_) {
     turned_ = pose.linear();
-    degrees_ = (rpy_of(turned_) / kDegree * 1e6).array().round() / 1e6 + 0.0;  // no -0
+    degrees_ =
+        (rpy_of(turned_) * (180 / std::numbers::pi) * 1e6).array().round() / 1e6 + 0.0;  // no -0
   }
   if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
              "About the fixed axes x, y and z, one after the other.")) {
     return false;
   }
-  turned_ = settled(rotation(degrees_ * kDegree));
+  turned_ = settled(rotation(degrees_ * (std::numbers::pi / 180)));
   pose.linear() = turned_;
   return true;
 }

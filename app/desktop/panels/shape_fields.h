@@ -8,6 +8,8 @@
 
 namespace limpid {
 
+inline constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
+
 // A length in mm, 0.1 to 1000. True if it changed.
 bool drag_length(const char* label, double& value, const char* help);
 

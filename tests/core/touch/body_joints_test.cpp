@@ -84,13 +84,17 @@ TEST(BodyJoints, DryFrictionOfABallJointTakesTheSameOffEverySwing) {
 TEST(BodyJoints, ABallJointSticksWhereFrictionBearsTheWeight) {
   const double friction = kWeight * kLength * std::sin(0.3);
   BodyWorld held(pendulum(0.29, 0, friction)), moving(pendulum(0.31, 0, friction));
-  held.touch(0);
-  for (int k = 0; k < 10000; ++k) {  // awake all the time
-    held.touch(0);
-    run(held, 1);
-  }
+  const auto stay = [&](int ticks) {  // awake all the time
+    for (int k = 0; k < ticks; ++k) {
+      held.touch(0);
+      run(held, 1);
+    }
+    return angle_of(held);
+  };
+  const double first = stay(1000);  // it slips a little while its weight comes on
+  EXPECT_NEAR(first, 0.29, 2e-3);
+  EXPECT_NEAR(stay(10000), first, 1e-7);
   run(moving, 3000);
-  EXPECT_NEAR(angle_of(held), 0.29, 2e-4);
   EXPECT_LT(angle_of(moving), 0.305);
   EXPECT_LE(kWeight * kLength * std::abs(std::sin(angle_of(moving))), friction * 1.01);
 }
@@ -232,7 +236,7 @@ TEST(BodyJoints, AHingeOnABodyEndsAtItsStopsAndClicksIntoItsDetents) {
   BodyJoint stopped;
   stopped.low = -0.2;
   stopped.high = 0.5;
-  stopped.stop_stiffness = 50;
+  stopped.stop_stiffness = 0.5;
   BodyWorld world(two_on_an_axis(stopped));
   set_moving(world, 1, Vec3::Zero(), {0, 0, 5});
   double most = 0;
@@ -241,8 +245,8 @@ TEST(BodyJoints, AHingeOnABodyEndsAtItsStopsAndClicksIntoItsDetents) {
     most = std::max(most, world.joint(1));
   }
   EXPECT_GT(most, 0.5);
-  EXPECT_LT(most, 0.5 + 5 * std::sqrt(kReduced / 50));
-  EXPECT_NEAR(world.spin(1).z(), world.spin(0).z(), 0.2);
+  EXPECT_LT(most, 0.5 + 5 * std::sqrt(kReduced / 0.5));
+  EXPECT_NEAR(world.spin(1).z(), world.spin(0).z(), 0.3);  // exp(-3.1) of 5
 
   BodyJoint detent;
   detent.force.detent_force = 0.01;
