@@ -229,11 +229,11 @@ void add_meshes(std::vector<Piece>& all, const Wishes& wishes) {
 
 void add_bodies(std::vector<Piece>& all, const Wishes& wishes, const Line& unit) {
   for (const int count : {10, 50}) {
-    all.push_back({fmt::format("bodies/{}", count), [&wishes, &unit, count](Report& report) {
-                     for (const Boxes what : {Boxes::rest, Boxes::slide, Boxes::asleep}) {
+    for (const Boxes what : {Boxes::rest, Boxes::slide, Boxes::asleep}) {
+      all.push_back({id_of(count, what), [&wishes, &unit, count, what](Report& report) {
                        report.lines.push_back(boxes(wishes, unit, count, what));
-                     }
-                   }});
+                     }});
+    }
   }
 }
 

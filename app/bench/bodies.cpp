@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/touch/body_world.h"
 
@@ -33,16 +35,17 @@ Scene on_a_floor(int count) {
   return scene;
 }
 
-// By itself, so that valgrind can tell it apart.
-[[gnu::noinline]] void step_bodies(BodyWorld& world) {
+void step(BodyWorld& world) {
   world.begin(kTick);
   world.settle();
   world.finish();
 }
+// One that is measured: by itself, so that valgrind can tell it apart.
+[[gnu::noinline]] void measured_step(BodyWorld& world) { step(world); }
 
 // As it is after so many ticks; sliding if wanted.
 std::vector<double> begun(BodyWorld& world, int count, Boxes what) {
-  for (int k = 0; k < (what == Boxes::asleep ? 1000 : kSettling); ++k) step_bodies(world);
+  for (int k = 0; k < (what == Boxes::asleep ? 1000 : kSettling); ++k) step(world);
   if (what == Boxes::slide) {
     for (int i = 0; i < count; ++i) world.touch(i);
     world.begin(kTick);
@@ -59,21 +62,25 @@ std::vector<double> begun(BodyWorld& world, int count, Boxes what) {
 
 }  // namespace
 
+std::string id_of(int count, Boxes what) {
+  constexpr std::array kIds{"rest", "slide", "asleep"};
+  return fmt::format("bodies/{}/{}", count, kIds[static_cast<std::size_t>(what)]);
+}
+
 Line boxes(const Wishes& wishes, const Line& unit, int count, Boxes what) {
   BodyWorld world(on_a_floor(count));
   const std::vector<double> start = begun(world, count, what);
   Samples taken(static_cast<std::size_t>(wishes.ticks));
   InstructionCounter counter;
-  const auto tick = [&] { step_bodies(world); };
+  const auto tick = [&] { measured_step(world); };
   for (int k = 0; k < wishes.ticks; ++k) {
     if (k % kLetAlone == 0) world.read(start);
     k % 2 ? counter.count(tick) : taken.time(tick);
   }
-  constexpr std::array kIds{"rest", "slide", "asleep"};
   constexpr std::array kWords{"at rest", "sliding", "asleep"};
-  const auto at = static_cast<std::size_t>(what);
-  Line line = line_of(fmt::format("bodies/{}/{}", count, kIds[at]),
-                      fmt::format("{} bodies, {}", count, kWords[at]), taken, &unit);
+  Line line = line_of(id_of(count, what),
+                      fmt::format("{} bodies, {}", count, kWords[static_cast<std::size_t>(what)]),
+                      taken, &unit);
   if (const auto counted = counter.total()) {
     line.instructions = static_cast<double>(*counted) / static_cast<double>(wishes.ticks / 2);
   }

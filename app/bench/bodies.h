@@ -1,7 +1,7 @@
 // Boxes on a floor: what a tick of bodies takes.
 #pragma once
 
-#include <vector>
+#include <string>
 
 #include "app/bench/bench.h"
 
@@ -14,6 +14,8 @@ enum class Boxes {
   asleep,  // all of them
 };
 
+// What a line of them is called: "bodies/10/rest".
+std::string id_of(int count, Boxes what);
 // So many of them, 3 cm and 50 g each, one beside the other. Times of a tick without an arm [us].
 Line boxes(const Wishes& wishes, const Line& unit, int count, Boxes what);
 

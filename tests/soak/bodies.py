@@ -27,20 +27,21 @@ import h5py
 import numpy as np
 
 RATE = 100          # of the hand's path [Hz]
+REACH = 0.26        # of the built-in arm's tip, less a centimetre [m]
 MOST_GAIN = 1e-6    # of what the bodies' world makes [J]
 MOST_GROWTH = 20.0  # of the process, from the first quarter to the last, beside what it buffers [MB]
 
 
 def path(scene: dict, seconds: float, random: np.random.Generator) -> np.ndarray:
     """Rows of time, place and magnet: from way point to way point as people reach (Flash and Hogan
-    1985), over all bodies and a little beyond, down to 5 mm below them."""
+    1985), each near where one of the bodies started, down to 15 mm below that."""
     places = np.array([body["position"] for body in scene["body"]])
-    low = places.min(axis=0) - [0.03, 0.03, 0.02]
-    high = places.max(axis=0) + [0.03, 0.03, 0.03]
     magnetic = any(body.get("magnet") for body in scene["body"])
     now, magnet, rows, t = np.array([0.19, 0.0, 0.02]), 0.0, [], 0.0
     while t < seconds:
-        to, took = random.uniform(low, high), random.uniform(0.25, 1.2)
+        to = random.choice(places) + random.uniform([-0.03, -0.03, -0.015], [0.03, 0.03, 0.02])
+        to *= min(1.0, REACH / np.linalg.norm(to))
+        took = random.uniform(0.25, 1.2)
         if magnetic and random.uniform() < 0.3:
             magnet = 1.0 - magnet
         s = np.arange(1, round(took * RATE) + 1) / round(took * RATE)

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/body_report.h"
 #include "app/style/sliders.h"
@@ -294,12 +295,18 @@ BodySpring new_spring(const SceneEditor& editor) {
   return {.between = {body->name, ""}, .points = {Vec3::Zero(), body->pose.translation()}};
 }
 
+bool noted_checkbox(const char* label, bool& on) {
+  const bool changed = ImGui::Checkbox(label, &on);
+  note_place(label);
+  return changed;
+}
+
 // Where its mass is, where that is not what a solid has.
 std::string_view edit_moments(Object& object) {
   std::string_view what;
   Body& body = *object.body;
   bool own = body.center.has_value();
-  if (ImGui::Checkbox("a centre of mass of its own", &own)) {
+  if (noted_checkbox("a centre of mass of its own", own)) {
     body.center = own ? std::optional(mass_properties(object).center) : std::nullopt;
     what = "own center";
   }
@@ -314,7 +321,7 @@ std::string_view edit_moments(Object& object) {
     }
   }
   own = body.inertia.has_value();
-  if (ImGui::Checkbox("moments of inertia of its own", &own)) {
+  if (noted_checkbox("moments of inertia of its own", own)) {
     body.inertia =
         own ? std::optional<Vec3>(mass_properties(object).inertia.diagonal()) : std::nullopt;
     what = "own inertia";

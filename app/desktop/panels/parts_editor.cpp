@@ -6,6 +6,7 @@
 #include <array>
 
 #include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/words.h"
 #include "devices/files/scene/scene_document.h"
@@ -77,11 +78,14 @@ std::string PartsEditor::edit(Object& object) {
   heading("Parts");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::TreeNode("##part", "%zu: %s", i + 1, part_shape(parts[i].shape).name)) {
+    const bool open = ImGui::TreeNode("##part", "%zu: %s", i + 1, part_shape(parts[i].shape).name);
+    note_place(fmt::format("part {}", i + 1).c_str());
+    if (open) {
       if (const auto changed = edit_part(parts[i], rotations_[i]); !changed.empty()) {
         what = fmt::format("part {} {}", i + 1, changed);
       }
       const bool remove = ImGui::Button("Remove part", {-1, 0});
+      note_place("Remove part");
       tooltip("Ctrl+Z brings it back.");
       if (remove) {
         what = fmt::format("part {} of {} removed", i + 1, parts.size());
@@ -93,7 +97,9 @@ std::string PartsEditor::edit(Object& object) {
     ImGui::PopID();
     if (rotations_.empty()) return what;
   }
-  if (ImGui::Button("Add part", {-1, 0})) {
+  const bool add = ImGui::Button("Add part", {-1, 0});
+  note_place("Add part");
+  if (add) {
     parts.push_back({.shape = part_shapes()[0].shape});
     what = fmt::format("part {} added", parts.size());
   }

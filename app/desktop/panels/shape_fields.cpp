@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/style/words.h"
 #include "devices/files/rpy.h"
 
@@ -54,6 +55,7 @@ std::string_view edit_size(Capsule& capsule) {
 bool edit_color(std::optional<Vec3>& color, const char* otherwise) {
   bool own = color.has_value();
   bool changed = ImGui::Checkbox("a colour of its own", &own);
+  note_place("a colour of its own");
   tooltip(otherwise);
   if (changed) color = own ? std::optional(kFirstColor) : std::nullopt;
   if (!color) return changed;
