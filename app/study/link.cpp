@@ -2,26 +2,29 @@
 // it, and what the hand is given, under each coupling.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "app/base/folders.h"
+#include "app/run/analysis.h"
 #include "app/study/tap_bench.h"
-#include "core/coupling/felt.h"
 #include "core/dynamics/random.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {
 
 struct LinkStudy {
-  static constexpr int kDelays[] = {0, 1, 2, 5, 10, 20, 50, 100};  // each way [ticks]
-  static constexpr double kGrip[] = {300};                         // [N/m]
-  static constexpr double kHold = 1.5;                             // [s]
-  static constexpr double kGiven = 5e-3;                           // [J]
-  static constexpr double kAtRest = 5e-3;                          // [m/s]
-  static constexpr double kWalls[] = {600, 5000};                  // for the energy [N/m]
-  static constexpr unsigned kRandom = 60;                          // links for the tanks
+  static constexpr int kDelays[] = {0, 1, 2, 3, 4, 5, 7, 10, 20, 50, 100};  // each way [ticks]
+  static constexpr double kGrip[] = {300};                                  // [N/m]
+  static constexpr double kHold = 4;                                        // [s]
+  static constexpr double kGiven = 5e-3;                                    // [J]
+  static constexpr double kAtRest = 5e-3;                                   // [m/s]
+  static constexpr double kWalls[] = {600, 5000};                           // for the energy [N/m]
+  static constexpr unsigned kRandom = 60;                                   // links for the tanks
   static constexpr const char* kStandardTint = "#B4B9C3";
 };
 
@@ -48,7 +51,11 @@ struct LinkCurve {
   TapSetting at(int delay) const {
     TapSetting s = base;
     s.hold = LinkStudy::kHold;
-    (in_motors() ? s.delay : s.link) = in_motors() ? 2 * delay : delay;
+    if (in_motors()) {
+      s.delay = 2.0 * delay;
+    } else {
+      s.link = delay;
+    }
     return s;
   }
 };
@@ -65,49 +72,63 @@ std::vector<LinkCurve> all_laws() {
       {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
 }
 
-// What theory says along the table's normal, in the hand of the taps.
-struct LinkTheory {
-  TipAlong tip = tip_at_table();
-  Parameters p{};
-
-  // s times the impedance of hand, device and coupling: stable where its angle grows by two right
-  // angles along the imaginary axis, as that of a mass on a spring and a damper does.
-  bool stable(double wall, int delay) const {
-    const FeltJoint joint{
-        tip.mass, tip.damping, p.b_v / tip.lever2, p.k_vc / tip.lever2, p.b_vc / tip.lever2,
-        p.tick,   wall,        2 * delay * p.tick};
-    constexpr double kStep = 0.25, kTo = 6000;  // [rad/s]
-    double turned = 0;
-    std::complex<double> before = LinkStudy::kGrip[0];
-    for (double w = kStep; w <= kTo; w += kStep) {
-      const std::complex<double> s(0, w);
-      const std::complex<double> now =
-          s * (joint.standard(w / (2 * std::numbers::pi)) + TapBench::kGripDamping) +
-          LinkStudy::kGrip[0];
-      turned += std::arg(now / before);
-      before = now;
-    }
-    return std::abs(turned - std::numbers::pi) < 1;
-  }
+// What theory says at the table, in the hand of the taps.
+class LinkTheory {
+ public:
   double standard(int delay) const {
+    if (!stable(kSoftest, delay)) return kSoftest;
     if (stable(kStiffest, delay)) return kStiffest;
     double low = kSoftest, high = kStiffest;
-    if (!stable(low, delay)) return low;
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 8; ++i) {
       const double middle = std::sqrt(low * high);
       (stable(middle, delay) ? low : high) = middle;
     }
     return low;
   }
-  // The contact comes late by the whole trip, too.
+  // Its spring is the same, and its contact comes late by the whole trip, too.
   double proposed(int delay) const {
-    const double wall = proposed_wall(tip, {.T = p.tick,
-                                            .k_vc = p.k_vc,
-                                            .b_v = p.b_v,
-                                            .hand_damping = TapBench::kGripDamping,
-                                            .delay = 2 * delay * p.tick});
+    if (!stable(kSoftest, delay)) return kSoftest;
+    const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
+                                                       .k_vc = p_.k_vc,
+                                                       .b_v = p_.b_v,
+                                                       .hand_damping = TapBench::kGripDamping,
+                                                       .delay = 2 * delay * p_.tick});
     return std::clamp(wall, kSoftest, kStiffest);
   }
+
+ private:
+  using Complex = Eigen::Matrix3cd;
+
+  // The standard coupling in that hand, the proxy without weight: s times the impedance at the
+  // joints of arm, grip, spring and wall. Stable where the angle of its determinant grows by two
+  // right angles for each joint along the imaginary axis, as that of a mass on a spring and a
+  // damper does.
+  bool stable(double wall, int delay) const {
+    constexpr double kStep = 0.5, kTo = 4000;  // [rad/s]
+    const Eigen::Matrix3d M = at_.M, JJ = at_.J.transpose() * at_.J,
+                          normal = at_.J.row(2).transpose() * at_.J.row(2);
+    const double K_h = LinkStudy::kGrip[0], trip = 2 * delay * p_.tick;
+    double turned = 0;
+    std::complex<double> before = 0;
+    for (double w = kStep; w <= kTo; w += kStep) {
+      const std::complex<double> s(0, w), spring = p_.k_vc + s * p_.b_vc;
+      const Complex I = Complex::Identity();
+      const Complex proxy = s * (p_.b_v + p_.k_vc * p_.tick / 2) * I + wall * normal;
+      const Complex apart = (spring * I + proxy).inverse();
+      const Complex all = s * s * M + s * Eigen::Matrix3d(b_d_.asDiagonal()) +
+                          (K_h + s * TapBench::kGripDamping) * JJ + spring * I -
+                          spring * spring * std::exp(-s * (trip + p_.tick)) * apart;
+      const std::complex<double> now = all.determinant();
+      turned += before == 0.0 ? std::arg(now) : std::arg(now / before);
+      before = now;
+    }
+    return std::abs(turned - 3 * std::numbers::pi) < 1;
+  }
+
+  Parameters p_{};
+  ArmDescription arm_ = read_urdf(default_device());
+  ArmAt at_ = arm_at(arm_, rest_at(arm_, Vec3(0.2, 0, TapBench::kSurface)).x1);
+  Eigen::Vector3d b_d_ = device_damping(arm_, p_);
 };
 
 void find_walls(Laboratory& lab, std::vector<LinkCurve>& laws) {

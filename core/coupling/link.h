@@ -72,9 +72,9 @@ inline Fate fate_of(const LinkSettings& s, std::uint64_t direction, std::uint64_
 
 // One direction. Storage for all that can be on its way is set aside beforehand.
 template <class Packet>
-class Channel {
+class OneWay {
  public:
-  explicit Channel(std::uint64_t direction) : direction_(direction), packets_(kSlots) {}
+  explicit OneWay(std::uint64_t direction) : direction_(direction), packets_(kSlots) {}
 
   // Nothing is on its way, and packets are counted anew.
   void start() {
@@ -143,8 +143,8 @@ class ProxyLink {
 
  private:
   LinkSettings s_;
-  Channel<FromDevice<N>> to_proxy_{1};
-  Channel<FromProxy<N>> to_device_{2};
+  OneWay<FromDevice<N>> to_proxy_{1};
+  OneWay<FromProxy<N>> to_device_{2};
 };
 
 }  // namespace limpid

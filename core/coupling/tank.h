@@ -30,11 +30,10 @@ class DeviceTank {
   void sent(const Vec<N>& torque);
   double energy() const { return in_ - out_; }  // [J]
 
-  // The largest share of a torque for the coming tick of length T [s] with which the tank spends no
-  // more than it has where the device moves on as it was moved, slowed down or sped up as much
-  // again, and faster by what the torque itself makes of it where nothing else holds it, M its
-  // inertia. Torques that are on their way to the motors are paid for first. That a torque takes
-  // energy in is not counted on: a device that trembles is on its way back in the next tick.
+  // The largest share of a torque that the tank can pay for in the tick of length T [s] that comes,
+  // whether the device goes on as fast or gains as much speed again, and where nothing holds it but
+  // its inertia M. Torques on their way to the motors are paid for first. None is counted on to
+  // take energy in: a device that trembles is on its way back by then.
   double share(const Vec<N>& torque, const Mat<N>& M, double T) const;
 
  private:

@@ -137,7 +137,7 @@ struct Tagged {
 };
 
 std::vector<int> ages(const LinkSettings& s, std::uint64_t direction, int ticks) {
-  Channel<Tagged> channel(direction);
+  OneWay<Tagged> channel(direction);
   std::vector<int> ages;
   for (int k = 0; k < ticks; ++k) ages.push_back(k - channel.pass({k}, s).number);
   return ages;

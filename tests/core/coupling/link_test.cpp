@@ -47,7 +47,7 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
   Random random(1);
   for (int round = 0; round < 60; ++round) {
     const auto direction = static_cast<std::uint64_t>(1 + round % 2);
-    Channel<Numbered> channel(direction);
+    OneWay<Numbered> channel(direction);
     Queue queue;
     LinkSettings s;
     int lost = 0;
@@ -75,7 +75,7 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
 // And so the condition for passivity may count on it.
 TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
   for (const auto& [delay, jitter] : {std::pair(0, 5), {20, 0}, {7, 50}, {200, 50}}) {
-    Channel<Numbered> channel(1);
+    OneWay<Numbered> channel(1);
     const LinkSettings s = link(delay, jitter, 0);
     int oldest = 0;
     for (int k = 0; k < 5000; ++k) {
@@ -90,7 +90,7 @@ TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
 
 TEST(Link, StartsAnewAsItStartedAtFirst) {
   const LinkSettings s = link(3, 9, 0.4);
-  Channel<Numbered> channel(2);
+  OneWay<Numbered> channel(2);
   std::vector<int> first;
   for (int k = 0; k < 400; ++k) first.push_back(channel.pass({k}, s).number);
   channel.start();
@@ -99,7 +99,7 @@ TEST(Link, StartsAnewAsItStartedAtFirst) {
 
 TEST(Link, ThatWasOffKnowsWhatIsSoWhenItComesOn) {
   const LinkSettings s = link(30, 0, 0);
-  Channel<Numbered> channel(1);
+  OneWay<Numbered> channel(1);
   for (int k = 0; k < 100; ++k) channel.pass({k}, s);
   channel.forget();
   for (int k = 500; k < 530; ++k) {
