@@ -33,8 +33,13 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the loop is unstable)\n",
              a.eta_min_grip);
   fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
-             a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
-             a.condition3.proxy_margin);
+             a.condition3.holds   ? "holds"
+             : a.condition3.known ? "BROKEN"
+                                  : "no bound is known, as packets are lost (link.loss);",
+             a.condition3.device_margin, a.condition3.proxy_margin);
+  if (!p.linked()) return;
+  fmt::print("link                       up to {:.4g} ms old each way, as (3) has it; {}\n",
+             1e3 * a.link, link_text(p.kind));
 }
 
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
@@ -108,9 +113,11 @@ int analyze_command(const AnalyzeOptions& options) {
   json["eta_min_grip"] = a.eta_min_grip;
   json["condition3"] = {{"device_margin", a.condition3.device_margin},
                         {"proxy_margin", a.condition3.proxy_margin},
+                        {"known", a.condition3.known},
                         {"holds", a.condition3.holds}};
   json["passive"] = a.passive;
   json["delay"] = a.delay;
+  json["link"] = a.link;
   json["measured"] = a.measured;
   if (!options.mass) json["tip"] = as_json(tip, p);
   fmt::print("{}\n", json.dump(2));

@@ -72,8 +72,13 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
     report.warnings.push_back(
         "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
         "leave them to be fitted");
-    const std::string late = fit_text(fitted(arm, p, a.delay));
-    if (a.delay > 0) report.warnings.back() += "; what holds with its delay: " + late;
+    const std::string late = fit_text(fitted(arm, p, a.delay, p));
+    if (!a.condition3.known) {
+      report.warnings.back() =
+          "condition (3): no bound is known where packets are lost (link.loss)";
+    } else if (a.delay + a.link > 0) {
+      report.warnings.back() += "; what holds with its delay: " + late;
+    }
   }
 }
 

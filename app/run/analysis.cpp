@@ -49,6 +49,16 @@ double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
   return high;
 }
 
+const char* link_text(CouplingKind kind) {
+  switch (kind) {
+    case CouplingKind::standard: return "passive where (3) holds";
+    case CouplingKind::proposed: return "of what is fed forward no bound is known";
+    case CouplingKind::predictive: return "the predictive law knows no link";
+    case CouplingKind::tank: return "passive whatever it does";
+  }
+  return "";
+}
+
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
   Eigen::VectorXd b_d(static_cast<Eigen::Index>(arm.joints.size()));
   for (Eigen::Index i = 0; i < b_d.size(); ++i) {
@@ -101,8 +111,9 @@ Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, cons
   a.modes = std::move(modes);
   a.delay = device_delay(arm, p);
   a.measured = arm.delay.has_value() && std::isnan(p.damping);
-  a.condition3 =
-      condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())), a.delay);
+  a.condition3 = condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())),
+                            a.delay, p);
+  a.link = p.oldest() * p.tick;
   a.passive = p.eta >= a.eta_min;
   return a;
 }

@@ -29,11 +29,15 @@ struct Analysis {
   double eta_min = 0;                  // (25), the worst mode
   std::optional<double> eta_min_band;  // where only frequencies up to w_b count
   double eta_min_grip = 0;             // Routh, for hand.stiffness and hand.damping
-  double delay = 0;                    // that (3) reckons with [s]
+  double delay = 0;                    // of the motors, that (3) reckons with [s]
+  double link = 0;                     // of the link each way, that it reckons with [s]
   bool measured = false;               // inertia, damping and delay were, of the device itself
   Condition3 condition3;
   bool passive = false;  // eta >= eta_min
 };
+
+// What is known of a law where device and proxy are linked, in words.
+const char* link_text(CouplingKind kind);
 
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);

@@ -68,11 +68,12 @@ bool same(const Parameters& a, const Parameters& b, const char* key) {
 
 }  // namespace
 
-Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double delay) {
+Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double delay,
+                  const LinkSettings& link) {
   Parameters p;
   double b_d = device_damping(arm, p).minCoeff();
   const bool suits =
-      condition3(p, p.tick, std::span(&b_d, 1), delay).holds && b_d <= kAmple * kPaperDamping;
+      condition3(p, p.tick, std::span(&b_d, 1), delay, link).holds && b_d <= kAmple * kPaperDamping;
   if (suits) return p;
   if (chosen.damping > 0) {
     p.damping = b_d = chosen.damping;
@@ -82,9 +83,12 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
     set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
-  set(p, "coupling.b_vc", down(b_d / 12));
-  set(p, "coupling.k_vc", down((b_d - 2 * p.b_vc) / (chosen.tick + 1.5 * delay)));
-  set(p, "coupling.b_v", up(std::max(b_d, p.k_vc * (chosen.tick + delay) / 2)));
+  // Of (3), for packets that are so old and velocities that count so often again.
+  const double old = link.oldest() * chosen.tick, again = 0.5 * link.link_jitter;
+  set(p, "coupling.b_vc", down(b_d / (12 + 6 * again)));
+  set(p, "coupling.k_vc", down((b_d - (2 + again) * p.b_vc) / (chosen.tick + 1.5 * delay + old)));
+  const double least = again * p.b_vc + p.k_vc * (chosen.tick + delay + 2 * old) / 2;
+  set(p, "coupling.b_v", up(std::max(b_d, least)));
   set(p, "observer.alpha", down(35.0 / 12 * b_d));
   return p;
 }

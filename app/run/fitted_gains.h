@@ -20,8 +20,10 @@ inline constexpr std::array kFittedKeys{"coupling.k_vc", "coupling.b_vc", "coupl
 
 // The paper's settings where they suit the arm: (3) holds with what its file says, and its damping
 // is not far above what they need. Else with the keys above as they suit it, at two digits, for the
-// tick and the damping that are chosen, if one is; with (3) as it is for a delay t_d [s].
-Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, double delay = 0);
+// tick and the damping that are chosen, if one is; with (3) as it is for a delay t_d [s] and a
+// link.
+Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, double delay = 0,
+                  const LinkSettings& link = {});
 
 // What of its own forces an arm's motors should take off the hand: of one that was identified all
 // that was found, and of its friction the usual share; else nothing.

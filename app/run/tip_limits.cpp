@@ -52,7 +52,10 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
     return l.walls[static_cast<std::size_t>(kind)];
   };
   at(CouplingKind::standard) = {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};
-  at(CouplingKind::proposed) = {proposed_wall(l.tip, s),
+  at(CouplingKind::tank) = at(CouplingKind::standard);
+  WallSetting through_link = s;
+  through_link.delay += 2 * p.oldest() * p.tick;
+  at(CouplingKind::proposed) = {proposed_wall(l.tip, through_link),
                                 "the damping there is against the lag of the contact"};
   at(CouplingKind::predictive) = predictive_wall(easiest(arm.J, arm.M), s, p);
   l.every_hand = every_hands_wall(l.tip, p.tick, l.delay);
@@ -63,7 +66,8 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             p.k_vc / lever2,
             p.b_vc / lever2,
             p.tick,
-            0};
+            0,
+            2 * p.oldest() * p.tick};
   l.w_f = p.alpha / lever2 / l.felt.m;
   l.delay_most = most_delay(p, description.delay, description.delay.has_value());
   l.added = added_mass(p.eta, l.delay_most, p.tick);
@@ -88,7 +92,8 @@ std::string late_text(const TipLimits& l, const Parameters& p) {
 FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind, double f) {
   std::complex<double> Z;
   switch (kind) {
-    case CouplingKind::standard: Z = l.felt.standard(f); break;
+    case CouplingKind::standard:
+    case CouplingKind::tank: Z = l.felt.standard(f); break;
     case CouplingKind::proposed: Z = l.felt.proposed(f, p.eta, l.w_f); break;
     case CouplingKind::predictive:
       Z = l.felt.predictive(f, l.added, p.damping_share(p.eta), p.band,

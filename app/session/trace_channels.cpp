@@ -60,8 +60,8 @@ using enum Ink;
 std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
                                         const std::vector<std::string>& joint_units) {
   std::vector<ChannelInfo> infos{
-      {"coupling/kind", "Coupling", "law", "law", "-", "0 standard, 1 proposed, 2 predictive",
-       neutral},
+      {"coupling/kind", "Coupling", "law", "law", "-",
+       "0 standard, 1 proposed, 2 predictive, 3 tank", neutral},
       {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", units.angle,
        "distance of device and proxy, over all joints", proxy},
       {"energy/controller_total", "Energy", "controller, E_c", "E_c", "J",

@@ -230,6 +230,7 @@ Outcome zwidth(Laboratory& lab);
 Outcome switching(Laboratory& lab);
 Outcome friction(Laboratory& lab);
 Outcome delay(Laboratory& lab);
+Outcome link(Laboratory& lab);
 Outcome walls(Laboratory& lab);
 Outcome mass(Laboratory& lab);
 Outcome click(Laboratory& lab);
@@ -258,6 +259,8 @@ constexpr std::array kExperiments{
                switching},
     Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},
     Experiment{"delay", "what is given and felt where the device's torque comes late", delay},
+    Experiment{"link", "the stiffest wall through a delay between device and proxy, each law",
+               link},
     Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
     Experiment{"mass", "the mass felt of a body that is held, and the least that can be held",
                mass},

@@ -56,12 +56,13 @@ inline constexpr const char* kHandInk = "#009E73";
 inline constexpr const char* kContactInk = "#D55E00";
 inline constexpr const char* kEnergyInk = "#CC79A7";
 inline constexpr const char* kNeutralInk = "#555555";
-// The three couplings have colours of their own; a variant of one is a tint of it.
+// The couplings have colours of their own; a variant of one is a tint of it.
 inline constexpr const char* kStandardInk = "#6B7280";
 inline constexpr const char* kProposedInk = "#6A3D9A";
 inline constexpr const char* kProposedTint = "#B79BD3";
 inline constexpr const char* kPredictiveInk = "#6F9600";
 inline constexpr const char* kPredictiveTint = "#B5CC6A";
+inline constexpr const char* kTankInk = "#00A6D6";
 // For a family of curves, such as values of eta.
 inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
                                              "#D55E00", "#CC79A7", "#56B4E9"};

@@ -8,6 +8,7 @@
 
 #include "app/base/folders.h"
 #include "app/run/analysis.h"
+#include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "app/study/signals.h"
 #include "core/dynamics/arm.h"
@@ -64,6 +65,12 @@ Parameters TapBench::parameters() const {
   p.torque_limit = setting_.own_motors ? kFromArm : setting_.torque_limit;
   p.device_delay = static_cast<int>(std::lround(setting_.delay));
   if (setting_.knows_delay) p.delay = p.device_delay;
+  p.link_delay = setting_.link;
+  if (setting_.fits_link) {
+    const Parameters fit = fitted(read_urdf(default_device()), p, 0, p);
+    static_cast<SpringDamper&>(p) = fit;
+    p.alpha = fit.alpha;
+  }
   return p;
 }
 
@@ -78,13 +85,13 @@ Trial TapBench::trial() const {
 
 Touch TapBench::touch(const TrialResult& result) const {
   constexpr double kLost = std::numeric_limits<double>::infinity();
-  if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost};
+  if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost, kLost};
   const Session& s = result.session;
   const double T = s.info.tick;
   static const Arm<kAnyDof> arm(read_urdf(default_device()));
   HighPass fast[] = {{kFast, 1 / T}, {kFast, 1 / T}, {kFast, 1 / T}};
   Touch touch;
-  double fast2 = 0, force = 0, depth = 0;
+  double fast2 = 0, moving2 = 0, force = 0, depth = 0;
   std::size_t held = 0;
   Vec3 before = arm.tip_at(vector_at(s, 0, Column::device_position));
   for (std::size_t k = 0; k < s.size(); ++k) {
@@ -95,16 +102,20 @@ Touch TapBench::touch(const TrialResult& result) const {
     const Vec3 tip = arm.tip_at(vector_at(s, k, Column::device_position));
     Vec3 v = (tip - before) / T;
     before = tip;
+    const double speed2 = v.squaredNorm();
     for (int i = 0; i < 3; ++i) v[i] = fast[i](v[i]);
     const double in = std::fmod(static_cast<double>(k) * T, period()) - start_of_hold();
-    if (in < kSettle || in >= kHold) continue;
+    if (in < setting_.hold - kJudged || in >= setting_.hold) continue;
     fast2 += v.squaredNorm();
+    moving2 += speed2;
     ++held;
     if (tip.z() >= kSurface) continue;
     depth += kSurface - tip.z();
     force += s.at(k, Column::contact_force)[2];
   }
-  touch.chatter = std::sqrt(fast2 / static_cast<double>(std::max<std::size_t>(1, held)));
+  const auto ticks = static_cast<double>(std::max<std::size_t>(1, held));
+  touch.chatter = std::sqrt(fast2 / ticks);
+  touch.moving = std::sqrt(moving2 / ticks);
   touch.felt = depth > 0 ? force / depth / wall_ : 0;
   return touch;
 }
@@ -130,12 +141,12 @@ struct WallSearch {
   bool done = false;
 };
 
-// Whether each wall, not a number where none is asked for, is rendered well in every grip. What one
-// grip finds bad is not tried in the next.
+// Whether each wall, not a number where none is asked for, is good in every grip. What one grip
+// finds bad is not tried in the next.
 std::vector<char> try_walls(Laboratory& lab, std::span<const TapSetting> settings,
-                            const std::vector<double>& walls) {
+                            const std::vector<double>& walls, const WallTest& test) {
   std::vector<char> good(settings.size(), 1);
-  for (const double grip : kGrips) {
+  for (const double grip : test.grips) {
     std::vector<std::size_t> of;
     std::vector<TapBench> benches;
     std::vector<Trial> trials;
@@ -148,7 +159,7 @@ std::vector<char> try_walls(Laboratory& lab, std::span<const TapSetting> setting
     }
     lab.run(trials, [&](std::size_t t, const TrialResult& result) {
       const bool exact = settings[of[t]].encoder_step == 0;
-      good[of[t]] = well_rendered(benches[t].touch(result), exact) ? 1 : 0;
+      good[of[t]] = test.good(benches[t].touch(result), exact) ? 1 : 0;
     });
   }
   return good;
@@ -163,7 +174,8 @@ bool well_rendered(const Touch& touch, bool exact_encoder) {
          (!exact_encoder || touch.energy <= W::kEnergy);
 }
 
-std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings) {
+std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings,
+                                   const WallTest& test) {
   std::vector<WallSearch> searches(settings.size());
   std::vector<double> walls(settings.size());
   // First the ends: where one of them is the answer there is nothing between to look for.
@@ -175,7 +187,7 @@ std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> 
                  : step == -1 ? s.low
                               : std::sqrt(s.low * s.high);
     }
-    const std::vector<char> good = try_walls(lab, settings, walls);
+    const std::vector<char> good = try_walls(lab, settings, walls, test);
     for (std::size_t i = 0; i < settings.size(); ++i) {
       WallSearch& s = searches[i];
       if (s.done) continue;

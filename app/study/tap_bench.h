@@ -23,6 +23,9 @@ struct TapSetting {
   bool own_motors = false;     // the arm's own limits instead
   double delay = 0;            // of the device [ticks]
   bool knows_delay = true;     // the law does
+  int link = 0;                // between device and proxy, each way [ticks]
+  bool fits_link = false;      // gains by condition (3) for it, else the paper's
+  double hold = 0.5;           // how long the hand stays [s]
 
   friend bool operator==(const TapSetting&, const TapSetting&) = default;
 };
@@ -34,6 +37,7 @@ struct Touch {
   double chatter = 0;  // rms speed of the tip above 20 Hz while it is held [m/s]
   double felt = 0;     // the wall's force over the device's depth, by the stiffness set [-]
   double torque = 0;   // largest of the contact on any joint [N m]
+  double moving = 0;   // rms speed of the tip while it is held [m/s]
 };
 
 class TapBench {
@@ -52,11 +56,11 @@ class TapBench {
 
  private:
   double start_of_hold() const { return kRest + down_ / kSpeed; }
-  double period() const { return kRest + 2 * down_ / kSpeed + kHold + kRest; }
+  double period() const { return kRest + 2 * down_ / kSpeed + setting_.hold + kRest; }
   double height(double t) const;  // of the hand, below where it starts [m]
 
-  static constexpr double kRest = 0.1, kHold = 0.5;  // [s]
-  static constexpr double kSettle = 0.3;             // from the hold's beginning [s]
+  static constexpr double kRest = 0.1;    // [s]
+  static constexpr double kJudged = 0.2;  // the end of the hold [s]
 
   TapSetting setting_;
   double wall_, grip_, down_;
@@ -83,8 +87,15 @@ inline constexpr double kSoftest = 100, kStiffest = 20000;  // walls that are tr
 inline constexpr double kGrips[] = {300, 3000};             // hands that a wall has to stand [N/m]
 inline constexpr int kBisections = 6;
 
+// In which hands a wall is tapped, and what it has to be there.
+struct WallTest {
+  std::span<const double> grips = kGrips;  // [N/m]
+  bool (*good)(const Touch& touch, bool exact_encoder) = well_rendered;
+};
+
 // For each setting the stiffest wall [N/m] within kSoftest and kStiffest, by bisection of its
-// logarithm; kSoftest if not even that one is rendered well. All settings go on side by side.
-std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings);
+// logarithm; kSoftest if not even that one is good. All settings go on side by side.
+std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings,
+                                   const WallTest& test = {});
 
 }  // namespace limpid

@@ -5,6 +5,7 @@
 #include "core/coupling/predictive.h"
 #include "core/coupling/proposed.h"
 #include "core/coupling/standard.h"
+#include "core/coupling/tank.h"
 
 namespace limpid {
 namespace detail {

@@ -22,7 +22,9 @@ std::complex<double> FeltJoint::proposed(double f, double eta, double w_f) const
 std::complex<double> FeltJoint::standard(double f) const {
   const std::complex<double> s(0, omega(f));
   const std::complex<double> coupling = k_vc / s + b_vc, proxy = b_v + k_vc * T / 2 + K / s;
-  return m * s + b_d + coupling * proxy / (coupling + proxy);
+  // A proxy that moves as the device did a trip ago is one more damper, k_vc trip.
+  const std::complex<double> late = coupling * (1.0 - std::exp(-s * trip));
+  return m * s + b_d + coupling * (proxy + late) / (coupling + proxy);
 }
 
 std::complex<double> FeltJoint::predictive(double f, const AddedMass& added, double damping,

@@ -25,12 +25,14 @@ struct FeltJoint {
   double k_vc = 0, b_vc = 0;  // [N m/rad, N m s/rad]
   double T = 0;               // [s]
   double K = 0;               // of the contact, 0 in free space [N m/rad]
+  double trip = 0;            // through a link to the proxy and back [s]
 
   // Torque over velocity at f [Hz], all of it [N m s/rad]:
   // Proposed coupling, (24) with f2 = -K x: the human torque observed with bandwidth w_f [rad/s],
   // the contact torque known.
   std::complex<double> proposed(double f, double eta, double w_f) const;
-  // Standard coupling, (1)-(2): the contact behind spring and damper; the proxy weighs nothing.
+  // Standard coupling, (1)-(2): the contact behind spring and damper, and maybe a link; the proxy
+  // weighs nothing.
   std::complex<double> standard(double f) const;
   // Predictive coupling: the share `damping` of b_d + b_v stays felt, networks shape the inertia up
   // to `band` [Hz] or to the edge of what is added, the contact acts as it is.

@@ -13,6 +13,8 @@ namespace limpid {
 
 template <int N>
 class Proxy;
+template <int N>
+class ProxyLink;
 
 // Where a law begins: device and proxy as they are.
 template <int N>
@@ -57,6 +59,7 @@ struct LawInput {
   double tick;                            // as it should be [s]
   double encoder_step;                    // [rad]
   int delay_most;                         // between command and motor, at most [ticks]
+  ProxyLink<N>* link = nullptr;           // between device and proxy; null: none
 };
 
 // How a law found the motion of a tick.

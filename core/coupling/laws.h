@@ -94,27 +94,69 @@ struct SpringDamper {
   }
 };
 
+inline constexpr int kMostLinkDelay = 200, kMostLinkJitter = 50;  // [ticks]
+
+// A delay between device and proxy, see link.h.
+struct LinkSettings {
+  int link_delay = 0;    // each way [ticks]
+  int link_jitter = 0;   // of a packet beyond that, at most [ticks]
+  double link_loss = 0;  // share of the packets that never arrive [-]
+  int link_seed = 1;     // of the random numbers for jitter and loss
+
+  bool linked() const { return link_delay > 0 || link_jitter > 0 || link_loss > 0; }
+  // What a side knows of the other is no older than that, unless packets are lost [ticks].
+  int oldest() const { return link_delay + link_jitter; }
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 4> settings() {
+    return {
+        {{"link.delay", "link delay", &P::link_delay, "ticks", 0, kMostLinkDelay, 0, 100, false,
+          true,
+          "Delay between device and proxy, each way, as if the world were far away. The predictive "
+          "coupling solves both at once and knows no link."},
+         {"link.jitter", "link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter, 0, 20, false,
+          true,
+          "Each packet between device and proxy takes up to so many ticks more, at random; each "
+          "side goes by the packet that was sent last of those that it has."},
+         {"link.loss", "link loss", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
+          "Share of the packets between device and proxy that never arrive; what has nothing new "
+          "keeps the last one."},
+         {"link.seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
+          "Whole number from which the random numbers of link.jitter and link.loss follow."}}};
+  }
+};
+
 // Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2; and where the
-// torque answers its reading a delay t_d late, b_d >= 2 b_vc + k_vc (T + 3/2 t_d) and
-// b_v >= k_vc (T + t_d) / 2.
+// torque answers its reading a delay t_d late, and what device and proxy know of each other is up
+// to t_l old, with jitter of j ticks in it,
+//     b_d >= (2 + j/2) b_vc + k_vc (T + 3/2 t_d + t_l),
+//     b_v >= j/2 b_vc + k_vc ((T + t_d) / 2 + t_l).
 //
 // Of d ticks' delay the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is at
 // most
 //     k_vc sum_j |dx1_k (dx1_k-j - dx2_k-j)| <= k_vc d (3/2 dx1^2 + 1/2 dx2^2),
 // summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is made so
-// too.
+// too. Through a link the device lacks k_vc (x2_k - x2_k-d) and the proxy k_vc (x1_k - x1_k-d),
+// together at most k_vc d (dx1^2 + dx2^2): for d ticks each way what Lee and Spong (2006) and Nuno
+// et al. (2009) have of such couplings in continuous time. Velocities that are held for want of
+// newer ones act up to j + 1 times.
+//
+// It is about spring and damper alone: nothing is known of what the proposed law feeds forward
+// through a link.
 struct Condition3 {
   double device_margin = 0;  // b_d less what is needed, at the joint with the least [N m s/rad]
   double proxy_margin = 0;   // b_v less what is needed [N m s/rad]
+  bool known = true;         // false where packets are lost: then there is no bound for their age
   bool holds = false;        // to round-off: the paper's own gains stand on the edge
 };
 // b_d: of every joint [N m s/rad]; T, the delay [s].
 Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
-                      double delay = 0);
+                      double delay = 0, const LinkSettings& link = {});
 
 // The same for all laws of the paper: what does nothing in one is there for the other.
-inline constexpr std::array kPaperSliders{"coupling.eta", "observer.alpha", "coupling.k_vc",
-                                          "coupling.b_vc", "coupling.b_v"};
+inline constexpr std::array kPaperSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
+                                          "coupling.b_vc", "coupling.b_v",   "link.delay",
+                                          "link.jitter",   "link.loss"};
 
 struct StandardLaw {
   static constexpr LawInfo kInfo{
@@ -294,6 +336,53 @@ struct PredictiveLaw {
   class Of;  // predictive.h
 };
 
+// Two-layer passivity (Franken, Stramigioli, Misra, Secchi, Macchelli 2011).
+struct TankLaw {
+  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
+                                       "tank.energy",   "tank.damping",  "link.delay",
+                                       "link.jitter",   "link.loss"};
+  static constexpr LawInfo kInfo{
+      .key = "tank",
+      .label = "Tank",
+      .meaning =
+          "the standard coupling with an energy tank on each side, which bounds the energy given "
+          "whatever the link between them does.",
+      .verdict = "Passive through any link; soft, and drags as the standard one.",
+      .takes_eta = false,
+      .observes = false,
+      .keeps_ledger = true,
+      .sliders = kSliders,
+  };
+
+  struct Settings {
+    double tank_energy = 0.005;  // E0, in both tanks at the start [J]
+    double tank_most = 0.1;      // that each of them keeps [J]
+    double tank_share = 0.02;    // of what a tank has above E0/2, sent in a tick [-]
+    double tank_damping = 100;   // of an empty tank, over the device's inertia [1/s]
+
+    template <class P>
+    static constexpr std::array<Setting<P>, 4> settings() {
+      return {
+          {{"tank.energy", "tanks E\xE2\x82\x80", &P::tank_energy, "J", 1e-4, 1, 1e-3, 0.02, true,
+            true,
+            "Tank coupling: what both tanks hold at the start, half of it each. Coupling and "
+            "device never give more than this beyond what came in."},
+           {"tank.most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1, true, true,
+            "Tank coupling: the most that each tank keeps of what came in. So much may be given in "
+            "any part of the time."},
+           {"tank.share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1, true, true,
+            "Tank coupling: share of what a tank holds above its half of tank.energy that it sends "
+            "to the other one in a tick."},
+           {"tank.damping", "refill", &P::tank_damping, "1/s", 0, 200, 0, 200, false, true,
+            "Tank coupling: where the device's tank holds less than its half of tank.energy, a "
+            "damper of up to this rate times the device's inertia fills it from the hand."}}};
+    }
+  };
+
+  template <int N>
+  class Of;  // tank.h
+};
+
 enum class VelocitySource : std::uint8_t { raw, lowpass, adaptive };
 inline constexpr std::array kVelocitySources{"raw", "lowpass", "adaptive"};
 
@@ -318,8 +407,8 @@ struct ObserverSettings {
 };
 
 // Numbered in the order of Laws: the number is what recordings keep.
-enum class CouplingKind : std::uint8_t { standard, proposed, predictive };
-using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw>;
+enum class CouplingKind : std::uint8_t { standard, proposed, predictive, tank };
+using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw>;
 
 namespace detail {
 

@@ -3,7 +3,8 @@
 
 #include "core/coupling/law.h"
 #include "core/coupling/laws.h"
-#include "core/touch/contacts.h"
+#include "core/coupling/link.h"
+#include "core/touch/proxy.h"
 
 namespace limpid {
 
@@ -23,12 +24,28 @@ template <int N>
 Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
               Proxy<N>& proxy);
 
+// The same by halves, each side with what it knows of the other: (2),
+template <int N>
+void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
+                const Feedforward<N>& ff, Proxy<N>& proxy);
+// and (1).
+template <int N>
+Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N>& proxy,
+                 const Feedforward<N>& ff);
+// What each side knows of itself: the proxy before it steps, but for f2, which follows.
+template <int N>
+FromDevice<N> told(const LawInput<N>& in) {
+  return {in.x1, in.v1, in.device, in.f1_hat};
+}
+template <int N>
+FromProxy<N> told(const LawInput<N>& in, const Proxy<N>& proxy) {
+  return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, Vec<N>::Zero(in.x1.size())};
+}
+
 // The standard coupling: spring and damper alone, (1)-(2).
 template <int N>
 struct StandardLaw::Of : PlainLaw<N> {
-  Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy) {
-    return couple<N>(p, in, Feedforward<N>::none(in.x1.size()), proxy);
-  }
+  Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy);
 };
 
 }  // namespace limpid

@@ -54,8 +54,9 @@ constexpr std::array kOthers{
                   "model.springs has the motors hold against them."},
 };
 
-constexpr auto kTable = joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), kOthers,
-                               CompensationSettings::settings<P>());
+constexpr auto kTable =
+    joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), LinkSettings::settings<P>(),
+           kOthers, CompensationSettings::settings<P>());
 
 std::string number(double x) {
   std::array<char, 40> text{};

@@ -50,7 +50,7 @@ struct CompensationSettings {
   }
 };
 
-struct Parameters : LawSettings, ObserverSettings, CompensationSettings {
+struct Parameters : LawSettings, ObserverSettings, LinkSettings, CompensationSettings {
   CouplingKind kind = CouplingKind::proposed;
   double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
   double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]

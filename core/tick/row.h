@@ -114,16 +114,17 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "7 out of range, 8 energy, 9 diverged, 10 the window does not answer, 11 the loop stood "
      "still, 12 the readings stand still",
      true},
-    {Column::kind, "/coupling/kind", ColumnWidth::one, "-", "0 standard, 1 proposed, 2 predictive",
-     true},
+    {Column::kind, "/coupling/kind", ColumnWidth::one, "-",
+     "0 standard, 1 proposed, 2 predictive, 3 tank", true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},
     {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
     {Column::governor, "/coupling/governor", ColumnWidth::one, "-",
-     "share of the contact force that the ledger lets through"},
+     "share of the contact force that the ledger lets through; tank: the proxy's damping by that "
+     "with what its tank adds"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
      "share of the damping that the ledger lets the law cancel"},
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
-     "share of all torque that the ledger lets through"},
+     "share of all torque that the ledger or the device's tank lets through"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
      "how the predictive law solved the tick: 0 as usual, 1 with motors at their limit, 2 contacts "
      "that did not settle one after the other, 3 not at all: the proxy stood still",
@@ -138,7 +139,9 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::energy_port, "/energy/port", ColumnWidth::one, "J",
      "energy given to the human: work of the motors less the device's own damping"},
     {Column::energy_ledger, "/energy/ledger", ColumnWidth::one, "J",
-     "reserve of the predictive law's ledger; 0 with other laws"},
+     "reserve of the predictive law's ledger, or what is in both tanks and on its way between "
+     "them; "
+     "0 with other laws"},
     {Column::proxy_kinetic, "/energy/proxy_kinetic", ColumnWidth::one, "J",
      "kinetic energy of the proxy"},
     {Column::contact_potential, "/energy/contact_potential", ColumnWidth::one, "J",

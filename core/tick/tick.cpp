@@ -57,7 +57,7 @@ void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
   tau1_ = vbar2_ = loads_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  coupling_.start({start.x1, start.v1, start.f1_hat, start.reserve});
+  start_law({start.x1, start.v1, start.f1_hat, start.reserve});
   k_ = period_ = 0;
   diverged_ = false;
 }
@@ -118,7 +118,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
                         frames_,        b_d_,
                         b_d_sure,       left,
                         gate_.gain(),   p.tick,
-                        p.encoder_step, most_delay(p, arm_delay_, in.health.guarded)};
+                        p.encoder_step, most_delay(p, arm_delay_, in.health.guarded),
+                        link_.of(p)};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
@@ -155,8 +156,14 @@ void Tick<N>::begin_after_gap(const Reading<N>& in) {
   tau1_.setZero();
   loads_.setZero();
   motors_.start();
-  coupling_.start({in.measured, f1_hat_, f1_hat_});
+  start_law({in.measured, f1_hat_, f1_hat_});
   x1_before_ = in.x;
+}
+
+template <int N>
+void Tick<N>::start_law(const LawStart<N>& at) {
+  link_.start();
+  coupling_.start(at);
 }
 
 // The law that takes over begins with things as they are; the torque gets there at a bounded rate.
@@ -164,7 +171,7 @@ template <int N>
 void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
   motors_.begin_slew();
   proxy_.contacts().forget();
-  coupling_.start({x1, velocity_.estimate(), f1_hat_});
+  start_law({x1, velocity_.estimate(), f1_hat_});
   kind_ = to;
   fresh_law_ = true;
 }

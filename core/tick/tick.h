@@ -118,6 +118,7 @@ class Tick {
   void begin_after_gap(const Reading<N>& in);
   Vec<N> own_forces(const Parameters& p, bool guarded, const Whereabouts<N>& at, double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
+  void start_law(const LawStart<N>& at);
   void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
@@ -133,6 +134,7 @@ class Tick {
   VelocityEstimator<N> velocity_;
   ForceObserver<N> observer_;
   Proxy<N> proxy_;
+  ProxyLink<N> link_;
   Coupling<N> coupling_;
   Compensation<N> compensation_;
   MotorStage<N> motors_;

@@ -46,7 +46,7 @@ class TestServe(RemoteTest):
 
     def test_nobody_raises_a_limit(self) -> None:
         loop = self.connect()
-        for values in ({"device.torque_limit": 1000}, {"ledger.energy": 0.02}):
+        for values in ({"device.torque_limit": 1000}, {"ledger.energy": 0.02}, {"tank.energy": 0.02}, {"tank.most": 1}):
             with self.assertRaisesRegex(limpid.RequestError, "only a person|Only a person"):
                 loop.set(values)
         loop.set({"device.torque_limit": 0.1})

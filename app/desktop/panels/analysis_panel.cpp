@@ -123,13 +123,13 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());
   if (tip_.scene <= 0) return;
-  const bool soft = p.kind == CouplingKind::standard;
+  const bool soft = p.kind == CouplingKind::standard || p.kind == CouplingKind::tank;
   const bool over = !soft && tip_.scene > mine.stiffness;
   read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
            over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
                               info(p.kind).key, mine.stiffness, mine.bound)
                 : "",
-           soft ? "Felt softer than that: the standard coupling's spring is in between."
+           soft ? "Felt softer than that: this coupling's spring is in between."
                 : "Within what this coupling renders well");
 }
 

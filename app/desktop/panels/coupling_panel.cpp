@@ -26,26 +26,45 @@ std::string eta_broken(const Parameters& p, const Analysis& a) {
       p.eta, a.eta_min, a.eta_min - p.eta);
 }
 
-// What (3) asks for where the device answers late.
-std::string late(const Analysis& a, const char* prompt, const char* delayed) {
-  return a.delay > 0 ? fmt::format("{}, delay {:.1f} ms", delayed, 1e3 * a.delay) : prompt;
+// What (3) asks for where the device answers late, and what the two know of each other is old.
+std::string with_delays(const Analysis& a, std::string text) {
+  if (a.delay > 0) text += fmt::format(", delay {:.1f} ms", 1e3 * a.delay);
+  if (a.link > 0) text += fmt::format(", link {:.4g} ms", 1e3 * a.link);
+  return text;
 }
-std::string device_needs(const Analysis& a) {
-  return late(a, "2 b_vc + k_vc T", "2 b_vc + k_vc (T + 3/2 delay)");
+std::string device_needs(const Parameters& p, const Analysis& a) {
+  const char* const link = a.link > 0 ? " + link" : "";
+  const std::string b_vc =
+      p.link_jitter > 0 ? fmt::format("{:.3g} b_vc", 2 + 0.5 * p.link_jitter) : "2 b_vc";
+  if (a.delay > 0) return with_delays(a, fmt::format("{} + k_vc (T + 3/2 delay{})", b_vc, link));
+  if (a.link > 0) return with_delays(a, b_vc + " + k_vc (T + link)");
+  return b_vc + " + k_vc T";
 }
-std::string proxy_needs(const Analysis& a) { return late(a, "k_vc T / 2", "k_vc (T + delay) / 2"); }
+std::string proxy_needs(const Parameters& p, const Analysis& a) {
+  const std::string b_vc =
+      p.link_jitter > 0 ? fmt::format("{:.3g} b_vc + ", 0.5 * p.link_jitter) : "";
+  if (a.link > 0) {
+    return with_delays(
+        a, fmt::format("{}k_vc ({} / 2 + link)", b_vc, a.delay > 0 ? "(T + delay)" : "T"));
+  }
+  return a.delay > 0 ? with_delays(a, "k_vc (T + delay) / 2") : "k_vc T / 2";
+}
 
-std::string device_broken(const Analysis& a) {
+std::string device_broken(const Parameters& p, const Analysis& a) {
+  if (!a.condition3.known) {
+    return "Condition (3): no bound is known where packets are lost (link loss): what is held for "
+           "want of a newer one may be of any age.\nThe tank law is passive all the same.";
+  }
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
   return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
-                     -a.condition3.device_margin, device_needs(a));
+                     -a.condition3.device_margin, device_needs(p, a));
 }
 
-std::string proxy_broken(const Analysis& a) {
+std::string proxy_broken(const Parameters& p, const Analysis& a) {
   if (a.condition3.holds || a.condition3.proxy_margin >= 0) return {};
   return fmt::format(
       "Condition (3): b_v is {:.4g} N m s/rad short of {}.\nRaise b_v or lower k_vc.",
-      -a.condition3.proxy_margin, proxy_needs(a));
+      -a.condition3.proxy_margin, proxy_needs(p, a));
 }
 
 void slider(Parameters& p, const char* key, const std::string& broken = {}) {
@@ -87,20 +106,23 @@ void kind_buttons(Parameters& p) {
 // What few people move: what ties device and proxy, and how well.
 bool advanced(std::string_view key) {
   return key == "coupling.k_vc" || key == "coupling.b_vc" || key == "coupling.b_v" ||
-         key == "coupling.band" || key == "ledger.energy";
+         key == "coupling.band" || key == "ledger.energy" || key == "tank.energy" ||
+         key == "tank.damping";
 }
+bool of_link(std::string_view key) { return key.starts_with("link."); }
 
 // Whether the gains are those that suit the arm, and a way back to them.
 void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   Parameters fit = p;
-  const Parameters own = fitted(arm, fit, a.delay);
+  const Parameters own = fitted(arm, fit, a.delay, p);
   for (const char* key : kFittedKeys) {
     const ParameterInfo& info = *find_parameter(key);
     set_parameter_number(fit, info, parameter_number(own, info));
   }
   const std::string text = fit_text(own);
   const char* const help =
-      "From the arm's damping b_d and its delay: k_vc, b_vc, b_v so that condition (3) just holds, "
+      "From the arm's damping b_d, its delay and the link's: k_vc, b_vc, b_v so that condition (3) "
+      "just holds, "
       "alpha so that eta_min is the paper's. An arm whose file says no damping gets one that suits "
       "its inertia.";
   if (fit == p) {
@@ -111,13 +133,31 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
 }
 
+// A delay between device and proxy, as if the world were far away.
+void draw_link(Parameters& p) {
+  const std::string set =
+      p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
+                 : "Link###link";
+  if (!section(set.c_str(), false)) return;
+  if (p.kind == CouplingKind::predictive) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
+    ImGui::TextWrapped("The predictive law solves device and proxy at once, and knows no link.");
+    ImGui::PopStyleColor();
+    return;
+  }
+  for (const std::string_view key : info(p.kind).sliders) {
+    if (of_link(key)) slider(p, key.data());
+  }
+  if (p.linked()) read_out("Through it", link_text(p.kind));
+}
+
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
-  const std::string device = device_broken(a);
-  const std::string proxy = proxy_broken(a);
+  const std::string device = device_broken(p, a);
+  const std::string proxy = proxy_broken(p, a);
   const auto draw = [&](bool which) {
     for (const std::string_view key : info(p.kind).sliders) {
-      if (advanced(key) != which) continue;
+      if (advanced(key) != which || of_link(key)) continue;
       const bool of_device = key == "coupling.k_vc" || key == "coupling.b_vc";
       slider(p, key.data(),
              key == "coupling.eta"   ? eta
@@ -133,12 +173,13 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
     draw(true);
     draw_fit(p, arm, a);
   }
+  draw_link(p);
 }
 
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   const std::string eta = eta_broken(p, a);
-  const std::string device = device_broken(a);
-  const std::string proxy = proxy_broken(a);
+  const std::string device = device_broken(p, a);
+  const std::string proxy = proxy_broken(p, a);
   heading("Passivity");
   if (a.measured || real) {
     read_out("These figures are", a.measured ? "measured" : "assumed", {},
@@ -171,9 +212,27 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
                           : fmt::format("broken  {:+.1e}", margin);
   };
   read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
-           ("b_d less " + device_needs(a) + " [N m s/rad]: not negative").c_str());
+           ("b_d less " + device_needs(p, a) + " [N m s/rad]: not negative").c_str());
   read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
-           ("b_v less " + proxy_needs(a) + " [N m s/rad]: not negative").c_str());
+           ("b_v less " + proxy_needs(p, a) + " [N m s/rad]: not negative").c_str());
+}
+
+void share(const char* label, double part, const char* cut, const char* meaning) {
+  read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
+}
+
+void draw_tanks(const CouplingReading& now) {
+  heading("Energy tanks");
+  read_out("In both", energy_text(now.reserve), {},
+           "In the device's and the proxy's tank, and on its way between them: what may still be "
+           "given");
+  share("Proxy moves freely", now.contact_governor,
+        "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
+        "Its damping by that with what its tank adds");
+  share("Torque let through", now.torque_governor,
+        "The device's tank is low: of the torque only so much is let through as it can pay for. "
+        "Moving the device fills it.",
+        "100 % while the device's tank can pay for the tick that comes");
 }
 
 // What bounds the energy that the human is given, for a law that keeps account of it.
@@ -181,9 +240,6 @@ void draw_ledger(const CouplingReading& now) {
   heading("Energy ledger");
   read_out("Reserve", energy_text(now.reserve), {},
            "What the human may still be given; more after dissipating, 20 mJ at most");
-  const auto share = [](const char* label, double part, const char* cut, const char* meaning) {
-    read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
-  };
   share("Wall force let through", now.contact_governor,
         "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
         "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
@@ -269,7 +325,11 @@ void draw_break(bool broken, const Act& act) {
 }  // namespace
 
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
-  if (info(p.kind).keeps_ledger) draw_ledger(reading);
+  if (p.kind == CouplingKind::tank) {
+    draw_tanks(reading);
+  } else if (info(p.kind).keeps_ledger) {
+    draw_ledger(reading);
+  }
   draw_energy(reading.energy, p, analysis);
   draw_limited(reading.limited);
 }

@@ -30,8 +30,11 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
 }
 
 std::string limits_of(const Parameters& p) {
-  return parameter_text(p, *find_parameter("device.torque_limit")) + " " +
-         parameter_text(p, *find_parameter("ledger.energy"));
+  std::string text;
+  for (const char* key : {"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"}) {
+    text += parameter_text(p, *find_parameter(key)) + " ";
+  }
+  return text;
 }
 
 }  // namespace

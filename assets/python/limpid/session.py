@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy
 
 # As /coupling/kind has them.
-LAWS = ("standard", "proposed", "predictive")
+LAWS = ("standard", "proposed", "predictive", "tank")
 
 
 class Contact(NamedTuple):

@@ -12,6 +12,7 @@ from .predictive import check_predictive
 from .report import Check
 from .session import Session
 from .slopes import check_slopes
+from .tank import check_tank
 from .torques import check_motors, check_torques, sampled_velocity
 
 
@@ -48,6 +49,7 @@ CHECKS: Mapping[str, Callable[[Session], list[Check]]] = {
     "observer": check_observer,
     "slopes": check_slopes,
     "predictive": check_predictive,
+    "tank": check_tank,
 }
 
 

@@ -80,6 +80,14 @@ _DEFAULTS: Mapping[str, Any] = {
     "observer.velocity": "raw",
     "proxy.inertia_ratio": 1e-4,
     "model.inertia_error": 1.0,
+    "link.delay": 0,
+    "link.jitter": 0,
+    "link.loss": 0.0,
+    "link.seed": 1,
+    "tank.energy": 0.005,
+    "tank.most": 0.1,
+    "tank.share": 0.02,
+    "tank.damping": 100.0,
     "model.delay": 0,
     "model.delay_most": None,
     "device.delay": 0,
@@ -242,13 +250,13 @@ def _read_rows(file: h5py.File, dof: int) -> dict[str, Array]:
         data[path] = _of_joints(file[path]) if path in file else nothing
         if data[path].shape != nothing.shape:
             raise SessionError(f"{path} has shape {data[path].shape}, expected {nothing.shape}")
-    predictive = np.any(data["/coupling/kind"] == 2)
+    accounted = np.any(data["/coupling/kind"] >= 2)
     for path in _LATER:
         if path in file:
             data[path] = file[path][()]
             if len(data[path]) != rows:
                 raise SessionError(f"{path} has {len(data[path])} rows, expected {rows}")
-        elif predictive:
+        elif accounted:
             raise SessionError(f"{path} is missing")
     return data
 

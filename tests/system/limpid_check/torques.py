@@ -8,6 +8,7 @@ import numpy as np
 
 from .decomposition import feedforward
 from .dynamics import coriolis, inertia
+from .link import TO_DEVICE, TO_PROXY, Known, known
 from .report import Check, not_applicable
 from .session import Session
 from .urdf import Array
@@ -41,24 +42,29 @@ def recompute(s: Session) -> Torques:
     vbar2_before = np.concatenate([np.zeros((1, s.dof)), vbar2])
     xbar2 = (x2[1:] + x2[:-1]) / 2
 
-    tau1 = -b_vc * (v1 - vbar2_before) - k_vc * (x1 - x2)
-    tau2 = -b_v[:-1] * vbar2 - b_vc[:-1] * (vbar2 - v1[:-1]) - k_vc[:-1] * (xbar2 - x1[:-1])
+    # Each side goes by what it knows of the other.
+    to_proxy, to_device = known(s, TO_PROXY), known(s, TO_DEVICE)
+    x1_far, v1_far = to_proxy.of(x1)[:-1], to_proxy.moving(v1)[:-1]
+    tau1 = -b_vc * (v1 - to_device.moving(vbar2_before)) - k_vc * (x1 - to_device.of(x2))
+    tau2 = -b_v[:-1] * vbar2 - b_vc[:-1] * (vbar2 - v1_far) - k_vc[:-1] * (xbar2 - x1_far)
 
     rows = np.flatnonzero(s["/coupling/kind"] == 1)
     if len(rows):
-        extra1, extra2 = _feedforward(s, rows)
+        own = Known(np.arange(len(s)), np.zeros(len(s), dtype=bool))
+        extra1, _ = _feedforward(s, rows, own, to_device)
+        _, extra2 = _feedforward(s, rows, to_proxy, own)
         tau1[rows] += extra1
         inside = rows < len(tau2)
         tau2[rows[inside]] += extra2[inside]
     return Torques(tau1, tau2)
 
 
-def _feedforward(s: Session, rows: Array) -> tuple[Array, Array]:
-    """What (14) and (15) add at the given rows."""
-    x1, v1 = s["/device/measured_position"][rows], s["/device/measured_velocity"][rows]
-    x2, v2 = s["/proxy/position"][rows], s["/proxy/velocity"][rows]
-    believed = s.number("model.inertia_error")[rows][:, :, None]
-    ratio = s.number("proxy.inertia_ratio")[rows][:, :, None]
+def _feedforward(s: Session, rows: Array, device: Known, proxy: Known) -> tuple[Array, Array]:
+    """What (14) and (15) add at the given rows, where that is known of device and proxy."""
+    x1, v1 = device.of(s["/device/measured_position"])[rows], device.moving(s["/device/measured_velocity"])[rows]
+    x2, v2 = proxy.of(s["/proxy/position"])[rows], proxy.moving(s["/proxy/velocity"])[rows]
+    believed = device.of(s.number("model.inertia_error"))[rows][:, :, None]
+    ratio = proxy.of(s.number("proxy.inertia_ratio"))[rows][:, :, None]
     return feedforward(
         m1=believed * inertia(s.chain, x1),
         c1=believed * coriolis(s.chain, x1, v1),
@@ -66,8 +72,8 @@ def _feedforward(s: Session, rows: Array) -> tuple[Array, Array]:
         c2=ratio * coriolis(s.chain, x2, v2),
         v1=v1,
         v2=v2,
-        f1=s["/hand/torque_estimate"][rows],
-        f2=s["/proxy/contact_torque"][rows],
+        f1=device.of(s["/hand/torque_estimate"])[rows],
+        f2=proxy.of(s["/proxy/contact_torque"])[rows],
         eta=s["/coupling/eta"][rows],
     )
 

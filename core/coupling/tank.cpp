@@ -1,0 +1,192 @@
+#include "core/coupling/tank.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/solve.h"
+
+namespace limpid {
+namespace {
+
+// A damper that is held for a tick of T and goes by the velocity of the one before it would shake
+// the device from m/T on; it is far from that, as part of m/T [-].
+constexpr double kMostRefill = 0.2;
+
+// What the largest of (c - b v) v T is, over all v, for the damping b and a drive c: c^2 T / (4 b).
+// The damping for which it is no more than `energy` [N m s/rad]; c2 = |c|^2.
+double damping_for(double c2, double T, double energy) { return c2 * T / (4 * energy); }
+
+}  // namespace
+
+template <int N>
+void DeviceTank<N>::start(const Vec<N>& x1, double energy) {
+  in_ = energy;
+  out_ = 0;
+  spent_.fill(0);
+  x1_ = x1;
+  dx_ = change_ = Vec<N>::Zero(x1.size());
+  still_.fill(0);
+  torques_.fill(dx_);
+}
+
+template <int N>
+void DeviceTank<N>::expect(int least, int most) {
+  if (least == least_ && most == most_) return;
+  spent_.fill(out_);
+  least_ = least;
+  most_ = most;
+}
+
+template <int N>
+void DeviceTank<N>::settle(const Vec<N>& x1, const Vec<N>& damping, double q, double T,
+                           double most) {
+  const Vec<N> dx = x1 - x1_;
+  change_ = dx - dx_;
+  dx_ = dx;
+  x1_ = x1;
+  // A reading that does not change says nothing.
+  for (Eigen::Index i = 0; i < dx.size(); ++i) {
+    int& n = still_[static_cast<std::size_t>(i)];
+    ++n;
+    if (q > 0 && dx[i] == 0) continue;
+    in_ += damping[i] * dx[i] * dx[i] / (n * T);
+    n = 0;
+  }
+  out_ = -std::numeric_limits<double>::infinity();
+  for (int d = least_; d <= most_; ++d) {
+    const auto place = static_cast<std::size_t>(d);
+    spent_[place] += torques_[(newest_ + place) % torques_.size()].dot(dx);
+    out_ = std::max(out_, spent_[place]);
+  }
+  in_ = std::min(in_, out_ + most);
+}
+
+template <int N>
+void DeviceTank<N>::sent(const Vec<N>& torque) {
+  newest_ = (newest_ + torques_.size() - 1) % torques_.size();
+  torques_[newest_] = torque;
+}
+
+template <int N>
+double DeviceTank<N>::share(const Vec<N>& torque, const Mat<N>& M, double T) const {
+  const auto spends = [&](const Vec<N>& tau) {
+    return std::max({0.0, tau.dot(dx_), tau.dot(dx_ + change_)});
+  };
+  double has = energy();
+  for (int d = 0; d < most_; ++d) {
+    has -= spends(torques_[(newest_ + static_cast<std::size_t>(d)) % torques_.size()]);
+  }
+  if (!(has > 0)) return 0;
+  const double along = spends(torque), n = 1 + most_;
+  const double alone = n * n * T * T / 2 * torque.dot(solve_symmetric<N>(M, torque));
+  if (along + alone <= has) return 1;
+  // s along + s^2 alone = has
+  return 2 * has / (along + std::sqrt(along * along + 4 * alone * has));
+}
+
+template class DeviceTank<3>;
+template class DeviceTank<7>;
+template class DeviceTank<kAnyDof>;
+
+template <int N>
+void TankLaw::Of<N>::start(const LawStart<N>& at) {
+  if (at.reserve) {
+    left_ = *at.reserve;
+  } else if (!fresh_) {
+    left_ = device_.energy() + proxy_ + on_its_way() - work2_;
+  }
+  fresh_ = true;
+  device_.start(at.x1, 0);
+  work2_ = sent1_ = got1_ = sent2_ = got2_ = 0;
+  freely_ = share_ = 1;
+  elapsed_ = 0;
+}
+
+// The books of the tick that just ended.
+template <int N>
+void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in) {
+  device_.expect(delay, in.delay_most);
+  if (fresh_) {
+    const double half = std::min(p.tank_energy, left_) / 2;
+    device_.start(in.x1, half);
+    proxy_ = half;
+    fresh_ = false;
+  } else if (elapsed_ > 0) {
+    device_.settle(in.x1, in.b_d_sure, in.encoder_step, elapsed_, p.tank_most);
+    proxy_ = std::min(proxy_ - work2_, p.tank_most);
+  }
+  work2_ = 0;
+  if (in.authority == 0) {  // somebody has to decide it before force is on again
+    device_.add(std::max(0.0, p.tank_energy / 2 - device_.energy()));
+    proxy_ = std::max(proxy_, p.tank_energy / 2);
+  }
+  reserve_ = device_.energy() + proxy_ + on_its_way();
+}
+
+// The proxy's side. Its drive is held back by a damper, not made smaller: so a proxy that rests on
+// a wall is pressed as hard as ever, which takes no energy.
+template <int N>
+void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, double T,
+                          const FromDevice<N>& device, Proxy<N>& proxy) {
+  proxy_ += device.sent - got2_;
+  got2_ = device.sent;
+  const double surplus = p.tank_share * std::max(0.0, proxy_ - p.tank_energy / 2);
+  proxy_ -= surplus;
+  sent2_ += surplus;
+  Vec<N> drive = c.b_vc * device.v1 - c.k_vc * (proxy.x() - device.x1);
+  const double own = c.b_v + c.b_vc + c.k_vc * T / 2;
+  double damping = own;
+  if (proxy_ > 0) {
+    damping = std::max(own, damping_for(drive.squaredNorm(), T, proxy_));
+  } else {
+    drive.setZero();
+  }
+  proxy.advance(T, {drive, damping});
+  work2_ = T * proxy.tau().dot(proxy.vbar());
+  freely_ = proxy_ > 0 ? own / damping : 0;
+}
+
+// The device's side.
+template <int N>
+Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+                            const FromProxy<N>& proxy) {
+  device_.add(proxy.sent - got1_);
+  got1_ = proxy.sent;
+  const double low = std::clamp(1 - device_.energy() / (p.tank_energy / 2), 0.0, 1.0);
+  const double refill = low * std::min(p.tank_damping, kMostRefill / (in.T * (1 + in.delay_most)));
+  const Vec<N> wanted = -c.b_vc * (in.v1 - proxy.vbar2) - c.k_vc * (in.x1 - proxy.x2);
+  const Vec<N> torque = wanted.cwiseMin(in.limit).cwiseMax(-in.limit);
+  share_ = device_.share(torque, in.device.M, in.T);
+  return share_ * torque - refill * (in.device.M * in.v1);
+}
+
+template <int N>
+Vec<N> TankLaw::Of<N>::step(const Settings& p, const SpringDamper& c, int delay,
+                            const LawInput<N>& in, Proxy<N>& proxy) {
+  settle(p, delay, in);
+  FromDevice<N> device = told(in);
+  FromProxy<N> here = told(in, proxy);
+  const double surplus = p.tank_share * std::max(0.0, device_.energy() - p.tank_energy / 2);
+  device_.add(-surplus);
+  sent1_ += surplus;
+  device.sent = sent1_;
+  move(p, c, in.T, in.link != nullptr ? in.link->to_proxy(device) : device, proxy);
+  here.f2 = proxy.f();
+  here.sent = sent2_;
+  return pull(p, c, in, in.link != nullptr ? in.link->to_device(here) : here);
+}
+
+template <int N>
+LawReport TankLaw::Of<N>::report() const {
+  LawReport report;
+  report.reserve = fresh_ ? left_ : reserve_;
+  report.contact_governor = freely_;
+  report.torque_governor = share_;
+  return report;
+}
+
+template class TankLaw::Of<3>;
+template class TankLaw::Of<7>;
+template class TankLaw::Of<kAnyDof>;
+
+}  // namespace limpid

@@ -1,0 +1,93 @@
+// The standard coupling with an energy tank on each side, after the two-layer control of Franken et
+// al. (2011): what a side gives comes out of its tank, what it takes in goes there, and what is
+// sent to the other side leaves one tank before it enters the other. So both together never give
+// more than they held at the start and took in, whatever delays, loses or reorders what is sent.
+//
+// Accounted is what the motors and the proxy's drive really did. Two things that nothing commands
+// count as taken in, as they do in E_c: the device's own damping, as far as it is sure, and the
+// proxy's dampers.
+#pragma once
+
+#include <array>
+
+#include "core/coupling/standard.h"
+
+namespace limpid {
+
+// The tank of the device's side. How late the motors give a torque may not be known: each delay
+// that is possible has its account of what was spent, and the largest counts.
+template <int N>
+class DeviceTank {
+ public:
+  void start(const Vec<N>& x1, double energy);  // [J]
+  // The tick of length T that just ended, with the reading after it; `damping` as far as it is sure
+  // [N m s/rad], q the encoders' step [rad]. No more than `most` is kept [J].
+  void settle(const Vec<N>& x1, const Vec<N>& damping, double q, double T, double most);
+  // Between command and motor, the least and the most [ticks].
+  void expect(int least, int most);
+  void add(double energy) { in_ += energy; }
+  // For the tick that begins [N m].
+  void sent(const Vec<N>& torque);
+  double energy() const { return in_ - out_; }  // [J]
+
+  // The largest share of a torque that the tank can pay for in the tick of length T [s] that comes,
+  // whether the device goes on as fast or gains as much speed again, and where nothing holds it but
+  // its inertia M. Torques on their way to the motors are paid for first. None is counted on to
+  // take energy in: a device that trembles is on its way back by then.
+  double share(const Vec<N>& torque, const Mat<N>& M, double T) const;
+
+ private:
+  double in_ = 0, out_ = 0;                     // so far [J]
+  std::array<double, kMostDelay + 1> spent_{};  // by the delay [J]
+  int least_ = 0, most_ = 0;
+  Vec<N> x1_, dx_, change_;           // the last reading, motion, and by how much that grew [rad]
+  std::array<int, kMaxDof> still_{};  // ticks since a joint's reading changed
+  std::array<Vec<N>, kMostDelay + 1> torques_;  // that were sent [N m]
+  std::size_t newest_ = 0;
+};
+
+template <int N>
+class TankLaw::Of {
+ public:
+  void start(const LawStart<N>& at);
+  template <class P>
+  Whereabouts<N> locate(const P&, const LawReading<N>& in) {
+    elapsed_ = in.elapsed;
+    return {in.x1, in.v1};
+  }
+  // p: Settings, a SpringDamper, and the known delay of the motors.
+  template <class P>
+  Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
+    return step(p, p, p.delay, in, proxy);
+  }
+  void applied(const Vec<N>& torque) { device_.sent(torque); }
+  LawReport report() const;
+
+ private:
+  Vec<N> step(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
+              Proxy<N>& proxy);
+  void settle(const Settings& p, int delay, const LawInput<N>& in);
+  void move(const Settings& p, const SpringDamper& c, double T, const FromDevice<N>& device,
+            Proxy<N>& proxy);
+  Vec<N> pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+              const FromProxy<N>& proxy);
+  double on_its_way() const { return (sent1_ - got2_) + (sent2_ - got1_); }
+
+  DeviceTank<N> device_;
+  double proxy_ = 0;             // in the tank of the proxy's side [J]
+  double work2_ = 0;             // of tau2 over the last tick [J]
+  double sent1_ = 0, got2_ = 0;  // from device to proxy, all of it so far [J]
+  double sent2_ = 0, got1_ = 0;  // from proxy to device
+  double reserve_ = 0;           // in both tanks and between them when the tick began [J]
+  double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
+  bool fresh_ = true;
+  double elapsed_ = 0;  // since the reading before; 0 at the first [s]
+  double freely_ = 1;   // the proxy's damping by that with what its tank adds [-]
+  double share_ = 1;    // of the device's torque [-]
+};
+
+extern template class TankLaw::Of<3>;
+extern template class TankLaw::Of<7>;
+extern template class TankLaw::Of<kAnyDof>;
+
+}  // namespace limpid

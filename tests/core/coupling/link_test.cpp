@@ -1,0 +1,260 @@
+#include "core/coupling/link.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/coupling/coupling.h"
+#include "core/touch/proxy.h"
+#include "tests/support/random_arm.h"
+
+namespace limpid {
+namespace {
+
+using test::Random;
+using Vector = Eigen::VectorXd;
+
+struct Numbered {
+  int number = -1;
+  bool resting = false;
+  void come_to_rest() { resting = true; }
+};
+
+LinkSettings link(int delay, int jitter, double loss, int seed = 1) {
+  return {.link_delay = delay, .link_jitter = jitter, .link_loss = loss, .link_seed = seed};
+}
+
+// All packets there ever were, looked through from the first to the last in every tick.
+class Queue {
+ public:
+  int newest(int now, const LinkSettings& s, std::uint64_t direction) {
+    const Fate fate = fate_of(s, direction, static_cast<std::uint64_t>(now));
+    sent_.push_back({fate.lost, now + s.link_delay + fate.late});
+    int newest = -1;
+    for (int i = 0; i <= now; ++i) {
+      const auto& [lost, arrives] = sent_[static_cast<std::size_t>(i)];
+      if (!lost && arrives <= now) newest = i;
+    }
+    return newest;
+  }
+
+ private:
+  std::vector<std::pair<bool, int>> sent_;
+};
+
+TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
+  Random random(1);
+  for (int round = 0; round < 60; ++round) {
+    const auto direction = static_cast<std::uint64_t>(1 + round % 2);
+    OneWay<Numbered> channel(direction);
+    Queue queue;
+    LinkSettings s;
+    int lost = 0;
+    for (int k = 0; k < 900; ++k) {
+      if (k % 150 == 0) {  // also from one to another
+        s = link(static_cast<int>(random.between(0, 200.99)),
+                 static_cast<int>(random.between(0, 50.99)), random.one_of({0.0, 0.3, 0.9}),
+                 1 + round);
+      }
+      const Numbered known = channel.pass({k}, s);
+      const int wanted = queue.newest(k, s, direction);
+      if (wanted < 0) {  // the first one, at rest
+        EXPECT_EQ(known.number, 0);
+        EXPECT_TRUE(known.resting);
+        ++lost;
+      } else {
+        ASSERT_EQ(known.number, wanted) << "tick " << k << " of round " << round;
+        ASSERT_FALSE(known.resting);
+      }
+    }
+    EXPECT_LT(lost, 900);
+  }
+}
+
+// And so the condition for passivity may count on it.
+TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
+  for (const auto& [delay, jitter] : {std::pair(0, 5), {20, 0}, {7, 50}, {200, 50}}) {
+    OneWay<Numbered> channel(1);
+    const LinkSettings s = link(delay, jitter, 0);
+    int oldest = 0;
+    for (int k = 0; k < 5000; ++k) {
+      const int age = k - channel.pass({k}, s).number;
+      if (k >= 250) oldest = std::max(oldest, age);
+      EXPECT_LE(age, s.oldest());
+      if (k >= 250) EXPECT_GE(age, delay);
+    }
+    EXPECT_GT(oldest, delay + jitter / 5 - 1);
+  }
+}
+
+TEST(Link, StartsAnewAsItStartedAtFirst) {
+  const LinkSettings s = link(3, 9, 0.4);
+  OneWay<Numbered> channel(2);
+  std::vector<int> first;
+  for (int k = 0; k < 400; ++k) first.push_back(channel.pass({k}, s).number);
+  channel.start();
+  for (int k = 0; k < 400; ++k) ASSERT_EQ(channel.pass({k}, s).number, first[std::size_t(k)]);
+}
+
+TEST(Link, ThatWasOffKnowsWhatIsSoWhenItComesOn) {
+  const LinkSettings s = link(30, 0, 0);
+  OneWay<Numbered> channel(1);
+  for (int k = 0; k < 100; ++k) channel.pass({k}, s);
+  channel.forget();
+  for (int k = 500; k < 530; ++k) {
+    const Numbered known = channel.pass({k}, s);
+    EXPECT_EQ(known.number, 500);
+    EXPECT_TRUE(known.resting);
+  }
+  EXPECT_EQ(channel.pass({530}, s).number, 500);
+  EXPECT_FALSE(channel.pass({531}, s).resting);
+}
+
+// Counts against what they should be, within four and a half standard deviations.
+TEST(Link, LosesAndDelaysPacketsEvenlyAndEachDirectionByItself) {
+  constexpr int kPackets = 100000;
+  const double off = 4.5 * std::sqrt(kPackets);
+  for (const int seed : {1, 2, 1000000}) {
+    const LinkSettings s = link(0, 9, 0.3, seed);
+    std::array<std::array<int, 10>, 10> both{};
+    int lost = 0, lost_together = 0, lost_twice = 0;
+    bool before = false;
+    for (std::uint64_t k = 0; k < kPackets; ++k) {
+      const Fate a = fate_of(s, 1, k), b = fate_of(s, 2, k);
+      ++both[static_cast<std::size_t>(a.late)][static_cast<std::size_t>(b.late)];
+      lost += a.lost ? 1 : 0;
+      lost_together += a.lost && b.lost ? 1 : 0;
+      lost_twice += a.lost && before ? 1 : 0;
+      before = a.lost;
+    }
+    EXPECT_NEAR(lost, 0.3 * kPackets, off * std::sqrt(0.3 * 0.7));
+    EXPECT_NEAR(lost_together, 0.09 * kPackets, off * std::sqrt(0.09 * 0.91));
+    EXPECT_NEAR(lost_twice, 0.09 * kPackets, off * std::sqrt(0.09 * 0.91));
+    for (const auto& row : both) {
+      for (const int count : row) EXPECT_NEAR(count, 0.01 * kPackets, off * std::sqrt(0.01 * 0.99));
+    }
+  }
+  int same = 0;
+  for (std::uint64_t k = 0; k < kPackets; ++k) {
+    same += fate_of(link(0, 9, 0, 1), 1, k).late == fate_of(link(0, 9, 0, 2), 1, k).late ? 1 : 0;
+  }
+  EXPECT_NEAR(same, 0.1 * kPackets, off * std::sqrt(0.1 * 0.9));
+}
+
+struct AllSettings : LawSettings, LinkSettings {};
+
+// A device that is moved along, and a proxy that follows it under a law.
+class Followed {
+ public:
+  Followed(int n, unsigned seed) : n_(n), seed_(seed), proxy_(test::random_arm(n, seed), Scene{}) {
+    proxy_.place(Vector::Zero(n), Vector::Zero(n), 0.1);
+    link_.start();
+    coupling_.start({zero_(), zero_(), zero_()});
+  }
+
+  // All torques, one under the other.
+  Vector run(CouplingKind kind, const AllSettings& p, bool through) {
+    Random random(seed_);
+    Vector all(0);
+    Vec<kAnyDof> x = Vector::Zero(n_), before = x, vbar2 = x;
+    const Vec<kAnyDof> b = Vector::Constant(n_, 0.01), limit = Vector::Constant(n_, 1);
+    const Arm<kAnyDof>::Frames frames{};
+    for (int k = 0; k < 40; ++k) {
+      proxy_.catch_up();
+      x += random.vector(n_, 1e-3);
+      const Vec<kAnyDof> v = (x - before) / 0.001, f1 = random.vector(n_, 0.5);
+      const Dynamics<kAnyDof> device{random.positive_definite(n_, 1e-4, 1e-3),
+                                     random.matrix(n_, 1e-3), v};
+      before = x;
+      ProxyLink<kAnyDof>* const link = link_.of(p);
+      LawInput<kAnyDof> in{x, v, device, f1, vbar2, 0.001, frames, b, b, limit, 1, 0.001, 0, 0};
+      in.link = through ? &link_ : link;
+      coupling_.locate(kind, p, {x, v, k > 0 ? 0.001 : 0, 0});
+      const Vector tau = coupling_.step(kind, p, in, proxy_);
+      coupling_.applied(kind, tau);
+      vbar2 = proxy_.vbar();
+      const Eigen::Index at = all.size();
+      all.conservativeResize(at + 2 * n_);
+      all.segment(at, n_) = tau;
+      all.tail(n_) = proxy_.tau();
+    }
+    return all;
+  }
+
+ private:
+  const Vec<kAnyDof>& zero_() {
+    zero = Vector::Zero(n_);
+    return zero;
+  }
+
+  int n_;
+  unsigned seed_;
+  Vec<kAnyDof> zero;
+  Proxy<kAnyDof> proxy_;
+  ProxyLink<kAnyDof> link_;
+  Coupling<kAnyDof> coupling_;
+};
+
+constexpr CouplingKind kLinked[] = {CouplingKind::standard, CouplingKind::proposed,
+                                    CouplingKind::tank};
+
+TEST(Link, WithoutDelayAndLossGivesTheSameBitsAsNone) {
+  for (const CouplingKind kind : kLinked) {
+    for (const int n : {1, 3, 7}) {
+      AllSettings p;
+      p.eta = 0.7;
+      const Vector direct = Followed(n, 5).run(kind, p, false);
+      EXPECT_EQ(direct, Followed(n, 5).run(kind, p, true)) << info(kind).key << ' ' << n;
+      p.link_delay = 1;
+      EXPECT_NE(direct, Followed(n, 5).run(kind, p, false)) << info(kind).key << ' ' << n;
+    }
+  }
+}
+
+TEST(Link, DoesNothingUnderThePredictiveLaw) {
+  AllSettings p;
+  const Vector direct = Followed(3, 5).run(CouplingKind::predictive, p, false);
+  p.link_delay = 50;
+  EXPECT_EQ(direct, Followed(3, 5).run(CouplingKind::predictive, p, false));
+}
+
+// (1) and (2) by hand, with what was so a while ago.
+TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
+  constexpr int kDelay = 4, n = 2;
+  const double T = 0.001;
+  SpringDamper p;
+  p.b_vc = 0.02;
+  Proxy<kAnyDof> proxy(test::random_arm(n, 9), Scene{});
+  proxy.place(Vector::Zero(n), Vector::Zero(n), 0.1);
+  ProxyLink<kAnyDof> link_of;
+  link_of.start();
+  StandardLaw::Of<kAnyDof> law;
+  Random random(3);
+  std::vector<Vec<kAnyDof>> x1{Vector::Zero(n)}, x2, vbar2{Vector::Zero(n)};
+  const Vec<kAnyDof> b = Vector::Zero(n), limit = Vector::Constant(n, 1);
+  const Arm<kAnyDof>::Frames frames{};
+  const Dynamics<kAnyDof> device{random.positive_definite(n, 1e-4, 1e-3), random.matrix(n, 1e-3),
+                                 Vector::Zero(n)};
+  for (std::size_t k = 0; k < 50; ++k) {
+    proxy.catch_up();
+    if (k > 0) x1.push_back(x1.back() + random.vector(n, 1e-3));
+    x2.push_back(proxy.x());
+    const Vec<kAnyDof> v1 = k > 0 ? Vec<kAnyDof>((x1[k] - x1[k - 1]) / T) : b;
+    LawInput<kAnyDof> in{x1[k], v1, device, b, vbar2[k], T, frames, b, b, limit, 1, T, 0, 0};
+    in.link = link_of.of(link(kDelay, 0, 0));
+    const Vector tau1 = law.step(p, in, proxy);
+    vbar2.push_back(proxy.vbar());
+    const std::size_t old = k > kDelay ? k - kDelay : 0;  // at first as it was at the start
+    const Vector v1_old = old > 0 ? Vector((x1[old] - x1[old - 1]) / T) : Vector(b);
+    const Vector wanted1 = -p.b_vc * (v1 - vbar2[old]) - p.k_vc * (x1[k] - x2[old]);
+    const Vector mean = vbar2.back();
+    const Vector wanted2 =
+        -p.b_vc * (mean - v1_old) - p.b_v * mean - p.k_vc * (x2[k] + T / 2 * mean - x1[old]);
+    EXPECT_LT((tau1 - wanted1).norm(), 1e-13) << k;
+    EXPECT_LT((proxy.tau() - wanted2).norm(), 1e-11) << k;
+  }
+}
+
+}  // namespace
+}  // namespace limpid
