@@ -123,6 +123,9 @@ TEST(GnuplotScript, ShowsWordsOfThePaperAsItsSymbols) {
   const std::string script = script_of(figure);
   EXPECT_THAT(script, HasSubstr("'η = 0.6'"));
   EXPECT_THAT(script, HasSubstr("'Error |x₁ − x₂| of a theta beta'"));
+  EXPECT_EQ(typeset("1 / (1 - m w^2 / K)"), "1 / (1 − m ω² / K)");
+  EXPECT_EQ(typeset("w_f T <= 0.1, window, 10^-12 kg m^2, 2^x"),
+            "ω_f T <= 0.1, window, 10⁻¹² kg m², 2^x");
 }
 
 TEST(GnuplotScript, ShowsAllOfABand) {
