@@ -12,6 +12,7 @@
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_lane.h"
+#include "devices/files/session/session_marks.h"
 
 namespace limpid {
 
@@ -27,6 +28,10 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
 // None in a session that has none. Errors: FileError for what is no such dataset or claims more
 // than a file of this size can hold.
 SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
+
+// HDF5 cannot forget what it has not written yet: closing writes, and fails for ever on a full
+// disk. So it gets the null device in place of the file and may write there what it likes.
+void write_nowhere(const hdf5::File& file);
 
 // One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
 // what it is called when done.
@@ -46,6 +51,7 @@ class SessionFile {
 
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
+  void append(const Mark& mark);
   void append_world(std::span<const double> world, std::size_t lane);
   void close();  // writes what is pending and closes for good
   std::uint64_t rows() const { return lanes_.front().rows(); }
@@ -59,6 +65,7 @@ class SessionFile {
   std::filesystem::path path_;
   RowLayout layout_;
   std::vector<SessionLane> lanes_;
+  MarkTable marks_;
   hdf5::File file_;
   bool starting_ = false;
 };
