@@ -102,7 +102,8 @@ std::string ExportDialog::why_not() const {
     return !(x >= least && x <= most);
   };
   if (order_.what == What::plot) {
-    if (outside(order_.width, kLeastSize, kMostSize) || outside(order_.height, kLeastSize, kMostSize)) {
+    if (outside(order_.width, kLeastSize, kMostSize) ||
+        outside(order_.height, kLeastSize, kMostSize)) {
       return fmt::format("The size is {:g} x {:g} mm; allowed: {:g} to {:g} mm.", order_.width,
                          order_.height, kLeastSize, kMostSize);
     }

@@ -112,6 +112,11 @@ void play_story(Desktop& d) {
   d.playback.open_story();
 }
 
+void toggle_your_turn(Desktop& d) {
+  d.playback.close();
+  d.settings.your_turn = !d.settings.your_turn;
+}
+
 std::string no_recording(const Desktop& d) {
   return d.playback.on() ? "" : "Open a recording first (Ctrl+O).";
 }
@@ -441,11 +446,7 @@ constexpr std::array kCommands{
     row("scene.discard_kept", "Discard the scene that was kept", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.kept.discard(); }, {.why_not = nothing_kept}),
     row("help.story", "Play the story", "Help", nullptr, nullptr, play_story),
-    row("help.your_turn", "Your turn: what to try", "Help", nullptr, nullptr,
-        [](Desktop& d) {
-          d.playback.close();
-          d.settings.your_turn = !d.settings.your_turn;
-        },
+    row("help.your_turn", "Your turn: what to try", "Help", nullptr, nullptr, toggle_your_turn,
         {.checked = is_shown<&Settings::your_turn>}),
     row("help.keys", "Keys and mouse", "Help", "?, F1", "this list",
         [](Desktop& d) { show_or_close(d, "help"); }),
