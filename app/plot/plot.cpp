@@ -110,7 +110,8 @@ PlotEvents Plot::draw(const History& history, PlotGroup& group, ImVec2 size,
   draw_axes(frame, spec_, history.offset());
   draw_inside(frame, history, group, mouse);
   if (over_time() && spec_.end_labels) {
-    draw_end_labels(frame, spec_, history, group.hovered().value_or(frame.window.stop()));
+    const double present = group.playback().value_or(frame.window.stop());
+    draw_end_labels(frame, spec_, history, group.hovered().value_or(present));
   }
   legend_.draw(frame, spec_, hovered_curve_);
   const bool menu_or_png = frames_until_png_ > 0 || ImGui::IsPopupOpen("menu");

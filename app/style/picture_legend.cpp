@@ -80,6 +80,12 @@ void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to, const Picture
   const Palette& colours = current_palette();
   const bool lines = in_lines(from, to) && !legend.compact;
   lay_out(entries_of(legend, lines), from, to, lines, [&](const Entry& entry, ImVec2 at) {
+    if (legend.compact) {  // it may stand over an arm
+      const float pad = 0.5f * kBetween * em;
+      list.AddRectFilled({at.x - pad, at.y - 0.15f * em},
+                         {at.x + width_of(entry) + pad, at.y + 1.2f * em},
+                         colour(colours.backdrop, 0.72f));
+    }
     for (const Rgb rgb : entry.dots) {
       list.AddCircleFilled({at.x + em * 0.3f, at.y + em * 0.55f}, em * 0.3f, colour(rgb));
       at.x += kDot * em;

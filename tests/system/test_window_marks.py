@@ -256,7 +256,9 @@ class BrokenPassivity(WindowTest):
         self.wait("energy that grows",
                   lambda s: s["energy_total"] > before["energy_total"] + 0.02, 60)
         self.key("c")
-        self.wait("the hand to let go", lambda s: s["grip"] == 0 and s["kind"] == before["kind"])
+        after = self.wait("the hand to let go",
+                          lambda s: s["grip"] == 0 and s["kind"] == before["kind"])
+        self.assertEqual(after["tried"], "", "nobody chose a law, or eta, or pressed anything")
 
 
 if __name__ == "__main__":

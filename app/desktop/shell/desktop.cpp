@@ -217,10 +217,11 @@ void Desktop::follow_deeds() {
     law_.reset();
     return;
   }
+  if (settings.twin.on) note_done(settings, Deed::twin);
+  if (passivity_broken(settings)) return law_.reset();  // whose settings nobody chose
   const Parameters& p = settings.parameters;
   const auto now = std::pair(p.kind, p.eta);
   const auto before = std::exchange(law_, now);
-  if (settings.twin.on) note_done(settings, Deed::twin);
   if (before && before->first != now.first) note_done(settings, Deed::law);
   if (before && before->second != now.second) note_done(settings, Deed::eta);
   if (!live.controls().grab || break_holds_) return;
