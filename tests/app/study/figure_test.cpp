@@ -93,13 +93,13 @@ TEST_F(Figures, TakeNoTextForACommand) {
   Figure figure = small();
   figure.title = "`touch " + (dir_ / "hacked").string() + "` 'quoted' \\n @macro #no";
   figure.panels[0].title = "' ; system('touch " + (dir_ / "hacked").string() + "') ; '";
-  figure.panels[0].x_label = "two\nlines {/Symbol a} x_1^2";
+  figure.panels[0].x_label = "two\nlines {/Symbol a} x_1^b";
   figure.panels[0].series[0].label = "100 % of \"it\" & <more>";
   figure.panels[0].x_ticks = {{0, "`touch " + (dir_ / "hacked").string() + "` \"it's\""}};
   draw_figure(figure, odd, "f");
   EXPECT_TRUE(fs::exists(odd / "f.png"));
   EXPECT_FALSE(fs::exists(dir_ / "hacked"));
-  EXPECT_THAT(read(odd / "f.svg"), HasSubstr("x_1^2"));
+  EXPECT_THAT(read(odd / "f.svg"), HasSubstr("x_1^b"));
 }
 
 TEST_F(Figures, AreDrawnWithoutAnyPoint) {
