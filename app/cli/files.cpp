@@ -65,6 +65,9 @@ int info(const InfoOptions& options) {
     fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,
                change.setting);
   }
+  for (const Mark& mark : session.marks) {
+    fmt::print("mark {:8.3f} s          {}\n", static_cast<double>(mark.tick) * i.tick, mark.text);
+  }
   if (!options.csv.empty()) {
     write_csv(session, options.csv, options.force);
     fmt::print("written as {}\n", options.csv);

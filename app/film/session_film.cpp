@@ -68,7 +68,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   stage.picture.set_pixel_scale(scale_);
   draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  draw_legend(at.picture, overlaid ? stage.names() : RunNames());
+  draw_legend(at.picture, overlaid ? stage.names() : RunNames(), beside.has_value());
   draw_caption(at.caption, caption);
   draw_told(caption.told, at.picture, list);
   draw_sign(caption.sign, at.picture, beside.has_value(), list);
@@ -94,25 +94,25 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
     draw_gap(view, shown, {rect}, list, stage.names());
     return list.PopClipRect();
   }
-  const auto half = [&](const ViewState& state, bool right, const std::string& name) {
+  const auto half = [&](const ViewState& state, bool right) {
     const ScreenRect part = half_of(rect, right);
     paint(state, part, right ? SceneView::Sheet::beside : SceneView::Sheet::main);
     Camera shown = camera;
     shown.resize(part.width(), part.height());
     list.PushClipRect(part.min, part.max);
     draw_gap(state, shown, {part}, list);
-    draw_run_name(name, part, list);
+    draw_run_name(stage.names(), right, part, list);
     list.PopClipRect();
   };
-  half(view, false, stage.names().first);
-  half(*beside, true, stage.names().second);
+  half(view, false);
+  half(*beside, true);
 }
 
-void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid) const {
+void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool halves) const {
   const float em = font(Face::small)->FontSize;
   if (rect.height() < 10 * em) return;
   draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max,
-                      {.first = overlaid.first, .second = overlaid.second});
+                      {.first = overlaid.first, .second = overlaid.second, .compact = halves});
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {
@@ -215,6 +215,9 @@ class Shown {
       apply_changes(row_);
       enter_step(row_);
       stage_.append(session_.row(row_), session_.twin ? session_.twin->row(row_) : Row());
+      for (const Mark& mark : session_.marks) {
+        if (mark.tick == row_) stage_.history.mark(time_at(row_), mark.text, kNoteMark);
+      }
     }
     return see(now);
   }
@@ -282,16 +285,16 @@ class Shown {
         if (&run != &runs_.front() || change.row < k || !order_.steps.empty()) continue;
         std::string label = change.setting;
         std::erase(label, '"');
-        stage_.history.mark(time_at(k), label);
+        stage_.history.mark(time_at(k), label, std::string(change.key()));
       }
     }
     stage_.follow(runs_.front().parameters);
     if (!session_.twin || !order_.steps.empty()) return;
-    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters));
+    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters), time_at(k));
   }
   // Of two runs the plots show what a sentence can say.
-  void name_runs(const std::array<std::string, 2>& names) {
-    stage_.name_runs({names[0], names[1], true});
+  void name_runs(const std::array<std::string, 2>& names, double time) {
+    stage_.name_runs({names[0], names[1], true, laws_at(session_, time)});
   }
   double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
 
@@ -307,7 +310,7 @@ class Shown {
     camera_.frame(aim.of.value_or(stage_.picture.bounds()));
     if (step == nullptr) return;
     if (step->anew) stage_.history.clear();
-    if (step->beside) name_runs(step->names);
+    if (step->beside) name_runs(step->names, step->begins);
     const bool begins = time_at(k) < step->begins + session_.info.tick;  // and not the video in it
     if (begins && !step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
   }

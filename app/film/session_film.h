@@ -59,7 +59,7 @@ class FilmFrame {
   Places lay_out() const;
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
                     const Camera& camera, const ViewState* beside) const;
-  void draw_legend(const ScreenRect& rect, const RunNames& overlaid) const;
+  void draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool halves) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 

@@ -155,6 +155,10 @@ class LiveLoop {
   void record(std::unique_ptr<Recorder> recorder);
   bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
+  // What somebody notes at a row of the recording. Errors: FileError for a text that is too long.
+  void mark(const Mark& mark) {
+    if (recording()) recorder_->mark(mark);
+  }
   // Asks the loop to let go of the recorder.
   void stop_recording();
   // What was stopped, once the loop has let go of it; null before. To be finished by the caller.

@@ -125,12 +125,21 @@ void History::append(double time, std::span<const double> values) {
 }
 
 void History::mark(double time, std::string label, std::string key) {
-  const double at = time + offset_;
-  if (!key.empty() && !marks_.empty() && marks_.back().key == key &&
+  mark_at(time + offset_, std::move(label), std::move(key));
+}
+
+void History::mark_at(double at, std::string label, std::string key) {
+  if (!key.empty() && key != kNoteMark && !marks_.empty() && marks_.back().key == key &&
       at - marks_.back().time < kSameGesture) {
     marks_.pop_back();
   }
-  marks_.push_back({at, std::move(key), std::move(label)});
+  const auto place = std::ranges::upper_bound(marks_, at, {}, &PlotMark::time);
+  marks_.insert(place, {at, std::move(key), std::move(label)});
+}
+
+void History::replace_marks(const std::string& key, const std::vector<PlotMark>& marks) {
+  std::erase_if(marks_, [&](const PlotMark& mark) { return mark.key == key; });
+  for (const PlotMark& mark : marks) mark_at(mark.time, mark.label, mark.key);
 }
 
 void History::forget_old_marks() {

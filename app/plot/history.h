@@ -90,13 +90,14 @@ class MinMaxRing {
 };
 
 // A moment worth remembering, such as a change of a setting.
-struct Mark {
+struct PlotMark {
   double time;  // on the history's time axis [s]
   std::string key;
   std::string label;
 };
 
 inline constexpr const char* kResetMark = "reset";  // key of the mark where a new run begins
+inline constexpr const char* kNoteMark = "note";    // of those that people set
 
 // Rows of `channels` values in time order. The time axis only ever grows: where the time handed to
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the
@@ -123,6 +124,10 @@ class History {
   // `time` [s] as the loop counts it. A mark with the same key less than half a second ago is
   // replaced, so that dragging a slider leaves one mark.
   void mark(double time, std::string label, std::string key = "");
+  // The same at a time of the history's axis, which may be long ago.
+  void mark_at(double axis_time, std::string label, std::string key);
+  // Puts these [s on the axis] in place of all marks with the key.
+  void replace_marks(const std::string& key, const std::vector<PlotMark>& marks);
 
   void clear();
 
@@ -158,7 +163,7 @@ class History {
   }
   Extent extent_between(int channel, double start, double stop) const;
 
-  const std::deque<Mark>& marks() const { return marks_; }
+  const std::deque<PlotMark>& marks() const { return marks_; }
 
  private:
   const MinMaxRing& ring(int channel) const { return rings_[static_cast<std::size_t>(channel)]; }
@@ -169,7 +174,7 @@ class History {
   double run_start_ = 0;
   std::vector<MinMaxRing> rings_;
   std::vector<double> times_;
-  std::deque<Mark> marks_;
+  std::deque<PlotMark> marks_;
 };
 
 }  // namespace limpid

@@ -26,6 +26,9 @@ void PlotGroup::begin_frame(const History& history, std::optional<double> playba
   playback_ = playback;
   hovered_ = std::exchange(hovering_, std::nullopt);
   hovered_frequency_ = std::exchange(hovering_frequency_, std::nullopt);
+  if (range_ && (history.empty() || range_->stop < data_start_ || range_->start > data_stop_)) {
+    range_.reset();
+  }
   const double earliest_stop = data_start_ + length_;
   if (following_ && playback_) {
     const double wanted = *playback_ + (1 - kPlaybackPlace) * length_;
@@ -79,6 +82,10 @@ void Plot::fit_values() {
   y_.fit();
 }
 
+PlotPicture Plot::picture(const PlotGroup& group) const {
+  return {group.start(), group.stop(), {x_.limits, spec_.x.log}, {y_.limits, spec_.y.log}};
+}
+
 void Plot::show(PlotSpec spec) {
   const bool other = spec.kind != spec_.kind || spec.y.zero_line != spec_.y.zero_line;
   spec_ = std::move(spec);
@@ -102,7 +109,10 @@ PlotEvents Plot::draw(const History& history, PlotGroup& group, ImVec2 size,
   const ImVec2 mouse = hovered_ ? ImGui::GetMousePos() : ImVec2{-1e6f, -1e6f};
   draw_axes(frame, spec_, history.offset());
   draw_inside(frame, history, group, mouse);
-  if (over_time() && spec_.end_labels) draw_end_labels(frame, spec_, history);
+  if (over_time() && spec_.end_labels) {
+    const double present = group.playback().value_or(frame.window.stop());
+    draw_end_labels(frame, spec_, history, group.hovered().value_or(present));
+  }
   legend_.draw(frame, spec_, hovered_curve_);
   const bool menu_or_png = frames_until_png_ > 0 || ImGui::IsPopupOpen("menu");
   if (!menu_or_png) draw_what_is_pointed_at(frame, history, group, mouse);
@@ -139,6 +149,7 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
        std::round(outer.max.y - label.y - 6 * scale)}};
   area.max.x = std::max(area.max.x, area.min.x + 8);
   area.max.y = std::max(area.max.y, area.min.y + 8);
+  area_ = area;
   const PixelWindow window =
       pixel_window(group.stop(), group.length(), static_cast<int>(area.width()));
   pixel_rows(history, window, rows_);
@@ -215,11 +226,12 @@ void Plot::draw_inside(const PlotFrame& frame, const History& history, const Plo
   if (over_time()) {
     draw_bands(frame, spec_, history, rows_);
     draw_mark_lines(frame, history);
+    if (group.range()) draw_range(frame, group.range()->start, group.range()->stop);
   }
   draw_curves(frame, history);
   if (over_time()) {
     draw_band_names(frame, spec_, history, rows_);
-    draw_mark_labels(frame, history, traces_, mouse);
+    draw_mark_labels(frame, spec_, history, rows_, traces_, mouse);
   }
   draw_thresholds(frame, spec_);
   if (over_time() && group.playback()) {
@@ -260,10 +272,10 @@ void Plot::draw_curves(const PlotFrame& frame, const History& history) {
         break;
     }
     const bool pointed_at = hovered_curve_ == static_cast<int>(i);
-    draw_trace(frame, traces_[i], ink(frame.palette, curve.ink, curve.shade),
-               hovered_curve_ < 0 ? 1.0f
-               : pointed_at       ? 1.5f
-                                  : 0.3f);
+    const float emphasis = hovered_curve_ < 0 ? 1.0f : pointed_at ? 1.5f : 0.3f;
+    const Rgb rgb = colour_of(frame.palette, curve);
+    draw_trace(frame, traces_[i], rgb, emphasis);
+    draw_run_signs(frame, traces_[i], curve.sign, colour(rgb, std::min(1.0f, emphasis)));
   }
   const bool nothing = history.empty() || spec_.curves.empty();
   if (!nothing) return;
@@ -311,7 +323,8 @@ void Plot::handle_menu(const PlotFrame& frame, const History& history, PlotGroup
     fit_values();
   } else if (wish == PlotWish::save_png) {
     frames_until_png_ = kFramesToCloseMenu;
-  } else if (wish == PlotWish::choose || wish == PlotWish::add || wish == PlotWish::remove) {
+  } else if (wish == PlotWish::choose || wish == PlotWish::add || wish == PlotWish::remove ||
+             wish == PlotWish::export_as) {
     events.wish = wish;
   } else {
     const PlotPicture picture{frame.window.start(), frame.window.stop(), frame.x, frame.y};
@@ -378,7 +391,7 @@ void Plot::handle_mouse(const PlotFrame& frame, const History& history, PlotGrou
     curve.visible = !curve.visible;
     return;
   }
-  handle_drag(frame, group, events);
+  handle_drag(frame, history, group, events);
   if (!hovered_) return;
   if (hovered_curve_ < 0 && frame.area.contains(mouse)) point_at(frame, history, group, mouse);
   handle_wheel(frame, group);
@@ -414,24 +427,38 @@ void Plot::handle_wheel(const PlotFrame& frame, PlotGroup& group) {
   x_.zoom(factor, (io.MousePos.x - frame.area.min.x) / frame.area.width());
 }
 
-void Plot::handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& events) {
+void Plot::handle_drag(const PlotFrame& frame, const History& history, PlotGroup& group,
+                       PlotEvents& events) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool near_playback =
       over_time() && group.playback() && frame.area.contains(io.MousePos) &&
       std::abs(frame.x_of(*group.playback()) - io.MousePos.x) < kGrip * frame.scale;
   if (hovered_ && near_playback) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (ImGui::IsItemActivated()) {
-    drag_ = near_playback                      ? Drag::playback
+    const bool selects = io.KeyShift && over_time() && frame.area.contains(io.MousePos);
+    range_from_ = frame.x_at(io.MousePos.x);
+    drag_ = selects                            ? Drag::range
+            : near_playback                    ? Drag::playback
             : io.MousePos.x < frame.area.min.x ? Drag::values
             : hovered_curve_ < 0               ? Drag::pan
                                                : Drag::none;
+    if (drag_ == Drag::pan && over_time() && group.playback()) {
+      events.playback = note_near(frame, history, io.MousePos);
+    }
   }
   if (!ImGui::IsItemActive()) {
+    events.unselect =
+        drag_ == Drag::range && !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 2);
     drag_ = Drag::none;
     return;
   }
   if (drag_ == Drag::playback) events.playback = frame.x_at(io.MousePos.x);
   if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2)) return;
+  if (drag_ == Drag::range) {
+    const double to = frame.x_at(std::clamp(io.MousePos.x, frame.area.min.x, frame.area.max.x));
+    const auto [start, stop] = std::minmax(range_from_, to);
+    events.range = PlotRange{start, stop};
+  }
   if (drag_ == Drag::pan) {
     pan(frame, group, io.MouseDelta);
   } else if (drag_ == Drag::values) {
@@ -480,9 +507,7 @@ std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
   return number_text(axis, map, value) + " " + axis.unit;
 }
 
-Rgb ink_of(const PlotFrame& frame, const Curve& curve) {
-  return ink(frame.palette, curve.ink, curve.shade);
-}
+Rgb ink_of(const PlotFrame& frame, const Curve& curve) { return colour_of(frame.palette, curve); }
 
 std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
                                 const History& history, SampleIndex row) {
@@ -657,10 +682,11 @@ void leave_room(std::vector<Line>& lines, float most) {
 
 float end_label_width() { return text_size(Face::small, "\u22120.000").x + 6 * current_scale(); }
 
-void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history) {
+void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                     double time) {
   const float room = frame.outer.max.x - frame.area.max.x;
   if (history.empty() || room < end_label_width()) return;
-  const SampleIndex row = history.nearest(frame.window.stop());
+  const SampleIndex row = history.nearest(std::min(time, frame.window.stop()));
   const int exponent =
       common_exponent(frame.y.low() * spec.y.factor, frame.y.high() * spec.y.factor);
   const float height = text_size(Face::small, "0").y;

@@ -12,6 +12,14 @@
 
 namespace limpid {
 
+// A stretch of time that was selected, and in which of the plots.
+struct PlotRange {
+  double start = 0, stop = 0;  // on the history's axis [s]
+  std::size_t plot = 0;
+
+  friend bool operator==(const PlotRange&, const PlotRange&) = default;
+};
+
 class PlotGroup {
  public:
   // `fitted_length` [s]: how much fit() shows of a long history; a recording's duration shows it
@@ -45,6 +53,9 @@ class PlotGroup {
   // Under the mouse, in any of the plots.
   std::optional<double> hovered() const { return hovered_; }
   void hover(double time) { hovered_ = hovering_ = time; }
+  // What was selected, as long as there are rows of it.
+  const std::optional<PlotRange>& range() const { return range_; }
+  void select(const std::optional<PlotRange>& range) { range_ = range; }
   // The same in spectra [Hz].
   std::optional<double> hovered_frequency() const { return hovered_frequency_; }
   void hover_frequency(double f) { hovered_frequency_ = hovering_frequency_ = f; }
@@ -60,6 +71,7 @@ class PlotGroup {
   std::optional<double> playback_;
   std::optional<double> hovered_;
   std::optional<double> hovering_;  // said during this frame, for plots drawn earlier in the next
+  std::optional<PlotRange> range_;
   std::optional<double> hovered_frequency_, hovering_frequency_;
 };
 
@@ -68,11 +80,14 @@ struct PlotEvents {
   std::optional<double> playback;    // dragged here [s on the history's axis]
   std::optional<PlotNotice> notice;  // also shown in the plot itself
   PlotWish wish = PlotWish::none;    // one of those that only the plots' owner can fulfil
+  std::optional<PlotRange> range;    // selected here; the owner knows which plot it is
+  bool unselect = false;             // Shift+click: nothing is selected any more
 };
 
-// Mouse: drag pans, wheel zooms along the horizontal axis, Ctrl+wheel or the wheel over the value
-// axis zooms values, double click fits, right click opens the menu, a click on the legend hides or
-// shows a curve. Over another channel the wheel zooms both axes.
+// Mouse: drag pans, Shift+drag selects a stretch of time, wheel zooms along the horizontal axis,
+// Ctrl+wheel or the wheel over the value axis zooms values, double click fits, right click opens
+// the menu, a click on the legend hides or shows a curve. Over another channel the wheel zooms both
+// axes.
 class Plot {
  public:
   explicit Plot(PlotSpec spec) : spec_(std::move(spec)) {}
@@ -86,13 +101,17 @@ class Plot {
   PlotEvents draw(const History& history, PlotGroup& group, ImVec2 size,
                   const PlotSaving& saving = {});
 
+  // What it shows now, for a picture or a table of it.
+  PlotPicture picture(const PlotGroup& group) const;
+  // Where its curves were drawn last [px].
+  const ScreenRect& area() const { return area_; }
   // Back to limits that follow the data.
   void fit_values();
   // As if its menu had been asked for it, with the next draw().
   void ask(PlotWish wish) { asked_ = wish; }
 
  private:
-  enum class Drag { none, pan, values, playback };
+  enum class Drag { none, pan, values, playback, range };
 
   // A value axis: where it is, and whether it moves with the data.
   struct ValueAxis {
@@ -114,7 +133,8 @@ class Plot {
                     PlotEvents& events);
   void point_at(const PlotFrame& frame, const History& history, PlotGroup& group, ImVec2 mouse);
   void handle_wheel(const PlotFrame& frame, PlotGroup& group);
-  void handle_drag(const PlotFrame& frame, PlotGroup& group, PlotEvents& events);
+  void handle_drag(const PlotFrame& frame, const History& history, PlotGroup& group,
+                   PlotEvents& events);
   void pan(const PlotFrame& frame, PlotGroup& group, ImVec2 by);
   void draw_curves(const PlotFrame& frame, const History& history);
   void draw_inside(const PlotFrame& frame, const History& history, const PlotGroup& group,
@@ -134,6 +154,7 @@ class Plot {
   ValueAxis x_, y_;       // x_: over another channel or frequencies
   double run_start_ = 0;  // of the run that the limits follow [s]
   Drag drag_ = Drag::none;
+  double range_from_ = 0;  // where the drag that selects began [s]
   PlotLegend legend_;
   int hovered_curve_ = -1;
   bool hovered_ = false;
@@ -141,7 +162,7 @@ class Plot {
   std::vector<Trace> traces_;
   std::vector<AmplitudeSpectrum> spectra_;  // one for each curve
   double spectra_start_ = 0, spectra_stop_ = 0, spectra_due_ = 0;
-  ScreenRect menu_button_{};
+  ScreenRect menu_button_{}, area_{};
   PlotWish asked_ = PlotWish::none;
   int frames_until_png_ = 0;
   std::optional<PlotNotice> notice_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "app/base/markup.h"
 #include "app/plot/axis.h"
+#include "app/plot/plot_canvas.h"
 #include "app/plot/trace.h"
 #include "app/style/ticks.h"
 
@@ -112,38 +114,85 @@ std::string csv_text(const PlotTable& table) {
 
 namespace {
 
-constexpr double kFont = 12;         // [px]
-constexpr double kLine = 2;          // [px]
-constexpr int kColumnsPerPixel = 2;  // pictures are looked at closely
+using Point = PlotCanvas::Point;
+using Box = PlotCanvas::Box;
+using Anchor = PlotCanvas::Anchor;
+
+constexpr double kLine = 2;  // [px]
+constexpr Rgb kPaper{255, 255, 255};
+constexpr double kSvgSign = 3.6, kSvgBetween = 64, kSvgEdge = 3;  // as on the screen [px]
+constexpr int kColumnsPerPixel = 2;                               // pictures are looked at closely
 
 std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
-class SvgPlot {
- public:
-  SvgPlot(const PlotSpec& spec, const History& history, const PlotPicture& picture)
-      : spec_(spec),
-        history_(history),
-        picture_(picture),
-        right_(picture.width - 14.0),
-        bottom_(picture.height - 42.0) {}
+Rgb paper_of(const Palette& palette) { return palette.dark ? palette.panel : kPaper; }
 
-  std::string write() {
-    open();
-    spec_.kind == PlotKind::time ? time_axis() : across_axis();
-    value_axis();
-    add("<g clip-path=\"url(#area)\">\n");
-    see_columns();
-    if (spec_.kind == PlotKind::time) {
-      bands();
-      marks();
-    }
-    curves();
-    thresholds();
-    add("</g>\n");
-    add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"{}\"/>\n", left_,
-        top_, right_ - left_, bottom_ - top_, hex(kLightPalette.axis));
-    legend();
-    return text_ + "</svg>\n";
+class SvgCanvas : public PlotCanvas {
+ public:
+  SvgCanvas(const PlotPicture& picture, const Palette& palette, const Box& area) {
+    const std::string unit = picture.millimetres > 0 ? "mm" : "";
+    const double size = picture.millimetres > 0 ? picture.millimetres / picture.width : 1;
+    add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}{6}\" height=\"{1:g}{6}\" "
+        "viewBox=\"0 0 {2} {3}\" font-family=\"Inter, Helvetica, Arial, sans-serif\" "
+        "font-size=\"{4}\">\n<rect width=\"100%\" height=\"100%\" fill=\"{5}\"/>\n",
+        size * picture.width, size * picture.height, picture.width, picture.height, kCanvasFont,
+        hex(paper_of(palette)), unit);
+    add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+        area.left, area.top, area.width, area.height);
+    add("<pattern id=\"stripes\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
+        "patternTransform=\"rotate(45)\"><rect width=\"7\" height=\"7\" fill=\"{0}\" "
+        "fill-opacity=\"0.1\"/><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"{0}\" "
+        "stroke-opacity=\"0.5\"/></pattern>\n",
+        hex(palette.muted));
+  }
+
+  std::string end() { return text_ + "</svg>\n"; }
+
+  void rect(const Box& box, Rgb fill, double alpha) override {
+    at(box);
+    add("fill=\"{}\" fill-opacity=\"{:.3f}\"/>\n", hex(fill), alpha);
+  }
+  void outline(const Box& box, Rgb rgb) override {
+    at(box);
+    add("fill=\"none\" stroke=\"{}\"/>\n", hex(rgb));
+  }
+  void stripes(const Box& box, Rgb) override {
+    at(box);
+    add("fill=\"url(#stripes)\"/>\n");
+  }
+  void line(Point from, Point to, Rgb rgb, double width, double dash, double gap) override {
+    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+        "stroke-width=\"{:g}\" stroke-dasharray=\"{}\"/>\n",
+        from.x, from.y, to.x, to.y, hex(rgb), width,
+        dash > 0 ? fmt::format("{:g} {:g}", dash, gap) : "none");
+  }
+  void polyline(std::span<const Point> points, Rgb rgb, double width) override {
+    add("<polyline fill=\"none\" ");
+    edged(points, rgb, width);
+  }
+  void polygon(std::span<const Point> points, Rgb rgb, double width) override {
+    add("<polygon fill=\"{}\" ", hex(rgb));
+    edged(points, rgb, width);
+  }
+  void square(Point middle, double half, Rgb fill, Rgb edge) override {
+    at({middle.x - half, middle.y - half, 2 * half, 2 * half});
+    add("fill=\"{}\" stroke=\"{}\"/>\n", hex(fill), hex(edge));
+  }
+  void ring(Point middle, double radius, Rgb edge, Rgb fill) override {
+    add("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" "
+        "stroke-width=\"1.8\"/>\n",
+        middle.x, middle.y, radius, hex(fill), hex(edge));
+  }
+  void text(Point at, Anchor anchor, Rgb rgb, const std::string& what, bool bold) override {
+    constexpr std::array kAnchors{"start", "middle", "end"};
+    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" "
+        "font-weight=\"{}\">{}</text>\n",
+        at.x, at.y, kAnchors[static_cast<std::size_t>(anchor)], hex(rgb), bold ? 600 : 400,
+        escaped(what));
+  }
+  void clip(const Box* box) override {
+    add("{}", box != nullptr ? "<g clip-path=\"url(#area)\">\n" : "</g>\n");
   }
 
  private:
@@ -151,18 +200,64 @@ class SvgPlot {
   void add(fmt::format_string<Args...> format, Args&&... args) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
   }
-
-  void label(double x, double y, const char* anchor, Rgb rgb, const std::string& what,
-             const char* weight = "400") {
-    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" "
-        "font-weight=\"{}\">{}</text>\n",
-        x, y, anchor, hex(rgb), weight, escaped(what));
+  void at(const Box& box) {
+    add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" ", box.left, box.top,
+        box.width, box.height);
+  }
+  void edged(std::span<const Point> points, Rgb rgb, double width) {
+    add("stroke=\"{}\" stroke-width=\"{:g}\" stroke-linejoin=\"round\" points=\"", hex(rgb), width);
+    for (const Point& p : points) add("{:.2f},{:.2f} ", p.x, p.y);
+    add("\"/>\n");
   }
 
-  void line(double x1, double y1, double x2, double y2, Rgb rgb, const char* dash = "none") {
-    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
-        "stroke-dasharray=\"{}\"/>\n",
-        x1, y1, x2, y2, hex(rgb), dash);
+  std::string text_;
+};
+
+// The picture of a plot, on whichever canvas.
+class PlotDrawing {
+ public:
+  PlotDrawing(const PlotSpec& spec, const History& history, const PlotPicture& picture)
+      : spec_(spec),
+        history_(history),
+        picture_(picture),
+        palette_(palette(picture.theme)),
+        right_(picture.width - 14.0),
+        bottom_(picture.height - 42.0) {}
+
+  Box area() const { return {left_, top_, right_ - left_, bottom_ - top_}; }
+  const Palette& colours() const { return palette_; }
+
+  void draw(PlotCanvas& canvas) {
+    canvas_ = &canvas;
+    label(left_, 20, Anchor::start, palette_.text,
+          spec_.title + "  [" + unit_text(spec_.y, picture_.y) + "]", true);
+    spec_.kind == PlotKind::time ? time_axis() : across_axis();
+    value_axis();
+    const Box inside = area();
+    canvas.clip(&inside);
+    see_columns();
+    if (spec_.kind == PlotKind::time) {
+      bands();
+      marks();
+    }
+    curves();
+    thresholds();
+    canvas.clip(nullptr);
+    canvas.outline(inside, palette_.axis);
+    legend();
+  }
+
+ private:
+  static double width_of(const std::string& text) {
+    return 0.55 * kCanvasFont * static_cast<double>(text.size());
+  }
+  void label(double x, double y, Anchor anchor, Rgb rgb, const std::string& what,
+             bool bold = false) {
+    canvas_->text({x, y}, anchor, rgb, what, bold);
+  }
+
+  void line(double x1, double y1, double x2, double y2, Rgb rgb, double dash = 0, double gap = 0) {
+    canvas_->line({x1, y1}, {x2, y2}, rgb, 1, dash, gap);
   }
 
   double x_of(double time) const {
@@ -173,23 +268,6 @@ class SvgPlot {
     return std::clamp(bottom_ - picture_.y.part(value) * (bottom_ - top_), -1e4, 1e4);
   }
 
-  void open() {
-    add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-        "viewBox=\"0 0 {0} {1}\" font-family=\"Inter, Helvetica, Arial, sans-serif\" "
-        "font-size=\"{2}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        picture_.width, picture_.height, kFont);
-    add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
-        left_, top_, right_ - left_, bottom_ - top_);
-    add("<pattern id=\"stripes\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
-        "patternTransform=\"rotate(45)\"><rect width=\"7\" height=\"7\" fill=\"{0}\" "
-        "fill-opacity=\"0.1\"/><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"{0}\" "
-        "stroke-opacity=\"0.5\"/></pattern>\n",
-        hex(kLightPalette.muted));
-    label(left_, 20, "start", kLightPalette.text,
-          spec_.title + "  [" + unit_text(spec_.y, picture_.y) + "]", "600");
-  }
-
   void time_axis() {
     const double offset = history_.offset();
     const double low = picture_.start - offset;
@@ -198,8 +276,8 @@ class SvgPlot {
     const Ticks ticks = time_ticks(low, high, picture_.width / 90);
     for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
       const double x = x_of(ticks.at(i) + offset);
-      line(x, top_, x, bottom_, kLightPalette.grid);
-      label(x, bottom_ + 16, "middle", kLightPalette.muted,
+      line(x, top_, x, bottom_, palette_.grid);
+      label(x, bottom_ + 16, Anchor::middle, palette_.muted,
             time_text(ticks.at(i), ticks.step, clock));
     }
   }
@@ -207,37 +285,50 @@ class SvgPlot {
   void across_axis() {
     for (const AxisPlace& place : axis_places(spec_.x, picture_.x, picture_.width / 90.0)) {
       const double x = x_at(picture_.x.part(place.value));
-      line(x, top_, x, bottom_, kLightPalette.grid);
-      label(x, bottom_ + 16, "middle", kLightPalette.muted, place.label);
+      line(x, top_, x, bottom_, palette_.grid);
+      label(x, bottom_ + 16, Anchor::middle, palette_.muted, place.label);
     }
-    label(right_, picture_.height - 10, "end", kLightPalette.text,
+    label(right_, picture_.height - 10, Anchor::end, palette_.text,
           spec_.x.label + "  [" + unit_text(spec_.x, picture_.x) + "]");
   }
 
   void value_axis() {
     for (const AxisPlace& place : axis_places(spec_.y, picture_.y, picture_.height / 45.0)) {
       const double y = y_of(place.value);
-      line(left_, y, right_, y, kLightPalette.grid);
-      label(left_ - 6, y + 4, "end", kLightPalette.muted, place.label);
+      line(left_, y, right_, y, palette_.grid);
+      label(left_ - 6, y + 4, Anchor::end, palette_.muted, place.label);
     }
     if (spec_.y.zero_line && !picture_.y.log) {
-      line(left_, y_of(0), right_, y_of(0), kLightPalette.axis);
+      line(left_, y_of(0), right_, y_of(0), palette_.axis);
     }
   }
 
+  // Those that a band says go without a label, and those that have no room for it.
   void marks() {
-    for (const Mark& mark : history_.marks()) {
+    std::vector<std::string> said;
+    for (const Band& band : spec_.bands) {
+      if (!band.key.empty() && !band_stretches(band, history_, rows_).empty()) {
+        said.push_back(band.key);
+      }
+    }
+    double free_from = left_;
+    for (const PlotMark& mark : history_.marks()) {
       if (mark.time < picture_.start || mark.time > picture_.stop) continue;
-      line(x_of(mark.time), top_, x_of(mark.time), bottom_, kLightPalette.muted, "2 3");
-      label(x_of(mark.time) + 4, bottom_ - 5, "start", kLightPalette.muted, mark.label);
+      const bool note = mark.key == kNoteMark;
+      const Rgb rgb = note ? palette_.text : palette_.muted;
+      line(x_of(mark.time), top_, x_of(mark.time), bottom_, rgb, note ? 0 : 2, 3);
+      const double x = x_of(mark.time) + 4;
+      if (std::ranges::find(said, mark.key) != said.end() || x < free_from) continue;
+      label(x, bottom_ - 5, Anchor::start, rgb, mark.label);
+      free_from = x + width_of(mark.label) + 8;
     }
   }
 
   void thresholds() {
     for (const Threshold& each : spec_.thresholds) {
-      const Rgb rgb = ink(kLightPalette, each.ink);
-      line(left_, y_of(each.value), right_, y_of(each.value), rgb, "4 3");
-      label(right_ - 6, y_of(each.value) - 4, "end", rgb, each.label);
+      const Rgb rgb = ink(palette_, each.ink);
+      line(left_, y_of(each.value), right_, y_of(each.value), rgb, 4, 3);
+      label(right_ - 6, y_of(each.value) - 4, Anchor::end, rgb, each.label);
     }
   }
 
@@ -253,24 +344,33 @@ class SvgPlot {
   double column(double number) const { return x_at((number - first_column_) / columns_); }
 
   void bands() {
+    double line = 0;  // of names, from the top; each band has its own
     for (const Band& each : spec_.bands) {
+      double free_from = left_;
+      const double y = top_ + 15 + 14 * line++;
       const auto most = static_cast<double>(std::max<std::size_t>(2, each.names.size()) - 1);
       int before = -1;
       for (const BandStretch& stretch : band_stretches(each, history_, rows_)) {
         const bool named = std::exchange(before, stretch.said) != stretch.said;
-        if (stretch.said == 0) continue;
+        if (stretch.said == 0 && !each.laws) continue;
         const double left = column(static_cast<double>(stretch.from));
-        add("<rect x=\"{:.2f}\" y=\"{}\" width=\"{:.2f}\" height=\"{}\" ", left, top_,
-            column(static_cast<double>(stretch.to)) - left, bottom_ - top_);
-        if (each.striped) {
-          add("fill=\"url(#stripes)\"/>\n");
+        const Box box{left, top_, column(static_cast<double>(stretch.to)) - left, bottom_ - top_};
+        const auto tint = static_cast<double>(each.tint);
+        if (each.laws) {
+          const Rgb law = law_ink(palette_, stretch.said);
+          canvas_->rect(box, law, tint);
+          canvas_->rect({box.left, box.top, box.width, kSvgEdge}, law, 1);
+        } else if (each.striped) {
+          canvas_->stripes(box, palette_.muted);
         } else {
-          add("fill=\"{}\" fill-opacity=\"{:.3f}\"/>\n", hex(kLightPalette.accent),
-              static_cast<double>(each.tint) * stretch.said / most);
+          canvas_->rect(box, palette_.accent, tint * stretch.said / most);
         }
-        if (!named) continue;
-        label(std::max(left, left_) + 3, top_ + (each.striped ? 26 : 13), "start",
-              kLightPalette.text, each.names[static_cast<std::size_t>(stretch.said)]);
+        const std::string& name = each.names[static_cast<std::size_t>(stretch.said)];
+        const double x = std::max(left, left_) + 3, wide = width_of(name);
+        // A moment under another law is a line without a name.
+        if (!named || x < free_from || (each.laws && box.width < wide)) continue;
+        label(x, y, Anchor::start, palette_.text, name);
+        free_from = x + wide + 8;
       }
     }
   }
@@ -294,33 +394,46 @@ class SvgPlot {
       }
       for (const TraceRun& run : trace.runs) {
         const auto points = std::span(trace.points).subspan(run.first, run.count);
-        const Rgb rgb = ink(kLightPalette, curve.ink, curve.shade);
+        const Rgb rgb = colour_of(palette_, curve);
         trace.band ? band(points, rgb) : polyline(points, rgb);
+        if (spec_.kind == PlotKind::time) signs(points, curve);
       }
     }
   }
 
-  void point(const TracePoint& p, float value) {
-    add("{:.2f},{:.2f} ", x_at((static_cast<double>(p.x) - first_column_) / columns_),
-        y_of(static_cast<double>(value)));
+  Point point(const TracePoint& p, float value) const {
+    return {x_at((static_cast<double>(p.x) - first_column_) / columns_),
+            y_of(static_cast<double>(value))};
   }
 
   // The outline of the band, filled; its stroke gives thin bands the width of a line.
   void band(std::span<const TracePoint> points, Rgb rgb) {
-    add("<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" "
-        "points=\"",
-        hex(rgb), kLine);
-    for (const TracePoint& p : points) point(p, p.high);
-    for (auto p = points.rbegin(); p != points.rend(); ++p) point(*p, p->low);
-    add("\"/>\n");
+    std::vector<Point> outline;
+    for (const TracePoint& p : points) outline.push_back(point(p, p.high));
+    for (auto p = points.rbegin(); p != points.rend(); ++p) outline.push_back(point(*p, p->low));
+    canvas_->polygon(outline, rgb, kLine);
+  }
+
+  void sign(double x, double y, const Curve& curve) {
+    const Rgb back = paper_of(palette_), rgb = colour_of(palette_, curve);
+    if (curve.sign == RunSign::square) canvas_->square({x, y}, kSvgSign, rgb, back);
+    if (curve.sign == RunSign::ring) canvas_->ring({x, y}, kSvgSign, rgb, back);
+  }
+
+  void signs(std::span<const TracePoint> points, const Curve& curve) {
+    double next = left_ + kSvgBetween / 2;
+    for (const TracePoint& p : points) {
+      const double x = x_at((static_cast<double>(p.x) - first_column_) / columns_);
+      if (x < next) continue;
+      sign(x, y_of(0.5 * static_cast<double>(p.low + p.high)), curve);
+      next = kSvgBetween * std::ceil((x - left_) / kSvgBetween + 0.5) + left_ - kSvgBetween / 2;
+    }
   }
 
   void polyline(std::span<const TracePoint> points, Rgb rgb) {
-    add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
-        "points=\"",
-        hex(rgb), kLine);
-    for (const TracePoint& p : points) point(p, p.low);
-    add("\"/>\n");
+    std::vector<Point> line;
+    for (const TracePoint& p : points) line.push_back(point(p, p.low));
+    canvas_->polyline(line, rgb, kLine);
   }
 
   void legend() {
@@ -328,17 +441,17 @@ class SvgPlot {
     for (const Curve& curve : spec_.curves) {
       if (!curve.visible) continue;
       const double y = picture_.height - 10;
-      add("<line x1=\"{:.1f}\" y1=\"{}\" x2=\"{:.1f}\" y2=\"{}\" stroke=\"{}\" "
-          "stroke-width=\"2\"/>\n",
-          x, y - 4, x + 18, y - 4, hex(ink(kLightPalette, curve.ink, curve.shade)));
-      label(x + 23, y, "start", kLightPalette.text, curve.label);
-      x += 40 + 0.6 * kFont * static_cast<double>(curve.label.size());
+      canvas_->line({x, y - 4}, {x + 18, y - 4}, colour_of(palette_, curve), kLine, 0, 0);
+      sign(x + 9, y - 4, curve);
+      label(x + 23, y, Anchor::start, palette_.text, curve.label);
+      x += 40 + 0.6 * kCanvasFont * static_cast<double>(curve.label.size());
     }
   }
 
   const PlotSpec& spec_;
   const History& history_;
   const PlotPicture& picture_;
+  const Palette& palette_;
   double left_ = 56;
   double top_ = 32;
   double right_;
@@ -347,13 +460,30 @@ class SvgPlot {
   double first_column_ = 0;  // that stands at its left end
   PixelWindow window_{};
   std::vector<SampleIndex> rows_;  // of the columns
-  std::string text_;
+  PlotCanvas* canvas_ = nullptr;
 };
 
 }  // namespace
 
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
-  return SvgPlot(spec, history, picture).write();
+  PlotDrawing drawing(spec, history, picture);
+  SvgCanvas canvas(picture, drawing.colours(), drawing.area());
+  drawing.draw(canvas);
+  return canvas.end();
+}
+
+Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+              PlotCanvas& canvas) {
+  PlotDrawing drawing(spec, history, picture);
+  drawing.draw(canvas);
+  return paper_of(drawing.colours());
+}
+
+Raster plot_raster(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+                   double scale) {
+  RasterCanvas canvas(picture.width, picture.height, scale, paper_of(palette(picture.theme)));
+  draw_plot(spec, history, picture, canvas);
+  return canvas.take();
 }
 
 }  // namespace limpid

@@ -7,6 +7,7 @@
 #include "app/plot/axis.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
+#include "app/plot/raster_canvas.h"
 
 namespace limpid {
 
@@ -25,14 +26,22 @@ PlotTable plot_table(const PlotSpec& spec, const History& history, double start,
 std::string csv_text(const PlotTable& table);
 
 // A complete SVG document, `width` x `height` [px], of the visible curves over [start, stop] and
-// `y` in the channels' unit; over other things than time on `x`. Light colours, for paper.
+// `y` in the channels' unit; over other things than time on `x`; light colours are for paper.
 struct PlotPicture {
   double start;
   double stop;
   AxisMap x, y;
   int width = 720;
   int height = 360;
+  Theme theme = Theme::light;
+  double millimetres = 0;  // how wide it is printed; 0: as many pixels
 };
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture);
+// The same picture on another canvas, and the colour of its paper.
+Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+              PlotCanvas& canvas);
+// In pixels, `scale` of them for one of the layout.
+Raster plot_raster(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+                   double scale);
 
 }  // namespace limpid

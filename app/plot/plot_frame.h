@@ -71,16 +71,26 @@ void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
 // Behind the curves a line wherever something was changed, and over them what it was, where they
 // leave room.
 void draw_mark_lines(const PlotFrame& frame, const History& history);
-void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<const Trace> traces,
+void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                      const std::vector<SampleIndex>& rows, std::span<const Trace> traces,
                       ImVec2 mouse);
+
+// When somebody noted what is marked under the mouse; nothing where there is no such mark.
+std::optional<double> note_near(const PlotFrame& frame, const History& history, ImVec2 mouse);
 
 // `emphasis` below 1 fades the curve, above 1 thickens it.
 void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis);
 
-// The values at the right end of the curves over time, in their colours, in the margin beside the
-// area; and how wide that margin has to be.
+// What tells a second run's curve from the first one's; over time the signs move with the data.
+void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba);
+// One of them, around a point.
+void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale);
+
+// The values of the curves at a time, in their colours, in the margin beside the area: that at the
+// mouse, or at the right end; and how wide that margin has to be.
 float end_label_width();
-void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history);
+void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                     double time);
 
 // Over time: the line at `time` with a dot on every visible curve, and the values in a box beside
 // it. Over another channel: the dots and the box.
@@ -96,6 +106,9 @@ void draw_present(const PlotFrame& frame, const PlotSpec& spec, const History& h
 // Over another channel: the time of the row closest to the mouse, if one is near.
 std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
                                 const History& history, ImVec2 mouse);
+
+// Behind the curves: what is selected, from one time to another.
+void draw_range(const PlotFrame& frame, double start, double stop);
 
 // A line that can be dragged, with a handle on top.
 void draw_playback(const PlotFrame& frame, double time, bool held);

@@ -12,9 +12,11 @@ constexpr float kEntriesApart = 12;
 
 void draw_swatch(const PlotFrame& frame, const ScreenRect& entry, const Curve& curve, float alpha) {
   const float s = frame.scale;
-  const ImU32 rgba = colour(ink(frame.palette, curve.ink, curve.shade), alpha);
+  const ImU32 rgba = colour(colour_of(frame.palette, curve), alpha);
   const float y = std::round(0.5f * (entry.min.y + entry.max.y));
   frame.list.AddRectFilled({entry.min.x, y - s}, {entry.min.x + kSwatch * s, y + s}, rgba, s);
+  draw_run_sign(frame.list, {entry.min.x + 0.5f * kSwatch * s, y}, curve.sign, rgba,
+                colour(frame.palette.panel), s);
 }
 
 // Without the words that a label shares with the one before it.
@@ -108,7 +110,7 @@ void PlotLegend::draw(const PlotFrame& frame, const PlotSpec& spec, int hovered)
     if (style_.samples) draw_swatch(frame, e.box, curve, curve.visible ? 1.0f : 0.25f);
     const Rgb text = e.curve == hovered ? frame.palette.text
                      : style_.samples   ? frame.palette.muted
-                                        : ink(frame.palette, curve.ink, curve.shade);
+                                        : colour_of(frame.palette, curve);
     draw_text(frame.list, Face::small,
               {e.box.min.x + sample_width(frame.scale), e.box.min.y + frame.scale},
               curve.visible ? text : mix(text, frame.palette.panel, 0.6f), e.label);

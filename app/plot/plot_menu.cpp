@@ -40,7 +40,7 @@ PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
   try {
     const auto file = save_text(free_file(folder, name, extension), text());
     // The name first: what is too long for the plot is cut off at its end.
-    return {fmt::format("Saved {} in {}", file.filename().string(), folder.string())};
+    return {fmt::format("Saved {} in {}", file.filename().string(), folder.string()), false, file};
   } catch (const std::exception& e) {
     return {e.what(), true};
   }
@@ -56,6 +56,7 @@ PlotWish plot_menu_items(bool png_offered, bool arranged) {
     if (ImGui::MenuItem("Remove this plot")) wish = PlotWish::remove;
     ImGui::Separator();
   }
+  if (arranged && ImGui::MenuItem("Export...", "Ctrl+E")) wish = PlotWish::export_as;
   if (ImGui::MenuItem("Copy as CSV")) wish = PlotWish::copy_csv;
   if (ImGui::MenuItem("Save as CSV")) wish = PlotWish::save_csv;
   if (png_offered && ImGui::MenuItem("Save as PNG")) wish = PlotWish::save_png;

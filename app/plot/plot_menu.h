@@ -14,6 +14,7 @@ namespace limpid {
 struct PlotNotice {
   std::string text;
   bool bad = false;
+  std::filesystem::path file = {};  // that was written, if one was
 };
 
 struct PlotSaving {
@@ -32,7 +33,18 @@ struct PlotSaving {
   bool arranged = false;
 };
 
-enum class PlotWish { none, copy_csv, save_csv, save_svg, save_png, fit, choose, add, remove };
+enum class PlotWish {
+  none,
+  copy_csv,
+  save_csv,
+  save_svg,
+  save_png,
+  fit,
+  choose,
+  add,
+  remove,
+  export_as
+};
 
 // The items of the context menu inside an open pop-up; says what was chosen.
 PlotWish plot_menu_items(bool png_offered, bool arranged);

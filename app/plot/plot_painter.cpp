@@ -303,6 +303,56 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
 
 namespace {
 
+constexpr float kBetweenSigns = 64;  // [px] at scale 1
+constexpr float kSign = 3.6f;        // half of one's width
+
+}  // namespace
+
+void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale) {
+  const float r = kSign * scale;
+  const ImVec2 from{at.x - r, at.y - r}, to{at.x + r, at.y + r};
+  switch (sign) {
+    case RunSign::none: return;
+    case RunSign::square:
+      list.AddRectFilled({from.x - scale, from.y - scale}, {to.x + scale, to.y + scale}, back);
+      return list.AddRectFilled(from, to, rgba);
+    case RunSign::ring:
+      list.AddCircleFilled(at, r + 1.2f * scale, back, 16);
+      return list.AddCircle(at, r, rgba, 16, 1.8f * scale);
+  }
+}
+
+// At whole distances along the time axis, or along the curve where that wanders.
+void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba) {
+  if (sign == RunSign::none) return;
+  const float apart = std::round(kBetweenSigns * frame.scale);
+  const auto place = [&](const TracePoint& p) {
+    return ImVec2{frame.area.min.x + p.x, 0.5f * (frame.y_of(p.low) + frame.y_of(p.high))};
+  };
+  const double begins = trace.wanders ? 0
+                                      : std::fmod(static_cast<double>(frame.window.first_pixel),
+                                                  static_cast<double>(apart));
+  for (const TraceRun& run : trace.runs) {
+    double way = 0;
+    for (std::size_t i = run.first; i + 1 < run.first + run.count; ++i) {
+      const ImVec2 from = place(trace.points[i]), to = place(trace.points[i + 1]);
+      if (!trace.wanders) way = begins + static_cast<double>(from.x - frame.area.min.x);
+      const double step = trace.wanders ? std::hypot(to.x - from.x, to.y - from.y)
+                                        : static_cast<double>(to.x - from.x);
+      const double next = apart * (std::floor(way / static_cast<double>(apart)) + 1);
+      if (step > 0 && next <= way + step) {
+        const auto part = static_cast<float>((next - way) / step);
+        draw_run_sign(frame.list,
+                      {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)}, sign,
+                      rgba, colour(frame.palette.panel), frame.scale);
+      }
+      way += step;
+    }
+  }
+}
+
+namespace {
+
 void dashed_line(const PlotFrame& frame, ImVec2 from, ImVec2 to, ImU32 rgba, float dash) {
   const bool level = from.y == to.y;
   const float length = level ? to.x - from.x : to.y - from.y;
@@ -371,7 +421,7 @@ namespace {
 // In sight, from the left.
 template <class Draw>
 void for_marks(const PlotFrame& frame, const History& history, Draw&& draw) {
-  for (const Mark& mark : history.marks()) {
+  for (const PlotMark& mark : history.marks()) {
     const float x = std::round(frame.x_of(mark.time));
     if (x >= frame.area.min.x && x <= frame.area.max.x) draw(mark, x);
   }
@@ -431,7 +481,13 @@ class MarkRows {
 
 void draw_mark_lines(const PlotFrame& frame, const History& history) {
   float last = -1e9f;
-  for_marks(frame, history, [&](const Mark&, float x) {
+  for_marks(frame, history, [&](const PlotMark& mark, float x) {
+    if (mark.key == kNoteMark) {
+      const float r = 4 * frame.scale, top = frame.area.min.y;
+      upright_line(frame, x, colour(frame.palette.text, 0.7f));
+      frame.list.AddRectFilled({x, top}, {x + 2 * r, top + 1.4f * r}, colour(frame.palette.text));
+      return;
+    }
     if (x - last < 3 * frame.scale) return;
     dashed_line(frame, {x, frame.area.min.y}, {x, frame.area.max.y},
                 colour(frame.palette.muted, 0.45f), 2 * frame.scale);
@@ -439,11 +495,30 @@ void draw_mark_lines(const PlotFrame& frame, const History& history) {
   });
 }
 
+std::optional<double> note_near(const PlotFrame& frame, const History& history, ImVec2 mouse) {
+  std::optional<double> found;
+  float nearest = 5 * frame.scale;
+  for_marks(frame, history, [&](const PlotMark& mark, float x) {
+    const float apart = std::abs(x - mouse.x);
+    if (mark.key != kNoteMark || apart > nearest) return;
+    nearest = apart;
+    found = mark.time;
+  });
+  return found;
+}
+
 // A label stands right of its line, at the end left of it.
-void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<const Trace> traces,
+void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
+                      const std::vector<SampleIndex>& pixels, std::span<const Trace> traces,
                       ImVec2 mouse) {
   MarkRows rows(frame, text_size(Face::small, "0").y);
-  for_marks(frame, history, [&](const Mark& mark, float x) {
+  std::vector<std::string> said;
+  for (const Band& band : spec.bands) {
+    if (!band.key.empty() && !band_stretches(band, history, pixels).empty())
+      said.push_back(band.key);
+  }
+  for_marks(frame, history, [&](const PlotMark& mark, float x) {
+    if (std::ranges::find(said, mark.key) != said.end()) return;
     const float width = text_size(Face::small, mark.label).x;
     const float gap = 4 * frame.scale;
     const bool at_the_end = x + gap + width > frame.area.max.x;
@@ -451,13 +526,16 @@ void draw_mark_labels(const PlotFrame& frame, const History& history, std::span<
     const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < gap;
     const auto row = rows.find(traces, left, width);
     if (!row && !pointed_at) return;
-    draw_backed_text(frame, rows.box(row.value_or(0), left, width).min, frame.palette.muted,
-                     mark.label, pointed_at ? 1.0f : 0.85f);
+    draw_backed_text(frame, rows.box(row.value_or(0), left, width).min,
+                     mark.key == kNoteMark ? frame.palette.text : frame.palette.muted, mark.label,
+                     pointed_at ? 1.0f : 0.85f);
     rows.take(row.value_or(0), left + width + 6 * frame.scale);
   });
 }
 
 namespace {
+
+constexpr float kLawEdge = 3;  // of a law's band, at its top [px]
 
 // Each with its edges on the screen.
 template <class Draw>
@@ -469,7 +547,8 @@ void for_stretches(const PlotFrame& frame, const Band& band, const History& hist
   }
 }
 
-void draw_names(const PlotFrame& frame, const Band& band, const History& history,
+// `line`: of names, from the top; each band has its own.
+void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
                 const std::vector<SampleIndex>& rows) {
   float free_from = frame.area.min.x;
   int before = -1;
@@ -484,8 +563,7 @@ void draw_names(const PlotFrame& frame, const Band& band, const History& history
     if (frame.area.height() < 6 * label.y) return;
     // A moment under another law is a line without a name.
     if (!band.names.front().empty() && right - left < label.x) return;
-    // Below the names of others.
-    const float y = frame.area.min.y + (band.striped ? label.y : 0);
+    const float y = frame.area.min.y + kLawEdge * frame.scale + line * label.y;
     draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
                      0.85f);
     free_from = x + label.x + 12 * frame.scale;
@@ -513,6 +591,14 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
     const auto most = static_cast<float>(std::max<std::size_t>(2, band.names.size()) - 1);
     for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
       if (band.striped && now > 0) return draw_stripes(frame, left, right);
+      if (band.laws) {
+        const Rgb law = law_ink(frame.palette, now);
+        frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                                 colour(law, band.tint));
+        frame.list.AddRectFilled({left, frame.area.min.y},
+                                 {right, frame.area.min.y + kLawEdge * frame.scale}, colour(law));
+        return;
+      }
       if (now == 0) return;
       frame.list.AddRectFilled(
           {left, frame.area.min.y}, {right, frame.area.max.y},
@@ -523,7 +609,8 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
 
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      const std::vector<SampleIndex>& rows) {
-  for (const Band& band : spec.bands) draw_names(frame, band, history, rows);
+  float line = 0;
+  for (const Band& band : spec.bands) draw_names(frame, band, line++, history, rows);
 }
 
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {
@@ -537,6 +624,16 @@ void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool poi
   for (const float at : {-5.0f, 0.0f, 5.0f}) {
     frame.list.AddCircleFilled({x + at * s, y}, 1.6f * s, rgba);
   }
+}
+
+void draw_range(const PlotFrame& frame, double start, double stop) {
+  const float left = std::max(frame.x_of(start), frame.area.min.x);
+  const float right = std::min(frame.x_of(stop), frame.area.max.x);
+  if (left > right) return;
+  frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                           colour(frame.palette.accent, 0.18f));
+  upright_line(frame, left, colour(frame.palette.accent));
+  upright_line(frame, right - 1, colour(frame.palette.accent));
 }
 
 void draw_playback(const PlotFrame& frame, double time, bool held) {

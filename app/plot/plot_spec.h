@@ -15,6 +15,9 @@ enum class PlotKind : std::uint8_t {
   spectrum,  // the frequency, of the stretch of time shown
 };
 
+// Drawn on a curve at even distances, so that curves of two runs differ by more than a tint.
+enum class RunSign : std::uint8_t { none, square, ring };
+
 struct Curve {
   int channel = 0;
   int across = -1;  // of kind cross: the channel along the horizontal axis
@@ -22,7 +25,13 @@ struct Curve {
   Ink ink = Ink::neutral;
   float shade = 0;  // see ink()
   bool visible = true;
+  int law = -1;  // the curve has this law's colour instead of its thing's
+  RunSign sign = RunSign::none;
 };
+inline Rgb colour_of(const Palette& palette, const Curve& curve) {
+  const Rgb pure = curve.law < 0 ? ink(palette, curve.ink) : law_ink(palette, curve.law);
+  return shaded(palette, pure, curve.shade);
+}
 
 struct Threshold {
   double value;  // in the channels' unit
@@ -39,6 +48,10 @@ struct Band {
   float tint = 0.13f;  // of the last one; those before have less
   // All but 0 look alike, striped: what is behind them is not what it seems.
   bool striped = false;
+  // They are coupling laws: each has its colour, 0 too, and an edge of it at the top.
+  bool laws = false;
+  // Marks with this key say what the band says: they go without a label while it is seen.
+  std::string key = {};
 };
 
 // How an axis is written while it shows no more than `most` [the channels' unit].

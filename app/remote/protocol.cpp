@@ -36,7 +36,7 @@ constexpr std::array kVerbs{
     Verb{"record", kRecord, "every tick, into \"file\" or a new file of the user's sessions"},
     Verb{"stop", kNone, "the recording; answers once the file is complete"},
     Verb{"start_over", kNone, "at rest in the middle, or at the beginning of the hand's path"},
-    Verb{"mark", kMark, "\"text\" in the plots; answers which tick it is"},
+    Verb{"mark", kMark, "\"text\" in the plots and in what is recorded; answers which tick it is"},
     Verb{"row", kRow, "the newest row, of all \"channels\" or some"},
     Verb{"follow", kFollow, "rows of \"channels\" from now on, \"rate\" a second; none ends it"},
     Verb{"twin", kTwin, "a second run on the same hand, with \"values\" of its own"},

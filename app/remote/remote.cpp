@@ -22,6 +22,13 @@ json number(double x) { return std::isfinite(x) ? json(x) : json(); }
 
 }  // namespace
 
+std::string noted(const Keys& keys) {
+  std::string text = keys.text("text");
+  if (text.size() <= kMarkLength) return text;
+  throw RemoteError(
+      fmt::format("mark: text: {} bytes; allowed: 1 to {}", text.size(), kMarkLength));
+}
+
 json loop_state(const LiveLoop& loop, const ArmDescription& arm) {
   const Snapshot& now = loop.snapshot();
   const LoopStatus status = loop.status();

@@ -60,6 +60,9 @@ struct RemoteHost {
 // What a state says of the loop, whoever has it.
 nlohmann::json loop_state(const LiveLoop& loop, const ArmDescription& arm);
 
+// The text of a mark. Errors: RemoteError for one that is missing, or longer than sessions keep.
+std::string noted(const Keys& keys);
+
 class Remote {
  public:
   static constexpr std::size_t kMostChannels = 64;  // that a client follows

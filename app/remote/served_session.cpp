@@ -306,8 +306,9 @@ json ServedSession::place() const {
   return at;
 }
 
-Answer ServedSession::mark(const Keys& keys) const {
-  keys.text("text");
+Answer ServedSession::mark(const Keys& keys) {
+  const std::string text = noted(keys);
+  if (loop_.recording()) loop_.mark({loop_.recorder()->newest(), text});
   return place();
 }
 

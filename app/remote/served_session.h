@@ -71,7 +71,7 @@ class ServedSession {
   Answer record(const Keys& keys);
   Answer stop();
   Answer start_over();
-  Answer mark(const Keys& keys) const;
+  Answer mark(const Keys& keys);
   Answer twin(const Keys& keys);
   Answer picture(const Keys& keys);
   nlohmann::json place() const;

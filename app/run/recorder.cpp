@@ -1,5 +1,6 @@
 #include "app/run/recorder.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <exception>
@@ -67,6 +68,23 @@ bool Recorder::changed(const Parameters& now, std::size_t lane) noexcept {
   return kept;
 }
 
+void Recorder::mark(Mark mark) {
+  check_mark(mark, out_);
+  const std::lock_guard lock(marks_mutex_);
+  marks_.push_back(std::move(mark));
+}
+
+// Of a recording without rows none is kept.
+void Recorder::write_marks() {
+  if (rows() == 0) return;
+  const std::lock_guard lock(marks_mutex_);
+  for (Mark& mark : marks_) {
+    mark.tick = std::min(mark.tick, rows() - 1);
+    writer_.append(mark);
+  }
+  marks_.clear();
+}
+
 void Recorder::begins(std::span<const double> world, std::size_t lane) noexcept {
   std::vector<double>& into = worlds_[lane];
   if (world.size() > into.capacity()) {
@@ -93,6 +111,7 @@ void Recorder::live() {
     while (true) {
       const bool last_round = stop_.load();
       write_changes();
+      write_marks();
       write_rows();
       if (last_round && ring_.size() == 0) return;
       for (int i = 0; i < kMostNaps && ring_.size() < kBlockRows && !stop_.load(); ++i) {

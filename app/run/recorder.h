@@ -41,7 +41,10 @@ class Recorder {
   void begins(std::span<const double> world, std::size_t lane = kMainLane) noexcept;
 
   // The owner's side.
-  std::size_t stride() const noexcept { return ring_.stride(); }  // doubles a push
+  // What somebody notes at a row that was pushed. Errors: FileError for a text that is too long.
+  void mark(Mark mark);
+  std::uint64_t newest() const noexcept { return rows() > 0 ? rows() - 1 : 0; }  // row
+  std::size_t stride() const noexcept { return ring_.stride(); }                 // doubles a push
   bool of_twin() const noexcept { return lanes_ > 1; }
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
@@ -61,6 +64,7 @@ class Recorder {
   void live();
   void write_rows();
   void write_changes();
+  void write_marks();
 
   std::filesystem::path out_;
   SessionWriter writer_;
@@ -77,6 +81,8 @@ class Recorder {
   std::atomic<bool> failed_{false};
   mutable std::mutex error_mutex_;
   std::string error_;
+  std::mutex marks_mutex_;
+  std::vector<Mark> marks_;  // not handed on yet
   std::thread thread_;
 };
 

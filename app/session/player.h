@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "devices/files/session/session.h"
 
@@ -30,7 +32,17 @@ class Player {
     playing_ = true;
   }
   void pause() { playing_ = false; }
-  void seek(double time) { time_ = std::clamp(time, 0.0, duration() - session_->info.tick); }
+  // From one moment to another, again and again while looping; until it is sought or played
+  // otherwise.
+  void play_between(double start, double stop) {
+    seek(start);
+    stretch_ = {time_, std::clamp(stop, time_, duration())};
+    playing_ = true;
+  }
+  void seek(double time) {
+    stretch_.reset();
+    time_ = std::clamp(time, 0.0, duration() - session_->info.tick);
+  }
   void step(int ticks) {
     pause();
     seek(time_ + ticks * session_->info.tick);
@@ -38,6 +50,13 @@ class Player {
   void advance(double dt) {
     if (!playing_) return;
     time_ += dt * speed;
+    if (stretch_ && time_ >= stretch_->second) {
+      const auto [start, stop] = *stretch_;
+      const double over = std::fmod(time_ - start, std::max(stop - start, session_->info.tick));
+      time_ = loop ? start + over : stop;
+      playing_ = loop;
+      if (!loop) stretch_.reset();
+    }
     if (time_ < duration()) return;
     if (loop) {
       time_ = std::fmod(time_, duration());
@@ -54,6 +73,7 @@ class Player {
   std::shared_ptr<const Session> session_;
   double time_ = 0;
   bool playing_ = false;
+  std::optional<std::pair<double, double>> stretch_;  // that is played [s]
 };
 
 }  // namespace limpid

@@ -84,8 +84,13 @@ Curve of_second(const Curve& first, std::size_t number, const TraceChannels& cha
   curve.channel += channels.count();
   if (curve.across >= 0) curve.across += channels.count();
   if (names.twin) {
-    curve.shade = std::min(1.0f, first.shade + kTwinTint);
+    curve.sign = RunSign::square;
+    const bool another = curve.law >= 0 && names.laws[1] != names.laws[0];
+    if (curve.law >= 0) curve.law = names.laws[1];
+    if (!another) curve.shade = std::min(1.0f, first.shade + kTwinTint);
   } else {
+    curve.sign = RunSign::ring;
+    curve.law = -1;
     curve.ink = Ink::rerun;
     curve.shade = kShades[number % kShades.size()];
   }
@@ -119,7 +124,10 @@ Band force_band(int channel) {
 std::vector<Band> bands(const TraceChannels& channels, bool single) {
   std::vector<Band> bands;
   if (single) {
-    Band laws{.channel = static_cast<int>(Channel::kind), .tint = 0.09f};
+    Band laws{.channel = static_cast<int>(Channel::kind),
+              .tint = 0.12f,
+              .laws = true,
+              .key = "coupling.kind"};
     for (std::uint8_t i = 0; i < kLaws; ++i) laws.names.emplace_back(info(CouplingKind{i}).key);
     bands.push_back(std::move(laws));
   }
@@ -133,6 +141,18 @@ std::vector<Band> bands(const TraceChannels& channels, bool single) {
 const char* name(PlotKind kind) {
   constexpr std::array kNames{"time", "cross", "spectrum"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::array<int, 2> laws_at(const Session& session, double time) {
+  std::array<int, 2> laws{-1, -1};
+  const double row = std::clamp(time / session.info.tick + 0.5, 0.0, 1e15);
+  const auto law = [&](const Session& run) {
+    const std::size_t k = std::min(static_cast<std::size_t>(row), run.size() - 1);
+    return static_cast<int>(run.at(k, Column::kind)[0]);
+  };
+  if (session.size() > 0) laws[0] = law(session);
+  if (session.twin && session.twin->size() > 0) laws[1] = law(*session.twin);
+  return laws;
 }
 
 std::vector<PlotChoice> default_plots() {
@@ -181,6 +201,8 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     curve.visible = !names.twin || !info.seldom;
     firsts.push_back(std::move(curve));
   }
+  // Where each run is one curve, that is its law's.
+  if (names.twin && firsts.size() == 1) firsts[0].law = names.laws[0];
   spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
   if (spec.y.unit.find(',') != std::string::npos) {
     for (std::size_t i = 0; i < firsts.size(); ++i) firsts[i].label += " [" + shown[i].unit + "]";

@@ -1,11 +1,13 @@
 // What somebody chose to see in a plot, by the names of channels: the same for every arm and run.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "app/plot/plot_spec.h"
 #include "app/session/trace_channels.h"
+#include "devices/files/session/session.h"
 
 namespace limpid {
 
@@ -26,11 +28,15 @@ std::vector<PlotChoice> default_plots();
 
 // What the curves of two runs are called, in front of what they show.
 struct RunNames {
-  std::string first, second;  // of one run both are empty
-  bool twin = false;          // the second is another one now, not one of before
+  std::string first, second;        // of one run both are empty
+  bool twin = false;                // the second is another one now, not one of before
+  std::array<int, 2> laws{-1, -1};  // of a twin's runs, by their numbers, as far as they are known
 
   friend bool operator==(const RunNames&, const RunNames&) = default;
 };
+
+// The laws of a session's runs at a time of it [s].
+std::array<int, 2> laws_at(const Session& session, double time);
 
 // Channels that the arm does not have are left out. A second run's channels follow the first one's
 // and are drawn beside them, if it has a name.

@@ -12,7 +12,7 @@ void EnergyAccount::follow(const History& history, SampleIndex end) {
   if (end < next_) start_over();
   next_ = std::max(next_, history.first());
   // One that was placed at the last sample after it was looked at counts, too.
-  auto mark = std::ranges::lower_bound(history.marks(), looked_until_, {}, &Mark::time);
+  auto mark = std::ranges::lower_bound(history.marks(), looked_until_, {}, &PlotMark::time);
   for (; next_ < end; ++next_) {
     const double time = history.time(next_);
     for (; mark != history.marks().end() && mark->time <= time; ++mark) {

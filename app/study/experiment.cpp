@@ -353,7 +353,7 @@ std::string section(const Page& page) {
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
         "<td class=\"verdict\">{}</td></tr>\n",
-        escaped(check.at("what").get<std::string>()), number(check.at("value")),
+        escaped(typeset(check.at("what").get<std::string>())), number(check.at("value")),
         number(check.at("bound")), verdict(check.at("passed").get<bool>()));
   }
   return fmt::format(
@@ -367,8 +367,8 @@ std::string section(const Page& page) {
 {5}</tbody></table>
 </section>
 )",
-      page.name, escaped(v.value("title", page.name)), verdict(v.value("passed", false)),
-      escaped(page.about), escaped(v.value("caption", "")), rows);
+      page.name, escaped(typeset(v.value("title", page.name))), verdict(v.value("passed", false)),
+      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), rows);
 }
 
 }  // namespace
@@ -383,8 +383,8 @@ void write_report(const fs::path& dir) {
     contents += fmt::format(
         "<tr><td><a href=\"#{0}\">{1}</a></td><td class=\"soft\">{2}</td>"
         "<td class=\"number\">{3} checks</td><td class=\"verdict\">{4}</td></tr>\n",
-        page.name, escaped(page.verdict.value("title", page.name)), escaped(page.about),
-        page.verdict.at("checks").size(), verdict(good));
+        page.name, escaped(typeset(page.verdict.value("title", page.name))),
+        escaped(typeset(page.about)), page.verdict.at("checks").size(), verdict(good));
     sections += section(page);
   }
   write_page(

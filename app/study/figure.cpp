@@ -136,7 +136,29 @@ constexpr double kYLabel = 20;                            // from the cell's lef
 
 // What the text of data, readable anywhere, looks like in print.
 constexpr std::pair<const char*, const char*> kSymbols[] = {
-    {"eta", "η"}, {"x1", "x₁"}, {"x2", "x₂"}, {"v1", "v₁"}, {"f1", "f₁"}, {"f2", "f₂"}, {"-", "−"}};
+    {"eta", "η"}, {"x1", "x₁"}, {"x2", "x₂"},   {"v1", "v₁"},   {"f1", "f₁"},
+    {"f2", "f₂"}, {"-", "−"},   {"w_f", "ω_f"}, {"w_c", "ω_c"}, {"w", "ω"}};
+
+// "m^2" -> "m²": digits and a minus behind a caret stand above the line.
+std::string with_powers(const std::string& text) {
+  constexpr const char* kAbove[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::size_t from = i + (text.compare(i, 2, "^-") == 0 ? 2 : 1);
+    const bool digit =
+        from < text.size() && std::isdigit(static_cast<unsigned char>(text[from])) != 0;
+    if (text[i] != '^' || !digit) {
+      out += text[i];
+      continue;
+    }
+    if (from == i + 2) out += "⁻";
+    for (i = from; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])) != 0; ++i) {
+      out += kAbove[text[i] - '0'];
+    }
+    --i;
+  }
+  return out;
+}
 
 std::string symbol_of(const std::string& word) {
   for (const auto& [plain, symbol] : kSymbols) {
@@ -145,11 +167,13 @@ std::string symbol_of(const std::string& word) {
   return word;
 }
 
+}  // namespace
+
 // Whole words, lone minus signs and apostrophes alone are replaced. (gnuplot misreads texts that
 // begin with a quoted apostrophe.)
 std::string typeset(const std::string& text) {
   std::string out, word;
-  for (const char c : text + ' ') {
+  for (const char c : with_powers(text) + ' ') {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-') {
       word += c;
       continue;
@@ -160,6 +184,8 @@ std::string typeset(const std::string& text) {
   out.pop_back();
   return out;
 }
+
+namespace {
 
 // Nothing in single quotes means anything to gnuplot but the quote itself.
 std::string quoted(const std::string& text) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/style/law_colours.h"
+
 namespace limpid {
 
 struct FigurePoint {
@@ -57,16 +59,18 @@ inline constexpr const char* kContactInk = "#D55E00";
 inline constexpr const char* kEnergyInk = "#CC79A7";
 inline constexpr const char* kNeutralInk = "#555555";
 // The couplings have colours of their own; a variant of one is a tint of it.
-inline constexpr const char* kStandardInk = "#6B7280";
-inline constexpr const char* kProposedInk = "#6A3D9A";
-inline constexpr const char* kProposedTint = "#B79BD3";
-inline constexpr const char* kPredictiveInk = "#6F9600";
-inline constexpr const char* kPredictiveTint = "#B5CC6A";
-inline constexpr const char* kTankInk = "#00A6D6";
+inline constexpr const char* kStandardInk = kLawColours[0].on_light;
+inline constexpr const char* kProposedInk = kLawColours[1].on_light;
+inline constexpr const char* kProposedTint = kLawColours[1].tint;
+inline constexpr const char* kPredictiveInk = kLawColours[2].on_light;
+inline constexpr const char* kPredictiveTint = kLawColours[2].tint;
+inline constexpr const char* kTankInk = kLawColours[3].on_light;
 // For a family of curves, such as values of eta.
 inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
                                              "#D55E00", "#CC79A7", "#56B4E9"};
 
+// What the text of data, readable anywhere, looks like in print: "eta w^2" -> "η ω²".
+std::string typeset(const std::string& text);
 // Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
 void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
 // A file that gnuplot draws: `terminal` is its picture format, `scale` the pixels of the picture

@@ -30,7 +30,8 @@ std::string joints_table(const Identification& identification) {
   const Identified& found = identification.found;
   std::string head = "<th>joint</th>", rows;
   for (const FindingInfo& info : kFindings) {
-    head += fmt::format("<th class=\"number\">{} [{}]</th>", info.label, escaped(info.unit));
+    head +=
+        fmt::format("<th class=\"number\">{} [{}]</th>", info.label, escaped(typeset(info.unit)));
   }
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
     rows += "<tr><td>" + escaped(found.arm.joints[j].name) + "</td>";
@@ -42,7 +43,7 @@ std::string joints_table(const Identification& identification) {
             "</tr>\n";
   }
   return fmt::format(
-      "<table><thead><tr>{}<th class=\"number\">inertia in its file [g m^2]</th>"
+      "<table><thead><tr>{}<th class=\"number\">inertia in its file [g m²]</th>"
       "<th class=\"number\">not explained</th></tr></thead><tbody>\n{}</tbody></table>\n",
       head, rows);
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "app/style/law_colours.h"
 #include "render/theme.h"
 
 namespace limpid {
@@ -75,6 +76,7 @@ struct Palette {
   Rgb accent;  // what is switched on; no thing's own colour
   Rgb broken;
   Inks inks;
+  bool dark = false;
 };
 
 inline constexpr Palette kDarkPalette{
@@ -94,6 +96,7 @@ inline constexpr Palette kDarkPalette{
     .inks = with_joints({rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
                          rgb(0xb4bcc6), rgb(0xf0e442)},
                         Theme::dark),
+    .dark = true,
 };
 
 inline constexpr Palette kLightPalette{
@@ -119,11 +122,25 @@ constexpr const Palette& palette(Theme theme) {
   return theme == Theme::dark ? kDarkPalette : kLightPalette;
 }
 
+constexpr Rgb shaded(const Palette& palette, Rgb pure, float shade) {
+  return shade >= 0 ? mix(pure, palette.text, shade) : mix(pure, palette.panel, -shade);
+}
 // `shade` tells curves of one thing apart, such as its joints: above 0 towards the text's colour,
 // below 0 towards the background; -1 to 1.
 constexpr Rgb ink(const Palette& palette, Ink which, float shade = 0) {
-  const Rgb pure = palette.inks[static_cast<std::size_t>(which)];
-  return shade >= 0 ? mix(pure, palette.text, shade) : mix(pure, palette.panel, -shade);
+  return shaded(palette, palette.inks[static_cast<std::size_t>(which)], shade);
 }
+
+// Of a coupling law by its number; a number that is none has no colour of its own.
+constexpr Rgb law_ink(const Palette& palette, int law) {
+  const auto i = static_cast<std::size_t>(law);
+  if (law < 0 || i >= kLawColours.size()) return palette.muted;
+  return rgb(hex_colour(palette.dark ? kLawColours[i].on_dark : kLawColours[i].on_light));
+}
+
+// From 1 to 21, as WCAG 2 has it.
+double contrast(Rgb one, Rgb other);
+// Black or white, whichever reads better on a colour: 4.5 to 1 at least.
+Rgb text_on(Rgb back);
 
 }  // namespace limpid

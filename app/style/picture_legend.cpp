@@ -57,9 +57,9 @@ float width_of(const Entry& entry) {
 
 // Where each entry goes; returns the place behind the last line.
 template <class Draw>
-float lay_out(const std::vector<Entry>& entries, ImVec2 from, ImVec2 to, const Draw& draw) {
+float lay_out(const std::vector<Entry>& entries, ImVec2 from, ImVec2 to, bool lines,
+              const Draw& draw) {
   const float em = font(Face::small)->FontSize;
-  const bool lines = in_lines(from, to);
   ImVec2 at(from.x + kLeft * em, from.y + kTop * em);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const float width = width_of(entries[i]);
@@ -78,7 +78,14 @@ void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to, const Picture
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
-  lay_out(entries_of(legend, in_lines(from, to)), from, to, [&](const Entry& entry, ImVec2 at) {
+  const bool lines = in_lines(from, to) && !legend.compact;
+  lay_out(entries_of(legend, lines), from, to, lines, [&](const Entry& entry, ImVec2 at) {
+    if (legend.compact) {  // it may stand over an arm
+      const float pad = 0.5f * kBetween * em;
+      list.AddRectFilled({at.x - pad, at.y - 0.15f * em},
+                         {at.x + width_of(entry) + pad, at.y + 1.2f * em},
+                         colour(colours.backdrop, 0.72f));
+    }
     for (const Rgb rgb : entry.dots) {
       list.AddCircleFilled({at.x + em * 0.3f, at.y + em * 0.55f}, em * 0.3f, colour(rgb));
       at.x += kDot * em;
@@ -96,7 +103,7 @@ ImVec2 picture_legend_size(ImVec2 from, ImVec2 to) {
   float widest = 0;
   for (const Entry& entry : entries) widest = std::max(widest, width_of(entry));
   const float spare = lines ? 2 * kLine * em : 0;
-  const float bottom = lay_out(entries, from, to, [](const Entry&, ImVec2) {});
+  const float bottom = lay_out(entries, from, to, lines, [](const Entry&, ImVec2) {});
   return {lines ? kLeft * em + widest : to.x - from.x, bottom + spare - from.y};
 }
 

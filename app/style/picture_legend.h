@@ -13,6 +13,7 @@ struct PictureLegend {
   bool slips = false;            // and its colour
   // Two runs in one picture, by name; or none.
   std::string first = {}, second = {};
+  bool compact = false;  // short words side by side, however much room there is
 };
 
 // In the upper left corner of a picture, line by line, or, where that would hide half of it, in

@@ -169,12 +169,15 @@ void add_face(ImFontAtlas& atlas, const std::string& file, float size, float den
 
 }  // namespace
 
+std::string font_file(Face face) {
+  return find_font(face == Face::semibold ? "Inter-SemiBold.otf" : "Inter-Regular.otf");
+}
+
 bool load_fonts(float scale, float density) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
-  const std::string regular = find_font("Inter-Regular.otf");
-  const std::string semibold = find_font("Inter-SemiBold.otf");
+  const std::string regular = font_file(Face::regular), semibold = font_file(Face::semibold);
   if (regular.empty() || semibold.empty()) {
     ImFontConfig config;
     config.SizePixels = std::round(13 * scale);

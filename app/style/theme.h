@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <cstdint>
+#include <string>
 
 #include "app/style/palette.h"
 
@@ -27,6 +28,9 @@ enum class Face : std::uint8_t { regular, semibold, small };
 // font where Inter is not installed, in place of all fonts loaded before. Call it before the first
 // frame, or between frames followed by a new font texture. Returns whether Inter was found.
 bool load_fonts(float scale, float density = 1);
+
+// The file of the face; empty where Inter is not installed.
+std::string font_file(Face face);
 
 // The regular face where load_fonts() was never called.
 ImFont* font(Face face);

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "render/gl/gl_names.h"
@@ -89,6 +91,14 @@ OffscreenContext::OffscreenContext(int width, int height) : impl_(std::make_uniq
 
 OffscreenContext::~OffscreenContext() = default;
 
+void fill(unsigned colour) {
+  const auto part = [colour](int shift) {
+    return static_cast<float>((colour >> shift) & 0xff) / 255.0f;
+  };
+  glClearColor(part(16), part(8), part(0), 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+}
+
 std::string renderer_name() {
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return name != nullptr ? name : "";
@@ -126,12 +136,42 @@ std::vector<unsigned char> drawn_rgba(int width, int height, const std::function
   return rgba;
 }
 
-void write_png(const std::filesystem::path& path, int width, int height,
-               const std::vector<unsigned char>& rgba) {
+namespace {
+
+void put_big_endian(std::vector<unsigned char>& into, std::uint32_t value) {
+  for (const int shift : {24, 16, 8, 0}) into.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+// As PNG has it, annex D.
+std::uint32_t crc(std::span<const unsigned char> bytes) {
+  std::uint32_t sum = 0xffffffffu;
+  for (const unsigned char byte : bytes) {
+    sum ^= byte;
+    for (int i = 0; i < 8; ++i) sum = (sum & 1) != 0 ? 0xedb88320u ^ (sum >> 1) : sum >> 1;
+  }
+  return ~sum;
+}
+
+// The chunk pHYs: pixels per metre, as many across as down.
+std::vector<unsigned char> density_chunk(std::uint32_t per_metre) {
+  std::vector<unsigned char> body{'p', 'H', 'Y', 's'};
+  put_big_endian(body, per_metre);
+  put_big_endian(body, per_metre);
+  body.push_back(1);
+  std::vector<unsigned char> chunk;
+  put_big_endian(chunk, static_cast<std::uint32_t>(body.size() - 4));
+  chunk.insert(chunk.end(), body.begin(), body.end());
+  put_big_endian(chunk, crc(body));
+  return chunk;
+}
+
+}  // namespace
+
+std::vector<unsigned char> png_of(int width, int height, const std::vector<unsigned char>& rgba,
+                                  unsigned per_metre) {
   if (width < 1 || height < 1 ||
       rgba.size() != 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("a picture's size and its pixels do not agree");
-  // By way of memory: stb's own writing to files does not notice a full disk.
   std::vector<unsigned char> png;
   const auto append = [](void* to, void* data, int size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
@@ -139,7 +179,18 @@ void write_png(const std::filesystem::path& path, int width, int height,
         static_cast<std::vector<unsigned char>*>(to)->end(), bytes, bytes + size);
   };
   if (stbi_write_png_to_func(append, &png, width, height, 4, rgba.data(), 4 * width) == 0)
-    throw std::runtime_error(path.string() + ": the picture cannot be written");
+    throw std::runtime_error("the picture cannot be written");
+  if (per_metre == 0) return png;
+  constexpr std::ptrdiff_t kBehindHeader = 8 + 25;  // the signature and IHDR
+  const std::vector<unsigned char> density = density_chunk(per_metre);
+  png.insert(png.begin() + kBehindHeader, density.begin(), density.end());
+  return png;
+}
+
+void write_png(const std::filesystem::path& path, int width, int height,
+               const std::vector<unsigned char>& rgba) {
+  // By way of memory: stb's own writing to files does not notice a full disk.
+  const std::vector<unsigned char> png = png_of(width, height, rgba);
   errno = 0;
   std::FILE* file = std::fopen(path.string().c_str(), "wb");
   const bool whole = file != nullptr && std::fwrite(png.data(), 1, png.size(), file) == png.size();

@@ -53,7 +53,7 @@ class EachDialog(WindowTest):
     def open(self, dialog: str) -> None:
         keys = {"help": "F1", "experiments": "F5", "sweep": "F6", "plot": "n", "gallery": "ctrl+g",
                 "open session": "ctrl+o", "open scene": "ctrl+shift+o", "add model": "ctrl+m", "save scene": "ctrl+shift+s",
-                "layouts": "ctrl+l", "presets": "ctrl+p", "identify": "F7", "question": "ctrl+q"}
+                "layouts": "ctrl+l", "mark": "t", "export": "ctrl+e", "presets": "ctrl+p", "identify": "F7", "question": "ctrl+q"}
         ways = {"arm tip": lambda: self.drop(self.arms), "video": self.open_video,
                 "expand xacro": lambda: self.drop(self.xacro)}
         ways[dialog]() if dialog in ways else self.key(keys[dialog])

@@ -98,6 +98,24 @@ class TestServe(RemoteTest):
         with self.assertRaisesRegex(limpid.RequestError, "a.h5"):
             loop.record(file)  # which is there
 
+    def test_a_mark_is_kept_at_its_tick_while_something_is_recorded(self) -> None:
+        loop = self.connect()
+        loop.mark("nobody records")
+        file = loop.record(self.home / "marked.h5")
+        time.sleep(0.3)
+        loop.mark("first \u03b7")
+        time.sleep(0.2)
+        loop.mark("second")
+        with self.assertRaisesRegex(limpid.RequestError, "mark: text: 201 bytes; allowed: 1 to 200"):
+            loop.mark("x" * 201)
+        loop.stop()
+        session = limpid.session(file)
+        self.assertEqual([text for _, text in session.marks], ["first \u03b7", "second"])
+        times = [at for at, _ in session.marks]
+        self.assertGreater(times[0], 0.2)
+        self.assertGreater(times[1], times[0] + 0.15)
+        self.assertLess(times[1], session.time[-1])
+
     def test_a_hand_waits_for_the_recording_and_is_led_from_its_first_point(self) -> None:
         hand = limpid.runs.write_hand(PATH, self.home / "hand.csv")
         loop = self.connect()

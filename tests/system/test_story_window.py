@@ -6,6 +6,7 @@ from window import WindowTest
 
 SHOW_ME = (645, 333)  # the button that a first start has over the picture
 IN_VIEW = (500, 200)
+NEAR_THE_END = (1030, 698)  # of the time line
 
 
 class Story(WindowTest):
@@ -46,6 +47,17 @@ class Story(WindowTest):
         self.key("BackSpace")
         self.wait("the end", lambda s: not s["playing"])
         self.assertFalse(self.settled()["playing"])
+
+    def test_its_end_hands_the_arm_over_with_things_to_try(self) -> None:
+        self.play()
+        self.key("p")
+        self.click(*NEAR_THE_END)
+        self.wait("its last sentence", lambda s: s["recorded"]["at"] > 40)
+        self.assertFalse(self.state()["your_turn"])
+        self.key("p")
+        state = self.wait("its end", lambda s: not s["playing"], 60)
+        self.assertTrue(state["your_turn"])
+        self.assertEqual(state["tried"], "", "who has watched has tried nothing yet")
 
     def test_its_session_has_its_captions_when_it_is_opened_again(self) -> None:
         self.play()

@@ -73,9 +73,17 @@ class SweepWindow(WindowTest):
 
 class Points(SweepWindow):
     def test_they_are_played_and_one_key_comes_back_to_the_map(self) -> None:
-        for wall, eta in ((0, 3), (2, 1), (3, 0)):
+        for wall, eta in ((0, 3), (2, 1)):
             self.play_point(wall, eta)
             self.key("F6")
+        # What stands over the picture says where it lies and what was measured, and leads back.
+        self.play_point(3, 0)
+        back = "Back to map (F6)"
+        self.wait("the way back", lambda s: any(back in b["buttons"] for b in s["banners"]))
+        banner = next(b for b in self.settled()["banners"] if back in b["buttons"])
+        self.assertIn(f"wall {WALLS[3]} N/m, eta {ETAS[0]:g}: ", banner["text"])
+        self.assertRegex(banner["text"], r": \w+ \S+.*\.$")
+        self.click(*banner["buttons"][back])
         self.wait_for_map()
         # The very run: the same rows as the command makes of it.
         number = point(0, 2, 1)

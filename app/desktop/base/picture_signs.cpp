@@ -95,15 +95,26 @@ void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture,
             picture, list);
 }
 
-void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list) {
+void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawList& list) {
   const Palette& colours = current_palette();
+  const std::string& name = second ? names.second : names.first;
+  const int law = names.laws[second ? 1 : 0];
   ImFont* face = font(Face::semibold);
-  const ImVec2 size = face->CalcTextSizeA(face->FontSize, 1e9f, 0, name.c_str());
-  const float pad = 0.4f * face->FontSize;
-  const ImVec2 at(std::round((half.min.x + half.max.x - size.x) / 2), half.min.y + 2 * pad);
-  list.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + size.x + pad, at.y + size.y + pad / 2},
+  const float em = face->FontSize, pad = 0.4f * em;
+  const float sample = law < 0 ? 0 : 1.5f * em;
+  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, name.c_str());
+  const ImVec2 at(std::round((half.min.x + half.max.x - size.x - sample) / 2),
+                  half.min.y + 2 * pad);
+  list.AddRectFilled({at.x - pad, at.y - pad / 2},
+                     {at.x + sample + size.x + pad, at.y + size.y + pad / 2},
                      colour(colours.backdrop, 0.72f), 4);
-  list.AddText(face, face->FontSize, at, colour(colours.text), name.c_str());
+  list.AddText(face, em, {at.x + sample, at.y}, colour(colours.text), name.c_str());
+  if (law < 0) return;
+  const float y = std::round(at.y + 0.5f * size.y), scale = em / 16;
+  const ImU32 rgba = colour(law_ink(colours, law));
+  list.AddRectFilled({at.x, y - 1.5f * scale}, {at.x + 1.2f * em, y + 1.5f * scale}, rgba);
+  draw_run_sign(list, {at.x + 0.6f * em, y}, second ? RunSign::square : RunSign::none, rgba,
+                colour(colours.backdrop), 1.2f * scale);
 }
 
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list) {

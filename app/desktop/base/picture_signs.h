@@ -28,8 +28,9 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // A ring around the device's tip: the mouse has hold of it, or would have.
 void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// What a run of a twin is called, at the top of its half.
-void draw_run_name(const std::string& name, ScreenRect half, ImDrawList& list);
+// What the first or the second run of a twin is called, at the top of its half, with a sample of
+// its curves.
+void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawList& list);
 
 // What must not be missed, at the top of a picture, or below the names of a twin's halves.
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list);

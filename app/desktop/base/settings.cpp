@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "app/base/folders.h"
+#include "app/desktop/base/deeds.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 #include "devices/files/text_file.h"
@@ -104,6 +105,8 @@ void each(S& s, Visit&& visit) {
   visit("twin_overlaid", s.twin_overlaid);
   visit("hold_on_release", s.hold_on_release);
   visit("hint_seen", s.hint_seen);
+  visit("your_turn", s.your_turn);
+  visit("tried", s.tried);
   visit("picture_quality", s.picture_quality);
   visit("plot_length", s.plot_length);
   visit("band", s.band);
@@ -131,6 +134,8 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
       using T = std::remove_reference_t<decltype(value)>;
       if (const auto found = table["window"][key].value<T>()) value = *found;
     });
+    // Who has used a Limpid that did not ask yet needs no hints.
+    if (s.hint_seen && !table["window"]["tried"].is_string()) note_all_done(s);
     if (const toml::array* recent = table["window"]["recent"].as_array()) {
       for (const toml::node& node : *recent) {
         if (const auto name = node.value<std::string>()) s.recent.push_back(*name);

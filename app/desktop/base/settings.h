@@ -50,7 +50,9 @@ struct Settings {
   bool show_joints = true;
   bool twin_overlaid = false;  // both runs in one picture, else one beside the other
   bool hold_on_release = false;
-  bool hint_seen = false;
+  bool hint_seen = false;                     // the story was offered, and somebody went on
+  bool your_turn = false;                     // the list of what to try is shown
+  std::string tried;                          // of it, see deeds.h
   std::string picture_quality = "automatic";  // or high, medium, low
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]

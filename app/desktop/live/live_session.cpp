@@ -171,10 +171,27 @@ void LiveSession::mark(const std::string& label, const std::string& key) {
   changes_.push_back({0, key, label});
 }
 
+LiveSession::Moment LiveSession::now() const {
+  Moment at{.time = stage_->history.end_time()};
+  if (!loop_.recording()) return at;
+  at.row = loop_.recorder()->newest();
+  at.recording = loop_.recorder();
+  return at;
+}
+
+void LiveSession::note(const Moment& at, const std::string& text) {
+  if (at.row && loop_.recording() && loop_.recorder() == at.recording) {
+    loop_.mark({*at.row, text});
+  } else if (at.row) {
+    notices_.say("The recording that it was to be kept with has ended: the mark is in the plots.");
+  }
+  stage_->history.mark_at(at.time, text, kNoteMark);
+}
+
 // The rows up to here are those of before: however long a frame takes, a mark stands at its change.
 void LiveSession::set_marks() {
   History& history = stage_->history;
-  for (Mark& change : changes_) {
+  for (PlotMark& change : changes_) {
     history.mark(history.end_time() - history.offset(), std::move(change.label),
                  std::move(change.key));
   }
@@ -258,7 +275,10 @@ void LiveSession::save_beside(std::function<PlotNotice()> work) {
 
 void LiveSession::follow_saving() {
   for (std::future<PlotNotice>& saving : saving_) {
-    if (auto notice = take_ready(saving)) notices_.say(notice->text, notice->bad);
+    const auto notice = take_ready(saving);
+    if (!notice) continue;
+    if (!notice->file.empty()) written_ = notice->file;
+    if (!notice->text.empty()) notices_.say(notice->text, notice->bad);
   }
   std::erase_if(saving_, [](const std::future<PlotNotice>& saving) { return !saving.valid(); });
 }

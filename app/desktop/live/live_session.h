@@ -94,6 +94,8 @@ class LiveSession {
   void let_go(std::unique_ptr<Device> device);
   // Writes something beside the window, and says what became of it.
   void save_beside(std::function<PlotNotice()> work);
+  // The file that was written that way last, once; empty: none.
+  std::filesystem::path take_written() { return std::exchange(written_, {}); }
 
   // Once a frame: the controls with these parameters to the loop, and its rows to the plots.
   // `twin`: of a second run beside it; null: none.
@@ -102,6 +104,15 @@ class LiveSession {
   bool became_unstable();
   // Marks in the plots that something changes with the next update().
   void mark(const std::string& label, const std::string& key);
+  // What somebody notes at a moment: in the plots, and, if it is of the recording that runs, in its
+  // file. Errors: FileError for a text that is too long.
+  struct Moment {
+    double time = 0;                        // on the history's axis [s]
+    std::optional<std::uint64_t> row = {};  // of the recording
+    const Recorder* recording = nullptr;
+  };
+  Moment now() const;
+  void note(const Moment& at, const std::string& text);
   // Before the OpenGL context goes.
   void drop_pictures();
 
@@ -122,11 +133,12 @@ class LiveSession {
   LiveLoop loop_;
   std::unique_ptr<Stage> stage_;
   std::vector<double> rows_;
-  std::vector<Mark> changes_;  // to be marked, at times not known yet
+  std::vector<PlotMark> changes_;  // to be marked, at times not known yet
   bool was_diverged_ = false, was_running_ = false;
   std::future<std::unique_ptr<Recorder>> opening_;
   std::future<Notice> closing_;
   std::vector<std::future<PlotNotice>> saving_;
+  std::filesystem::path written_;
   std::optional<std::filesystem::path> recorded_;
   Recorded last_;
 };

@@ -85,14 +85,16 @@ void kind_buttons(Parameters& p) {
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     const auto kind = static_cast<CouplingKind>(i);
     const bool chosen = p.kind == kind;
+    const Rgb law = law_ink(colours, i);
     if (i > 0) ImGui::SameLine();
     if (chosen) {
-      ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(colours.accent));
-      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(colours.accent));
-      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.panel));
+      ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(law));
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
+      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(text_on(law)));
     }
     if (ImGui::Button(info(kind).label, size)) p.kind = kind;
     if (chosen) ImGui::PopStyleColor(3);
+    underline_button(law);
     tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
@@ -189,7 +191,7 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
                           "delay is taken to be what is set. limpid identify measures them.");
   }
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
-  read_out("Observer bandwidth w_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
+  read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "alpha / m over the modes of the inertia at the rest pose, (18)");
   const bool standard = !info(p.kind).observes;
   read_out("Least passive inertia \xCE\xB7_min",
@@ -318,8 +320,8 @@ void draw_break(bool broken, const Act& act) {
   tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
                    "law, scene, arm or recording."
                  : "Takes the proposed law, a stiff grip without damping, and so small an inertia "
-                   "\xCE\xB7 that the loop gives energy without end. Then hold the arm: it begins "
-                   "to tremble, and E_c climbs. Repair puts everything back.");
+                   "\xCE\xB7 that the loop gives energy without end. A hand holds the arm: it "
+                   "begins to tremble, and E_c climbs. Repair puts everything back.");
 }
 
 }  // namespace

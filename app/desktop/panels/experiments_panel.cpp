@@ -32,15 +32,18 @@ std::vector<fs::path> sessions_of(const Experiment& experiment) {
 
 void ExperimentsPanel::start(const Experiment& experiment) {
   current_ = &experiment;
-  shown_ = &experiment;
   began_ = ImGui::GetTime();
+  stopping_ = false;
+  ++begun_;
   running_.start(experiment.name, [&experiment](TaskProgress& progress) {
     Laboratory::Options options;
     options.dir = experiments_dir();
     options.threads = 1;  // the loop and the picture need the rest
     options.stop = &progress.cancel;
     options.progress = [&progress](double part) { progress.part = part; };
-    return carry_out(experiment, options);
+    Outcome outcome = carry_out(experiment, options);
+    write_report(options.dir);  // of all that there are results of
+    return outcome;
   });
 }
 
@@ -54,12 +57,17 @@ void ExperimentsPanel::take() {
                                verdict.outcome.passed() ? "passed" : "a check failed"),
                    !verdict.outcome.passed());
       verdicts_.insert_or_assign(current_->name, std::move(verdict));
-      write_report(experiments_dir());
+      if (!chosen_) shown_ = current_;
     }
   } catch (const std::exception& e) {
-    notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
+    if (stopping_) {
+      notices_.say("Stopped; finished trials are kept and are not run again.");
+    } else {
+      notices_.say(fmt::format("{}: {}", current_->name, e.what()), true);
+    }
     queue_.clear();
   }
+  if (!running_.busy() && queue_.empty()) begun_ = 0;
   if (!running_.busy() && !queue_.empty()) {
     const Experiment& next = *queue_.front();
     queue_.erase(queue_.begin());
@@ -71,13 +79,24 @@ void ExperimentsPanel::drop_pictures() {
   for (auto& [name, verdict] : verdicts_) verdict.figure.reset();
 }
 
-fs::path ExperimentsPanel::draw(bool& open) {
+std::string ExperimentsPanel::under_way() const {
+  if (!running_.busy()) return {};
+  const double elapsed = ImGui::GetTime() - began_, part = running_.part();
+  std::string text = fmt::format("{} of {}: {}", begun_,
+                                 static_cast<std::size_t>(begun_) + queue_.size(), current_->name);
+  if (part > 0.02) text += fmt::format(", {:.0f} s left", elapsed * (1 - part) / part);
+  return text;
+}
+
+fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   take();
   if (!open) return {};
   fs::path chosen;
+  // At the right edge: the arm, its plots and what was pressed stay in sight and at hand.
   const ImVec2 room = ImGui::GetMainViewport()->Size;
-  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({0.84f * room.x, 0.84f * room.y}, ImGuiCond_Appearing);
+  const float left = std::min(0.42f * room.x, room.x - 44 * ImGui::GetFontSize());
+  ImGui::SetNextWindowPos({std::max(0.0f, left), view.min.y}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize({room.x - std::max(0.0f, left), 0.84f * room.y}, ImGuiCond_Appearing);
   if (begin_dialog("Experiments", open, ImGuiWindowFlags_None)) {
     ImGui::BeginGroup();
     const float buttons = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().ItemSpacing.y;
@@ -146,7 +165,10 @@ void ExperimentsPanel::draw_list() {
       ImGui::EndDisabled();
       ImGui::TableNextColumn();
       ImGui::AlignTextToFramePadding();
-      if (ImGui::Selectable(experiment.name, shown_ == &experiment)) shown_ = &experiment;
+      if (ImGui::Selectable(experiment.name, shown_ == &experiment)) {
+        shown_ = &experiment;
+        chosen_ = true;
+      }
       tooltip(experiment.about);
       ImGui::TableNextColumn();
       draw_state(experiment);
@@ -158,12 +180,15 @@ void ExperimentsPanel::draw_list() {
 
 void ExperimentsPanel::draw_buttons() {
   if (running_.busy()) {
-    if (ImGui::Button("Stop")) {
+    ImGui::BeginDisabled(stopping_);
+    if (noted_button("Stop")) {
       queue_.clear();
-      running_.cancel();
-      notices_.say("Stopped; finished trials are kept and are not run again.");
+      stopping_ = true;
+      running_.ask_to_stop();  // it ends in its own time; the window goes on
     }
-  } else if (ImGui::Button("Run all")) {
+    ImGui::EndDisabled();
+  } else if (noted_button("Run all")) {
+    chosen_ = false;
     for (const Experiment& experiment : experiments()) queue_.push_back(&experiment);
   }
 }

@@ -9,6 +9,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/widgets/picture_shelf.h"
+#include "app/plot/plot_frame.h"
 #include "app/session/tasks.h"
 #include "app/study/experiment.h"
 
@@ -18,10 +19,13 @@ class ExperimentsPanel {
  public:
   explicit ExperimentsPanel(Notices& notices) : notices_(notices) {}
 
-  // Experiments go on while it is closed. A window over the others while `open`, which closing it
-  // clears. The trial that is to be played, if one was chosen.
-  std::filesystem::path draw(bool& open);
-  void drop_pictures();  // before the OpenGL context goes
+  // Experiments go on while it is closed. A window beside the picture while `open`, which closing
+  // it clears. `view`: where the picture is. The trial that is to be played, if one was chosen.
+  std::filesystem::path draw(bool& open, ScreenRect view);
+  // "3 of 12: zwidth, 40 s left"; empty while none runs.
+  std::string under_way() const;
+  double part() const { return running_.part(); }  // of the one that runs, 0 to 1
+  void drop_pictures();                            // before the OpenGL context goes
 
  private:
   struct Verdict {
@@ -44,9 +48,12 @@ class ExperimentsPanel {
   Task<Outcome> running_;
   const Experiment* current_ = nullptr;  // that runs
   const Experiment* shown_ = nullptr;
+  bool chosen_ = false;    // somebody wants to see this one; else the latest result is shown
+  bool stopping_ = false;  // asked to
   std::vector<const Experiment*> queue_;
   std::map<std::string, Verdict> verdicts_;
   double began_ = 0;  // [s of ImGui's time]
+  int begun_ = 0;     // since none ran
 };
 
 }  // namespace limpid

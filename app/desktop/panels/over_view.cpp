@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/desktop/base/deeds.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -136,6 +137,77 @@ void draw_video_bar(Playback& playback, ScreenRect view) {
   progress_bar(playback.video().part(), 14 * em);
   ImGui::SameLine();
   if (ImGui::Button("Cancel")) playback.cancel_video();
+  ImGui::End();
+}
+
+namespace {
+
+void draw_tick(ImVec2 at, float side, bool done) {
+  const Palette& colours = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 rgba = colour(done ? colours.accent : colours.axis);
+  list.AddRect(at, {at.x + side, at.y + side}, rgba, 0.2f * side);
+  if (!done) return;
+  const float thick = std::max(1.5f, 0.16f * side);
+  list.AddLine({at.x + 0.22f * side, at.y + 0.52f * side},
+               {at.x + 0.43f * side, at.y + 0.74f * side}, rgba, thick);
+  list.AddLine({at.x + 0.43f * side, at.y + 0.74f * side},
+               {at.x + 0.8f * side, at.y + 0.26f * side}, rgba, thick);
+}
+
+void draw_next_deed(Settings& settings) {
+  const Palette& colours = current_palette();
+  const auto tried = std::ranges::count_if(
+      kDeeds, [&](const DeedInfo& deed) { return done(settings, deed.deed); });
+  const auto* next = std::ranges::find_if(
+      kDeeds, [&](const DeedInfo& deed) { return !done(settings, deed.deed); });
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextColored(colour_vector(colours.muted), "Your turn, %d of %zu:",
+                     static_cast<int>(tried) + (next != kDeeds.end() ? 1 : 0), kDeeds.size());
+  ImGui::SameLine();
+  ImGui::TextUnformatted(next != kDeeds.end() ? next->what : "all of it is done");
+  ImGui::SameLine();
+  if (next != kDeeds.end()) {
+    ImGui::TextColored(colour_vector(colours.muted), "%s", next->how);
+    ImGui::SameLine();
+  }
+  if (noted_button("Close")) settings.your_turn = false;
+}
+
+}  // namespace
+
+void draw_your_turn(Settings& settings, ScreenRect view) {
+  if (!settings.your_turn) return;
+  const float em = ImGui::GetFontSize(), side = 0.75f * em;
+  ImGui::SetNextWindowPos({view.min.x + 1.6f * em, view.max.y - em}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowBgAlpha(0.92f);
+  ImGui::Begin("Your turn", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  // Where the list would hide the arm: what comes next alone.
+  if (view.height() < 30 * em || view.width() < 50 * em) {
+    draw_next_deed(settings);
+    ImGui::End();
+    return;
+  }
+  heading("Your turn");
+  if (ImGui::BeginTable("deeds", 2, ImGuiTableFlags_SizingFixedFit)) {
+    const Palette& colours = current_palette();
+    for (const DeedInfo& deed : kDeeds) {
+      const bool ticked = done(settings, deed.deed);
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      draw_tick({at.x, at.y + 0.5f * (ImGui::GetTextLineHeight() - side)}, side, ticked);
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 1.5f * side);
+      ImGui::TextColored(colour_vector(ticked ? colours.muted : colours.text), "%s", deed.what);
+      ImGui::TableNextColumn();
+      ImGui::TextColored(colour_vector(colours.muted), "%s", deed.how);
+    }
+    ImGui::EndTable();
+  }
+  if (noted_button(all_done(settings) ? "Done" : "Enough of it")) settings.your_turn = false;
   ImGui::End();
 }
 

@@ -38,6 +38,10 @@ void draw_loading(SceneLoader& loader, ScreenRect view);
 // At the top right of the view, while a video is made.
 void draw_video_bar(Playback& playback, ScreenRect view);
 
+// At the lower left of the view: what is worth trying, each with a tick once it was done; closing
+// it is enough of it.
+void draw_your_turn(Settings& settings, ScreenRect view);
+
 // The story: a button of a first start, over its hint; true when it is pressed.
 // `hinted`: there is one.
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,

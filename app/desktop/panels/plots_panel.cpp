@@ -19,7 +19,8 @@ PlotsRequest draw_no_plots() {
 
 }  // namespace
 
-PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect) {
+PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect,
+                        RangePanel& figures) {
   PlotsRequest wish;
   begin_panel("plots", rect);
   stage.group.begin_frame(stage.history,
@@ -44,10 +45,16 @@ PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, 
     ImGui::SetCursorPos({origin.x + place.min.x, origin.y + place.min.y});
     const PlotEvents events = stage.plots[i].draw(stage.history, stage.group, place.size(), saving);
     if (events.playback && player != nullptr) player->seek(*events.playback);
+    if (events.range) {
+      stage.group.select(PlotRange{events.range->start, events.range->stop, i});
+    } else if (events.unselect) {
+      stage.group.select(std::nullopt);
+    }
     if (events.wish != PlotWish::none) wish = {events.wish, i};
   }
   ImGui::EndChild();
   ImGui::End();
+  figures.draw(stage, player, saving, rect);
   return wish;
 }
 

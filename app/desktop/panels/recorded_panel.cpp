@@ -70,8 +70,9 @@ void draw_recorded(PlayedSession& session) {
   for (int i = 1; i < columns; ++i) {
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1);
   }
-  for (const Fact& fact : session.facts())
-    row({fact.name, fact.value, fact.value}, twin != nullptr);
+  for (const std::vector<Fact>& facts : {session.facts(), session.verdict()}) {
+    for (const Fact& fact : facts) row({fact.name, fact.value, fact.value}, twin != nullptr);
+  }
   for (const RecordedSetting& setting : recorded_settings(session.settings(), twin)) {
     row(setting, twin != nullptr);
   }

@@ -17,6 +17,7 @@ struct StatusPart {
   std::string text;
   Rgb ink;
   std::string help;
+  int law = -1;  // whose colour stands before the text
 };
 
 StatusPart force_part(const Snapshot& now) {
@@ -57,12 +58,15 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   std::string name = info(law.kind).label;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
   if (info(law.kind).takes_eta) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);
-  parts.push_back({name, colours.text, "C switches"});
+  parts.push_back({name, colours.text, "C switches", static_cast<int>(law.kind)});
   return parts;
 }
 
+constexpr float kBetween = 1.4f, kDot = 0.8f;  // [em]
+
 float status_width(const StatusPart& part) {
-  return ImGui::CalcTextSize(part.text.c_str()).x + 1.4f * ImGui::GetFontSize();
+  return ImGui::CalcTextSize(part.text.c_str()).x + kBetween * ImGui::GetFontSize() +
+         (part.law < 0 ? 0 : kDot * ImGui::GetFontSize());
 }
 
 }  // namespace
@@ -82,12 +86,20 @@ void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& 
     --first;
   }
   ImGui::SameLine(ImGui::GetWindowWidth() - width);
+  const float em = ImGui::GetFontSize();
   for (; first != parts.end(); ++first) {
+    if (first->law >= 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kDot * em);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(first->ink));
     ImGui::TextUnformatted(first->text.c_str());
     ImGui::PopStyleColor();
+    if (first->law >= 0) {
+      const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+      const float side = 0.5f * em, left = from.x - kDot * em, top = 0.5f * (from.y + to.y - side);
+      ImGui::GetWindowDrawList()->AddRectFilled({left, top}, {left + side, top + side},
+                                                colour(law_ink(current_palette(), first->law)));
+    }
     if (!first->help.empty()) tooltip(first->help.c_str());
-    ImGui::SameLine(0, 1.4f * ImGui::GetFontSize());
+    ImGui::SameLine(0, kBetween * em);
   }
 }
 

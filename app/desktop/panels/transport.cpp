@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
@@ -57,15 +58,57 @@ double choose(const char* name, double value, std::initializer_list<double> choi
   return value;
 }
 
-void timeline(Player& player, float right) {
+// Marks on the time line: which of them is under the mouse.
+std::optional<std::size_t> draw_marks(const PlayedSession& session) {
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  const Palette& colours = current_palette();
+  const float scale = current_scale(), grab = ImGui::GetStyle().GrabMinSize;
+  // As the slider places its grab: half of it stays free at either end.
+  const float pad = 2 + 0.5f * grab;
+  const double duration = session.player().duration();
+  std::optional<std::size_t> found;
+  float nearest = 5 * scale;
+  const float mouse = ImGui::GetIO().MousePos.x;
+  for (std::size_t i = 0; i < session.marks().size(); ++i) {
+    const auto part = static_cast<float>(session.time_of(session.marks()[i]) / duration);
+    const float x = std::round(from.x + pad + part * (to.x - from.x - 2 * pad));
+    const float r = 4 * scale;
+    note_at(fmt::format("mark {}", i).c_str(), {x, 0.5f * (from.y + to.y)});
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({x, from.y}, {x + std::max(1.0f, scale), to.y}, colour(colours.text, 0.6f));
+    list.AddTriangleFilled({x - r, from.y}, {x + r, from.y}, {x, from.y + 1.4f * r},
+                           colour(colours.text));
+    if (!ImGui::IsItemHovered() || std::abs(x - mouse) > nearest) continue;
+    nearest = std::abs(x - mouse);
+    found = i;
+  }
+  return found;
+}
+
+// Returns which mark is to be changed.
+std::optional<std::size_t> timeline(PlayedSession& session, float right) {
+  Player& player = session.player();
   auto time = static_cast<float>(player.time());
   ImGui::SetNextItemWidth(std::max(kTimeline * current_scale(), right - ImGui::GetCursorPosX()));
   if (ImGui::SliderFloat("##timeline", &time, 0, static_cast<float>(player.duration()), "")) {
     player.pause();
     player.seek(time);
   }
-  tooltip("Drag to any moment; left and right arrow step by a tick, with Shift by 0.1 s.");
+  const auto mark = draw_marks(session);
+  std::optional<std::size_t> changed;
+  if (mark) {
+    const Mark& at = session.marks()[*mark];
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) player.seek(session.time_of(at));
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) changed = mark;
+    tooltip(fmt::format("{}\nA click goes there; a right click renames or removes it.", at.text)
+                .c_str());
+  } else {
+    tooltip(
+        "Drag to any moment; left and right arrow step by a tick, with Shift by 0.1 s. T sets a "
+        "mark.");
+  }
   ImGui::SameLine();
+  return changed;
 }
 
 void rerun_controls(Playback& playback, const Act& act) {
@@ -83,7 +126,7 @@ void rerun_controls(Playback& playback, const Act& act) {
   if (button("Cancel", "Stop the re-run")) playback.cancel_rerun();
 }
 
-void playback_controls(Playback& playback, const Act& act) {
+std::optional<std::size_t> playback_controls(Playback& playback, const Act& act) {
   Player& player = playback.shown()->player();
   const float scale = current_scale();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
@@ -121,7 +164,7 @@ void playback_controls(Playback& playback, const Act& act) {
   if (with_rerun) rerun_controls(playback, act);
   const float after = button_width("Back to live") + gap +
                       (with_clock ? ImGui::CalcTextSize(clock.c_str()).x + gap : 0);
-  timeline(player, ImGui::GetWindowContentRegionMax().x - after);
+  const auto changed = timeline(*playback.shown(), ImGui::GetWindowContentRegionMax().x - after);
   if (with_clock) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(clock.c_str());
@@ -130,6 +173,7 @@ void playback_controls(Playback& playback, const Act& act) {
   if (button("Back to live", "Leave the recording; the device is yours again (Backspace).")) {
     act("session.back_to_live");
   }
+  return changed;
 }
 
 void recording_controls(const LiveSession& live, double tick, const Act& act) {
@@ -196,9 +240,10 @@ void live_controls(LiveSession& live, double tick, double& plot_length, const Ac
 
 }  // namespace
 
-void draw_transport(Playback& playback, LiveSession& live, double tick, double& plot_length,
-                    const Act& act, ScreenRect rect) {
+std::optional<std::size_t> draw_transport(Playback& playback, LiveSession& live, double tick,
+                                          double& plot_length, const Act& act, ScreenRect rect) {
   begin_panel("transport", rect);
+  std::optional<std::size_t> mark;
   if (playback.loading()) {
     ImGui::AlignTextToFramePadding();
     ImGui::Text("%s ...", playback.what().c_str());
@@ -209,11 +254,12 @@ void draw_transport(Playback& playback, LiveSession& live, double tick, double& 
       if (button("Cancel", "Stop it; what is there stays.")) playback.cancel_loading();
     }
   } else if (playback.on()) {
-    playback_controls(playback, act);
+    mark = playback_controls(playback, act);
   } else {
     live_controls(live, tick, plot_length, act);
   }
   ImGui::End();
+  return mark;
 }
 
 }  // namespace limpid

@@ -25,6 +25,9 @@ void choose(const RunNames& names, bool& edited) {
     if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(colours.frame_active));
     if (ImGui::Button((second ? names.second : names.first).c_str(), {width, 0})) edited = second;
     if (chosen) ImGui::PopStyleColor();
+    if (const int law = names.laws[second ? 1 : 0]; law >= 0) {
+      underline_button(law_ink(colours, law));
+    }
     tooltip("The sliders below set this one.");
     ImGui::PopID();
   }

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "app/desktop/base/deeds.h"
 #include "app/desktop/base/picture_signs.h"
 #include "app/desktop/live/pad_hand.h"
 #include "app/desktop/panels/object_signs.h"
@@ -92,22 +94,28 @@ PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   return legend;
 }
 
-// Of a first start: what to do.
-void draw_hint(const std::string& pad, ScreenRect rect, ImDrawList& list) {
+// Of a first start: what to do, each until it was done once.
+void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect,
+               ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
-  const char* lines[] = {
-      pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table." : of_pad.c_str(),
-      pad.empty() ? "Wheel while dragging: nearer and farther."
-                  : "Its triggers: nearer and farther. A lets go, B cuts the force.",
-      "C switches the coupling: the standard one lets hand and world drift apart."};
+  const std::pair<Deed, const char*> all[] = {
+      {Deed::pull, pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table."
+                               : of_pad.c_str()},
+      {Deed::push, pad.empty() ? "Wheel while dragging: nearer and farther."
+                               : "Its triggers: nearer and farther. A lets go, B cuts the force."},
+      {Deed::law, "C switches the coupling: the standard one lets hand and world drift apart."}};
+  std::vector<const char*> lines;
+  for (const auto& [deed, line] : all) {
+    if (!done(settings, deed)) lines.push_back(line);
+  }
   float size = face->FontSize * 1.15f;
   for (const char* line : lines) {  // as large as the widest one may be
     const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
     size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
   }
-  float line_y = rect.max.y - 5.2f * size;
+  float line_y = rect.max.y - (0.7f + 1.5f * static_cast<float>(lines.size())) * size;
   for (const char* line : lines) {
     const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
     const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, line_y);
@@ -207,17 +215,18 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
     const ViewState twin = twin_of(scene, settings);
     paint(twin, right, SceneView::Sheet::beside);
     list.PushClipRect(right.min, right.max);
-    draw_gap(twin, camera, {right}, list);
+    if (!scene.blind) draw_gap(twin, camera, {right}, list);
     list.PopClipRect();
     list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
                        colour(current_palette().border));
-    draw_run_name(scene.names.first, *drawn_, list);
-    draw_run_name(scene.names.second, right, list);
+    draw_run_name(scene.names, false, *drawn_, list);
+    draw_run_name(scene.names, true, right, list);
     below_names = 2.2f * font(Face::semibold)->FontSize;
   }
   if (scene.blind) return;
-  draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max,
-                      legend_of(view, scene));
+  PictureLegend legend = legend_of(view, scene);
+  legend.compact = scene.split();  // each half is narrow: lines would stand over its arm
+  draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max, legend);
   draw_told(scene.told, rect, list);
 }
 
@@ -234,8 +243,9 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
-  if (!settings.hint_seen && !scene.recorded && scene.twin.empty())
-    draw_hint(scene.pad, rect, list);
+  if (!scene.recorded && scene.twin.empty() && !settings.your_turn) {
+    draw_hint(scene.pad, settings, rect, list);
+  }
   list.PopClipRect();
 }
 
@@ -289,7 +299,9 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
                        : scene.stage.rows().tip(layout.in(scene.row, Column::device_position)),
          pixel);
     settings.hint_seen = true;
+    note_done(settings, Deed::pull);
   }
+  if (std::exchange(pushed_, false)) note_done(settings, Deed::push);
   const bool dragged = dragging_;
   if (dragging_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragging_ = false;
@@ -333,6 +345,7 @@ void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Contr
   if (looks != looked_ || rect.min.x != corner_.x || rect.min.y != corner_.y) {
     hold(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
   }
+  if (ImGui::GetIO().MouseWheel != 0) pushed_ = true;
   anchor_ += kDepthStep * static_cast<double>(ImGui::GetIO().MouseWheel) * camera.forward();
   const Vec3 goal = camera.plane_drag(pixel, anchor_ - offset_) + offset_;
   controls.goal = within_reach(arm, goal);

@@ -76,6 +76,7 @@ class ViewPanel {
   bool pulls_ = false;                                       // what the left button would do here
   std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where
   std::array<bool, 2> moved_{};                              // since then
+  bool pushed_ = false;                                      // the hand, by the wheel
   bool on_right_ = false;       // the mouse, when it last began something
   Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
   Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]

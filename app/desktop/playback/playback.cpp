@@ -62,6 +62,7 @@ void Playback::export_csv() {
   if (!shown_ || exporting_.busy()) return;
   fs::path out = shown_->file();
   out.replace_extension(".csv");
+  table_ = out;
   exporting_.start("writing the table", [session = shown_->player().shared(), out](TaskProgress&) {
     write_csv(*session, out, false);
     return fmt::format("Wrote {}", out.string());
@@ -72,6 +73,7 @@ void Playback::export_video(const VideoRequest& order) {
   if (!shown_ || filming_.busy()) return;
   const fs::path session = shown_->file();
   const fs::path out = video_of(session, order.kind, sessions_dir());
+  film_ = out;
   filming_.start(fmt::format("making {}", out.filename().string()),
                  [session, out, order](TaskProgress& progress) {
                    return film_beside(session, out, words_of(order), progress.cancel, progress.part)
@@ -134,8 +136,11 @@ bool Playback::take_results() {
                    true);
     }
   }
-  for (Task<std::string>* work : {&exporting_, &filming_}) {
-    if (auto text = work->take()) notices_.say(*text);
+  for (const auto& [work, file] : {std::pair(&exporting_, &table_), {&filming_, &film_}}) {
+    const auto text = work->take();
+    if (!text) continue;
+    notices_.say(*text);
+    if (std::error_code none; fs::exists(*file, none)) written_ = *file;
   }
   return opened;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/playback/played_session.h"
@@ -50,6 +51,8 @@ class Playback {
   void export_video(const VideoRequest& order);
   const Task<std::string>& video() const { return filming_; }  // while it is made
   void cancel_video() { filming_.ask_to_stop(); }
+  // The video or table that was written last, once; empty: none.
+  std::filesystem::path take_written() { return std::exchange(written_, {}); }
 
   // What there was last to look at; empty: nothing yet.
   const std::filesystem::path& last() const { return last_; }
@@ -67,6 +70,7 @@ class Playback {
 
   Notices& notices_;
   std::optional<PlayedSession> shown_;
+  std::filesystem::path table_, film_, written_;
   std::filesystem::path last_, left_;  // left_: a story, at
   double left_at_ = 0;                 // [s]
   bool told_of_build_ = false;         // that another build made the session that is shown

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -147,9 +148,11 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       models_(std::move(loaded.models)),
       steps_(std::move(loaded.steps)),
       facts_(std::move(loaded.facts)),
+      verdict_(std::move(loaded.verdict)),
       first_(player_.session(), file_.string()),
       stage_(make_stage(std::move(loaded.history))) {
   if (const auto& twin = player_.session().twin) second_.emplace(*twin, file_.string());
+  show(player_.session().marks);
 }
 
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
@@ -159,8 +162,10 @@ std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
   const Parameters p = session_parameters(session, file_.string());
   stage->follow(p);
   if (session.twin) {
-    const auto names = twin_names(p, session_parameters(*session.twin, file_.string()));
-    stage->name_runs({names[0], names[1], true});
+    const Parameters beside = session_parameters(*session.twin, file_.string());
+    const auto names = twin_names(p, beside);
+    stage->name_runs(
+        {names[0], names[1], true, {static_cast<int>(p.kind), static_cast<int>(beside.kind)}});
   }
   return stage;
 }
@@ -169,6 +174,19 @@ void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
   stage_->name_runs({"", "re-run", false});
   rerun_ = std::move(again.rows);
+  show(std::move(marks_));
+}
+
+double PlayedSession::time_of(const Mark& mark) const {
+  return static_cast<double>(mark.tick) * player_.session().info.tick;
+}
+
+void PlayedSession::show(std::vector<Mark> marks) {
+  marks_ = std::move(marks);
+  std::ranges::stable_sort(marks_, {}, &Mark::tick);
+  std::vector<PlotMark> lines;
+  for (const Mark& mark : marks_) lines.push_back({time_of(mark), kNoteMark, mark.text});
+  stage_->history.replace_marks(kNoteMark, lines);
 }
 
 std::size_t PlayedSession::row_to_show() const {
@@ -187,6 +205,10 @@ std::size_t PlayedSession::row_to_show() const {
 
 const StoryStep* PlayedSession::step() const {
   return steps_.empty() ? nullptr : &step_at(steps_, player_.time());
+}
+
+RunNames PlayedSession::names_in(const StoryStep& step) const {
+  return {step.names[0], step.names[1], true, laws_at(player_.session(), step.begins)};
 }
 
 std::span<const double> PlayedSession::twin_row() const {

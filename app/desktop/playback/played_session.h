@@ -32,6 +32,7 @@ struct LoadedSession {
   std::string said = {};              // to be told once it is shown; empty: nothing
   bool bad = false;                   // what is said is something wrong
   std::vector<Fact> facts = {};       // what it is a recording of, beside its settings
+  std::vector<Fact> verdict = {};     // what was measured of it
 };
 
 // The settings of one of a recording's runs, as they were at a row.
@@ -84,15 +85,24 @@ class PlayedSession {
   // Of the story that is told, at the player's time; null: it is no story.
   const StoryStep* step() const;
   const std::vector<StoryStep>& steps() const { return steps_; }
+  // What the plots call the two runs in a step of it.
+  RunNames names_in(const StoryStep& step) const;
 
   // Where it is pressed hardest: what its small picture shows.
   std::size_t row_to_show() const;
 
   // Which run of a sweep it is, say; or nothing.
   const std::vector<Fact>& facts() const { return facts_; }
+  const std::vector<Fact>& verdict() const { return verdict_; }
   // Its settings at the player's time, and the second run's; null: it has one run.
   const Parameters& settings() { return first_.at(player_.index()); }
   const Parameters* twin_settings() { return second_ ? &second_->at(player_.index()) : nullptr; }
+
+  // What people noted, in the order of their ticks; these are shown from now on, nothing is
+  // written.
+  const std::vector<Mark>& marks() const { return marks_; }
+  void show(std::vector<Mark> marks);
+  double time_of(const Mark& mark) const;  // as the player counts it [s]
 
   // From now on beside the recording. Errors: as Stage.
   void show(Rerun again);
@@ -111,7 +121,8 @@ class PlayedSession {
   SceneDocument document_;
   MeshModels models_;
   std::vector<StoryStep> steps_;
-  std::vector<Fact> facts_;
+  std::vector<Fact> facts_, verdict_;
+  std::vector<Mark> marks_;
   RecordedSettings first_;
   std::optional<RecordedSettings> second_;
   std::vector<double> rerun_;  // rows of the second run; or none

@@ -112,6 +112,11 @@ void play_story(Desktop& d) {
   d.playback.open_story();
 }
 
+void toggle_your_turn(Desktop& d) {
+  d.playback.close();
+  d.settings.your_turn = !d.settings.your_turn;
+}
+
 std::string no_recording(const Desktop& d) {
   return d.playback.on() ? "" : "Open a recording first (Ctrl+O).";
 }
@@ -136,6 +141,10 @@ std::string no_question(const Desktop& d) {
 
 std::string nothing_kept(const Desktop& d) {
   return d.kept.any() ? "" : "There is no scene whose changes were kept.";
+}
+
+std::string nothing_written(const Desktop& d) {
+  return d.exporter.written().empty() ? "Nothing was exported lately." : "";
 }
 
 std::string nothing_selected(const Desktop& d) {
@@ -258,12 +267,23 @@ constexpr std::array kCommands{
         save_scene_here),
     row("scene.save_as", "Save scene as...", "File", "Ctrl+Shift+S", "",
         [](Desktop& d) { d.dialog.open("save scene"); }),
+    row("export.begin", "Export...", "File", "Ctrl+E",
+        "export a plot, a table, a picture or a video",
+        [](Desktop& d) { d.exporter.begin(d.exporter.plot()); }, {.apart = true}),
+    row("export.open", "Open what was exported", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.exporter.open_written(); }, {.why_not = nothing_written}),
+    row("export.show", "Show what was exported in its folder", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.exporter.show_written(); }, {.why_not = nothing_written}),
+    row("export.forget", "Say no more of what was exported", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.exporter.forget(); }, {.why_not = nothing_written}),
     row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
         [](Desktop& d) { d.asked.picture = sessions_dir() / picture_name(); }),
-    row("edit.undo", "Undo", "Edit", "Ctrl+Z", "undo", [](Desktop& d) { d.document.undo(); },
+    row("edit.undo", "Undo", "Edit", "Ctrl+Z", "undo",
+        [](Desktop& d) { d.marking.can_undo() ? d.marking.undo() : d.document.undo(); },
         {.repeats = true}),
     row("edit.redo", "Redo", "Edit", "Ctrl+Y, Ctrl+Shift+Z", "redo",
-        [](Desktop& d) { d.document.redo(); }, {.repeats = true}),
+        [](Desktop& d) { d.marking.can_redo() ? d.marking.redo() : d.document.redo(); },
+        {.repeats = true}),
     row("object.move", "Move", "Edit", "G", "selected object: move, turn, scale it with the mouse",
         begin_transform<TransformKind::move>,
         {.apart = true, .reach = Reach::selection, .why_not = cannot<TransformKind::move>}),
@@ -351,6 +371,15 @@ constexpr std::array kCommands{
     row("session.record", "Record", "Session", "R, Ctrl+R", "record, stop recording",
         [](Desktop& d) { d.world.toggle_recording(); }, {.now = record_label}),
     row("session.play", "Play or pause", "Session", "P", "play, pause", play_or_pause),
+    row("session.mark", "Set a mark...", "Session", "T",
+        "mark at the mouse in a plot, or now; in playback: to the mark before, after",
+        [](Desktop& d) { d.marking.begin(); }),
+    row("session.mark_before", "To the mark before", nullptr, "Ctrl+Left", "",
+        [](Desktop& d) { d.marking.go(-1); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
+    row("session.mark_after", "To the mark after", nullptr, "Ctrl+Right", "",
+        [](Desktop& d) { d.marking.go(1); },
+        {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.twin", "Twin: two couplings on one hand", "Session", "B",
         "twin: a second coupling on the same hand", [](Desktop& d) { d.tuning.toggle_twin(); },
         {.why_not = [](const Desktop& d) { return d.live.why_twin_is_fixed(); },
@@ -417,6 +446,8 @@ constexpr std::array kCommands{
     row("scene.discard_kept", "Discard the scene that was kept", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.kept.discard(); }, {.why_not = nothing_kept}),
     row("help.story", "Play the story", "Help", nullptr, nullptr, play_story),
+    row("help.your_turn", "Your turn: what to try", "Help", nullptr, nullptr, toggle_your_turn,
+        {.checked = is_shown<&Settings::your_turn>}),
     row("help.keys", "Keys and mouse", "Help", "?, F1", "this list",
         [](Desktop& d) { show_or_close(d, "help"); }),
     row("help.about", "About Limpid", "Help", nullptr, nullptr,
@@ -438,9 +469,37 @@ constexpr std::array kAfter{
     Hint{"gamepad",
          "left stick: the hand; triggers: nearer, farther; A hold, B force off, Y next law, X "
          "magnet"},
-    Hint{"plots", "drag pans, wheel zooms, double click fits, right click chooses and saves"},
+    Hint{"plots",
+         "drag pans, wheel zooms, double click fits, Shift+drag selects a stretch: its mean, rms "
+         "and "
+         "limits; right click chooses and saves"},
     Hint{"sliders", "double click to type, right click for the usual value"},
 };
+
+// Of commands by what their ids begin with; what comes first in the help.
+struct Group {
+  const char* heading;
+  std::array<std::string_view, 4> ids;
+};
+constexpr std::array kGroups{
+    Group{"Force and hand", {"force.", "window.escape", "device.", "hand."}},
+    Group{"Mouse and gamepad", {"mouse"}},
+    Group{"Coupling", {"coupling.", "observer."}},
+    Group{"Recording and playback", {"session.", "loop."}},
+    Group{"Plots and picture", {"plots.", "view."}},
+    Group{"Scene and objects", {"scene.", "object.", "edit."}},
+    Group{"Experiments", {"experiments.", "sweep."}},
+    Group{"Settings, window and help", {"settings.", "window.", "export.", "help."}},
+};
+
+std::size_t group_of(std::string_view id) {
+  for (std::size_t i = 0; i < kGroups.size(); ++i) {
+    for (const std::string_view begin : kGroups[i].ids) {
+      if (!begin.empty() && id.starts_with(begin)) return i;
+    }
+  }
+  return kGroups.size() - 1;
+}
 
 struct Key {
   int modifiers, key;
@@ -567,18 +626,27 @@ std::string key_text(const Command& command) {
 }
 
 std::vector<Shortcut> shortcuts() {
-  std::vector<Shortcut> all;
-  all.reserve(kBefore.size() + kCommands.size() + kAfter.size());
-  for (const Hint& hint : kBefore) all.push_back({hint.with, hint.what});
+  std::array<std::vector<Shortcut>, kGroups.size()> groups;
+  const auto hint = [&](const Hint& each) {
+    const std::size_t at = group_of("mouse");
+    groups[at].push_back({kGroups[at].heading, each.with, each.what});
+  };
+  std::ranges::for_each(kBefore, hint);
+  Shortcut* last = nullptr;  // of the table: who says nothing of its own is beside that
   for (const Command& command : kCommands) {
     if (command.keys == nullptr || command.how.reach == Reach::question) continue;
     if (command.help == nullptr || *command.help != '\0') {
-      all.push_back({command.keys, command.help != nullptr ? command.help : command.text});
+      const std::size_t at = group_of(command.id);
+      groups[at].push_back({kGroups[at].heading, command.keys,
+                            command.help != nullptr ? command.help : command.text});
+      last = &groups[at].back();
     } else {
-      all.back().keys += std::string(", ") + command.keys;
+      last->keys += std::string(", ") + command.keys;
     }
   }
-  for (const Hint& hint : kAfter) all.push_back({hint.with, hint.what});
+  std::ranges::for_each(kAfter, hint);
+  std::vector<Shortcut> all;
+  for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
   return all;
 }
 

@@ -72,8 +72,9 @@ void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop);
 // "Ctrl+Shift+S", of its first key; empty without one.
 std::string key_text(const Command& command);
 
-// What keys and mouse do, for the help.
+// What keys and mouse do, for the help: group after group.
 struct Shortcut {
+  std::string_view group;
   std::string keys, what;
 };
 std::vector<Shortcut> shortcuts();

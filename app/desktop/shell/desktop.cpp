@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "app/base/folders.h"
+#include "app/desktop/base/deeds.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/base/window_layout.h"
+#include "app/desktop/live/pad_hand.h"
 #include "app/desktop/shell/commands.h"
 #include "core/tick/arming.h"
 
@@ -40,7 +42,7 @@ void Shown::follow_story() {
   if (step == step_) return;
   step_ = step;
   if (step == nullptr) return reset_view();
-  playback_.shown()->stage().name_runs({step->names[0], step->names[1], true});
+  playback_.shown()->stage().name_runs(playback_.shown()->names_in(*step));
   const StoryCamera aim = camera_in(playback_.shown()->steps(), *step);
   reset_view();
   if (!aim.of && aim.view == Camera::View::iso) return;
@@ -129,6 +131,26 @@ std::string when(const fs::path& file) {
   return fmt::format("{:%d %B, %H:%M}", fmt::localtime(at));
 }
 
+// Where it lies on the axes, what was measured of it, and the way back.
+Banner point_of_sweep(const PlayedSession& session) {
+  constexpr std::size_t kMost = 3;  // of the measures: all are in the panel
+  const auto line = [](std::span<const Fact> facts) {
+    std::string text;
+    for (const Fact& fact : facts) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", fact.name, fact.value);
+    }
+    return text;
+  };
+  const std::span<const Fact> measured = session.verdict();
+  std::string text = line(session.facts());
+  if (!measured.empty()) {
+    text += ": " + line(measured.first(std::min(kMost, measured.size())));
+  }
+  return {.id = "banner of the sweep",
+          .text = text + ".",
+          .buttons = {{"Back to map (F6)", "sweep.show"}}};
+}
+
 }  // namespace
 
 Desktop::Desktop(Settings first, const AskForPriority& ask)
@@ -157,10 +179,63 @@ void Desktop::drop_pictures() {
   live.drop_pictures();
 }
 
+// While passivity is broken a hand holds the tip a little aside of where it was, where energy
+// climbs without anybody's doing. Somebody who takes the tip, or lets it go, has it.
+void Desktop::follow_break() {
+  constexpr double kAside = 0.01;  // [m]
+  Controls& controls = live.controls();
+  const bool broken = passivity_broken(settings);
+  if (std::exchange(was_broken_, broken) == broken) {
+    break_holds_ = break_holds_ && controls.grab;
+    return;
+  }
+  if (broken && !controls.grab && !live.loop().device_in_place()) {
+    const Stage& stage = live.stage();
+    const RowLayout& layout = live.loop().layout();
+    const Vec3 tip = stage.rows().tip(layout.in(live.row(), Column::device_position));
+    controls.goal = within_reach(stage.arm(), tip + Vec3(0, kAside, 0));
+    controls.grab = break_holds_ = true;
+  } else if (!broken && std::exchange(break_holds_, false)) {
+    controls.grab = false;
+  }
+}
+
+// What somebody tries for the first time, and a story that has come to its end: the arm is theirs.
+void Desktop::follow_deeds() {
+  PlayedSession* played = playback.shown();
+  if (played != nullptr) {
+    const Player& player = played->player();
+    const bool over = player.time() >= player.duration() - 2 * player.session().info.tick;
+    const bool told = std::exchange(told_, player.playing());
+    if (played->step() == nullptr) {
+      if (player.playing()) note_done(settings, Deed::play);
+    } else if (over && told && !player.playing()) {  // not where somebody looks at its end
+      playback.close();
+      settings.your_turn = !all_done(settings);
+      if (!settings.your_turn) notices.say("That was the story. The arm is yours.");
+    }
+    law_.reset();
+    return;
+  }
+  if (settings.twin.on) note_done(settings, Deed::twin);
+  if (passivity_broken(settings)) return law_.reset();  // whose settings nobody chose
+  const Parameters& p = settings.parameters;
+  const auto now = std::pair(p.kind, p.eta);
+  const auto before = std::exchange(law_, now);
+  if (before && before->first != now.first) note_done(settings, Deed::law);
+  if (before && before->second != now.second) note_done(settings, Deed::eta);
+  if (!live.controls().grab || break_holds_) return;
+  const RowLayout& layout = live.loop().layout();
+  double contact = 0;
+  for (const double f : layout.in(live.row(), Column::contact_torque)) contact += f * f;
+  if (contact > 1e-4) note_done(settings, Deed::press);  // more than 10 mN m
+}
+
 void Desktop::update(double dt) {
   if (end_break_by_law(settings)) notices.say(kBreakEnded);
   document.note_changes();
   tuning.update();
+  follow_break();
   shown.stage().choose_plots(settings.plot_choices);
   world.hand_over(false);
   live.update(settings.parameters, settings.twin.on ? &settings.twin.parameters : nullptr);
@@ -170,6 +245,9 @@ void Desktop::update(double dt) {
     remember_recent(settings, recorded->string());
   }
   follow_playback(dt);
+  follow_deeds();
+  exporter.update();
+  if (const auto file = playback.take_written(); !file.empty()) exporter.wrote(file);
   shown.follow_story();
   world.take_loaded();
   devices.update();
@@ -265,6 +343,8 @@ bool Desktop::close_one() {
     transform.give_up(document);
   } else if (playback.loading_part() > 0 && playback.loading()) {
     playback.cancel_loading();
+  } else if (dialog.kind() == nullptr && !now.text && shown.stage().group.range()) {
+    shown.stage().group.select(std::nullopt);
   } else if (dialog.kind() == nullptr) {
     return now.text;
   } else if (!now.text || dialog.kind()->keys != DialogKind::Keys::view) {
@@ -278,12 +358,28 @@ std::vector<Banner> Desktop::banners() const {
   std::vector<Banner> all;
   const auto force = playback.on() ? recorded_force(*playback.shown()) : live_force(live);
   if (force) all.push_back(*force);
+  if (playback.on() && playback.shown()->file() == sweep.last_point()) {
+    all.push_back(point_of_sweep(*playback.shown()));
+  }
   if (passivity_broken(settings)) {
     all.push_back({.id = "banner of the break",
-                   .text = "Passivity is broken on purpose: hold the arm, and energy grows. All "
-                           "settings come back when it ends.",
+                   .text = "Passivity is broken on purpose: a stiff hand holds the arm, and energy "
+                           "grows. All settings come back when it ends.",
                    .bad = true,
                    .buttons = {{"End it (C)", "coupling.end_break"}}});
+  }
+  if (!exporter.written().empty()) {
+    all.push_back({.id = "banner of the export",
+                   .text = fmt::format("{} is in {}.", exporter.written().filename().string(),
+                                       exporter.written().parent_path().string()),
+                   .buttons = {{"Open", "export.open"},
+                               {"Show in folder", "export.show"},
+                               {"Close", "export.forget"}}});
+  }
+  if (!experiments_under_way.empty() && dialog.name() != "experiments") {
+    all.push_back({.id = "banner of the experiments",
+                   .text = "Experiments go on: " + experiments_under_way + ".",
+                   .buttons = {{"Show (F5)", "experiments.show"}}});
   }
   if (kept.any()) {
     all.push_back({.id = "banner of what was kept",

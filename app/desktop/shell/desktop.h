@@ -19,7 +19,9 @@
 #include "app/desktop/panels/transform_tool.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
+#include "app/desktop/shell/exporter.h"
 #include "app/desktop/shell/focus.h"
+#include "app/desktop/shell/marking.h"
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/tuning.h"
 #include "app/desktop/shell/world.h"
@@ -109,6 +111,8 @@ class Desktop {
   Shown shown;
   Tuning tuning;
   PlotLayout plots;
+  Exporter exporter{live, dialog, notices};
+  Marking marking{settings, live, playback, dialog, notices};
   TransformTool transform;
   Pads pads;
   KeptScenes kept;
@@ -118,6 +122,8 @@ class Desktop {
   // the settings and the plots, and all commands that show or change them.
   PersonQuestion question;
   bool blind = false;
+  // Of experiments that go on beside the window, also while their dialog is closed: "3 of 12: ...".
+  std::string experiments_under_way;
   // Of the system's window: how it is, and the work of its last frame, without waiting [s].
   bool full_screen = false;
   double frame_time = 0;
@@ -145,6 +151,13 @@ class Desktop {
  private:
   bool close_one();
   void follow_playback(double dt);
+  void follow_break();
+  void follow_deeds();
+
+  bool break_holds_ = false;  // the hand was put there when passivity was broken, and is there
+  bool was_broken_ = false;
+  bool told_ = false;                                   // a story was, in the frame before
+  std::optional<std::pair<CouplingKind, double>> law_;  // and eta, of the frame before
 };
 
 }  // namespace limpid

@@ -7,13 +7,16 @@
 #include <array>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "app/base/folders.h"
 #include "app/base/version.h"
 #include "app/desktop/base/window_layout.h"
 #include "app/desktop/panels/experiments_panel.h"
+#include "app/desktop/panels/export_dialog.h"
 #include "app/desktop/panels/gallery.h"
 #include "app/desktop/panels/identify_dialog.h"
+#include "app/desktop/panels/mark_dialog.h"
 #include "app/desktop/panels/named_dialog.h"
 #include "app/desktop/panels/plot_chooser.h"
 #include "app/desktop/panels/questions.h"
@@ -24,6 +27,7 @@
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/path_dialog.h"
+#include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
 
 namespace limpid {
@@ -49,7 +53,13 @@ void draw_help(bool& open) {
   ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
   if (ImGui::BeginTable("keys", 2)) {
     ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
+    std::string_view group;
     for (const Shortcut& shortcut : shortcuts()) {
+      if (std::exchange(group, shortcut.group) != shortcut.group) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        heading(std::string(group).c_str());
+      }
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(shortcut.keys.c_str());
@@ -98,8 +108,9 @@ DrawDialog about(Desktop&) {
 }
 
 DrawDialog experiments(Desktop& d) {
-  return [&d, panel = std::make_shared<ExperimentsPanel>(d.notices)](bool& open, ScreenRect) {
-    const fs::path trial = panel->draw(open);
+  return [&d, panel = std::make_shared<ExperimentsPanel>(d.notices)](bool& open, ScreenRect view) {
+    const fs::path trial = panel->draw(open, view);
+    d.experiments_under_way = panel->under_way();
     if (trial.empty()) return;
     open = false;
     d.playback.open(trial);
@@ -140,6 +151,13 @@ DrawDialog gallery(Desktop& d) {
   };
 }
 
+std::vector<PathDialog::Place> places_of(const Desktop& d) {
+  return PathDialog::places({{"My scenes", scenes_dir()},
+                             {"My recordings", sessions_dir()},
+                             {"Scenes of Limpid", data_dir() / "assets/scenes"}},
+                            d.settings.recent);
+}
+
 // A model or an arm, from the folder that the last of them came from.
 DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
                         void (*open_file)(Desktop&, const fs::path&)) {
@@ -147,7 +165,8 @@ DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
                                                                                     ScreenRect) {
     fs::path& folder = d.dialog.last_folder;
     if (folder.empty()) folder = data_dir() / "assets/scenes";
-    const fs::path file = dialog->draw(open, folder / "");
+    const fs::path file =
+        dialog->draw(open, folder / "", open ? places_of(d) : std::vector<PathDialog::Place>());
     if (file.empty()) return;
     folder = file.parent_path();
     open_file(d, file);
@@ -197,7 +216,9 @@ DrawDialog save_scene_as(Desktop& d) {
     Document& document = d.document;
     fs::path first = document.own_file();
     if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();
-    if (const fs::path file = dialog->draw(open, first); !file.empty()) document.save_as(file);
+    const fs::path file =
+        dialog->draw(open, first, open ? places_of(d) : std::vector<PathDialog::Place>());
+    if (!file.empty()) document.save_as(file);
   };
 }
 
@@ -205,6 +226,27 @@ DrawDialog video(Desktop& d) {
   return [&d, dialog = std::make_shared<VideoDialog>()](bool& open, ScreenRect) {
     const auto order = dialog->draw(open, d.playback, d.settings.twin_overlaid);
     if (order) d.playback.export_video(*order);
+  };
+}
+
+DrawDialog export_as(Desktop& d) {
+  return [&d, dialog = std::make_shared<ExportDialog>()](bool& open, ScreenRect) {
+    const Stage& stage = d.shown.stage();
+    const auto order =
+        dialog->draw(open, stage, d.exporter.plot(), sessions_dir(), d.playback.on());
+    if (!order) return;
+    if (order->what == ExportOrder::What::video) return d.dialog.open("video");
+    const fs::path picture = d.exporter.carry_out(*order, stage);
+    if (!picture.empty()) d.asked.picture = picture;
+  };
+}
+
+DrawDialog mark(Desktop& d) {
+  return [&d, dialog = std::make_shared<MarkDialog>()](bool& open, ScreenRect) {
+    const MarkAnswer answer =
+        dialog->draw(open, open ? d.marking.when() : "", d.marking.text(), d.marking.there());
+    if (answer.text) d.marking.accept(*answer.text);
+    if (answer.remove) d.marking.remove();
   };
 }
 
@@ -269,6 +311,8 @@ constexpr std::array kDialogs{
     DialogKind{"expand xacro", kModal, expand_xacro},
     DialogKind{"save scene", kModal, save_scene_as},
     DialogKind{"video", kModal, video},
+    DialogKind{"export", kModal, export_as},
+    DialogKind{"mark", kModal, mark},
     DialogKind{"layouts", kModal, layout_list},
     DialogKind{"presets", kModal, preset_list},
     DialogKind{"identify", kModal, identify},

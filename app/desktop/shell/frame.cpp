@@ -45,8 +45,9 @@ void Frame::draw() {
   }
   if (at.show_plots) part([&] { draw_plot_row(at.plots); });
   part([&] {
-    draw_transport(desktop_.playback, desktop_.live, settings.parameters.tick, settings.plot_length,
-                   act_, at.transport);
+    const auto mark = draw_transport(desktop_.playback, desktop_.live, settings.parameters.tick,
+                                     settings.plot_length, act_, at.transport);
+    if (mark) desktop_.marking.edit(*mark);
   });
   draw_splitters(at);
   draw_fold_tabs(at);
@@ -55,6 +56,11 @@ void Frame::draw() {
   part([&] { draw_video_bar(desktop_.playback, at.view); });
   part([&] {
     below_banners_ = draw_banners(desktop_.banners(), at.view, signs_box(at.view), act_);
+  });
+  part([&] {
+    if (desktop_.dialog.kind() == nullptr && !desktop_.playback.on()) {
+      draw_your_turn(settings, at.view);
+    }
   });
   part([&] {
     if (desktop_.dialog.name() == "sweep") return;  // which it would cover
@@ -238,10 +244,12 @@ void Frame::draw_plot_row(ScreenRect rect) {
           [this](std::function<PlotNotice()> work) { desktop_.live.save_beside(std::move(work)); },
       .arranged = true};
   PlayedSession* session = desktop_.playback.shown();
-  const PlotsRequest asked = draw_plots(
-      desktop_.shown.stage(), session != nullptr ? &session->player() : nullptr, saving, rect);
+  const PlotsRequest asked =
+      draw_plots(desktop_.shown.stage(), session != nullptr ? &session->player() : nullptr, saving,
+                 rect, figures_);
   if (asked.wish == PlotWish::add) desktop_.plots.add();
   if (asked.wish == PlotWish::choose) desktop_.plots.choose(asked.plot);
+  if (asked.wish == PlotWish::export_as) desktop_.exporter.begin(asked.plot);
   if (asked.wish == PlotWish::remove) desktop_.plots.remove(asked.plot);
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/desktop/panels/coupling_panel.h"
+#include "app/desktop/panels/range_panel.h"
 #include "app/desktop/panels/view_panel.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
@@ -57,6 +58,7 @@ class Frame {
   WindowLayout layout_;
   FileMenus files_;
   ViewPanel view_;
+  RangePanel figures_;
   Sections sections_;
   Dialogs dialogs_;
   std::uint64_t seen_of_sweep_ = 0;  // its revision

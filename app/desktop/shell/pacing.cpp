@@ -19,22 +19,27 @@ bool display_paces(std::span<const double> exchanges, double refresh) {
          std::ranges::all_of(exchanges, [&](double t) { return t > kNearly * refresh; });
 }
 
-double pacing_refresh(GLFWwindow* window) {
+double pacing_refresh(GLFWwindow* window, const std::function<void()>& paint) {
+  const auto exchange = [&] {
+    paint();
+    glfwSwapBuffers(window);
+  };
   if (on_wayland()) {
     // Nothing is torn there, and an exchange would wait for as long as others hide the window.
     glfwSwapInterval(0);
+    exchange();
     return 0;
   }
   glfwSwapInterval(1);
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
   const double refresh = mode != nullptr && mode->refreshRate > 0 ? 1.0 / mode->refreshRate : 0;
-  glfwSwapBuffers(window);  // the first ones are taken at once
-  glfwSwapBuffers(window);
+  exchange();  // the first ones are taken at once
+  exchange();
   std::array<double, 3> exchanges{};
   for (double& took : exchanges) {
     const double begin = glfwGetTime();
-    glfwSwapBuffers(window);
+    exchange();
     took = glfwGetTime() - begin;
   }
   return display_paces(exchanges, refresh) ? refresh : 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <span>
 
 struct GLFWwindow;
@@ -14,8 +15,9 @@ using SteadyClock = std::chrono::steady_clock;
 // long as `refresh`, which is 0 where that is not known. [s]
 bool display_paces(std::span<const double> exchanges, double refresh);
 
-// Lets exchanges wait for the display, where it does that; the refresh then, else 0 [s].
-double pacing_refresh(GLFWwindow* window);
+// Lets exchanges wait for the display, where it does that; the refresh then, else 0 [s]. `paint`:
+// what is exchanged meanwhile, and seen until the first frame.
+double pacing_refresh(GLFWwindow* window, const std::function<void()>& paint);
 
 // Whether a frame has to be drawn though the 3D picture is the same: since somebody has just
 // touched the window, whose widgets may still be moving, or for numbers that go on.

@@ -20,10 +20,36 @@ nlohmann::json plots_of(const Stage& stage) {
   for (const Plot& plot : stage.plots) {
     nlohmann::json curves = nlohmann::json::array();
     for (const Curve& curve : plot.spec().curves) curves.push_back(curve.label);
-    plots.push_back(
-        {{"title", plot.spec().title}, {"kind", name(plot.spec().kind)}, {"curves", curves}});
+    const ScreenRect& area = plot.area();
+    plots.push_back({{"title", plot.spec().title},
+                     {"kind", name(plot.spec().kind)},
+                     {"curves", curves},
+                     {"area", {area.min.x, area.min.y, area.max.x, area.max.y}}});
   }
   return plots;
+}
+
+// What is selected in the plots, and where its buttons are [px]; null: nothing.
+nlohmann::json range_of(const Stage& stage) {
+  const auto& range = stage.group.range();
+  if (!range) return nullptr;
+  nlohmann::json buttons = nlohmann::json::object();
+  for (const char* label : {"Export range as CSV", "Play this", "Clear (Esc)"}) {
+    if (const auto at = noted_place("range", label)) buttons[label] = {at->x, at->y};
+  }
+  return {{"start", range->start - stage.history.offset()},
+          {"stop", range->stop - stage.history.offset()},
+          {"plot", range->plot},
+          {"buttons", buttons}};
+}
+
+// What people noted in the plots, when [s on the history's axis] and in which words.
+nlohmann::json notes_of(const Stage& stage) {
+  nlohmann::json notes = nlohmann::json::array();
+  for (const PlotMark& mark : stage.history.marks()) {
+    if (mark.key == kNoteMark) notes.push_back({mark.time, mark.label});
+  }
+  return notes;
 }
 
 // |x_E| of the twin, 0 without one [rad].
@@ -95,9 +121,19 @@ nlohmann::json recorded(Desktop& d) {
   PlayedSession* session = d.playback.shown();
   if (session == nullptr) return nullptr;
   const Parameters& p = session->settings();
-  nlohmann::json facts = nlohmann::json::object();
+  nlohmann::json facts = nlohmann::json::object(), marks = nlohmann::json::array();
+  for (const Mark& mark : session->marks()) {
+    const auto at = noted_place("transport", fmt::format("mark {}", marks.size()).c_str());
+    marks.push_back({{"time", session->time_of(mark)},
+                     {"text", mark.text},
+                     {"place", at ? place(*at) : nlohmann::json()}});
+  }
   for (const Fact& fact : session->facts()) facts[fact.name] = fact.value;
-  return {{"kind", name(p.kind)}, {"eta", p.eta}, {"facts", facts}};
+  return {{"kind", name(p.kind)},
+          {"eta", p.eta},
+          {"facts", facts},
+          {"marks", marks},
+          {"at", session->player().time()}};
 }
 
 // `check`: where the button is that begins the check of its axes; null while it is not there [px].
@@ -183,6 +219,8 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
       "\"closing\": {}, "
       "\"recorded\": {}, \"places\": {}, \"blind\": {}, \"question\": {}, "
+      "\"your_turn\": {}, \"tried\": {}, \"range\": {}, \"notes\": {}, \"shown\": [{:.4f}, "
+      "{:.4f}], "
       "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
@@ -201,7 +239,10 @@ void print_state(Desktop& d, const WindowState& window) {
       d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
       state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
       banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(), d.blind,
-      question_of(d).dump(), p.hand_stiffness, p.hand_damping);
+      question_of(d).dump(), d.settings.your_turn, nlohmann::json(d.settings.tried).dump(),
+      range_of(d.shown.stage()).dump(), notes_of(d.shown.stage()).dump(),
+      d.shown.stage().group.start(), d.shown.stage().group.stop(), p.hand_stiffness,
+      p.hand_damping);
   std::fflush(stdout);
 }
 

@@ -229,6 +229,7 @@ void Application::say_what_was_saved() {
   for (const SavedPicture& picture : window_.saved()) {
     if (picture.error.empty()) {
       desktop_.notices.say("Saved " + picture.file.string());
+      desktop_.exporter.wrote(picture.file);
     } else {
       desktop_.notices.say(
           picture.error + ". See to it that the folder is there and can be written to.", true);

@@ -132,7 +132,11 @@ void Tuning::follow_twin() {
   share_world(settings_.parameters, twin.parameters);
   if (!twin.on) return live_.stage().name_runs({});
   const auto names = twin_names(settings_.parameters, twin.parameters);
-  live_.stage().name_runs({names[0], names[1], true});
+  live_.stage().name_runs(
+      {names[0],
+       names[1],
+       true,
+       {static_cast<int>(settings_.parameters.kind), static_cast<int>(twin.parameters.kind)}});
 }
 
 // In the plots. What both runs have in common is marked once.

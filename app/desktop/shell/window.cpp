@@ -19,6 +19,7 @@
 #include "app/desktop/shell/pacing.h"
 #include "app/style/imgui_gl.h"
 #include "app/style/imgui_input.h"
+#include "app/style/palette.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 
@@ -212,7 +213,10 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   const WorkArea area = work_area();
   impl_->screen_scale = area.scale;
   impl_->glfw = create_window(options, area);
-  impl_->refresh = pacing_refresh(impl_->glfw);
+  const Rgb backdrop = palette(options.theme).backdrop;
+  const unsigned colour =
+      static_cast<unsigned>(backdrop.r) << 16 | static_cast<unsigned>(backdrop.g) << 8 | backdrop.b;
+  impl_->refresh = pacing_refresh(impl_->glfw, [colour] { fill(colour); });
   impl_->renderer = renderer_name();
   glfwSetWindowUserPointer(impl_->glfw, impl_.get());
   watch_touches(impl_->glfw);

@@ -249,7 +249,7 @@ json WindowRemote::place() const {
 }
 
 Answer WindowRemote::mark(const Keys& keys) {
-  d_.live.mark(keys.text("text"), "remote");
+  d_.live.note(d_.live.now(), noted(keys));
   return place();
 }
 

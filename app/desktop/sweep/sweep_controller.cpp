@@ -46,6 +46,26 @@ std::vector<Fact> facts_of(const SweepPlan& plan, std::uint64_t number, std::opt
   return facts;
 }
 
+// What was measured of it, as the table has it or would have it.
+std::vector<Fact> measured_of(const OpenedSweep& sweep, std::optional<double> at,
+                              const std::vector<double>& again) {
+  const auto fact = [](const std::string& name, const std::string& unit, bool yes_no, double x) {
+    const bool plain = unit.empty() || unit == "-";
+    return Fact{name, yes_no ? (x == 1 ? "yes" : "no")
+                             : fmt::format("{:.4g}{}", x, plain ? "" : " " + unit)};
+  };
+  if (at) {
+    const MeasureInfo& measure = *sweep.plan->boundary->condition.measure;
+    return {fact(measure.name, measure.unit, measure.yes_no(), again.front())};
+  }
+  std::vector<Fact> facts;
+  for (std::size_t i = 0; i < std::min(again.size(), sweep.table.columns.size()); ++i) {
+    const SweepColumn& column = sweep.table.columns[i];
+    facts.push_back(fact(column.name, column.unit, column.unit == "yes/no", again[i]));
+  }
+  return facts;
+}
+
 // Beside the table, or, where nothing can be written, among the user's own sessions.
 fs::path place_for(const fs::path& table, std::uint64_t point, std::optional<double> at) {
   fs::path beside = point_file(table.parent_path(), point, at);
@@ -175,6 +195,7 @@ void SweepController::play(std::uint64_t point, std::optional<double> at, Playba
                   LoadedSession loaded = load_session(out);
                   compare(*sweep, point, at, recorded->values, loaded);
                   loaded.facts = facts_of(*sweep->plan, point, at);
+                  loaded.verdict = measured_of(*sweep, at, recorded->values);
                   return loaded;
                 });
 }

@@ -85,12 +85,16 @@ bool accepted() {
          (key_pressed(GLFW_KEY_ENTER, false) || key_pressed(GLFW_KEY_KP_ENTER, false));
 }
 
-void note_place(const char* label) {
+void note_at(const char* label, ImVec2 place) {
   ImGuiStorage& notes = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
-  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  notes.SetFloat(key(label, "x"), 0.5f * (from.x + to.x));
-  notes.SetFloat(key(label, "y"), 0.5f * (from.y + to.y));
+  notes.SetFloat(key(label, "x"), place.x);
+  notes.SetFloat(key(label, "y"), place.y);
   notes.SetInt(key(label, "frame"), ImGui::GetFrameCount());
+}
+
+void note_place(const char* label) {
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  note_at(label, {0.5f * (from.x + to.x), 0.5f * (from.y + to.y)});
 }
 
 bool noted_button(const char* label) {

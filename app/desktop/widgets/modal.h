@@ -50,7 +50,8 @@ bool accepted();
 
 // Says where the item just drawn is to who drives the window from outside.
 void note_place(const char* label);
-bool noted_button(const char* label);  // a button that does so
+void note_at(const char* label, ImVec2 place);  // the same of what is no item
+bool noted_button(const char* label);           // a button that does so
 // The middle of one that was drawn in the last frame, in a window [px]; nothing: it was not.
 std::optional<ImVec2> noted_place(const char* window, const char* label);
 

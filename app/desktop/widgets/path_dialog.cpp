@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <fstream>
+#include <string_view>
 
 #include "app/desktop/widgets/modal.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "app/style/words.h"
 
 namespace limpid {
 namespace {
@@ -32,9 +35,53 @@ fs::path expanded(const std::string& text) {
   return text;
 }
 
-fs::path PathDialog::draw(bool& open, const fs::path& first) {
+namespace {
+
+constexpr std::size_t kMostPlaces = 10;
+
+// As xdg-user-dirs has it, which the desktop writes.
+fs::path documents() {
+  const char* config = std::getenv("XDG_CONFIG_HOME");
+  const fs::path file =
+      (config != nullptr && *config != '\0' ? fs::path(config) : expanded("~/.config")) /
+      "user-dirs.dirs";
+  std::ifstream in(file);
+  constexpr std::string_view kKey = "XDG_DOCUMENTS_DIR=\"";
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(kKey) || !line.ends_with('"')) continue;
+    std::string folder = line.substr(kKey.size(), line.size() - kKey.size() - 1);
+    if (folder.starts_with("$HOME")) folder.replace(0, 5, "~");
+    return expanded(folder);
+  }
+  return expanded("~/Documents");
+}
+
+}  // namespace
+
+std::vector<PathDialog::Place> PathDialog::places(const std::vector<Place>& own,
+                                                  const std::vector<std::string>& recent) {
+  std::vector<Place> all;
+  const auto add = [&](const std::string& name, const fs::path& folder) {
+    std::error_code none;
+    const fs::path whole = fs::absolute(folder).lexically_normal();
+    const bool known = std::ranges::find(all, whole, &Place::folder) != all.end();
+    if (!known && all.size() < kMostPlaces && fs::is_directory(whole, none)) {
+      all.push_back({name, whole});
+    }
+  };
+  add("Home", expanded("~"));
+  add("Documents", documents());
+  for (const Place& place : own) add(place.name, place.folder);
+  for (const std::string& file : recent) {
+    const fs::path folder = fs::path(file).parent_path();
+    add(folder.filename().string(), folder);
+  }
+  return all;
+}
+
+fs::path PathDialog::draw(bool& open, const fs::path& first, const std::vector<Place>& places) {
   const float em = ImGui::GetFontSize();
-  const float width = std::min(44 * em, 0.9f * ImGui::GetMainViewport()->WorkSize.x);
+  const float width = std::min(54 * em, 0.94f * ImGui::GetMainViewport()->WorkSize.x);
   if (!begin_modal(options_.title, open, {width, 0})) {
     was_open_ = false;
     return {};
@@ -45,6 +92,7 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
     listed_.clear();
     complaint_.clear();
     replaced_.clear();
+    names_folder_ = false;
   }
   was_open_ = true;
   fs::path chosen;
@@ -55,10 +103,78 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
   if (text_ != before) complaint_.clear();
   list_folder();
-  bool picked = false;
   const float list = std::min(14 * ImGui::GetTextLineHeightWithSpacing(),
                               0.4f * ImGui::GetMainViewport()->WorkSize.y);
+  if (!places.empty()) {
+    ImGui::BeginChild("places", {11 * em, list}, true);
+    draw_places(places);
+    ImGui::EndChild();
+    ImGui::SameLine();
+  }
   ImGui::BeginChild("folder", {0, list}, true);
+  const bool picked = draw_folder();
+  ImGui::EndChild();
+  const bool pressed = noted_button(replaced_.empty() ? options_.action : "Replace it");
+  ImGui::SameLine();
+  close_button("Cancel (Esc)", open);
+  if (options_.new_file) draw_new_folder();
+  const bool naming = names_folder_ && ImGui::IsAnyItemActive() && !entered;
+  if (entered || pressed || picked || (accepted() && !naming)) chosen = choose();
+  if (!complaint_.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
+    ImGui::TextWrapped("%s", complaint_.c_str());
+    ImGui::PopStyleColor();
+  }
+  if (!chosen.empty()) open = false;
+  ImGui::EndPopup();
+  return chosen;
+}
+
+void PathDialog::draw_places(const std::vector<Place>& places) {
+  for (const Place& place : places) {
+    ImGui::PushID(place.folder.c_str());
+    if (ImGui::Selectable(place.name.c_str(), place.folder.string() == listed_)) {
+      go_to(place.folder);
+      if (!options_.new_file) text_ += '/';
+    }
+    note_place(place.name.c_str());
+    tooltip(place.folder.c_str());
+    ImGui::PopID();
+  }
+}
+
+// In the folder that is listed; it is shown then.
+void PathDialog::draw_new_folder() {
+  ImGui::SameLine();
+  if (!names_folder_) {
+    if (noted_button("New folder")) {
+      names_folder_ = true;
+      folder_name_.clear();
+    }
+    return;
+  }
+  if (folder_name_.empty() && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(12 * ImGui::GetFontSize());
+  const bool entered = ImGui::InputTextWithHint(
+      "##folder", "its name; Enter makes it", &folder_name_, ImGuiInputTextFlags_EnterReturnsTrue);
+  if (!entered || folder_name_.empty()) return;
+  std::error_code error;
+  const fs::path folder = fs::path(listed_) / folder_name_;
+  if (folder_name_.find('/') != std::string::npos || folder_name_ == "." || folder_name_ == "..") {
+    complaint_ = "A folder's name has no / in it.";
+  } else if (fs::exists(folder, error)) {
+    complaint_ = fmt::format("{} is there already.", folder_name_);
+  } else if (!fs::create_directory(folder, error)) {
+    complaint_ = fmt::format("{} cannot be made: {}.", folder.string(), error.message());
+  } else {
+    go_to(folder);
+    listed_.clear();
+    names_folder_ = false;
+  }
+}
+
+bool PathDialog::draw_folder() {
+  bool picked = false;
   for (const fs::path& folder : folders_) {
     const bool up = folder == "..";
     if (ImGui::Selectable(((up ? std::string("..") : folder.filename().string()) + "/").c_str())) {
@@ -75,20 +191,7 @@ fs::path PathDialog::draw(bool& open, const fs::path& first) {
     }
   }
   if (folders_.empty() && files_.empty()) ImGui::TextDisabled("no such folder");
-  ImGui::EndChild();
-  const bool pressed = ImGui::Button(replaced_.empty() ? options_.action : "Replace it");
-  ImGui::SameLine();
-  close_button("Cancel (Esc)", open);
-  if (entered || pressed || picked || accepted()) chosen = choose();
-  if (!complaint_.empty()) {
-    ImGui::SameLine();
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
-    ImGui::TextWrapped("%s", complaint_.c_str());
-    ImGui::PopStyleColor();
-  }
-  if (!chosen.empty()) open = false;
-  ImGui::EndPopup();
-  return chosen;
+  return picked;
 }
 
 void PathDialog::list_folder() {

@@ -20,11 +20,24 @@ class PathDialog {
   };
   explicit PathDialog(Options options) : options_(std::move(options)) {}
 
+  // A folder that is one click away.
+  struct Place {
+    std::string name;
+    std::filesystem::path folder;
+  };
   // While `open`. Returns the file once it is chosen, and clears `open`; `first` is what stands
-  // there when it opens.
-  std::filesystem::path draw(bool& open, const std::filesystem::path& first);
+  // there when it opens, `places` are beside the list.
+  std::filesystem::path draw(bool& open, const std::filesystem::path& first,
+                             const std::vector<Place>& places = {});
+  // Home, documents, `own` folders, and those of the `recent` files: those that are there, each
+  // once.
+  static std::vector<Place> places(const std::vector<Place>& own,
+                                   const std::vector<std::string>& recent);
 
  private:
+  void draw_places(const std::vector<Place>& places);
+  bool draw_folder();  // whether a file was clicked twice
+  void draw_new_folder();
   void list_folder();
   void go_to(const std::filesystem::path& folder);
   // The file if it can be taken now.
@@ -34,6 +47,8 @@ class PathDialog {
   bool was_open_ = false;
   std::string text_, listed_, complaint_;
   std::filesystem::path replaced_;  // the file that would be, once asked
+  bool names_folder_ = false;       // a new one is being named
+  std::string folder_name_;
   std::vector<std::filesystem::path> folders_, files_;
 };
 

@@ -111,6 +111,14 @@ void read_out(const char* label, const std::string& value, const std::string& br
   end_tooltip();
 }
 
+void underline_button(Rgb rgb) {
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  const float high = std::round(3 * current_scale());
+  ImGui::GetWindowDrawList()->AddRectFilled({from.x, to.y - high}, to, colour(rgb),
+                                            ImGui::GetStyle().FrameRounding,
+                                            ImDrawFlags_RoundCornersBottom);
+}
+
 void progress_bar(double part, float width, std::string text) {
   const Palette& colours = current_palette();
   const double filled = std::clamp(part, 0.0, 1.0);

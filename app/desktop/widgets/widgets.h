@@ -28,6 +28,8 @@ void heading(const char* text);
 // A label in the muted colour and a value; red with a tooltip when `broken` is not empty.
 void read_out(const char* label, const std::string& value, const std::string& broken = {},
               const char* help = nullptr);
+// An edge of this colour at the foot of the button just drawn.
+void underline_button(Rgb rgb);
 // A bar filled to `part`, 0 to 1, with a text on it; `width` [px], 0: all there is. Without a text
 // it says the part.
 void progress_bar(double part, float width, std::string text = {});

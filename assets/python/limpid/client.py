@@ -134,7 +134,7 @@ class Client:
         return self.request("start_over")
 
     def mark(self, text: str) -> int:
-        """Marks this moment in the window's plots; returns its tick."""
+        """Marks this moment in the window's plots and in what is recorded; returns its tick."""
         return int(self.request("mark", text=text)["tick"])
 
     def row(self, channels: Optional[Sequence[str]] = None) -> Dict[str, Optional[float]]:

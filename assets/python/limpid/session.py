@@ -44,6 +44,7 @@ class Session:
         self._units: Dict[str, str] = {}
         self._about: Dict[str, str] = {}
         self._changes: List[Tuple[int, str]] = []
+        self._marks: List[Tuple[int, str]] = []
         try:
             with h5py.File(self.file, "r", swmr=self.file.endswith(".part")) as opened:
                 if opened.attrs.get("format") != "limpid-session":
@@ -53,13 +54,17 @@ class Session:
                 if "events/row" in opened:
                     texts = (bytes(text).decode(errors="replace") for text in opened["events/setting"])
                     self._changes = [(int(row), text) for row, text in zip(opened["events/row"], texts)]
+                if "marks/tick" in opened:
+                    texts = (bytes(text).decode(errors="replace") for text in opened["marks/text"])
+                    self._marks = sorted(((int(tick), text) for tick, text in
+                                          zip(opened["marks/tick"], texts)), key=lambda mark: mark[0])  # fmt: skip
         except OSError as error:
             raise LimpidError(f"{self.file}: cannot be read as a session: {error}") from error
         rows = min(len(data) for data in self._channels.values())
         self._channels = {name: numpy.asarray(data[:rows]) for name, data in self._channels.items()}
 
     def _take(self, name: str, item: Any) -> None:
-        if not hasattr(item, "shape") or name.split("/")[0] in ("check", "events", "axis", "joint"):
+        if not hasattr(item, "shape") or name.split("/")[0] in ("check", "events", "marks", "axis", "joint"):
             return
         if item.ndim < 1 or item.attrs.get("unit") is None:
             return
@@ -162,6 +167,11 @@ class Session:
         """When a setting changed while recording [s], and to what: "coupling.eta = 0.5"."""
         last = len(self) - 1
         return [(float(self.time[min(row, last)]), text) for row, text in self._changes]
+
+    @property
+    def marks(self) -> List[Tuple[float, str]]:
+        """What people noted, and when [s]: with T in the window, or a program with mark()."""
+        return [(float(self.time[tick]), text) for tick, text in self._marks if tick < len(self)]
 
 
 def session(file: PathLike) -> Session:

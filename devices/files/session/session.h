@@ -27,6 +27,9 @@ inline constexpr const char* kJointTypes = "joint_types";  // attribute of the r
 inline constexpr const char* kSlidingType = "prismatic";   // URDF's words
 inline constexpr const char* kTurningType = "revolute";
 inline constexpr const char* kEventSettingPath = "/events/setting";
+inline constexpr const char* kMarkTickPath = "/marks/tick";
+inline constexpr const char* kMarkTextPath = "/marks/text";
+inline constexpr std::size_t kMarkLength = 200;  // bytes of UTF-8
 inline constexpr const char* kWorldPath = "/objects/state";
 inline constexpr std::size_t kMostWorld = 100'000;  // numbers
 inline constexpr const char* kBodyNames = "names";  // attribute of what is said of each body
@@ -76,11 +79,20 @@ struct SettingChange {
   std::string_view key() const { return std::string_view(setting).substr(0, setting.find(' ')); }
 };
 
+// What somebody noted at a moment of a recording: a comment, or why it is worth another look.
+struct Mark {
+  std::uint64_t tick = 0;  // its row
+  std::string text;        // at most kMarkLength bytes
+
+  friend bool operator==(const Mark&, const Mark&) = default;
+};
+
 struct Session {
   SessionInfo info;
   RowLayout layout{3};
   std::vector<double> rows;  // N x layout.stride(), row-major
   std::vector<SettingChange> changes;
+  std::vector<Mark> marks;  // in the order of their ticks
   // All that the loop keeps of its bodies at the first row, as RigStart has it. Empty: they begin
   // as the scene has them, or it is not known.
   std::vector<double> world;
@@ -113,6 +125,7 @@ class SessionWriter {
   // Any whole number of rows. Of a twin both runs get as many.
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
+  void append(const Mark& mark);
   // What the loop keeps of bodies at the first row, at most kMostWorld numbers; at most once, and
   // before that row. Of a session without bodies nothing is kept.
   void append_world(std::span<const double> world, std::size_t lane = kMainLane);
@@ -129,6 +142,13 @@ class SessionWriter {
 // complete in every column). Errors: FileError for a file that is missing, not HDF5, not a
 // session, of another version, of inconsistent shapes, or with times that are not finite.
 Session read_session(const std::filesystem::path& file);
+
+// Errors: FileError naming `file`, for a text that is longer than is kept.
+void check_mark(const Mark& mark, const std::filesystem::path& file);
+// Puts these in place of the marks of a session that is complete. A copy gets them and takes the
+// session's place once it is on the disk: the session is there, whole, at any moment. Errors:
+// FileError, and the session is as before.
+void write_marks(const std::filesystem::path& session, std::span<const Mark> marks);
 
 // Makes OUT.h5 of OUT.h5.part (through a clean copy) and removes the .part. Returns the new path
 // and the rows saved. Errors: as read_session; FileError if OUT.h5 exists and not `force`.

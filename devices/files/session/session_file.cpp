@@ -144,6 +144,15 @@ hdf5::Properties placed_within_pages() {
 
 }  // namespace
 
+void write_nowhere(const hdf5::File& file) {
+  void* descriptor = nullptr;
+  const int null_device = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) >= 0 && null_device >= 0) {
+    ::dup2(null_device, *static_cast<int*>(descriptor));
+  }
+  if (null_device >= 0) ::close(null_device);
+}
+
 SessionFile::SessionFile(std::filesystem::path path, const SessionInfo& about)
     : path_(std::move(path)), layout_(about.layout()) {
   SessionInfo info = about;
@@ -180,6 +189,7 @@ void SessionFile::create(const SessionInfo& info) {
   write_attributes(file_.get(), info, path_);
   write_models(file_.get(), info.models, path_);
   lanes_[kMainLane].create(file_.get());
+  marks_.create(file_.get(), path_);
   if (info.twin) {
     const hdf5::Group twin(
         H5Gcreate2(file_.get(), kTwinGroup, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -203,7 +213,11 @@ void SessionFile::append(std::span<const double> rows, std::size_t lane) {
   }
   if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
   while (!rows.empty()) {
-    if (lanes_.at(lane).take(rows)) guarded([&] { lanes_[lane].flush(); });
+    if (!lanes_.at(lane).take(rows)) continue;
+    guarded([&] {
+      lanes_[lane].flush();
+      if (lane == kMainLane) marks_.flush(path_);
+    });
   }
 }
 
@@ -214,6 +228,12 @@ void SessionFile::append(const SettingChange& change, std::size_t lane) {
   }
   if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
   lanes_.at(lane).append(change);
+}
+
+void SessionFile::append(const Mark& mark) {
+  check_mark(mark, path_);
+  if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
+  marks_.append(mark);
 }
 
 void SessionFile::append_world(std::span<const double> world, std::size_t lane) {
@@ -229,15 +249,15 @@ void SessionFile::close() {
   if (!file_) return;
   guarded([&] {
     for (SessionLane& lane : lanes_) lane.flush();
+    marks_.flush(path_);
     // Closing hides errors of the last writes; flushing tells them.
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
     for (SessionLane& lane : lanes_) lane.close();
+    check(marks_.close(), path_, "cannot write");
     check(file_.close(), path_, "cannot write");
   });
 }
 
-// HDF5 cannot forget what it has not written yet: closing writes, and fails for ever on a full
-// disk. So it gets the null device in place of the file and may write there what it likes.
 void SessionFile::abandon() {
   if (!file_) return;
   const hdf5::Quiet quiet;
@@ -245,15 +265,12 @@ void SessionFile::abandon() {
     // HDF5 1.14 crashes when it closes a file whose start failed. As it stays open, no other file
     // gets its place on the disk, which HDF5 would take for the same one.
     for (SessionLane& lane : lanes_) lane.abandon();
+    marks_.close();
     return file_.leave_open();
   }
-  void* descriptor = nullptr;
-  const int null_device = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor) >= 0 && null_device >= 0) {
-    ::dup2(null_device, *static_cast<int*>(descriptor));
-  }
-  if (null_device >= 0) ::close(null_device);
+  write_nowhere(file_);
   for (SessionLane& lane : lanes_) lane.abandon();
+  marks_.close();
   file_.close();
 }
 

@@ -13,6 +13,7 @@
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_lane.h"
+#include "devices/files/session/session_marks.h"
 
 namespace limpid {
 
@@ -31,6 +32,10 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
 // than a file of this size can hold.
 SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
 
+// HDF5 cannot forget what it has not written yet: closing writes, and fails for ever on a full
+// disk. So it gets the null device in place of the file and may write there what it likes.
+void write_nowhere(const hdf5::File& file);
+
 // A file that survives being killed, by HDF5's rules (single writer, multiple readers: everything
 // is created before writing starts) and one of its own. HDF5 rewrites some things in place: how
 // long a column is, where its chunks lie. The kernel may cut such a write short where one page of
@@ -46,6 +51,7 @@ class SessionFile {
 
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
+  void append(const Mark& mark);
   void append_world(std::span<const double> world, std::size_t lane);
   void close();  // writes what is pending and closes for good
   std::uint64_t rows() const { return lanes_.front().rows(); }
@@ -59,6 +65,7 @@ class SessionFile {
   std::filesystem::path path_;
   RowLayout layout_;
   std::vector<SessionLane> lanes_;
+  MarkTable marks_;
   hdf5::File file_;
   bool starting_ = false;
 };

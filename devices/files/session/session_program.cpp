@@ -97,6 +97,11 @@ void put_session(Writer& to, const Session& session) {
   to.number<std::uint64_t>(info.bodies.size());
   for (const std::string& name : info.bodies) to.text(name);
   put_run(to, session);
+  to.number<std::uint64_t>(session.marks.size());
+  for (const Mark& mark : session.marks) {
+    to.number(mark.tick);
+    to.text(mark.text);
+  }
   to.number<std::uint8_t>(session.twin != nullptr);
   if (session.twin == nullptr) return;
   to.text(session.twin->info.config);
@@ -129,6 +134,12 @@ Session take_session(Reader& from) {
   if (bodies > kMostBodies) throw Broken("more bodies than there can be");
   for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
   take_run(from, session);
+  const std::size_t marks = from.taken(2 * sizeof(std::uint64_t));
+  for (std::size_t i = 0; i < marks; ++i) {
+    const auto tick = from.number<std::uint64_t>();
+    if (tick >= session.size()) throw Broken("a mark behind the end");
+    session.marks.push_back({tick, from.text()});
+  }
   if (from.number<std::uint8_t>() == 0) return session;
   Session twin;
   twin.info = info;

@@ -14,6 +14,7 @@
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_file.h"
+#include "devices/files/session/session_marks.h"
 #include "devices/files/session/session_source.h"
 #include "devices/files/session/session_units.h"
 #include "devices/files/session/session_writer.h"
@@ -437,6 +438,7 @@ Session read_session_here(const fs::path& file) {
   session.layout = session.info.layout();
   try {
     read_run(opened.get(), session, file, claims);
+    read_marks(opened.get(), session, file, claims);
     if (const hdf5::Group twin = twin_group(opened.get(), file)) {
       read_twin(twin.get(), session, file, claims);
     }

@@ -112,6 +112,7 @@ void SessionWriter::append(std::span<const double> rows, std::size_t lane) {
 void SessionWriter::append(const SettingChange& change, std::size_t lane) {
   file_->session->append(change, lane);
 }
+void SessionWriter::append(const Mark& mark) { file_->session->append(mark); }
 void SessionWriter::append_world(std::span<const double> world, std::size_t lane) {
   file_->session->append_world(world, lane);
 }
@@ -147,6 +148,7 @@ Recovered recover_session(const fs::path& part, bool force) {
     };
     copy_run(session, kMainLane);
     if (session.twin) copy_run(*session.twin, kTwinLane);
+    for (const Mark& mark : session.marks) file.append(mark);
     file.close();
     publish(copy, out, force);
   } catch (const FileError&) {

@@ -219,5 +219,22 @@ TEST(History, MarksOfASecondRunStandInThatRun) {
   EXPECT_NEAR(history.marks()[2].time, history.time(1300), 1e-9);
 }
 
+// Somebody marks a moment of before while settings go on changing.
+TEST(HistoryMarks, StandInTheOrderOfTheirTimesWheneverTheyWereSet) {
+  History history({.channels = 1, .seconds = 60});
+  for (int i = 0; i < 3000; ++i) history.append(0.001 * i, std::array{0.0});
+  history.mark(2, "eta", "coupling.eta");
+  history.mark_at(1, "one", kNoteMark);
+  history.mark_at(1.1, "two", kNoteMark);
+  ASSERT_EQ(history.marks().size(), 3u);
+  EXPECT_EQ(history.marks()[0].label, "one");
+  EXPECT_EQ(history.marks()[1].label, "two");
+  EXPECT_EQ(history.marks()[2].label, "eta");
+  history.replace_marks(kNoteMark, {{2.5, kNoteMark, "three"}});
+  ASSERT_EQ(history.marks().size(), 2u);
+  EXPECT_EQ(history.marks()[0].label, "eta");
+  EXPECT_EQ(history.marks()[1].label, "three");
+}
+
 }  // namespace
 }  // namespace limpid

@@ -116,6 +116,54 @@ TEST_F(APlot, NamesBothRunsOfATwinInALineThatIsTooShortForTheirWholeNames) {
   });
 }
 
+// Where the mouse is, and not where the curve ends: the label stands at the value's height.
+TEST_F(APlot, WritesTheValuesOfTheMomentThatIsPointedAt) {
+  PlotSpec spec = energy();
+  spec.end_labels = true;
+  History history({.channels = 1});
+  for (int k = 0; k < 1000; ++k) history.append(1e-3 * k, std::array{6e-3 * k});
+  frame([&] {
+    const ScreenRect area{{60, 0}, {200, 400}};
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const PlotFrame in{list, current_palette(),   1,        {{0, 0}, {300, 420}},
+                       area, {1.0 / 140, 0, 140}, {{0, 1}}, {{0, 6}}};
+    for (const double time : {0.9, 0.5, 0.1}) {
+      const int before = list.VtxBuffer.Size;
+      draw_end_labels(in, spec, history, time);
+      ASSERT_GT(list.VtxBuffer.Size, before);
+      const float line = text_size(Face::small, "0").y;
+      for (int i = before; i < list.VtxBuffer.Size; ++i) {
+        EXPECT_NEAR(list.VtxBuffer[i].pos.y, in.y_of(6 * time), line) << time;
+      }
+    }
+  });
+}
+
+// As many as there are distances between them along the curve, whole as it scrolls.
+TEST_F(APlot, PutsSignsOnTheCurveOfASecondRun) {
+  frame([&] {
+    const ScreenRect area{{0, 0}, {640, 100}};
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    Trace trace;
+    TracePen pen(trace);
+    for (int x = 0; x <= 640; ++x) pen.put({static_cast<float>(x), 1, 1});
+    const auto drawn = [&](std::int64_t first, RunSign sign) {
+      const PlotFrame in{list, current_palette(),  1,        area,
+                         area, {1e-3, first, 640}, {{0, 1}}, {{0, 2}}};
+      const int before = list.VtxBuffer.Size;
+      draw_run_signs(in, trace, sign, colour(Rgb{1, 2, 3}));
+      return list.VtxBuffer.Size - before;
+    };
+    EXPECT_EQ(drawn(0, RunSign::none), 0);
+    const int ten = drawn(0, RunSign::square);
+    EXPECT_GT(ten, 0);
+    for (const std::int64_t first : {1, 17, 63, 64, -5}) {
+      EXPECT_NEAR(drawn(first, RunSign::square), ten, ten / 10) << first;
+    }
+    EXPECT_NE(drawn(0, RunSign::ring), ten) << "another shape";
+  });
+}
+
 TEST_F(APlot, WritesNoMoreValuesAtTheEndsThanThereIsRoomFor) {
   PlotSpec spec = energy();
   spec.end_labels = true;
@@ -130,7 +178,7 @@ TEST_F(APlot, WritesNoMoreValuesAtTheEndsThanThereIsRoomFor) {
     const PlotFrame in{list, current_palette(), 1,           {{0, 60}, {300, 200}},
                        area, {1e-3, 0, 140},    {{0, 0.14}}, {{0, 6}}};
     const int before = list.VtxBuffer.Size;
-    draw_end_labels(in, spec, history);
+    draw_end_labels(in, spec, history, 0.1);
     EXPECT_GT(list.VtxBuffer.Size, before);
     for (int i = before; i < list.VtxBuffer.Size; ++i) {
       EXPECT_GE(list.VtxBuffer[i].pos.y, area.min.y - 1) << "over the legend";

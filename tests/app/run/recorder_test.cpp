@@ -38,6 +38,36 @@ TEST_P(RecorderOfJoints, WritesEveryRowInOrder) {
   EXPECT_EQ(std::memcmp(session.rows.data(), rows.data(), rows.size() * sizeof(double)), 0);
 }
 
+TEST(Recorder, KeepsMarksAtRowsThatThereAre) {
+  const test::TempDir dir;
+  const SessionInfo info = sample_info(3);
+  Recorder recorder(dir / "a.h5", info, Parameters{}, false);
+  EXPECT_EQ(recorder.newest(), 0u);
+  recorder.mark({0, "before the first row"});
+  const RowLayout layout(3);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  const std::vector<double> rows = sample_rows(layout, 0, 900);
+  for (std::size_t k = 0; k < 900; ++k) {
+    ASSERT_TRUE(recorder.push_waiting(std::span(rows).subspan(k * stride, stride)));
+    if (k == 450) recorder.mark({recorder.newest(), "in the middle"});
+  }
+  recorder.mark({5000, "behind the end"});
+  EXPECT_THROW(recorder.mark({1, std::string(kMarkLength + 1, 'x')}), FileError);
+  recorder.finish();
+  EXPECT_EQ(read_session(dir / "a.h5").marks,
+            (std::vector<Mark>{
+                {0, "before the first row"}, {450, "in the middle"}, {899, "behind the end"}}));
+}
+
+// A file of no rows has no moment to be marked: it would be refused when it is read.
+TEST(Recorder, KeepsNoMarksWithoutRows) {
+  const test::TempDir dir;
+  Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+  recorder.mark({0, "too early"});
+  recorder.finish();
+  EXPECT_TRUE(read_session(dir / "a.h5").marks.empty());
+}
+
 TEST(Recorder, WritesWhatBodiesBeginWithBeforeTheFirstRow) {
   const test::TempDir dir;
   SessionInfo info = sample_info(3);

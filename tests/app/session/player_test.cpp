@@ -95,5 +95,33 @@ TEST(Player, OfASingleRowShowsIt) {
   EXPECT_EQ(p.index(), 0u);
 }
 
+TEST(Player, PlaysAStretchToItsEnd) {
+  Player p = player(10000);
+  p.play_between(2, 3);
+  EXPECT_TRUE(p.playing());
+  EXPECT_EQ(p.time(), 2);
+  for (int frame = 0; frame < 55; ++frame) p.advance(0.02);
+  EXPECT_FALSE(p.playing());
+  EXPECT_NEAR(p.time(), 3, 1e-9);
+  p.play();  // and on from there
+  for (int frame = 0; frame < 100; ++frame) p.advance(0.02);
+  EXPECT_NEAR(p.time(), 5, 1e-9);
+}
+
+TEST(Player, PlaysAStretchAgainAndAgainWhileLooping) {
+  Player p = player(10000);
+  p.loop = true;
+  p.play_between(2, 3);
+  for (int frame = 0; frame < 125; ++frame) {
+    p.advance(0.02);
+    EXPECT_GE(p.time(), 2);
+    EXPECT_LT(p.time(), 3);
+  }
+  EXPECT_NEAR(p.time(), 2.5, 1e-6);
+  p.seek(1);  // which leaves the stretch
+  for (int frame = 0; frame < 125; ++frame) p.advance(0.02);
+  EXPECT_NEAR(p.time(), 3.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace limpid

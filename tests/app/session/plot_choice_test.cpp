@@ -68,6 +68,50 @@ TEST(PlotChoice, SetsTheErrorOfBothRunsAgainstTheirOwnTorque) {
   EXPECT_EQ(spec.x.unit, "N m");
 }
 
+// Of a twin each run has its law's colour where it is one curve, and where both runs have the same
+// law, or things their colours, the second one is lighter and has signs on it.
+TEST(PlotChoice, DrawsTheRunsOfATwinByTheirLaws) {
+  const TraceChannels channels{RowLayout(3)};
+  RunNames names = kTwin;
+  names.laws = {0, 2};
+  for (const PlotChoice& choice : {default_plots().front(), default_plots().back()}) {
+    const PlotSpec spec = plot_spec(choice, channels, names);
+    ASSERT_EQ(spec.curves.size(), 2u);
+    for (const Palette* p : {&kDarkPalette, &kLightPalette}) {
+      EXPECT_EQ(colour_of(*p, spec.curves[0]), law_ink(*p, 0));
+      EXPECT_EQ(colour_of(*p, spec.curves[1]), law_ink(*p, 2));
+    }
+    EXPECT_EQ(spec.curves[0].sign, RunSign::none);
+    EXPECT_EQ(spec.curves[1].sign, RunSign::square);
+  }
+  names.laws = {1, 1};
+  const PlotSpec same = plot_spec(default_plots().front(), channels, names);
+  EXPECT_NE(colour_of(kDarkPalette, same.curves[0]), colour_of(kDarkPalette, same.curves[1]));
+  const PlotSpec torques = plot_spec(default_plots()[2], channels, names);
+  ASSERT_EQ(torques.curves.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_LT(torques.curves[i].law, 0);
+    EXPECT_EQ(torques.curves[i].sign, i < 3 ? RunSign::none : RunSign::square);
+  }
+}
+
+TEST(PlotChoice, PutsRingsOnTheCurvesOfARerun) {
+  const TraceChannels channels{RowLayout(3)};
+  const PlotSpec spec = plot_spec(default_plots()[2], channels, kRerun);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(spec.curves[i].sign, i < 3 ? RunSign::none : RunSign::ring);
+  }
+}
+
+TEST(PlotChoice, TintsTheBandOfLawsByTheirColours) {
+  const TraceChannels channels{RowLayout(3)};
+  const PlotSpec spec = plot_spec(default_plots()[0], channels, {});
+  ASSERT_FALSE(spec.bands.empty());
+  EXPECT_TRUE(spec.bands.front().laws);
+  EXPECT_EQ(spec.bands.front().key, "coupling.kind");
+  EXPECT_EQ(spec.bands.front().names.size(), kLaws);
+}
+
 // Of two runs in one plot no two curves look alike, whatever is in it.
 TEST(PlotChoice, TellsCurvesApartByTheirColours) {
   const TraceChannels channels{RowLayout(7)};

@@ -93,13 +93,13 @@ TEST_F(Figures, TakeNoTextForACommand) {
   Figure figure = small();
   figure.title = "`touch " + (dir_ / "hacked").string() + "` 'quoted' \\n @macro #no";
   figure.panels[0].title = "' ; system('touch " + (dir_ / "hacked").string() + "') ; '";
-  figure.panels[0].x_label = "two\nlines {/Symbol a} x_1^2";
+  figure.panels[0].x_label = "two\nlines {/Symbol a} x_1^b";
   figure.panels[0].series[0].label = "100 % of \"it\" & <more>";
   figure.panels[0].x_ticks = {{0, "`touch " + (dir_ / "hacked").string() + "` \"it's\""}};
   draw_figure(figure, odd, "f");
   EXPECT_TRUE(fs::exists(odd / "f.png"));
   EXPECT_FALSE(fs::exists(dir_ / "hacked"));
-  EXPECT_THAT(read(odd / "f.svg"), HasSubstr("x_1^2"));
+  EXPECT_THAT(read(odd / "f.svg"), HasSubstr("x_1^b"));
 }
 
 TEST_F(Figures, AreDrawnWithoutAnyPoint) {
@@ -123,6 +123,9 @@ TEST(GnuplotScript, ShowsWordsOfThePaperAsItsSymbols) {
   const std::string script = script_of(figure);
   EXPECT_THAT(script, HasSubstr("'η = 0.6'"));
   EXPECT_THAT(script, HasSubstr("'Error |x₁ − x₂| of a theta beta'"));
+  EXPECT_EQ(typeset("1 / (1 - m w^2 / K)"), "1 / (1 − m ω² / K)");
+  EXPECT_EQ(typeset("w_f T <= 0.1, window, 10^-12 kg m^2, 2^x"),
+            "ω_f T <= 0.1, window, 10⁻¹² kg m², 2^x");
 }
 
 TEST(GnuplotScript, ShowsAllOfABand) {

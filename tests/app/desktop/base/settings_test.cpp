@@ -3,9 +3,11 @@
 #include <stdlib.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <optional>
 
+#include "app/desktop/base/deeds.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {
@@ -81,6 +83,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   s.show_trail = false;
   s.hold_on_release = true;
   s.hint_seen = true;
+  s.tried = "dc";
   s.plot_length = 31;
   s.device = "/some/\"odd\" path/arm\xCE\xB7.urdf";
   s.scene = "C:\\scene.toml";
@@ -106,11 +109,24 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   EXPECT_EQ(again.show_trail, s.show_trail);
   EXPECT_EQ(again.hold_on_release, s.hold_on_release);
   EXPECT_EQ(again.hint_seen, s.hint_seen);
+  EXPECT_EQ(again.tried, s.tried);
   EXPECT_EQ(again.plot_length, s.plot_length);
   EXPECT_EQ(again.device, s.device);
   EXPECT_EQ(again.scene, s.scene);
   EXPECT_EQ(again.parameters, s.parameters);
   EXPECT_EQ(again.plot_choices, s.plot_choices);
+}
+
+// Settings of before hints were ticked off one by one: their user has seen them.
+TEST_F(SettingsFile, OfAnEarlierLimpidNeedNoHints) {
+  fs::create_directories(file().parent_path());
+  for (const bool seen : {false, true}) {
+    std::ofstream(file()) << "[window]\nhint_seen = " << (seen ? "true" : "false") << "\n";
+    EXPECT_EQ(all_done(load()), seen);
+  }
+  std::ofstream(file()) << "[window]\nhint_seen = true\ntried = \"d\"\n";
+  EXPECT_TRUE(done(load(), Deed::pull));
+  EXPECT_FALSE(done(load(), Deed::law));
 }
 
 TEST_F(SettingsFile, GivesEverySwitchBackByItself) {
@@ -119,7 +135,7 @@ TEST_F(SettingsFile, GivesEverySwitchBackByItself) {
        {&Settings::show_left, &Settings::show_right, &Settings::show_plots, &Settings::show_ghost,
         &Settings::show_trail, &Settings::show_forces, &Settings::show_grid, &Settings::show_lens,
         &Settings::show_joints, &Settings::twin_overlaid, &Settings::hold_on_release,
-        &Settings::hint_seen}) {
+        &Settings::hint_seen, &Settings::your_turn}) {
     Settings s;
     s.*one = !(s.*one);
     EXPECT_EQ(save_settings(s, load()), "");

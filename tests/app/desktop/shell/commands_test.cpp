@@ -59,6 +59,9 @@ const Case kCases[] = {
     {"Ctrl+R", GLFW_KEY_R, kControl, "session.record", "session.record"},
     {"P", GLFW_KEY_P, 0, "session.play", "session.play"},
     {"K", GLFW_KEY_K, 0, "loop.pause", "loop.pause"},
+    {"T", GLFW_KEY_T, 0, "session.mark", "session.mark"},
+    {"Ctrl+Left", GLFW_KEY_LEFT, kControl, "", "session.mark_before", true},
+    {"Ctrl+Right", GLFW_KEY_RIGHT, kControl, "", "session.mark_after", true},
     {"Left", GLFW_KEY_LEFT, 0, "", "session.tick_back", true},
     {"Right", GLFW_KEY_RIGHT, 0, "loop.step", "session.tick_on", true},
     {"Shift+Left", GLFW_KEY_LEFT, kShift, "", "session.step_back", true},
@@ -90,6 +93,7 @@ const Case kCases[] = {
     {"F7", GLFW_KEY_F7, 0, "device.identify", "device.identify"},
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
     {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
+    {"Ctrl+E", GLFW_KEY_E, kControl, "export.begin", "export.begin"},
     {"Ctrl+O", GLFW_KEY_O, kControl, "session.open", "session.open"},
     {"Ctrl+N", GLFW_KEY_N, kControl, "scene.new", "scene.new"},
     {"Ctrl+Shift+O", GLFW_KEY_O, kControl | kShift, "scene.open", "scene.open"},
@@ -146,6 +150,24 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
   std::set<std::string> expected;
   for (const Case& c : kCases) expected.insert(c.help);
   EXPECT_EQ(listed, expected);
+}
+
+// Who looks for a key reads headings first: each is there once, with all that belongs to it.
+TEST(Keys, HelpGroupsThem) {
+  std::vector<std::string_view> groups;
+  std::map<std::string, std::string_view> group_of;
+  for (const Shortcut& shortcut : shortcuts()) {
+    EXPECT_FALSE(shortcut.group.empty()) << shortcut.keys;
+    if (groups.empty() || groups.back() != shortcut.group) groups.push_back(shortcut.group);
+    for (const std::string& key : split(shortcut.keys)) group_of[key] = shortcut.group;
+  }
+  EXPECT_EQ(std::set(groups.begin(), groups.end()).size(), groups.size());
+  EXPECT_EQ(groups.front(), "Force and hand");
+  EXPECT_EQ(group_of["Esc"], group_of["Space"]);
+  EXPECT_EQ(group_of["C"], group_of["Ctrl+]"]);
+  EXPECT_EQ(group_of["E"], group_of["L"]);
+  EXPECT_EQ(group_of["wheel"], group_of["sliders"]);
+  EXPECT_NE(group_of["C"], group_of["F1"]);
 }
 
 TEST(Keys, EachDoesWhatTheHelpSaysAndNothingUnlistedActs) {

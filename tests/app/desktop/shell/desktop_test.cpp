@@ -485,7 +485,7 @@ TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   const float now = history.value(kind, first);
   while (first > history.first() && history.value(kind, first - 1) == now) --first;
   ASSERT_FALSE(history.marks().empty());
-  const Mark& mark = history.marks().back();
+  const PlotMark& mark = history.marks().back();
   EXPECT_EQ(mark.key, "coupling.kind");
   EXPECT_NEAR(mark.time, history.time(first), 0.05);
 }

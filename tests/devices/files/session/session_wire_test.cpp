@@ -35,6 +35,7 @@ class SessionWire : public testing::Test {
     twin.rows[1] = -0.0;
     session_.info.twin = twin.info.config;
     session_.twin = std::make_shared<const Session>(std::move(twin));
+    session_.marks = {{0, "first"}, {39, "\xCE\xB7 last"}};
   }
 
   void put(const Session& session) {
@@ -81,6 +82,7 @@ TEST_F(SessionWire, CarriesEverything) {
   ASSERT_EQ(back.changes.size(), 2u);
   EXPECT_EQ(back.changes[0].row, 3u);
   EXPECT_EQ(back.changes[0].setting, "coupling.k_vc = 8");
+  EXPECT_EQ(back.marks, session_.marks);
   ASSERT_TRUE(back.twin);
   expect_same_bits(back.twin->rows, session_.twin->rows);
   EXPECT_EQ(back.info.twin, "coupling.eta = 0.25\n");
@@ -131,6 +133,7 @@ TEST_F(SessionWire, RefusesWhatDoesNotFitTogether) {
   refused([](Session& s) { s.rows.pop_back(); });
   refused([](Session& s) { s.changes[1].row = 41; });
   refused([](Session& s) { s.changes[1].row = 2; });
+  refused([](Session& s) { s.marks[1].tick = 40; });
   refused([](Session& s) { s.info.slides.pop_back(); });
   refused([](Session& s) {
     s.rows.resize(s.rows.size() - static_cast<std::size_t>(s.layout.stride()));

@@ -1,0 +1,32 @@
+// What the stretch of time selected in a plot amounts to, and what can be done with it.
+#pragma once
+
+#include <vector>
+
+#include "app/desktop/base/stage.h"
+#include "app/plot/plot_menu.h"
+#include "app/plot/range_figures.h"
+#include "app/session/player.h"
+
+namespace limpid {
+
+class RangePanel {
+ public:
+  // Above the plots at `rect`, while a stretch is selected. `player` as draw_plots() has it.
+  void draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
+
+ private:
+  struct Line {
+    std::size_t curve;
+    RangeFigures figures;
+  };
+  void reckon(const Plot& plot, const History& history, const PlotRange& range);
+
+  // Of which stretch, and of which rows and curves, the lines are.
+  PlotRange known_{};
+  SampleIndex first_ = 0, end_ = 0;
+  std::vector<int> channels_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace limpid

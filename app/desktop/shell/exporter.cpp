@@ -1,0 +1,107 @@
+#include "app/desktop/shell/exporter.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "app/desktop/base/open_elsewhere.h"
+#include "app/plot/canvas_tape.h"
+#include "app/plot/plot_export.h"
+#include "devices/files/atomic_file.h"
+#include "render/gl/offscreen.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kOffered = 30;  // how long what was written can be opened from the window [s]
+
+PlotNotice written_as(const fs::path& file, std::span<const unsigned char> bytes) {
+  write_atomically(file, bytes);
+  return {"", false, file};  // a banner says so
+}
+
+std::span<const unsigned char> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
+}
+
+// What fails is said, too.
+template <class Work>
+std::function<PlotNotice()> said(Work work) {
+  return [work = std::move(work)]() -> PlotNotice {
+    try {
+      return work();
+    } catch (const std::exception& e) {
+      return {e.what(), true};
+    }
+  };
+}
+
+}  // namespace
+
+fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
+  if (order.what == ExportOrder::What::window) return order.file;
+  if (order.plot >= stage.plots.size()) return {};
+  const Plot& plot = stage.plots[order.plot];
+  PlotPicture picture = plot.picture(stage.group);
+  if (order.what == ExportOrder::What::table) {
+    const auto table = std::make_shared<const PlotTable>(
+        plot_table(plot.spec(), stage.history, picture.start, picture.stop));
+    live_.save_beside(
+        said([table, file = order.file] { return written_as(file, bytes_of(csv_text(*table))); }));
+    return {};
+  }
+  picture.width = static_cast<int>(std::lround(order.width * kLayoutPerMillimetre));
+  picture.height = static_cast<int>(std::lround(order.height * kLayoutPerMillimetre));
+  picture.theme = order.theme;
+  picture.millimetres = order.width;
+  if (order.format == ExportOrder::Format::svg) {
+    live_.save_beside(said([svg = plot_svg(plot.spec(), stage.history, picture),
+                            file = order.file] { return written_as(file, bytes_of(svg)); }));
+    return {};
+  }
+  const auto tape = std::make_shared<CanvasTape>();
+  const Rgb paper = draw_plot(plot.spec(), stage.history, picture, *tape);
+  const double scale = order.dpi / 25.4 / kLayoutPerMillimetre;
+  live_.save_beside(said([tape, paper, scale, width = picture.width, height = picture.height,
+                          dpi = order.dpi, file = order.file] {
+    RasterCanvas canvas(width, height, scale, paper);
+    tape->play(canvas);
+    const Raster raster = canvas.take();
+    const auto per_metre = static_cast<unsigned>(std::lround(dpi / 0.0254));
+    return written_as(file, png_of(raster.width, raster.height, raster.rgba, per_metre));
+  }));
+  return {};
+}
+
+void Exporter::wrote(const fs::path& file) {
+  written_ = file;
+  until_ = ImGui::GetTime() + kOffered;
+}
+
+void Exporter::update() {
+  if (const fs::path file = live_.take_written(); !file.empty()) wrote(file);
+  if (!written_.empty() && ImGui::GetTime() > until_) forget();
+}
+
+void Exporter::open_written() {
+  live_.save_beside([file = std::exchange(written_, {})]() -> PlotNotice {
+    if (open_elsewhere(file)) return {fmt::format("Opening {}", file.filename().string())};
+    return {"Nothing here opens files: xdg-open (of the package xdg-utils) is missing.", true};
+  });
+}
+
+void Exporter::show_written() {
+  live_.save_beside([file = std::exchange(written_, {})]() -> PlotNotice {
+    if (show_in_folder(file)) return {fmt::format("It is in {}", file.parent_path().string())};
+    return {fmt::format("It is in {}; no file manager answers here.", file.parent_path().string()),
+            true};
+  });
+}
+
+}  // namespace limpid

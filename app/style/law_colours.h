@@ -1,0 +1,38 @@
+// The colour of each coupling law: one table, by the law's number in recordings (core/coupling/
+// laws.h), for buttons, bands, curves, heads of a twin and figures. A new law is a line at its end.
+//
+// Each has a contrast of 3 to 1 at least with what is behind it, none is a thing's colour, and
+// people who see no red, no green or no blue tell them apart; a test computes both.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace limpid {
+
+struct LawColour {
+  const char* on_light;  // the light theme and paper, "#rrggbb"
+  const char* tint;      // there, of a variant of the law
+  const char* on_dark;
+};
+
+inline constexpr std::array<LawColour, 4> kLawColours{{
+    {"#6B7280", "#B4B9C2", "#98A3AF"},  // standard
+    {"#6A3D9A", "#B79BD3", "#9D72D6"},  // proposed
+    {"#6B9100", "#B5CC6A", "#A3CC2F"},  // predictive
+    {"#7A2E0E", "#C79A85", "#BF6A40"},  // tank
+}};
+
+// "#rrggbb" as a number.
+constexpr std::uint32_t hex_colour(const char* text) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 1; text[i] != '\0'; ++i) {
+    const char c = text[i];
+    const int digit = c <= '9' ? c - '0' : (c <= 'F' ? c - 'A' : c - 'a') + 10;
+    value = 16 * value + static_cast<std::uint32_t>(digit);
+  }
+  return value;
+}
+
+}  // namespace limpid

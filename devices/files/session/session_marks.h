@@ -1,0 +1,36 @@
+// Marks of a session: what people noted at moments of it, beside what was recorded.
+//
+// They are two lists below the group /marks, one for their ticks and one for their texts. The lists
+// have no unit, so that programs which take every list with a unit for a channel pass them by.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "devices/files/session/hdf5_reading.h"
+#include "devices/files/session/session.h"
+
+namespace limpid {
+
+// The lists of a file that is being written. Errors of all: FileError naming `file`.
+class MarkTable {
+ public:
+  void create(hid_t root, const std::filesystem::path& file);
+  void append(const Mark& mark) { waiting_.push_back(mark); }
+  void flush(const std::filesystem::path& file);
+  bool close();  // whether it worked; what was not flushed is given up
+
+ private:
+  hdf5::Dataset tick_, text_;
+  std::uint64_t written_ = 0;
+  std::vector<Mark> waiting_;
+};
+
+// Fills the session's marks; its rows are read already. Of a leftover those at rows that are not
+// there stay away. Errors: FileError.
+void read_marks(hid_t root, Session& session, const std::filesystem::path& file,
+                hdf5::Claims& claims);
+
+}  // namespace limpid

@@ -1,0 +1,168 @@
+// What people note at moments of a session, and that it survives what may happen to a file.
+#include "devices/files/session/session_marks.h"
+
+#include <hdf5.h>
+#include <sys/resource.h>
+
+#include <array>
+
+#include "tests/devices/files/session/sample_session.h"
+#include "tests/devices/files/test_files.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using test::refusal;
+using test::sample_info;
+using test::sample_rows;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<Mark> marks_of(const fs::path& file) { return read_session(file).marks; }
+
+TEST(Marks, AreKeptWithWhatIsRecordedInTheOrderOfTheirTicks) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(3), false);
+  writer.append(Mark{600, "\xCE\xB7 too small?"});
+  writer.append(sample_rows(RowLayout(3), 0, 700));
+  writer.append(Mark{2, "the hand touches"});
+  writer.close();
+  EXPECT_THAT(marks_of(dir / "a.h5"),
+              ElementsAre(Mark{2, "the hand touches"}, Mark{600, "\xCE\xB7 too small?"}));
+}
+
+TEST(Marks, OfASessionWithoutAnyAreNone) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
+}
+
+// Programs that take every list with a unit for a channel would cut all channels to its length.
+TEST(Marks, HaveNoUnit) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const hdf5::File file = hdf5::open_to_read(dir / "a.h5");
+  for (const char* path : {kMarkTickPath, kMarkTextPath}) {
+    const hdf5::Dataset list = hdf5::open_dataset(file.get(), path, dir / "a.h5");
+    EXPECT_EQ(H5Aexists(list.get(), "unit"), 0) << path;
+  }
+}
+
+// A killed recording has those that were on the disk with their rows.
+TEST(Marks, AreRecoveredWithTheRowsTheyBelongTo) {
+  const test::TempDir dir;
+  {
+    SessionWriter writer(dir / "a.h5", sample_info(3), false);
+    writer.append(Mark{100, "early"});
+    writer.append(sample_rows(RowLayout(3), 0, 512));
+    writer.append(Mark{1150, "of a row that is lost"});
+    writer.append(sample_rows(RowLayout(3), 512, 700));
+  }
+  EXPECT_THAT(marks_of(dir / "a.h5.part"), ElementsAre(Mark{100, "early"}));
+  recover_session(dir / "a.h5.part", false);
+  EXPECT_THAT(marks_of(dir / "a.h5"), ElementsAre(Mark{100, "early"}));
+}
+
+TEST(Marks, AreReplacedInAWholeNewFile) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 600);
+  fs::create_hard_link(dir / "a.h5", dir / "before.h5");
+  const std::string before = test::file_bytes(dir / "a.h5");
+  const std::vector<double> rows = read_session(dir / "a.h5").rows;
+  const std::vector<Mark> first{{5, "one"}, {500, "two"}}, second{{599, "three"}};
+  write_marks(dir / "a.h5", first);
+  EXPECT_EQ(marks_of(dir / "a.h5"), first);
+  write_marks(dir / "a.h5", second);
+  EXPECT_EQ(marks_of(dir / "a.h5"), second);
+  EXPECT_EQ(read_session(dir / "a.h5").rows, rows);
+  write_marks(dir / "a.h5", {});
+  EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
+  EXPECT_EQ(test::file_bytes(dir / "before.h5"), before) << "the finished file was written to";
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 2);
+}
+
+// Sessions of before had no marks; they get theirs.
+TEST(Marks, AreGivenToASessionThatHasNoListOfThem) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  {
+    const hdf5::Quiet quiet;
+    hdf5::File file(H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    ASSERT_GE(H5Ldelete(file.get(), "marks", H5P_DEFAULT), 0);
+  }
+  EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
+  const std::vector<Mark> some{{3, "there"}};
+  write_marks(dir / "a.h5", some);
+  EXPECT_EQ(marks_of(dir / "a.h5"), some);
+}
+
+// As on a full disk: the limit of the shell stops the copy, the session stays as it was.
+TEST(Marks, ThatCannotBeWrittenLeaveTheSessionAsItIs) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 600);
+  const std::vector<Mark> first{{5, "one"}};
+  write_marks(dir / "a.h5", first);
+  const std::string before = test::file_bytes(dir / "a.h5");
+  const std::vector<Mark> many(5000, Mark{1, std::string(kMarkLength, 'x')});
+  for (const std::size_t room : {before.size() / 2, before.size() + 20'000}) {
+    rlimit usual{};
+    getrlimit(RLIMIT_FSIZE, &usual);
+    const rlimit limit{room, usual.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const std::string said = refusal([&] { write_marks(dir / "a.h5", many); });
+    setrlimit(RLIMIT_FSIZE, &usual);
+    EXPECT_THAT(said, HasSubstr("a.h5")) << room;
+    EXPECT_EQ(test::file_bytes(dir / "a.h5"), before) << room;
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1) << room;
+  }
+}
+
+TEST(Marks, OfTooLongATextAreRefused) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const std::vector<Mark> longer{{1, std::string(kMarkLength + 1, 'x')}};
+  EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", longer); }),
+              testing::AllOf(HasSubstr("201 bytes"), HasSubstr("200")));
+  const std::vector<Mark> longest{{1, std::string(kMarkLength, 'x')}};
+  write_marks(dir / "a.h5", longest);
+  EXPECT_EQ(marks_of(dir / "a.h5"), longest);
+}
+
+// Another program's file: marks behind the end, lists of another length or kind.
+TEST(Marks, OfAStrangersFileAreNotBelieved) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const std::vector<Mark> one{{9, "last"}};
+  write_marks(dir / "a.h5", one);
+  const auto with = [&](const auto& change) {
+    fs::copy_file(dir / "a.h5", dir / "b.h5", fs::copy_options::overwrite_existing);
+    const hdf5::Quiet quiet;
+    {
+      hdf5::File file(H5Fopen((dir / "b.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+      change(file.get());
+    }
+    return refusal([&] { read_session(dir / "b.h5"); });
+  };
+  EXPECT_THAT(with([](hid_t file) {
+                const hdf5::Dataset ticks(H5Dopen2(file, kMarkTickPath, H5P_DEFAULT));
+                const std::uint64_t behind = 10;
+                H5Dwrite(ticks.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &behind);
+              }),
+              testing::AllOf(HasSubstr("/marks/tick"), HasSubstr("row 10"), HasSubstr("0 to 9")));
+  EXPECT_THAT(with([](hid_t file) {
+                const hdf5::Dataset ticks(H5Dopen2(file, kMarkTickPath, H5P_DEFAULT));
+                const std::array<hsize_t, 1> two{2};
+                H5Dset_extent(ticks.get(), two.data());
+              }),
+              HasSubstr("differ in length"));
+  EXPECT_THAT(with([](hid_t file) {
+                H5Ldelete(file, kMarkTextPath, H5P_DEFAULT);
+                H5Lcreate_hard(file, kMarkTickPath, file, kMarkTextPath, H5P_DEFAULT, H5P_DEFAULT);
+              }),
+              HasSubstr("not text of at most 200 bytes"));
+}
+
+}  // namespace
+}  // namespace limpid
