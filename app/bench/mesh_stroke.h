@@ -32,7 +32,7 @@ class Stroke {
 
   // The device's tip goes to the next place; the encoders are exact.
   void move();
-  void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, ForceWish::as_it_is, row_); }
+  void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, ForceRequest::as_it_is, row_); }
   Vec3 tip() const { return target(k_); }
   bool touches() const { return !tick_.proxy().f().isZero(0); }
   bool diverged() const { return tick_.diverged(); }

@@ -28,7 +28,7 @@ class Pressed {
   // One tick of the controller: the torque of the device [N m, N].
   const Vec<N>& control() {
     const Reading<N> reading = arm_.read(p_.encoder_step);
-    return tick_.run(p_, reading, ForceWish::as_it_is, row_);
+    return tick_.run(p_, reading, ForceRequest::as_it_is, row_);
   }
   // One tick of the device and the hand.
   void live(const Vec<N>& torque) {

@@ -164,12 +164,12 @@ HandInput LiveLoop::hand_input(const Controls& controls) {
   return hand_.step(grab, goal, tip, parameters_.hand_stiffness, T);
 }
 
-ForceWish LiveLoop::wish() {
+ForceRequest LiveLoop::wish() {
   const std::uint32_t arms = arms_.load(std::memory_order_relaxed);
   const std::uint32_t cuts = cuts_.load(std::memory_order_relaxed);
   const bool arm = std::exchange(known_arms_, arms) != arms;
   const bool cut = std::exchange(known_cuts_, cuts) != cuts;
-  return cut ? ForceWish::cut : arm ? ForceWish::arm : ForceWish::as_it_is;
+  return cut ? ForceRequest::cut : arm ? ForceRequest::arm : ForceRequest::as_it_is;
 }
 
 RigInput LiveLoop::rig_input(const TickTiming& timing, const HandInput& hand) {
@@ -261,8 +261,8 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   if (offered == nullptr) return;
   recording_to_ = offered;
   if (!std::exchange(path_runs_, true)) path_tick_ = 1;  // its first point is the first row's
-  rig_->rebase(parameters_, rebase_, target);
-  twin_.rebase(target);
+  rig_->restart_here(parameters_, rebase_, target);
+  twin_.restart_here(target);
   offered->changed(parameters_);
   offered->begins(rebase_.world);
   if (!offered->of_twin()) return;

@@ -176,7 +176,7 @@ class LiveLoop {
   void start_over(const Parameters& p);                                 // the loop's
   void follow_recorder(const Vec3& target);                             // the loop's
   RigInput rig_input(const TickTiming& timing, const HandInput& hand);  // the loop's
-  ForceWish wish();                                                     // the loop's
+  ForceRequest wish();                                                  // the loop's
   void publish(const TickTiming& timing);
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's

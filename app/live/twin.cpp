@@ -30,8 +30,8 @@ void Twin::step(bool on, const Parameters& p, const Rig& first, const RigInput& 
   rig_->step(parameters_, input, row);
 }
 
-void Twin::rebase(const Vec3& target) noexcept {
-  if (running_) rig_->rebase(parameters_, start_, target);
+void Twin::restart_here(const Vec3& target) noexcept {
+  if (running_) rig_->restart_here(parameters_, start_, target);
 }
 
 }  // namespace limpid

@@ -24,9 +24,9 @@ class Twin {
   void step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
             std::span<double> row) noexcept;
   void begin_anew() noexcept { anew_ = true; }  // at the next step
-  // Between two ticks, as Rig::rebase().
-  void rebase(const Vec3& target) noexcept;
-  const RigStart& start() const { return start_; }  // of the last rebase()
+  // Between two ticks, as Rig::restart_here().
+  void restart_here(const Vec3& target) noexcept;
+  const RigStart& start() const { return start_; }  // of the last restart_here()
   void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
   const Parameters& parameters() const { return parameters_; }
   // Whether they have changed at the last step.

@@ -51,7 +51,7 @@ class Stand {
   // One tick, the hand's target where the tip is at this pose.
   void step(const VectorXd& wanted) {
     RigInput input{{arm_.tip_at(Vec<kAnyDof>(wanted)), 1}};
-    if (ticks_ == 0) input.force = ForceWish::arm;
+    if (ticks_ == 0) input.force = ForceRequest::arm;
     const VectorXd x1 = device_.arm().x();
     rig_.step(p_, input, row_);
     keep_books(device_.arm().x() - x1);

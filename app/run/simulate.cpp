@@ -113,11 +113,11 @@ class Run {
     return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n), magnet};
   }
 
-  ForceWish wish(std::size_t k) {
+  ForceRequest wish(std::size_t k) {
     const bool armed = plan_.force.empty() || plan_.force[std::min(k, plan_.force.size() - 1)];
-    if (armed == armed_) return ForceWish::as_it_is;
+    if (armed == armed_) return ForceRequest::as_it_is;
     armed_ = armed;
-    return armed ? ForceWish::arm : ForceWish::cut;
+    return armed ? ForceRequest::arm : ForceRequest::cut;
   }
 
   const RunPlan& plan_;

@@ -151,7 +151,7 @@ FigurePanel click_panel(const std::string& title, const std::vector<Press>& pres
 
 }  // namespace
 
-Outcome click(Laboratory& lab) {
+Outcome click(TrialRunner& lab) {
   using enum CouplingKind;
   std::vector<Trial> trials;
   for (const double K : kClickHard) trials.push_back(button_pressed(predictive, K));

@@ -187,7 +187,7 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
 
 }  // namespace
 
-Outcome coordination(Laboratory& lab) {
+Outcome coordination(TrialRunner& lab) {
   Parameters standard, proposed;
   standard.kind = CouplingKind::standard;
   const std::vector<TrialResult> results = lab.run(all_trials(standard, proposed));

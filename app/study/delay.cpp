@@ -101,7 +101,7 @@ using LateTable = std::vector<std::vector<LateFelt>>;  // of each delay and eta
 
 // Runs `trial_of(late, eta, grip)` for all of them, and hands on what came.
 template <class TrialOf, class Take>
-void for_all(Laboratory& lab, const TrialOf& trial_of, const Take& take) {
+void for_all(TrialRunner& lab, const TrialOf& trial_of, const Take& take) {
   struct Place {
     std::size_t late, eta;
     double grip;
@@ -144,7 +144,7 @@ double wanted_inertia(const Late& late, const FeltMotion& felt, const RunPlan& p
   return 1 + networks.imag() / w - (late.known ? 0 : by_motors * t_d / felt.mass);
 }
 
-void free_motion(Laboratory& lab, LateTable& table) {
+void free_motion(TrialRunner& lab, LateTable& table) {
   const std::vector<Late> delays = all_delays();
   const Trial one = free_trial({0, true}, 1, DelayPlan::kGrips[0]);
   const Eigen::MatrixXd M = (1 + one.plan.parameters.inertia_ratio) *
@@ -170,7 +170,7 @@ void free_motion(Laboratory& lab, LateTable& table) {
           });
 }
 
-void at_walls(Laboratory& lab, LateTable& table) {
+void at_walls(TrialRunner& lab, LateTable& table) {
   const auto bench = [](const Late& late, double eta, double grip) {
     const TapSetting s = late_setting(late, eta);
     return TapBench(s, named_wall(s), grip, 1);
@@ -297,7 +297,7 @@ void judge(const LateTable& table, std::vector<Check>& checks) {
 
 }  // namespace
 
-Outcome delay(Laboratory& lab) {
+Outcome delay(TrialRunner& lab) {
   LateTable table(all_delays().size(), std::vector<LateFelt>(std::size(DelayPlan::kEtas)));
   free_motion(lab, table);
   at_walls(lab, table);

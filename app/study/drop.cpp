@@ -70,7 +70,7 @@ double force_on_tip(const Session& s, std::size_t k) {
 
 }  // namespace
 
-Outcome drop(Laboratory& lab) {
+Outcome drop(TrialRunner& lab) {
   using enum CouplingKind;
   std::vector<Trial> trials;
   for (const double K : kDropHard) trials.push_back(dropped(predictive, K));

@@ -48,7 +48,7 @@ std::string caption(const SweepPlan& plan) {
 
 }  // namespace
 
-Outcome eta_min_map(Laboratory& lab) {
+Outcome eta_min_map(TrialRunner& lab) {
   const SweepPlan plan = read_sweep_plan(data_dir() / "assets/sweeps/eta_min.toml");
   const SweepTable table = lab.sweep(plan);
   Outcome outcome;

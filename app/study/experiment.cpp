@@ -129,13 +129,13 @@ std::optional<Session> stamped_session(const fs::path& file, std::uint64_t key) 
 
 namespace fs = std::filesystem;
 
-Laboratory::Laboratory(std::string experiment, Options options)
+TrialRunner::TrialRunner(std::string experiment, Options options)
     : experiment_(std::move(experiment)), options_(std::move(options)) {
   options_.threads = threads_for(options_.threads);
   if (options_.program == 0) options_.program = program_digest();
 }
 
-TrialResult Laboratory::run_one(const Trial& trial) const {
+TrialResult TrialRunner::run_one(const Trial& trial) const {
   TrialResult result;
   result.session.info = session_info(trial.plan);
   result.session.layout = trial.plan.layout();
@@ -171,7 +171,7 @@ TrialResult Laboratory::run_one(const Trial& trial) const {
   return result;
 }
 
-void Laboratory::each(std::size_t count, const std::function<void(std::size_t)>& work) {
+void TrialRunner::each(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::size_t done = 0;
   std::mutex mutex;
   in_parallel(count, options_.threads, [&](std::size_t i, const std::atomic<bool>&) {
@@ -184,8 +184,8 @@ void Laboratory::each(std::size_t count, const std::function<void(std::size_t)>&
   });
 }
 
-void Laboratory::run(const std::vector<Trial>& trials,
-                     const std::function<void(std::size_t, const TrialResult&)>& take) {
+void TrialRunner::run(const std::vector<Trial>& trials,
+                      const std::function<void(std::size_t, const TrialResult&)>& take) {
   for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
   each(trials.size(), [&](std::size_t i) {
     const TrialResult result = run_one(trials[i]);
@@ -194,7 +194,7 @@ void Laboratory::run(const std::vector<Trial>& trials,
   });
 }
 
-SweepTable Laboratory::sweep(const SweepPlan& plan) {
+SweepTable TrialRunner::sweep(const SweepPlan& plan) {
   SweepTable table(plan);
   for (std::uint64_t i = 0; i < table.points(); ++i) {
     const RunPlan run = run_of(plan, table.rows.point(i));
@@ -210,32 +210,32 @@ SweepTable Laboratory::sweep(const SweepPlan& plan) {
   return table;
 }
 
-std::vector<TrialResult> Laboratory::run(const std::vector<Trial>& trials) {
+std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
   std::vector<TrialResult> results(trials.size());
   run(trials, [&](std::size_t i, const TrialResult& result) { results[i] = result; });
   return results;
 }
 
 // Each in its own file, NAME.cpp.
-Outcome coordination(Laboratory& lab);
-Outcome inertia(Laboratory& lab);
-Outcome passivity(Laboratory& lab);
-Outcome spectrum(Laboratory& lab);
-Outcome saturation(Laboratory& lab);
-Outcome observer(Laboratory& lab);
-Outcome transparency(Laboratory& lab);
-Outcome eta_min_map(Laboratory& lab);
-Outcome lightness(Laboratory& lab);
-Outcome zwidth(Laboratory& lab);
-Outcome switching(Laboratory& lab);
-Outcome friction(Laboratory& lab);
-Outcome delay(Laboratory& lab);
-Outcome link(Laboratory& lab);
-Outcome walls(Laboratory& lab);
-Outcome mass(Laboratory& lab);
-Outcome click(Laboratory& lab);
-Outcome drop(Laboratory& lab);
-Outcome stack(Laboratory& lab);
+Outcome coordination(TrialRunner& lab);
+Outcome inertia(TrialRunner& lab);
+Outcome passivity(TrialRunner& lab);
+Outcome spectrum(TrialRunner& lab);
+Outcome saturation(TrialRunner& lab);
+Outcome observer(TrialRunner& lab);
+Outcome transparency(TrialRunner& lab);
+Outcome eta_min_map(TrialRunner& lab);
+Outcome lightness(TrialRunner& lab);
+Outcome zwidth(TrialRunner& lab);
+Outcome switching(TrialRunner& lab);
+Outcome friction(TrialRunner& lab);
+Outcome delay(TrialRunner& lab);
+Outcome link(TrialRunner& lab);
+Outcome walls(TrialRunner& lab);
+Outcome mass(TrialRunner& lab);
+Outcome click(TrialRunner& lab);
+Outcome drop(TrialRunner& lab);
+Outcome stack(TrialRunner& lab);
 
 namespace {
 
@@ -299,9 +299,9 @@ void write_outcome(const std::string& name, const Outcome& outcome,
   write_verdict(name, outcome, dir / (name + ".json"));
 }
 
-Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options) {
+Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options) {
   std::filesystem::create_directories(options.dir);
-  Laboratory lab(experiment.name, options);
+  TrialRunner lab(experiment.name, options);
   Outcome outcome = experiment.run(lab);
   const std::string conditions = lab.conditions().text();
   if (!conditions.empty()) {

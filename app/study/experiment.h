@@ -108,7 +108,7 @@ struct Cancelled : std::runtime_error {
 };
 
 // What an experiment runs in. Results do not depend on the number of threads.
-class Laboratory {
+class TrialRunner {
  public:
   struct Options {
     std::filesystem::path dir;
@@ -119,7 +119,7 @@ class Laboratory {
     // Part done of the experiment, 0 to 1; called from any thread, one at a time.
     std::function<void(double part)> progress;
   };
-  Laboratory(std::string experiment, Options options);
+  TrialRunner(std::string experiment, Options options);
 
   std::uint64_t seed() const { return options_.seed; }
 
@@ -152,7 +152,7 @@ class Laboratory {
 struct Experiment {
   const char* name;
   const char* about;  // one line
-  Outcome (*run)(Laboratory&);
+  Outcome (*run)(TrialRunner&);
 };
 
 // The paper's in its order, then those of the predictive coupling and of bodies that move.
@@ -165,7 +165,7 @@ void write_outcome(const std::string& name, const Outcome& outcome,
 // Runs one and writes DIR/NAME.csv, .png, .svg and .json; its caption says under which conditions
 // it was run, and a check of its own that no trial diverged that may not. Errors: FileError,
 // Cancelled, std::runtime_error.
-Outcome carry_out(const Experiment& experiment, const Laboratory::Options& options);
+Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options);
 
 // Writes DIR/report.html over every verdict found in DIR.
 void write_report(const std::filesystem::path& dir);

@@ -132,7 +132,7 @@ double highest_energy(const TrialResult& result) {
 
 }  // namespace
 
-void roam(Laboratory& lab, Outcome& outcome) {
+void roam(TrialRunner& lab, Outcome& outcome) {
   const std::vector<Wobble> wobbles{{"proposed, sine", 0, CouplingKind::proposed},
                                     {"predictive, sine of 0.8 Hz", 0},
                                     {"square wave, 3 Hz", 3},

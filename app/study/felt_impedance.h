@@ -43,6 +43,6 @@ inline constexpr const char* kFreeSpace = "title = \"Free space\"\nabout = \"Not
 inline const Vec3 kHome(0.2, 0, -0.02);  // middle of the motion [m]
 
 // Adds the panel of E_c and the promise that the predictive law's is none.
-void roam(Laboratory& lab, Outcome& outcome);
+void roam(TrialRunner& lab, Outcome& outcome);
 
 }  // namespace limpid

@@ -222,7 +222,7 @@ struct Dragged {
   Verdict verdict;
 };
 
-std::vector<Dragged> drag_all(Laboratory& lab) {
+std::vector<Dragged> drag_all(TrialRunner& lab) {
   const std::vector<Case> cases = drags();
   std::vector<Trial> trials;
   for (const Case& c : cases) trials.push_back(drag(c.walls));
@@ -294,7 +294,7 @@ FigurePanel taken_panel(const std::vector<Dragged>& all) {
 }
 
 // Edge and corner, with motors of one kind: a panel of E_c, and what is promised of them.
-FigurePanel between_walls(Laboratory& lab, double motors, const std::string& which,
+FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& which,
                           std::vector<Check>& checks) {
   FigurePanel panel{.title = fmt::format("Wandering in walls of {} N/m, {}", kEdgeWall, which),
                     .x_label = "time [s]",
@@ -341,7 +341,7 @@ FigurePanel between_walls(Laboratory& lab, double motors, const std::string& whi
 
 }  // namespace
 
-Outcome friction(Laboratory& lab) {
+Outcome friction(TrialRunner& lab) {
   const std::vector<Dragged> all = drag_all(lab);
   const Verdict& rough = all.front().verdict;
   Outcome outcome;

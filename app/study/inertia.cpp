@@ -26,7 +26,7 @@ double largest_difference(const Session& a, const Session& b) {
 
 }  // namespace
 
-Outcome inertia(Laboratory& lab) {
+Outcome inertia(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const double eta : kInertiaEtas) {
     Parameters p;

@@ -77,7 +77,7 @@ Trial shaken(const Law& law) {
                   hand_path(source, kShakenTick, kSettle + kShakenPeriod + kShakenTick, at), p)};
 }
 
-std::vector<Law> shake(Laboratory& lab) {
+std::vector<Law> shake(TrialRunner& lab) {
   std::vector<Law> laws = all_laws();
   std::vector<Trial> trials;
   trials.reserve(laws.size());
@@ -287,7 +287,7 @@ void judge_proposed(const std::vector<Law>& laws, std::vector<Check>& checks) {
 
 }  // namespace
 
-Outcome lightness(Laboratory& lab) {
+Outcome lightness(TrialRunner& lab) {
   const std::vector<Law> laws = shake(lab);
   Outcome outcome;
   outcome.figure.title = "How light the arm can be made";

@@ -131,7 +131,7 @@ class LinkTheory {
   Eigen::Vector3d b_d_ = device_damping(arm_, p_);
 };
 
-void find_walls(Laboratory& lab, std::vector<LinkCurve>& laws) {
+void find_walls(TrialRunner& lab, std::vector<LinkCurve>& laws) {
   std::vector<TapSetting> settings;
   for (const LinkCurve& law : laws) {
     for (const int delay : law.delays()) settings.push_back(law.at(delay));
@@ -146,7 +146,7 @@ void find_walls(Laboratory& lab, std::vector<LinkCurve>& laws) {
 
 // Taps each wall under each law and delay.
 template <class WallOf, class Take>
-void tap_all(Laboratory& lab, std::vector<LinkCurve>& laws, const WallOf& wall_of,
+void tap_all(TrialRunner& lab, std::vector<LinkCurve>& laws, const WallOf& wall_of,
              const Take& take) {
   std::vector<TapBench> benches;
   std::vector<std::pair<LinkCurve*, std::size_t>> places;
@@ -167,7 +167,7 @@ void tap_all(Laboratory& lab, std::vector<LinkCurve>& laws, const WallOf& wall_o
   }
 }
 
-void measure(Laboratory& lab, std::vector<LinkCurve>& laws) {
+void measure(TrialRunner& lab, std::vector<LinkCurve>& laws) {
   tap_all(
       lab, laws, [](const LinkCurve& law, std::size_t k) { return law.walls[k]; },
       [](LinkCurve& law, std::size_t k, const Touch& t) {
@@ -184,7 +184,7 @@ void measure(Laboratory& lab, std::vector<LinkCurve>& laws) {
 }
 
 // The highest E_c of the tanks' taps through links with jitter and loss [J].
-double through_random_links(Laboratory& lab) {
+double through_random_links(TrialRunner& lab) {
   std::vector<TapBench> benches;
   std::vector<Trial> trials;
   Random random(static_cast<unsigned>(lab.seed()) + 1);
@@ -282,7 +282,7 @@ double off(const LinkCurve& law, const Theory& theory) {
   return worst;
 }
 
-std::vector<Check> judge(Laboratory& lab, const std::vector<LinkCurve>& laws,
+std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
                          const LinkTheory& theory) {
   using S = LinkStudy;
   return {
@@ -303,7 +303,7 @@ std::vector<Check> judge(Laboratory& lab, const std::vector<LinkCurve>& laws,
 
 }  // namespace
 
-Outcome link(Laboratory& lab) {
+Outcome link(TrialRunner& lab) {
   std::vector<LinkCurve> laws = all_laws();
   find_walls(lab, laws);
   measure(lab, laws);

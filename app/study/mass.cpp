@@ -139,7 +139,7 @@ bool held_to_the_end(const TrialResult& r) {
 }
 
 // Of each, the same shaking with next to nothing taken off.
-std::vector<FeltBody> feel_bodies(Laboratory& lab) {
+std::vector<FeltBody> feel_bodies(TrialRunner& lab) {
   std::vector<FeltBody> all;
   std::vector<Trial> trials;
   for (const HeldWay& way : held_ways()) {
@@ -252,7 +252,7 @@ std::vector<std::optional<double>> least_masses(const StableMasses& stable) {
 }
 
 // Under the predictive law, for each stiffness.
-std::vector<char> stable_with_the_lightest(Laboratory& lab) {
+std::vector<char> stable_with_the_lightest(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const double K : kStiffnesses) {
     trials.push_back({"", plan_in(held_cube(kLightest, K), nudging_hand(), in_a_still_hand())});
@@ -307,7 +307,7 @@ void add_staggered(const ArmDescription& arm, double damping, const char* ink, F
                            off, 0.1));
 }
 
-FigurePanel least_panel(Laboratory& lab, std::vector<Check>& checks) {
+FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
   FigurePanel panel{.title = "The least mass that can be held",
                     .x_label = "stiffness that holds it [N/m]",
                     .y_label = "least stable mass [g]",
@@ -337,7 +337,7 @@ FigurePanel least_panel(Laboratory& lab, std::vector<Check>& checks) {
 
 }  // namespace
 
-Outcome mass(Laboratory& lab) {
+Outcome mass(TrialRunner& lab) {
   const std::vector<FeltBody> all = feel_bodies(lab);
   Outcome outcome;
   outcome.figure.title = "The mass that is felt, and the least that can be held";

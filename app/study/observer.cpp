@@ -151,7 +151,7 @@ class Shaking {
 double off(double value, double wanted) { return std::abs(value / wanted - 1); }
 
 // Bandwidth over alpha / m for a sweep of gains and every mode of the arm.
-void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
+void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int i = 0; i <= 18; ++i) gains.push_back(0.002 * std::pow(500, i / 18.0));
   std::vector<Trial> trials;
@@ -211,7 +211,7 @@ void bandwidth(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
 }
 
 // f1_hat over f1 along the heaviest mode for three gains.
-void response(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
+void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<Trial> trials;
   for (const double alpha : kShown) trials.push_back(shaking.trial(alpha, 2 * kPeriod, true));
   const Modes modes = modes_of(trials.front().plan.arm);
@@ -239,7 +239,7 @@ void response(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
 }
 
 // (18): an estimate that is wrong at first, in a hand that rests.
-void error_decay(Laboratory& lab, Outcome& outcome) {
+void error_decay(TrialRunner& lab, Outcome& outcome) {
   constexpr double kWrong = 1e-3;  // [N m]
   std::vector<Trial> trials;
   for (const double alpha : kShown) {
@@ -287,7 +287,7 @@ void error_decay(Laboratory& lab, Outcome& outcome) {
 }
 
 // Estimates stay bounded for every gain there is.
-void every_gain(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
+void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int decade = -5; decade <= 3; ++decade) gains.push_back(std::pow(10.0, decade));
   std::vector<Trial> trials;
@@ -318,7 +318,7 @@ void every_gain(Laboratory& lab, const Shaking& shaking, Outcome& outcome) {
 
 }  // namespace
 
-Outcome observer(Laboratory& lab) {
+Outcome observer(TrialRunner& lab) {
   const Shaking shaking(lab.seed());
   Outcome outcome;
   outcome.figure.title = "The human force observer: bandwidth, error and stability over its gain";

@@ -187,7 +187,7 @@ std::vector<Trial> all_trials(const Runs& runs, std::uint64_t seed) {
   return trials;
 }
 
-Runs run_all(Laboratory& lab) {
+Runs run_all(TrialRunner& lab) {
   Runs runs;
   runs.cases.assign(passivity_cases().begin(), passivity_cases().end());
   runs.cases.push_back({"predictive, eta = 0.6", "predictive-0.6", CouplingKind::predictive, 0.6});
@@ -288,7 +288,7 @@ std::vector<Check> judge(const Runs& runs) {
 
 }  // namespace
 
-Outcome passivity(Laboratory& lab) {
+Outcome passivity(TrialRunner& lab) {
   const Runs runs = run_all(lab);
   Outcome outcome;
   outcome.figure = draw(runs);

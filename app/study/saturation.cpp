@@ -91,7 +91,7 @@ void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vecto
 
 }  // namespace
 
-void press_into_corners(Laboratory& lab, Outcome& outcome) {
+void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   const ArmDescription desktop = read_urdf(default_device());
   FigurePanel torque{.title = "Pressed into random corners: contact torque",
                      .x_label = "limit of every motor [N m]",
@@ -217,7 +217,7 @@ class Run {
 };
 
 // The predictive coupling pushed with 8 N against motors of 0.4 N m: the worst over walls and etas.
-Touch worst_push(Laboratory& lab) {
+Touch worst_push(TrialRunner& lab) {
   std::vector<TapBench> benches;
   std::vector<Trial> trials;
   for (const double wall : {600.0, 5000.0}) {
@@ -288,7 +288,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 
 }  // namespace
 
-Outcome saturation(Laboratory& lab) {
+Outcome saturation(TrialRunner& lab) {
   using enum CouplingKind;
   const std::vector<Trial> trials{
       press("anti-windup", proposed, true), press("wound-up", proposed, false),

@@ -68,7 +68,7 @@ void add_spread(FigurePanel& panel, const std::vector<FigurePoint>& points, cons
 
 }  // namespace
 
-Outcome spectrum(Laboratory& lab) {
+Outcome spectrum(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const PassivityCase& one : passivity_cases()) {
     for (Trial& trial : passivity_trials(one, lab.seed())) trials.push_back(std::move(trial));

@@ -100,7 +100,7 @@ std::vector<double> pressed_in(const Stack& stack, const Session& s) {
 
 }  // namespace
 
-Outcome stack(Laboratory& lab) {
+Outcome stack(TrialRunner& lab) {
   const std::vector<Stack> all = stacks();
   std::vector<Trial> trials;
   trials.reserve(all.size());

@@ -230,7 +230,7 @@ FigurePanel apart_panel(const Session& s) {
 
 }  // namespace
 
-Outcome switching(Laboratory& lab) {
+Outcome switching(TrialRunner& lab) {
   const std::vector<Trial> trials{swinging(CouplingKind::proposed, kStop),
                                   swinging(CouplingKind::predictive, kStop), pressing(),
                                   swinging(CouplingKind::predictive, kStiffStop)};

@@ -143,7 +143,7 @@ struct WallSearch {
 
 // Whether each wall, not a number where none is asked for, is good in every grip. What one grip
 // finds bad is not tried in the next.
-std::vector<char> try_walls(Laboratory& lab, std::span<const TapSetting> settings,
+std::vector<char> try_walls(TrialRunner& lab, std::span<const TapSetting> settings,
                             const std::vector<double>& walls, const WallTest& test) {
   std::vector<char> good(settings.size(), 1);
   for (const double grip : test.grips) {
@@ -174,7 +174,7 @@ bool well_rendered(const Touch& touch, bool exact_encoder) {
          (!exact_encoder || touch.energy <= W::kEnergy);
 }
 
-std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings,
+std::vector<double> stiffest_walls(TrialRunner& lab, std::span<const TapSetting> settings,
                                    const WallTest& test) {
   std::vector<WallSearch> searches(settings.size());
   std::vector<double> walls(settings.size());

@@ -95,7 +95,7 @@ struct WallTest {
 
 // For each setting the stiffest wall [N/m] within kSoftest and kStiffest, by bisection of its
 // logarithm; kSoftest if not even that one is good. All settings go on side by side.
-std::vector<double> stiffest_walls(Laboratory& lab, std::span<const TapSetting> settings,
+std::vector<double> stiffest_walls(TrialRunner& lab, std::span<const TapSetting> settings,
                                    const WallTest& test = {});
 
 }  // namespace limpid

@@ -171,7 +171,7 @@ struct Felt {
   std::vector<Impedance> seen;
 };
 
-Felt shake(Laboratory& lab, const Bench& bench, const std::vector<Setting>& settings) {
+Felt shake(TrialRunner& lab, const Bench& bench, const std::vector<Setting>& settings) {
   std::vector<Trial> trials;
   for (const Setting& s : settings) trials.push_back(bench.shaken(s));
   const std::vector<TrialResult> results = lab.run(trials);
@@ -249,7 +249,7 @@ FigurePanel scaling_panel(const Felt& felt, std::size_t at_one, double w_f) {
   return panel;
 }
 
-void free_motion(Laboratory& lab, const Bench& bench, Outcome& outcome) {
+void free_motion(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   std::vector<Setting> settings{{CouplingKind::standard, 1, 0}};
   for (const double eta : kEtas) settings.push_back({CouplingKind::proposed, eta, 0});
   const Felt felt = shake(lab, bench, settings);
@@ -284,7 +284,7 @@ void free_motion(Laboratory& lab, const Bench& bench, Outcome& outcome) {
               off_inertia, 0.10));
 }
 
-void in_contact(Laboratory& lab, const Bench& bench, Outcome& outcome) {
+void in_contact(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   std::vector<Setting> settings{{CouplingKind::standard, 1, kPaperWall}};
   for (const double eta : kInContact) settings.push_back({CouplingKind::proposed, eta, kPaperWall});
   const Felt felt = shake(lab, bench, settings);
@@ -301,7 +301,7 @@ void in_contact(Laboratory& lab, const Bench& bench, Outcome& outcome) {
                                    worst_off_theory(felt, 20), 0.10));
 }
 
-void stiffness(Laboratory& lab, const Bench& bench, Outcome& outcome) {
+void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   constexpr CouplingKind kKinds[] = {CouplingKind::standard, CouplingKind::proposed};
   std::vector<Trial> trials;
   for (const CouplingKind kind : kKinds) {
@@ -348,7 +348,7 @@ void stiffness(Laboratory& lab, const Bench& bench, Outcome& outcome) {
 
 }  // namespace
 
-Outcome transparency(Laboratory& lab) {
+Outcome transparency(TrialRunner& lab) {
   const Bench bench(lab.seed());
   Outcome outcome;
   outcome.figure.title = "Transparency: what the hand feels";

@@ -103,7 +103,7 @@ AnyTap any_tap(const AnyArm& any, double step, const WallsPlan::Grip& grip, doub
 using Felts = std::vector<WallFelt>;  // of each arm
 
 // Of every step of the encoders.
-std::vector<Felts> tap_all(Laboratory& lab) {
+std::vector<Felts> tap_all(TrialRunner& lab) {
   std::vector<Felts> felts;
   std::vector<AnyTap> taps;
   std::vector<WallFelt*> of;
@@ -221,7 +221,7 @@ void judge(const std::vector<Felts>& felts, std::vector<Check>& checks) {
 
 }  // namespace
 
-Outcome walls(Laboratory& lab) {
+Outcome walls(TrialRunner& lab) {
   const std::vector<Felts> felts = tap_all(lab);
   Outcome outcome;
   using P = WallsPlan;

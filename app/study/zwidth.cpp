@@ -171,7 +171,7 @@ struct Found {
 };
 
 // Equal settings of different curves are looked at once.
-Found find_all(Laboratory& lab) {
+Found find_all(TrialRunner& lab) {
   Found found{all_curves(), {}};
   std::vector<TapSetting> settings;
   for (const WallCurve& c : found.curves) {
@@ -207,7 +207,7 @@ std::vector<FigurePanel> draw(const Found& found) {
 }
 
 // The worst of taps at 5000 N/m over grips and etas.
-Touch worst_tap(Laboratory& lab, TapSetting s) {
+Touch worst_tap(TrialRunner& lab, TapSetting s) {
   std::vector<TapBench> benches;
   std::vector<Trial> trials;
   for (const double grip : kGrips) {
@@ -229,7 +229,7 @@ Touch worst_tap(Laboratory& lab, TapSetting s) {
   return worst;
 }
 
-void judge_taps(Laboratory& lab, std::vector<Check>& checks) {
+void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
   for (const auto& [mass, quiet] : {std::pair(0.0, 1e-4), {0.2, 4e-3}}) {
     const std::string where = fmt::format("5000 N/m, eta 0.3 to 1, hand of {} kg", mass);
     const Touch exact = worst_tap(lab, {.hand_mass = mass}),
@@ -276,7 +276,7 @@ void judge_named(const Found& found, std::vector<Check>& checks) {
 
 }  // namespace
 
-Outcome zwidth(Laboratory& lab) {
+Outcome zwidth(TrialRunner& lab) {
   const Found found = find_all(lab);
   Outcome outcome;
   outcome.figure.title = "The stiffest wall that is rendered well";

@@ -29,8 +29,8 @@ class Coupling {
   }
   // First in a tick: where the law takes the device to be.
   template <class P>
-  Whereabouts<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
-    Whereabouts<N> at;
+  DeviceEstimate<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
+    DeviceEstimate<N> at;
     with(laws_, kind, [&](auto& law) { at = law.locate(p, in); });
     return at;
   }

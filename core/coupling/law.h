@@ -37,7 +37,7 @@ struct LawReading {
 
 // Where a law takes the device to be.
 template <int N>
-struct Whereabouts {
+struct DeviceEstimate {
   Vec<N> x, v;  // [rad, rad/s]
 };
 
@@ -86,7 +86,7 @@ template <int N>
 struct PlainLaw {
   void start(const LawStart<N>&) {}
   template <class P>
-  Whereabouts<N> locate(const P&, const LawReading<N>& in) {
+  DeviceEstimate<N> locate(const P&, const LawReading<N>& in) {
     return {in.x1, in.v1};
   }
   // The torque that really left, for the tick that begins [N m].

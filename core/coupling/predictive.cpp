@@ -167,7 +167,7 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
 }
 
 template <int N>
-Whereabouts<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<N>& in) {
+DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<N>& in) {
   elapsed_ = in.elapsed;
   both_ = p.hand_mass > 0;
   if (memory_ < 0) memory_ = p.gains(in.encoder_step).p;

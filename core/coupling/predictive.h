@@ -19,7 +19,7 @@ class PredictiveLaw::Of {
  public:
   void start(const LawStart<N>& at);
   template <class P>
-  Whereabouts<N> locate(const P& p, const LawReading<N>& in) {
+  DeviceEstimate<N> locate(const P& p, const LawReading<N>& in) {
     return locate(static_cast<const Settings&>(p), in);
   }
   template <class P>
@@ -31,7 +31,7 @@ class PredictiveLaw::Of {
 
  private:
   struct Solve;
-  Whereabouts<N> locate(const Settings& p, const LawReading<N>& in);
+  DeviceEstimate<N> locate(const Settings& p, const LawReading<N>& in);
   Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
               Proxy<N>& proxy);
   double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);

@@ -55,18 +55,26 @@ Vec<N> StandardLaw::Of<N>::step(const Settings& p, const LawInput<N>& in, Proxy<
   return on_device<N>(p, in, in.link->to_device(here), none);
 }
 
-#define LIMPID_OF(N)                                                                      \
-  template Vec<N> couple(const SpringDamper&, const LawInput<N>&, const Feedforward<N>&,  \
-                         Proxy<N>&);                                                      \
-  template void move_proxy(const SpringDamper&, double, const FromDevice<N>&,             \
-                           const Feedforward<N>&, Proxy<N>&);                             \
-  template Vec<N> on_device(const SpringDamper&, const LawInput<N>&, const FromProxy<N>&, \
-                            const Feedforward<N>&);                                       \
-  template Vec<N> StandardLaw::Of<N>::step(const Settings&, const LawInput<N>&, Proxy<N>&);
-LIMPID_OF(3)
-LIMPID_OF(7)
-LIMPID_OF(kAnyDof)
-#undef LIMPID_OF
+template Vec<3> couple(const SpringDamper&, const LawInput<3>&, const Feedforward<3>&, Proxy<3>&);
+template void move_proxy(const SpringDamper&, double, const FromDevice<3>&, const Feedforward<3>&,
+                         Proxy<3>&);
+template Vec<3> on_device(const SpringDamper&, const LawInput<3>&, const FromProxy<3>&,
+                          const Feedforward<3>&);
+template Vec<3> StandardLaw::Of<3>::step(const Settings&, const LawInput<3>&, Proxy<3>&);
+template Vec<7> couple(const SpringDamper&, const LawInput<7>&, const Feedforward<7>&, Proxy<7>&);
+template void move_proxy(const SpringDamper&, double, const FromDevice<7>&, const Feedforward<7>&,
+                         Proxy<7>&);
+template Vec<7> on_device(const SpringDamper&, const LawInput<7>&, const FromProxy<7>&,
+                          const Feedforward<7>&);
+template Vec<7> StandardLaw::Of<7>::step(const Settings&, const LawInput<7>&, Proxy<7>&);
+template Vec<kAnyDof> couple(const SpringDamper&, const LawInput<kAnyDof>&,
+                             const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
+template void move_proxy(const SpringDamper&, double, const FromDevice<kAnyDof>&,
+                         const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
+template Vec<kAnyDof> on_device(const SpringDamper&, const LawInput<kAnyDof>&,
+                                const FromProxy<kAnyDof>&, const Feedforward<kAnyDof>&);
+template Vec<kAnyDof> StandardLaw::Of<kAnyDof>::step(const Settings&, const LawInput<kAnyDof>&,
+                                                     Proxy<kAnyDof>&);
 
 Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d, double delay,
                       const LinkSettings& link) {

@@ -51,7 +51,7 @@ class TankLaw::Of {
  public:
   void start(const LawStart<N>& at);
   template <class P>
-  Whereabouts<N> locate(const P&, const LawReading<N>& in) {
+  DeviceEstimate<N> locate(const P&, const LawReading<N>& in) {
     elapsed_ = in.elapsed;
     return {in.x1, in.v1};
   }

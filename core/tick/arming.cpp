@@ -4,9 +4,9 @@
 
 namespace limpid {
 
-void ForceGate::step(ForceWish wish, const Objections& against, double T) noexcept {
-  if (wish == ForceWish::arm) take(ArmingEvent::arm);
-  if (wish == ForceWish::cut) take(ArmingEvent::cut);
+void ForceGate::step(ForceRequest wish, const Objections& against, double T) noexcept {
+  if (wish == ForceRequest::arm) take(ArmingEvent::arm);
+  if (wish == ForceRequest::cut) take(ArmingEvent::cut);
   if (against.gap) take(ArmingEvent::gap);
   if (against.gap || !(state_ == Arming::fading || state_ == Arming::on)) gain_ = 0;
   if (against.fault != ForceState::on) {

@@ -1,4 +1,5 @@
-// Arming: when the force of a device is on, and why it is off. ForceGate is the table of transitions.
+// Arming: when the force of a device is on, and why it is off. ForceGate is the table of
+// transitions.
 #pragma once
 
 #include <cstdint>
@@ -77,7 +78,7 @@ constexpr Arming after(Arming now, ArmingEvent event) {
 }
 
 // What somebody wants of the force at a tick.
-enum class ForceWish : std::uint8_t { as_it_is, arm, cut };
+enum class ForceRequest : std::uint8_t { as_it_is, arm, cut };
 
 // What there is to say against force at a tick.
 struct Objections {
@@ -99,7 +100,7 @@ class ForceGate {
     why_ = tripped_ = on ? ForceState::on : ForceState::off;
   }
   // One tick of T [s].
-  void step(ForceWish wish, const Objections& against, double T) noexcept;
+  void step(ForceRequest wish, const Objections& against, double T) noexcept;
 
   Arming state() const { return state_; }
   bool armed() const { return state_ != Arming::off; }  // by somebody, and not cut since

@@ -34,14 +34,14 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
 
 template <int N>
 void Tick<N>::start(const Parameters& p, const Start<N>& start) {
-  rebase(p, start);
+  restart_here(p, start);
   motors_.start();
   safety_.start();
   gate_.start(start.armed);
 }
 
 template <int N>
-void Tick<N>::rebase(const Parameters& p, const Start<N>& start) {
+void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   const Vec<N> zero = Vec<N>::Zero(start.x1.size());
   proxy_.place(start.x2, start.v2, p.inertia_ratio);
   if (BodyWorld* world = proxy_.contacts().world(); world != nullptr && !world->read(start.world)) {
@@ -69,7 +69,7 @@ void Tick<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
 }
 
 template <int N>
-const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish wish,
+const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceRequest wish,
                            std::span<double> row) {
   const NoSubnormals fast_at_rest;
   const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
@@ -89,7 +89,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
   if (goes_on) velocity_.update(in.measured, T, p.velocity, p.encoder_step);
   if (!goes_on) velocity_.reset(in.measured);
   if (p.kind != kind_) switch_law(p.kind, in.measured);
-  const Whereabouts<N> at = coupling_.locate(
+  const DeviceEstimate<N> at = coupling_.locate(
       p.kind, p,
       {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
   fresh_law_ = false;
@@ -139,7 +139,8 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceWish 
 // What the motors are to give for the device's own forces; returns what of them is left to the law.
 // A real device has the friction that was found of it, whatever the virtual arm is given.
 template <int N>
-Vec<N> Tick<N>::own_forces(const Parameters& p, bool guarded, const Whereabouts<N>& at, double T) {
+Vec<N> Tick<N>::own_forces(const Parameters& p, bool guarded, const DeviceEstimate<N>& at,
+                           double T) {
   const Vec<N> friction = guarded ? arm_friction_ : resolve<N>(p.friction, arm_friction_);
   loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
@@ -178,7 +179,7 @@ void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
 
 // The command on its way to the motors.
 template <int N>
-void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out,
+void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,
                       double T) {
   if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Objections against = safety_.judge(

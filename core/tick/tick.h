@@ -86,12 +86,12 @@ class Tick {
 
   void start(const Parameters& p, const Start<N>& start);
   // The same, but for the force: it goes on as it is.
-  void rebase(const Parameters& p, const Start<N>& start);
+  void restart_here(const Parameters& p, const Start<N>& start);
   void limit(const SafetyLimits& limits) { safety_.limit(limits); }
 
   // Runs tick k and writes its row, except for what only the device and the clock know (hand,
   // timing). Returns the motor torque to be held until t_k+1 [N m].
-  const Vec<N>& run(const Parameters& p, const Reading<N>& in, ForceWish wish,
+  const Vec<N>& run(const Parameters& p, const Reading<N>& in, ForceRequest wish,
                     std::span<double> row);
 
   // Another scene, between two ticks: takes `contacts` in and gives the old ones out. Allocates
@@ -116,10 +116,11 @@ class Tick {
 
  private:
   void begin_after_gap(const Reading<N>& in);
-  Vec<N> own_forces(const Parameters& p, bool guarded, const Whereabouts<N>& at, double T);
+  Vec<N> own_forces(const Parameters& p, bool guarded, const DeviceEstimate<N>& at, double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void start_law(const LawStart<N>& at);
-  void pass_on(const Parameters& p, const Reading<N>& in, ForceWish wish, double put_out, double T);
+  void pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,
+               double T);
   void close_books(const Reading<N>& in, double T);
   void write_row(const Parameters& p, const Reading<N>& in, std::span<double> row) const;
   void write_contacts(std::span<double> row) const;

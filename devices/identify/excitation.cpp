@@ -199,7 +199,7 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   const Vector none = Vector::Zero(x.size());
   const Objections against =
       safety_.judge(in.health, !torque.allFinite(), {x, v_, J, none, put_out, in.T});
-  gate_.step(first ? ForceWish::arm : ForceWish::as_it_is, against, in.T);
+  gate_.step(first ? ForceRequest::arm : ForceRequest::as_it_is, against, in.T);
   torque_ = motors_.pass(torque, {limit_, J, safety_.tip_force()}, gate_.gain(), in.T,
                          SafetyLimits::kSlew);
 

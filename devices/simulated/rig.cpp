@@ -172,12 +172,12 @@ void Rig::start(const Parameters& p, const RigStart& start) {
       of_);
 }
 
-void Rig::rebase(const Parameters& p, RigStart& scratch, const Vec3& target) {
+void Rig::restart_here(const Parameters& p, RigStart& scratch, const Vec3& target) {
   present(scratch);
   std::visit(
       [&](auto& of) {
-        of->tick.rebase(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat, true,
-                            scratch.reserve, scratch.world});
+        of->tick.restart_here(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat,
+                                  true, scratch.reserve, scratch.world});
         of->begin_at(scratch, target);
       },
       of_);

@@ -25,7 +25,7 @@ class Contacts;
 // What reaches the loop from outside in one tick.
 struct RigInput {
   HandInput hand;
-  ForceWish force = ForceWish::as_it_is;
+  ForceRequest force = ForceRequest::as_it_is;
   int periods = 1;     // since the step before, in ticks
   double dt = 0;       // the same as it really passed [s]; 0: as long as it should be
   double silence = 0;  // since the window last answered [s]
@@ -84,7 +84,7 @@ class Rig {
   void present(RigStart& into) const;
   // Begins anew from where it stands, the force as it is: so does a recording of a running loop.
   // `scratch` as in present(); `target` is the hand's [m].
-  void rebase(const Parameters& p, RigStart& scratch, const Vec3& target);
+  void restart_here(const Parameters& p, RigStart& scratch, const Vec3& target);
   void limit(const SafetyLimits& limits);
   // Between two steps: takes in what can be touched from now on, made for the same arm, and gives
   // out what could be until now. Contacts with meshes that stay remember their sides.

@@ -9,10 +9,10 @@ class Wisher {
  public:
   explicit Wisher(bool armed = false) : armed_(armed) {}
 
-  ForceWish at(bool armed) {
-    if (armed == armed_) return ForceWish::as_it_is;
+  ForceRequest at(bool armed) {
+    if (armed == armed_) return ForceRequest::as_it_is;
     armed_ = armed;
-    return armed ? ForceWish::arm : ForceWish::cut;
+    return armed ? ForceRequest::arm : ForceRequest::cut;
   }
 
  private:

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "app/base/folders.h"
-#include "app/desktop/base/deeds.h"
+#include "app/desktop/base/first_steps.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 #include "devices/files/text_file.h"

@@ -52,7 +52,7 @@ struct Settings {
   bool hold_on_release = false;
   bool hint_seen = false;                     // the story was offered, and somebody went on
   bool your_turn = false;                     // the list of what to try is shown
-  std::string tried;                          // of it, see deeds.h
+  std::string tried;                          // of it, see first_steps.h
   std::string picture_quality = "automatic";  // or high, medium, low
   double plot_length = 10;                    // [s]
   double band = 5;                            // of the human, for the analysis [Hz]

@@ -36,7 +36,7 @@ void ExperimentsPanel::start(const Experiment& experiment) {
   stopping_ = false;
   ++begun_;
   running_.start(experiment.name, [&experiment](TaskProgress& progress) {
-    Laboratory::Options options;
+    TrialRunner::Options options;
     options.dir = experiments_dir();
     options.threads = 1;  // the loop and the picture need the rest
     options.stop = &progress.cancel;

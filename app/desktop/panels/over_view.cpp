@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "app/desktop/base/deeds.h"
+#include "app/desktop/base/first_steps.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -155,19 +155,20 @@ void draw_tick(ImVec2 at, float side, bool done) {
                {at.x + 0.8f * side, at.y + 0.26f * side}, rgba, thick);
 }
 
-void draw_next_deed(Settings& settings) {
+void draw_next_step(Settings& settings) {
   const Palette& colours = current_palette();
   const auto tried = std::ranges::count_if(
-      kDeeds, [&](const DeedInfo& deed) { return done(settings, deed.deed); });
+      kFirstSteps, [&](const FirstStepInfo& step) { return done(settings, step.step); });
   const auto* next = std::ranges::find_if(
-      kDeeds, [&](const DeedInfo& deed) { return !done(settings, deed.deed); });
+      kFirstSteps, [&](const FirstStepInfo& step) { return !done(settings, step.step); });
   ImGui::AlignTextToFramePadding();
   ImGui::TextColored(colour_vector(colours.muted), "Your turn, %d of %zu:",
-                     static_cast<int>(tried) + (next != kDeeds.end() ? 1 : 0), kDeeds.size());
+                     static_cast<int>(tried) + (next != kFirstSteps.end() ? 1 : 0),
+                     kFirstSteps.size());
   ImGui::SameLine();
-  ImGui::TextUnformatted(next != kDeeds.end() ? next->what : "all of it is done");
+  ImGui::TextUnformatted(next != kFirstSteps.end() ? next->what : "all of it is done");
   ImGui::SameLine();
-  if (next != kDeeds.end()) {
+  if (next != kFirstSteps.end()) {
     ImGui::TextColored(colour_vector(colours.muted), "%s", next->how);
     ImGui::SameLine();
   }
@@ -187,23 +188,23 @@ void draw_your_turn(Settings& settings, ScreenRect view) {
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   // Where the list would hide the arm: what comes next alone.
   if (view.height() < 30 * em || view.width() < 50 * em) {
-    draw_next_deed(settings);
+    draw_next_step(settings);
     ImGui::End();
     return;
   }
   heading("Your turn");
-  if (ImGui::BeginTable("deeds", 2, ImGuiTableFlags_SizingFixedFit)) {
+  if (ImGui::BeginTable("steps", 2, ImGuiTableFlags_SizingFixedFit)) {
     const Palette& colours = current_palette();
-    for (const DeedInfo& deed : kDeeds) {
-      const bool ticked = done(settings, deed.deed);
+    for (const FirstStepInfo& step : kFirstSteps) {
+      const bool ticked = done(settings, step.step);
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       const ImVec2 at = ImGui::GetCursorScreenPos();
       draw_tick({at.x, at.y + 0.5f * (ImGui::GetTextLineHeight() - side)}, side, ticked);
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 1.5f * side);
-      ImGui::TextColored(colour_vector(ticked ? colours.muted : colours.text), "%s", deed.what);
+      ImGui::TextColored(colour_vector(ticked ? colours.muted : colours.text), "%s", step.what);
       ImGui::TableNextColumn();
-      ImGui::TextColored(colour_vector(colours.muted), "%s", deed.how);
+      ImGui::TextColored(colour_vector(colours.muted), "%s", step.how);
     }
     ImGui::EndTable();
   }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/desktop/base/deeds.h"
+#include "app/desktop/base/first_steps.h"
 #include "app/desktop/base/picture_signs.h"
 #include "app/desktop/live/pad_hand.h"
 #include "app/desktop/panels/object_signs.h"
@@ -100,15 +100,17 @@ void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
-  const std::pair<Deed, const char*> all[] = {
-      {Deed::pull, pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table."
-                               : of_pad.c_str()},
-      {Deed::push, pad.empty() ? "Wheel while dragging: nearer and farther."
-                               : "Its triggers: nearer and farther. A lets go, B cuts the force."},
-      {Deed::law, "C switches the coupling: the standard one lets hand and world drift apart."}};
+  const std::pair<FirstStep, const char*> all[] = {
+      {FirstStep::pull, pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table."
+                                    : of_pad.c_str()},
+      {FirstStep::push, pad.empty()
+                            ? "Wheel while dragging: nearer and farther."
+                            : "Its triggers: nearer and farther. A lets go, B cuts the force."},
+      {FirstStep::law,
+       "C switches the coupling: the standard one lets hand and world drift apart."}};
   std::vector<const char*> lines;
-  for (const auto& [deed, line] : all) {
-    if (!done(settings, deed)) lines.push_back(line);
+  for (const auto& [step, line] : all) {
+    if (!done(settings, step)) lines.push_back(line);
   }
   float size = face->FontSize * 1.15f;
   for (const char* line : lines) {  // as large as the widest one may be
@@ -299,9 +301,9 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
                        : scene.stage.rows().tip(layout.in(scene.row, Column::device_position)),
          pixel);
     settings.hint_seen = true;
-    note_done(settings, Deed::pull);
+    note_done(settings, FirstStep::pull);
   }
-  if (std::exchange(pushed_, false)) note_done(settings, Deed::push);
+  if (std::exchange(pushed_, false)) note_done(settings, FirstStep::push);
   const bool dragged = dragging_;
   if (dragging_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragging_ = false;

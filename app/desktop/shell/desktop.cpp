@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "app/base/folders.h"
-#include "app/desktop/base/deeds.h"
+#include "app/desktop/base/first_steps.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/base/window_layout.h"
@@ -201,14 +201,14 @@ void Desktop::follow_break() {
 }
 
 // What somebody tries for the first time, and a story that has come to its end: the arm is theirs.
-void Desktop::follow_deeds() {
+void Desktop::follow_first_steps() {
   PlayedSession* played = playback.shown();
   if (played != nullptr) {
     const Player& player = played->player();
     const bool over = player.time() >= player.duration() - 2 * player.session().info.tick;
     const bool told = std::exchange(told_, player.playing());
     if (played->step() == nullptr) {
-      if (player.playing()) note_done(settings, Deed::play);
+      if (player.playing()) note_done(settings, FirstStep::play);
     } else if (over && told && !player.playing()) {  // not where somebody looks at its end
       playback.close();
       settings.your_turn = !all_done(settings);
@@ -217,18 +217,18 @@ void Desktop::follow_deeds() {
     law_.reset();
     return;
   }
-  if (settings.twin.on) note_done(settings, Deed::twin);
+  if (settings.twin.on) note_done(settings, FirstStep::twin);
   if (passivity_broken(settings)) return law_.reset();  // whose settings nobody chose
   const Parameters& p = settings.parameters;
   const auto now = std::pair(p.kind, p.eta);
   const auto before = std::exchange(law_, now);
-  if (before && before->first != now.first) note_done(settings, Deed::law);
-  if (before && before->second != now.second) note_done(settings, Deed::eta);
+  if (before && before->first != now.first) note_done(settings, FirstStep::law);
+  if (before && before->second != now.second) note_done(settings, FirstStep::eta);
   if (!live.controls().grab || break_holds_) return;
   const RowLayout& layout = live.loop().layout();
   double contact = 0;
   for (const double f : layout.in(live.row(), Column::contact_torque)) contact += f * f;
-  if (contact > 1e-4) note_done(settings, Deed::press);  // more than 10 mN m
+  if (contact > 1e-4) note_done(settings, FirstStep::press);  // more than 10 mN m
 }
 
 void Desktop::update(double dt) {
@@ -245,7 +245,7 @@ void Desktop::update(double dt) {
     remember_recent(settings, recorded->string());
   }
   follow_playback(dt);
-  follow_deeds();
+  follow_first_steps();
   exporter.update();
   if (const auto file = playback.take_written(); !file.empty()) exporter.wrote(file);
   shown.follow_story();

@@ -152,7 +152,7 @@ class Desktop {
   bool close_one();
   void follow_playback(double dt);
   void follow_break();
-  void follow_deeds();
+  void follow_first_steps();
 
   bool break_holds_ = false;  // the hand was put there when passivity was broken, and is there
   bool was_broken_ = false;

@@ -19,11 +19,11 @@ TEST(SecondRun, BeginsWithTheForceThatTheFirstHas) {
     second.open(plan.arm, scene, start);
     test::Rows one(first.layout()), other(first.layout());
     RigInput input{.hand = {target + Vec3(0.01, 0.01, 0), 1}};
-    input.force = armed ? ForceWish::as_it_is : ForceWish::cut;
+    input.force = armed ? ForceRequest::as_it_is : ForceRequest::cut;
     const auto tick = [&](bool on) {
       first.step(plan.parameters, input, one.add());
       second.step(on, plan.parameters, first, input, other.add());
-      input.force = ForceWish::as_it_is;
+      input.force = ForceRequest::as_it_is;
     };
     for (int k = 0; k < 50; ++k) tick(false);
     double pushed = 0;
@@ -35,7 +35,7 @@ TEST(SecondRun, BeginsWithTheForceThatTheFirstHas) {
       pushed += other.vec(last, Column::motor_torque).norm();
     }
     EXPECT_EQ(pushed > 0, armed);
-    input.force = ForceWish::arm;
+    input.force = ForceRequest::arm;
     for (int k = 0; k < 700; ++k) tick(true);
     EXPECT_EQ(other.at(other.size() - 1, Column::force_wanted), 1);
     EXPECT_GT(other.vec(other.size() - 1, Column::motor_torque).norm(), 0);

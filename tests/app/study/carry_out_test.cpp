@@ -25,7 +25,7 @@ std::string read(const fs::path& file) {
   return text.str();
 }
 
-Outcome sound(Laboratory&) {
+Outcome sound(TrialRunner&) {
   Outcome outcome;
   outcome.figure.title = "Sound";
   outcome.figure.panels = {
@@ -34,15 +34,15 @@ Outcome sound(Laboratory&) {
   return outcome;
 }
 
-Outcome broken(Laboratory& lab) {
+Outcome broken(TrialRunner& lab) {
   Outcome outcome = sound(lab);
   outcome.figure.title = "Broken <script>";
   outcome.checks.push_back(at_most("not finite", std::numeric_limits<double>::quiet_NaN(), 1));
   return outcome;
 }
 
-Laboratory::Options in(const fs::path& dir) {
-  Laboratory::Options options;
+TrialRunner::Options in(const fs::path& dir) {
+  TrialRunner::Options options;
   options.dir = dir;
   return options;
 }
@@ -72,7 +72,7 @@ TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {
   EXPECT_EQ(nlohmann::json::parse(read(dir_ / "broken.json")).at("passed"), false);
 }
 
-Outcome runs_away(Laboratory& lab) {
+Outcome runs_away(TrialRunner& lab) {
   Parameters p;
   p.eta = 0.05;
   p.hand_stiffness = 3000;

@@ -43,7 +43,7 @@ class Laboratories : public testing::Test {
   fs::path file(const std::string& name) const { return options_.dir / "test" / (name + ".h5"); }
 
   test::TempDir temp_;
-  Laboratory::Options options_;
+  TrialRunner::Options options_;
 };
 
 TEST_F(Laboratories, GiveResultsInTheOrderOfTheTrialsWhateverTheThreads) {
@@ -51,7 +51,7 @@ TEST_F(Laboratories, GiveResultsInTheOrderOfTheTrialsWhateverTheThreads) {
   for (const unsigned threads : {1u, 2u, 5u}) {
     options_.threads = threads;
     fs::remove_all(options_.dir / "test");
-    const std::vector<TrialResult> results = Laboratory("test", options_).run(three());
+    const std::vector<TrialResult> results = TrialRunner("test", options_).run(three());
     ASSERT_EQ(results.size(), 3u);
     std::vector<std::vector<double>> rows;
     for (const TrialResult& result : results) rows.push_back(physics(result.session));
@@ -62,10 +62,10 @@ TEST_F(Laboratories, GiveResultsInTheOrderOfTheTrialsWhateverTheThreads) {
 }
 
 TEST_F(Laboratories, ReadWhatIsThereInsteadOfRunningIt) {
-  const std::vector<TrialResult> ran = Laboratory("test", options_).run(three());
+  const std::vector<TrialResult> ran = TrialRunner("test", options_).run(three());
   std::map<std::string, fs::file_time_type> written;
   for (const char* name : {"a", "b", "c"}) written[name] = fs::last_write_time(file(name));
-  const std::vector<TrialResult> read = Laboratory("test", options_).run(three());
+  const std::vector<TrialResult> read = TrialRunner("test", options_).run(three());
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(read[i].session.rows, ran[i].session.rows);  // timing, too: it is the same run
     EXPECT_EQ(read[i].end.rows, 300u);
@@ -85,7 +85,7 @@ Trial runaway(const std::string& name) {
 }
 
 TEST_F(Laboratories, CountWhatDivergedUnlessItMay) {
-  Laboratory lab("test", options_);
+  TrialRunner lab("test", options_);
   Trial asked = runaway("asked");
   asked.may_diverge = true;
   const auto results = lab.run({trial("a", 1), asked});
@@ -96,45 +96,45 @@ TEST_F(Laboratories, CountWhatDivergedUnlessItMay) {
 }
 
 TEST_F(Laboratories, RememberUnderWhichConditionsTheyRan) {
-  Laboratory lab("test", options_);
+  TrialRunner lab("test", options_);
   EXPECT_EQ(lab.conditions().text(), "");
   lab.run(three());
   EXPECT_NE(lab.conditions().text().find("limit of every motor: the arm's own"), std::string::npos);
 }
 
 TEST_F(Laboratories, RunAgainWhatAnotherPlanLeft) {
-  Laboratory("test", options_).run({trial("a", 1)});
-  const auto result = Laboratory("test", options_).run({trial("a", 2)});
+  TrialRunner("test", options_).run({trial("a", 1)});
+  const auto result = TrialRunner("test", options_).run({trial("a", 2)});
   EXPECT_EQ(result[0].session.at(0, Column::eta)[0], 2);
   EXPECT_EQ(read_session(file("a")).at(0, Column::eta)[0], 2);
 }
 
 TEST_F(Laboratories, RunAgainWhereTheHandGoesElsewhereUnderTheSameName) {
-  Laboratory("test", options_).run({trial("a", 1)});
+  TrialRunner("test", options_).run({trial("a", 1)});
   Trial moved = trial("a", 1);
   for (Vec3& p : moved.plan.hand.position) p.z() += 0.001;
-  const auto result = Laboratory("test", options_).run({moved});
+  const auto result = TrialRunner("test", options_).run({moved});
   EXPECT_EQ(result[0].session.at(0, Column::hand_target)[2], moved.plan.hand.sample(0, 0.001).z());
 }
 
 TEST_F(Laboratories, ReplaceAFileThatIsNoSession) {
   fs::create_directories(file("a").parent_path());
   std::ofstream(file("a")) << "not a session";
-  EXPECT_EQ(Laboratory("test", options_).run({trial("a", 1)})[0].session.size(), 300u);
+  EXPECT_EQ(TrialRunner("test", options_).run({trial("a", 1)})[0].session.size(), 300u);
   EXPECT_EQ(read_session(file("a")).size(), 300u);
 }
 
 TEST_F(Laboratories, LeaveNoFileOfATrialThatIsNotKept) {
   Trial t = trial("a", 1);
   t.keep = false;
-  EXPECT_EQ(Laboratory("test", options_).run({t})[0].session.size(), 300u);
+  EXPECT_EQ(TrialRunner("test", options_).run({t})[0].session.size(), 300u);
   EXPECT_FALSE(fs::exists(file("a")));
 }
 
 TEST_F(Laboratories, ShareTrialsThroughAFolder) {
   Trial t = trial("a", 1);
   t.folder = "common";
-  Laboratory("test", options_).run({t});
+  TrialRunner("test", options_).run({t});
   EXPECT_TRUE(fs::exists(options_.dir / "common" / "a.h5"));
 }
 
@@ -143,7 +143,7 @@ TEST_F(Laboratories, StopWhenToldAndGoOnLater) {
   options_.stop = &stop;
   options_.threads = 1;
   options_.progress = [&](double) { stop = true; };  // after the first trial
-  EXPECT_THROW(Laboratory("test", options_).run(three()), Cancelled);
+  EXPECT_THROW(TrialRunner("test", options_).run(three()), Cancelled);
   EXPECT_TRUE(fs::exists(file("a")));
   EXPECT_FALSE(fs::exists(file("b")));
 
@@ -151,7 +151,7 @@ TEST_F(Laboratories, StopWhenToldAndGoOnLater) {
   std::vector<double> parts;
   options_.progress = [&](double part) { parts.push_back(part); };
   const auto written = fs::last_write_time(file("a"));
-  EXPECT_EQ(Laboratory("test", options_).run(three()).size(), 3u);
+  EXPECT_EQ(TrialRunner("test", options_).run(three()).size(), 3u);
   EXPECT_EQ(fs::last_write_time(file("a")), written);
   EXPECT_THAT(parts, ElementsAre(1.0 / 3, 2.0 / 3, 1.0));
 }
@@ -160,7 +160,7 @@ TEST_F(Laboratories, PassOnWhatWentWrong) {
   Trial unreachable = trial("a", 1);
   for (Vec3& p : unreachable.plan.hand.position) p = Vec3(5, 0, 0);
   options_.threads = 1;
-  EXPECT_THROW(Laboratory("test", options_).run({unreachable, trial("b", 1), trial("c", 1)}),
+  EXPECT_THROW(TrialRunner("test", options_).run({unreachable, trial("b", 1), trial("c", 1)}),
                std::invalid_argument);
   EXPECT_FALSE(fs::exists(file("b")));
   EXPECT_FALSE(fs::exists(file("c")));

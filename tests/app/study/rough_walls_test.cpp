@@ -30,9 +30,9 @@ TEST(Friction, ThatPushesAlongTheMotionWouldBeSeenToGive) {
 
 TrialResult run(const Trial& trial) {
   const test::TempDir temp;
-  Laboratory::Options options;
+  TrialRunner::Options options;
   options.dir = temp / ".";
-  return Laboratory("walls", options).run({trial}).front();
+  return TrialRunner("walls", options).run({trial}).front();
 }
 
 // Pressed into a corner, each wall is found to push with its own force.

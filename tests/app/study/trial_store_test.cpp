@@ -120,7 +120,7 @@ class StoredTrial : public testing::Test {
     return t;
   }
   // The torques' and positions' bits are the same either way; how long ticks took is not.
-  TrialResult run(const Trial& t) { return Laboratory("test", options_).run({t}).front(); }
+  TrialResult run(const Trial& t) { return TrialRunner("test", options_).run({t}).front(); }
   bool reused(const Trial& t) {
     const TrialResult before = run(trial());
     std::optional<Session> stored = read_session(file());
@@ -130,7 +130,7 @@ class StoredTrial : public testing::Test {
   fs::path file() const { return options_.dir / "test/a-0.6.h5"; }
 
   test::TempDir temp_;
-  Laboratory::Options options_;
+  TrialRunner::Options options_;
 };
 
 TEST_F(StoredTrial, IsTakenAgainByTheSameProgramAndPlan) {

@@ -31,8 +31,8 @@ TEST(WellRendered, AsksForEachOfItsPromises) {
   EXPECT_FALSE(well_rendered(t, false));
 }
 
-Laboratory::Options in(const std::filesystem::path& dir) {
-  Laboratory::Options options;
+TrialRunner::Options in(const std::filesystem::path& dir) {
+  TrialRunner::Options options;
   options.dir = dir;
   return options;
 }
@@ -49,7 +49,7 @@ class Walls : public testing::Test {
   }
 
   test::TempDir temp_;
-  Laboratory lab_{"walls", in(temp_ / ".")};
+  TrialRunner lab_{"walls", in(temp_ / ".")};
 };
 
 TEST_F(Walls, OfThePapersLawEndWhereTheLagTakesMoreThanAllDampingGives) {

@@ -42,7 +42,7 @@ TEST(Arming, GoesWhereEachEventTakesIt) {
 TEST(ForceGate, StartsOffWhereMotorsAreReal) {
   ForceGate gate;
   gate.start(false);
-  for (int k = 0; k < 5000; ++k) gate.step(ForceWish::as_it_is, {}, T);
+  for (int k = 0; k < 5000; ++k) gate.step(ForceRequest::as_it_is, {}, T);
   EXPECT_EQ(gate.state(), off);
   EXPECT_EQ(gate.gain(), 0);
   EXPECT_EQ(gate.why(), ForceState::off);
@@ -51,14 +51,14 @@ TEST(ForceGate, StartsOffWhereMotorsAreReal) {
 TEST(ForceGate, FadesInOverHalfASecond) {
   ForceGate gate;
   gate.start(false);
-  gate.step(ForceWish::arm, {}, T);
+  gate.step(ForceRequest::arm, {}, T);
   for (int k = 1; k < 500; ++k) {
     ASSERT_NEAR(gate.gain(), k * T / 0.5, 1e-12);
     ASSERT_EQ(gate.state(), fading);
     ASSERT_FALSE(gate.steady());
-    gate.step(ForceWish::as_it_is, {}, T);
+    gate.step(ForceRequest::as_it_is, {}, T);
   }
-  gate.step(ForceWish::as_it_is, {}, T);
+  gate.step(ForceRequest::as_it_is, {}, T);
   EXPECT_EQ(gate.gain(), 1);
   EXPECT_EQ(gate.state(), on);
   EXPECT_TRUE(gate.steady());
@@ -71,15 +71,15 @@ struct OpenGate : testing::Test {
     arm();
   }
   void arm() {
-    gate.step(ForceWish::arm, {}, T);
-    for (int k = 0; k < 600; ++k) gate.step(ForceWish::as_it_is, {}, T);
+    gate.step(ForceRequest::arm, {}, T);
+    for (int k = 0; k < 600; ++k) gate.step(ForceRequest::as_it_is, {}, T);
     ASSERT_EQ(gate.state(), on);
   }
   ForceGate gate;
 };
 
 TEST_F(OpenGate, IsShutAtOnceWhenCutAlsoByOneWhoArmsInTheSameTickLater) {
-  gate.step(ForceWish::cut, {}, T);
+  gate.step(ForceRequest::cut, {}, T);
   EXPECT_EQ(gate.state(), off);
   EXPECT_EQ(gate.gain(), 0);
 }
@@ -88,15 +88,15 @@ TEST_F(OpenGate, StaysShutAfterAFaultUntilArmedAnew) {
   for (int i = static_cast<int>(ForceState::stale); i <= static_cast<int>(ForceState::unwatched);
        ++i) {
     const auto reason = static_cast<ForceState>(i);
-    gate.step(ForceWish::as_it_is, {.fault = reason}, T);
+    gate.step(ForceRequest::as_it_is, {.fault = reason}, T);
     EXPECT_EQ(gate.state(), tripped);
     EXPECT_EQ(gate.gain(), 0);
-    for (int k = 0; k < 3000; ++k) gate.step(ForceWish::as_it_is, {}, T);
+    for (int k = 0; k < 3000; ++k) gate.step(ForceRequest::as_it_is, {}, T);
     EXPECT_EQ(gate.why(), reason) << "it is said as long as it stays";
     EXPECT_EQ(gate.gain(), 0);
-    gate.step(ForceWish::arm, {.fault = reason}, T);
+    gate.step(ForceRequest::arm, {.fault = reason}, T);
     EXPECT_EQ(gate.state(), tripped) << "while it lasts nobody can arm";
-    gate.step(ForceWish::arm, {}, T);
+    gate.step(ForceRequest::arm, {}, T);
     EXPECT_EQ(gate.state(), fading);
     EXPECT_NEAR(gate.gain(), 0.002, 1e-12);
     arm();
@@ -104,50 +104,50 @@ TEST_F(OpenGate, StaysShutAfterAFaultUntilArmedAnew) {
 }
 
 TEST_F(OpenGate, SaysWhatWasWrongFirstUnlessTheDeviceIsGone) {
-  gate.step(ForceWish::as_it_is, {.fault = ForceState::fault}, T);
-  gate.step(ForceWish::as_it_is, {.fault = ForceState::stale}, T);
+  gate.step(ForceRequest::as_it_is, {.fault = ForceState::fault}, T);
+  gate.step(ForceRequest::as_it_is, {.fault = ForceState::stale}, T);
   EXPECT_EQ(gate.why(), ForceState::fault);
-  gate.step(ForceWish::as_it_is, {.fault = ForceState::lost}, T);
-  gate.step(ForceWish::as_it_is, {.fault = ForceState::stale}, T);
+  gate.step(ForceRequest::as_it_is, {.fault = ForceState::lost}, T);
+  gate.step(ForceRequest::as_it_is, {.fault = ForceState::stale}, T);
   EXPECT_EQ(gate.why(), ForceState::lost);
 }
 
 TEST_F(OpenGate, WaitsForTheHandAndFadesInAgain) {
-  gate.step(ForceWish::as_it_is, {.hand = false}, T);
+  gate.step(ForceRequest::as_it_is, {.hand = false}, T);
   EXPECT_EQ(gate.state(), waiting);
   EXPECT_EQ(gate.why(), ForceState::no_hand);
   EXPECT_EQ(gate.gain(), 0);
   EXPECT_TRUE(gate.steady());
-  gate.step(ForceWish::as_it_is, {}, T);
+  gate.step(ForceRequest::as_it_is, {}, T);
   EXPECT_EQ(gate.state(), fading);
   EXPECT_NEAR(gate.gain(), 0.002, 1e-12);
 }
 
 TEST_F(OpenGate, BeginsFromNothingAfterAGap) {
-  gate.step(ForceWish::as_it_is, {.gap = true}, T);
+  gate.step(ForceRequest::as_it_is, {.gap = true}, T);
   EXPECT_EQ(gate.state(), fading);
   EXPECT_NEAR(gate.gain(), 0.002, 1e-12);
   EXPECT_EQ(gate.why(), ForceState::stalled);
 }
 
 TEST_F(OpenGate, IsHeldBackByACeilingAndComesBackSlowly) {
-  gate.step(ForceWish::as_it_is, {.limited = ForceState::too_fast, .ceiling = 0.3}, T);
+  gate.step(ForceRequest::as_it_is, {.limited = ForceState::too_fast, .ceiling = 0.3}, T);
   EXPECT_EQ(gate.gain(), 0.3);
   EXPECT_EQ(gate.state(), fading);
   EXPECT_EQ(gate.why(), ForceState::too_fast);
-  gate.step(ForceWish::as_it_is, {}, T);
+  gate.step(ForceRequest::as_it_is, {}, T);
   EXPECT_NEAR(gate.gain(), 0.302, 1e-12);
-  gate.step(ForceWish::as_it_is, {.limited = ForceState::too_fast, .ceiling = -1}, T);
+  gate.step(ForceRequest::as_it_is, {.limited = ForceState::too_fast, .ceiling = -1}, T);
   EXPECT_EQ(gate.gain(), 0);
-  gate.step(ForceWish::as_it_is, {.ceiling = std::nan("")}, T);
+  gate.step(ForceRequest::as_it_is, {.ceiling = std::nan("")}, T);
   EXPECT_EQ(gate.gain(), 0) << "no number is no force";
 }
 
 TEST_F(OpenGate, TellsOfAFaultWhileItIsOff) {
-  gate.step(ForceWish::cut, {.fault = ForceState::lost}, T);
+  gate.step(ForceRequest::cut, {.fault = ForceState::lost}, T);
   EXPECT_EQ(gate.state(), off);
   EXPECT_EQ(gate.why(), ForceState::lost);
-  gate.step(ForceWish::as_it_is, {}, T);
+  gate.step(ForceRequest::as_it_is, {}, T);
   EXPECT_EQ(gate.why(), ForceState::off);
 }
 
@@ -160,17 +160,17 @@ TEST(ForceGate, NeverOpensWithoutBeingArmedWhateverHappens) {
   int opened = 0;
   for (int k = 0; k < 1'000'000; ++k) {
     const double dice = random.between(0, 1);
-    const ForceWish wish = dice < 0.0005   ? ForceWish::arm
-                           : dice > 0.9998 ? ForceWish::cut
-                                           : ForceWish::as_it_is;
+    const ForceRequest wish = dice < 0.0005   ? ForceRequest::arm
+                              : dice > 0.9998 ? ForceRequest::cut
+                                              : ForceRequest::as_it_is;
     Objections against;
     against.hand = random.between(0, 1) > 0.0005;
     against.gap = random.between(0, 1) < 0.0003;
     if (random.between(0, 1) < 0.0003) against.fault = ForceState::stale;
     if (random.between(0, 1) < 0.001) against.ceiling = random.between(-0.2, 1.2);
     if (random.between(0, 1) < 0.00005) gate.start(false), asked = false, before = 0;
-    if (wish == ForceWish::arm) asked = true;
-    if (wish == ForceWish::cut) asked = false;
+    if (wish == ForceRequest::arm) asked = true;
+    if (wish == ForceRequest::cut) asked = false;
     gate.step(wish, against, T);
     if (against.fault != ForceState::on) asked = false;
     ASSERT_TRUE(asked || gate.gain() == 0) << k;

@@ -51,7 +51,7 @@ TEST_P(LedgerOf, TheTickIsThatOfTheTorqueThatActedAndOfTheDampingThatIsSure) {
   Rows rows(tick.layout());
   for (std::size_t k = 0; k < 4000; ++k) {
     const Vec<3> x = led(k, p.tick);
-    tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceWish::as_it_is, rows.add());
+    tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceRequest::as_it_is, rows.add());
   }
   const auto stored = [&](std::size_t k) {
     const Vector apart =

@@ -35,7 +35,7 @@ Rows run(const ArmDescription& arm, const Scene& scene, const Parameters& p, std
   Rows rows(tick.layout());
   for (std::size_t k = 0; k < ticks; ++k) {
     const Vec<kAnyDof> x = led(n, k, p.tick);
-    tick.run(p, {x, x, Vec<kAnyDof>::Zero(n)}, ForceWish::as_it_is, rows.add());
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(n)}, ForceRequest::as_it_is, rows.add());
   }
   return rows;
 }
@@ -165,7 +165,7 @@ TEST(Tick, SwitchesTheCouplingWithoutAJumpOfTheMotors) {
   for (std::size_t k = 0; k < 1500; ++k) {
     p.kind = static_cast<CouplingKind>(k / 300 % kLaws);
     const Vec<3> x = led(3, k, p.tick);
-    tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+    tick.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, rows.add());
     if (k == 0 || tick.steady()) continue;
     slewed = true;
     const Vector jump = rows.vec(k, Column::motor_torque) - rows.vec(k - 1, Column::motor_torque);
@@ -206,7 +206,7 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
   for (std::size_t k = 0; k < 100; ++k) {
     Vec<3> x = led(3, k, p.tick);
     if (k == 50) x[1] = std::numeric_limits<double>::quiet_NaN();
-    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+    const Vec<3> tau = tick.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, rows.add());
     ASSERT_EQ(tick.diverged(), k >= 50);
     ASSERT_TRUE(tau.allFinite());
     if (k >= 50) {
@@ -217,7 +217,7 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
   tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
   EXPECT_FALSE(tick.diverged());
   const Vec<3> x = led(3, 0, p.tick);
-  tick.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, rows.add());
+  tick.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, rows.add());
   EXPECT_FALSE(tick.diverged());
 }
 
@@ -231,8 +231,8 @@ TEST(Tick, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   Rows a(fixed.layout()), b(any.layout());
   for (std::size_t k = 0; k < 500; ++k) {
     const Vec<3> x = led(3, k, p.tick);
-    fixed.run(p, {x, x, Vec<3>::Zero()}, ForceWish::as_it_is, a.add());
-    any.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, b.add());
+    fixed.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, a.add());
+    any.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceRequest::as_it_is, b.add());
     for (std::size_t i = 0; i < a.row(k).size(); ++i) {
       ASSERT_NEAR(a.row(k)[i], b.row(k)[i], 1e-7 * (1 + std::abs(a.row(k)[i]))) << k << ", " << i;
     }
@@ -290,7 +290,7 @@ TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
     p.damping = damping(k);
     p.inertia_ratio = ratio(k);
     const Vec<kAnyDof> x = led(3, k, p.tick);
-    tick.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceWish::as_it_is, rows.add());
+    tick.run(p, {x, x, Vec<kAnyDof>::Zero(3)}, ForceRequest::as_it_is, rows.add());
   }
   double lost = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -321,7 +321,7 @@ TEST(Tick, GivesARealArmNoMoreThanItsOwnLimitNorFaster) {
     Rows rows(tick.layout());
     for (std::size_t k = 0; k < 1500; ++k) {
       const Vec<3> x = led(3, k, p.tick);
-      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = true}}, ForceWish::as_it_is, rows.add());
+      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = true}}, ForceRequest::as_it_is, rows.add());
     }
     Vector largest = Vector::Zero(3), fastest = Vector::Zero(3);
     for (std::size_t k = 1; k < rows.size(); ++k) {

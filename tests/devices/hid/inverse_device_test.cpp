@@ -147,24 +147,25 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::Vector3d::Zero();
   rig.start({}, start);
   std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
-  const auto run = [&](ForceWish wish, const std::function<bool()>& until,
+  const auto run = [&](ForceRequest wish, const std::function<bool()>& until,
                        std::chrono::seconds most = 60s) {
     const auto end = std::chrono::steady_clock::now() + most;
     while (!until() && std::chrono::steady_clock::now() < end) {
       // A busy machine stands still for more than 5 ms now and then.
       const ForceState why = rig.force_state();
       const bool late = why == ForceState::stale || why == ForceState::stalled;
-      if (late && rig.force().state() == Arming::tripped) wish = ForceWish::arm;
-      rig.step({}, {.hand = {rig.tip(), 1}, .force = std::exchange(wish, ForceWish::as_it_is)},
+      if (late && rig.force().state() == Arming::tripped) wish = ForceRequest::arm;
+      rig.step({}, {.hand = {rig.tip(), 1}, .force = std::exchange(wish, ForceRequest::as_it_is)},
                row);
       std::this_thread::sleep_for(1ms);
     }
     return until();
   };
-  ASSERT_TRUE(run(ForceWish::arm, [&] { return rig.force().gain() == 1; }));
+  ASSERT_TRUE(run(ForceRequest::arm, [&] { return rig.force().gain() == 1; }));
   int ticks = 0;
-  EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return ++ticks > 2000 && rig.force().gain() > 0.5; }))
-      << "it is held still, but gives way as its force fades";
+  EXPECT_TRUE(run(ForceRequest::as_it_is, [&] {
+    return ++ticks > 2000 && rig.force().gain() > 0.5;
+  })) << "it is held still, but gives way as its force fades";
   // What it repeats may be of a moment at which the force had faded: then it is asked again.
   const auto tripped = [&] {
     return rig.force_state() == ForceState::frozen && rig.force().state() == Arming::tripped;
@@ -172,15 +173,15 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   bool stopped = false;
   for (int i = 0; i < 20 && !stopped; ++i) {
     service.tell("answer");
-    EXPECT_TRUE(run(ForceWish::as_it_is, [&] { return rig.force().gain() == 1; }));
+    EXPECT_TRUE(run(ForceRequest::as_it_is, [&] { return rig.force().gain() == 1; }));
     service.wait_for(pushes);
     service.tell("repeat");
-    stopped = run(ForceWish::as_it_is, tripped, 3s);
+    stopped = run(ForceRequest::as_it_is, tripped, 3s);
   }
   EXPECT_TRUE(stopped);
   service.wait_for("force 0 0 0");
   ticks = 0;
-  EXPECT_TRUE(run(ForceWish::arm, [&] {
+  EXPECT_TRUE(run(ForceRequest::arm, [&] {
     return ++ticks > 700 && rig.force_state() == ForceState::frozen;
   })) << "armed again, but not moved";
   EXPECT_EQ(rig.force().gain(), 0);

@@ -210,7 +210,7 @@ TEST_F(ASocketDevice, IsDrivenByTheLoopAndLostWithoutForceWhenItsProgramIsKilled
   const auto step = [&] {
     const Arming now = rig.force().state();
     const bool arm_it = now == Arming::off || now == Arming::tripped;
-    const ForceWish wish = arm_it ? ForceWish::arm : ForceWish::as_it_is;
+    const ForceRequest wish = arm_it ? ForceRequest::arm : ForceRequest::as_it_is;
     rig.step(p, {.hand = {rig.tip(), 1}, .force = wish}, rows.add());
     const std::size_t last = rows.size() - 1;
     return rows.vec(last, Column::motor_torque)[0] < -0.01 &&

@@ -149,7 +149,7 @@ TEST(Compensated, GoesOnFromARecordingsFirstRowBitForBit) {
   };
   for (int k = 0; k < 300; ++k) rig.step(p, hand(k), thrown.add());
   RigStart scratch = rest_at(arm, kHome);
-  rig.rebase(p, scratch, hand(299).hand.target);
+  rig.restart_here(p, scratch, hand(299).hand.target);
   for (int k = 300; k < 800; ++k) rig.step(p, hand(k), recorded.add());
   Rig other(arm, Scene{});
   RigStart start = start_of(other.layout(), recorded.row(0));

@@ -187,7 +187,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       std::copy(row.begin(), row.end(), snapshots.back().begin());
       snapshots.publish();
       if (k % 333 == 332) {  // as a recording begins
-        crowded.rebase(p, present, goal);
+        crowded.restart_here(p, present, goal);
       }
     }
   }
@@ -262,7 +262,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksWithBodiesThatMove) {
       heaped.step(p, input, row);
       moved = std::max(moved, layout.in(std::span<const double>(row), Column::objects_awake)[0]);
       held = std::max(held, layout.in(std::span<const double>(row), Column::magnet)[0]);
-      if (k % 333 == 332) heaped.rebase(p, present, input.hand.target);
+      if (k % 333 == 332) heaped.restart_here(p, present, input.hand.target);
     }
   }
   EXPECT_EQ(allocations, 0);

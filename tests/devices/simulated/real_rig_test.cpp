@@ -340,7 +340,7 @@ TEST_F(RealRig, KeepsItsForceWhenARecordingBegins) {
   const double before = device.told[0];
   RigStart scratch;
   scratch.x1 = scratch.v1 = scratch.x2 = scratch.v2 = scratch.f1_hat = Eigen::Vector3d::Zero();
-  rig.rebase({}, scratch, rig.tip());
+  rig.restart_here({}, scratch, rig.tip());
   EXPECT_EQ(step(), ForceState::on);
   EXPECT_NEAR(device.told[0], before, 0.05 * std::abs(before));
   EXPECT_EQ(rows.at(rows.size() - 1, Column::time), 0);
@@ -474,7 +474,7 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
     }
     return work;
   };
-  rig.step(p, {.hand = {rig.tip(), 1}, .force = ForceWish::arm}, row);
+  rig.step(p, {.hand = {rig.tip(), 1}, .force = ForceRequest::arm}, row);
   go(-0.3, 0.3);  // fades in meanwhile
   go(0, 1);
   ASSERT_EQ(rig.force_state(), ForceState::on);
@@ -514,9 +514,9 @@ TEST_F(RealRig, NeverPushesUnarmedNorJumpsInAMillionTicks) {
     input.dt = chance(1e-4) ? random.between(0, 0.02) : 1e-3;
     input.periods = input.dt > 1e-3 ? static_cast<int>(input.dt * 1e3) : 1;
     input.silence = chance(1e-4) ? random.between(0, 0.5) : 0;
-    input.force = chance(1e-3)   ? ForceWish::arm
-                  : chance(1e-4) ? ForceWish::cut
-                                 : ForceWish::as_it_is;
+    input.force = chance(1e-3)   ? ForceRequest::arm
+                  : chance(1e-4) ? ForceRequest::cut
+                                 : ForceRequest::as_it_is;
     input.hand = {rig.tip(), 1};
     if (chance(2e-5)) rig.plug(chance(0.5) ? nullptr : &device);
     if (chance(1e-4)) rig.plug(&device);
@@ -528,9 +528,9 @@ TEST_F(RealRig, NeverPushesUnarmedNorJumpsInAMillionTicks) {
       asked = false;
       std::fill_n(before, 3, 0);
     }
-    if (chance(2e-5)) rig.rebase(p, scratch, rig.tip());
-    if (input.force == ForceWish::arm) asked = true;
-    if (input.force == ForceWish::cut) asked = false;
+    if (chance(2e-5)) rig.restart_here(p, scratch, rig.tip());
+    if (input.force == ForceRequest::arm) asked = true;
+    if (input.force == ForceRequest::cut) asked = false;
     rig.step(p, input, row);
     if (rig.force().state() == Arming::tripped || rig.force().state() == Arming::off) asked = false;
     const auto motor = rig.layout().in(std::span<const double>(row), Column::motor_torque);

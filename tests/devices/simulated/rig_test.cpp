@@ -46,9 +46,9 @@ class Script {
     return {{home_ + 0.02 * way, k % 900 < 700 ? 1.0 : 0.3}, wish(k)};
   }
   static bool armed(std::size_t k) { return k % 1300 < 1000; }
-  static ForceWish wish(std::size_t k) {
-    if (k == 0 || armed(k) == armed(k - 1)) return ForceWish::as_it_is;
-    return armed(k) ? ForceWish::arm : ForceWish::cut;
+  static ForceRequest wish(std::size_t k) {
+    if (k == 0 || armed(k) == armed(k - 1)) return ForceRequest::as_it_is;
+    return armed(k) ? ForceRequest::arm : ForceRequest::cut;
   }
   static Parameters parameters(std::size_t k) {
     Parameters p;
@@ -124,7 +124,7 @@ TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
   live.start(Script::parameters(0), rest_at(arm_, home_));
   run(live, script_, 0, 777);
   RigStart start = rest_at(arm_, home_);
-  live.rebase(Script::parameters(777), start, script_.at(777).hand.target);
+  live.restart_here(Script::parameters(777), start, script_.at(777).hand.target);
   const Rows recorded = run(live, script_, 777, 2000);
 
   Rig again(arm_, scene_);

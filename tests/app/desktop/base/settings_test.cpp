@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "app/desktop/base/deeds.h"
+#include "app/desktop/base/first_steps.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {
@@ -125,8 +125,8 @@ TEST_F(SettingsFile, OfAnEarlierLimpidNeedNoHints) {
     EXPECT_EQ(all_done(load()), seen);
   }
   std::ofstream(file()) << "[window]\nhint_seen = true\ntried = \"d\"\n";
-  EXPECT_TRUE(done(load(), Deed::pull));
-  EXPECT_FALSE(done(load(), Deed::law));
+  EXPECT_TRUE(done(load(), FirstStep::pull));
+  EXPECT_FALSE(done(load(), FirstStep::law));
 }
 
 TEST_F(SettingsFile, GivesEverySwitchBackByItself) {

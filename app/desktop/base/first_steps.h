@@ -1,0 +1,35 @@
+// What somebody new is asked to try, and what of it was done once: hints and "Your turn" go by it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "app/desktop/base/settings.h"
+
+namespace limpid {
+
+enum class FirstStep : std::uint8_t { pull, push, press, law, eta, twin, play };
+
+struct FirstStepInfo {
+  FirstStep step;
+  char letter;  // in the settings
+  const char* what;
+  const char* how;  // key or mouse
+};
+// In the order in which they are worth trying.
+inline constexpr std::array kFirstSteps{
+    FirstStepInfo{FirstStep::pull, 'd', "Pull the arm by its tip", "left drag"},
+    FirstStepInfo{FirstStep::push, 'w', "Push it nearer and farther", "wheel while dragging"},
+    FirstStepInfo{FirstStep::press, 'p', "Press it onto something", "left drag"},
+    FirstStepInfo{FirstStep::law, 'c', "Switch the coupling", "C"},
+    FirstStepInfo{FirstStep::eta, 'e', "Make it lighter or heavier", "[ and ]"},
+    FirstStepInfo{FirstStep::twin, 't', "Two couplings on one hand", "B"},
+    FirstStepInfo{FirstStep::play, 'r', "Record what you do, and play it", "R, then P"},
+};
+
+bool done(const Settings& settings, FirstStep step);
+void note_done(Settings& settings, FirstStep step);
+bool all_done(const Settings& settings);
+void note_all_done(Settings& settings);
+
+}  // namespace limpid
