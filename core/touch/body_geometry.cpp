@@ -34,6 +34,50 @@ Vec3 middle(const btManifoldPoint& point) {
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
 
+// Bullet's own works out friction and more for each point, which nobody asks for here.
+class Points : public btManifoldResult {
+ public:
+  using btManifoldResult::btManifoldResult;
+  void addContactPoint(const btVector3& normal, const btVector3& on_b, btScalar distance) override {
+    btPersistentManifold& all = *getPersistentManifold();
+    if (distance > all.getContactBreakingThreshold()) return;
+    const btVector3 on_a = on_b + normal * distance;
+    const bool turned = all.getBody0() != m_body0Wrap->getCollisionObject();
+    const auto* first = turned ? m_body1Wrap : m_body0Wrap;
+    const auto* second = turned ? m_body0Wrap : m_body1Wrap;
+    const btVector3 own = first->getCollisionObject()->getWorldTransform().invXform(on_a);
+    const btVector3 other = second->getCollisionObject()->getWorldTransform().invXform(on_b);
+    if (btManifoldPoint* known = near(all, own)) {
+      known->m_localPointA = own;
+      known->m_localPointB = other;
+      known->m_normalWorldOnB = normal;
+      known->m_distance1 = distance;
+      known->m_positionWorldOnA = on_a;
+      known->m_positionWorldOnB = on_b;
+      return;
+    }
+    btManifoldPoint point(own, other, normal, distance);
+    point.m_positionWorldOnA = on_a;
+    point.m_positionWorldOnB = on_b;
+    all.addManifoldPoint(point);
+  }
+
+ private:
+  // The one that a point there is, or null.
+  static btManifoldPoint* near(btPersistentManifold& all, const btVector3& own) {
+    btScalar least = all.getContactBreakingThreshold() * all.getContactBreakingThreshold();
+    btManifoldPoint* nearest = nullptr;
+    for (int i = 0; i < all.getNumContacts(); ++i) {
+      const btVector3 way = all.getContactPoint(i).m_localPointA - own;
+      if (const btScalar distance = way.dot(way); distance < least) {
+        least = distance;
+        nearest = &all.getContactPoint(i);
+      }
+    }
+    return nearest;
+  }
+};
+
 // A plane is a large block below it: of faces and edges Bullet finds all points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
@@ -63,6 +107,8 @@ struct BodyGeometry::Inside {
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
     bool single = false;  // they meet in one point at most
+    bool refresh = true;  // what finds its points leaves those that are gone
+    int points = 0;       // of its manifold
   };
 
   explicit Inside(const Scene& scene);
@@ -88,7 +134,7 @@ struct BodyGeometry::Inside {
   std::vector<std::array<int, 2>> apart;  // bodies that hang together do not touch
   std::vector<Pair> pairs;
   std::vector<BodyContact> pool;
-  std::vector<BodyContact*> free_ones, points;
+  std::vector<BodyContact*> free_ones, points, last;  // last: the points of the search before
   int left_out = 0;
 
   static btDefaultCollisionConstructionInfo sizes() {
@@ -139,6 +185,7 @@ BodyGeometry::Inside::Inside(const Scene& scene)
   }
   free_ones.reserve(kMost);
   points.reserve(kMost);
+  last.reserve(kMost);
   for (auto c = pool.rbegin(); c != pool.rend(); ++c) free_ones.push_back(&*c);
 }
 
@@ -233,7 +280,9 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const auto ball = [](const Solid& s) {
     return s.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   };
-  p.single = (ball(a) || ball(b)) && a.shape->isConvex() && b.shape->isConvex();
+  const bool convex = a.shape->isConvex() && b.shape->isConvex();
+  p.single = (ball(a) || ball(b)) && convex;
+  p.refresh = !convex || (ball(a) && ball(b));
   // Else Bullet turns the shapes a little, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
@@ -336,11 +385,12 @@ void BodyGeometry::Inside::meet(Pair& p) {
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
                                       p.b->at.getWorldTransform(), -1, -1);
-  btManifoldResult result(&on_a, &on_b);
+  Points result(&on_a, &on_b);
   result.setPersistentManifold(p.manifold);
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
-  result.refreshContactPoints();
+  if (p.refresh) result.refreshContactPoints();
   if (p.single) keep_deepest(p);
+  p.points = p.manifold->getNumContacts();
   go_on(p, {before.data(), count});
 }
 
@@ -351,12 +401,11 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
   c->ball_a = p.a->ball();
   c->ball_b = p.b->ball();
-  c->used = true;
   return c;
 }
 
 void BodyGeometry::Inside::take(Pair& p) {
-  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+  for (int i = 0; i < p.points; ++i) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
     if (c == nullptr) {
@@ -391,9 +440,10 @@ void BodyGeometry::place(int body, const Pose& pose) {
 
 void BodyGeometry::search(std::span<const std::uint8_t> awake) {
   Inside& in = *in_;
+  std::swap(in.points, in.last);
   in.points.clear();
   in.left_out = 0;
-  for (BodyContact& c : in.pool) c.seen = false;
+  for (BodyContact* c : in.last) c->seen = false;
   const auto moves = [&](const Inside::Solid& s) {
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
   };
@@ -401,16 +451,16 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
     if (moves(*p.a) || moves(*p.b)) {
       if (Inside::overlap(*p.a, *p.b)) {
         in.meet(p);
-      } else if (p.manifold->getNumContacts() > 0) {
+      } else if (p.points > 0) {
         p.manifold->clearManifold();
+        p.points = 0;
       }
     }
-    in.take(p);
+    if (p.points > 0) in.take(p);
   }
-  for (BodyContact& c : in.pool) {
-    if (!c.used || c.seen) continue;
-    c.used = false;
-    in.free_ones.push_back(&c);
+  for (BodyContact* c : in.last) {
+    if (c->seen) continue;
+    in.free_ones.push_back(c);
   }
 }
 
@@ -427,7 +477,10 @@ bool BodyGeometry::near(int a, int b) const {
 }
 
 void BodyGeometry::forget() {
-  for (Inside::Pair& p : in_->pairs) p.manifold->clearManifold();
+  for (Inside::Pair& p : in_->pairs) {
+    p.manifold->clearManifold();
+    p.points = 0;
+  }
   in_->points.clear();
   in_->left_out = 0;
   in_->free_ones.clear();
@@ -495,6 +548,7 @@ std::span<const double> BodyGeometry::read(std::span<const double> from) {
     const bool turned = from[18] != 0;
     p.manifold->setBodies(turned ? &p.b->at : &p.a->at, turned ? &p.a->at : &p.b->at);
     const int at = p.manifold->addManifoldPoint(point);
+    p.points = p.manifold->getNumContacts();
     BodyContact* c = in_->fresh(p);
     if (c == nullptr) break;
     c->rest = from[19];
@@ -505,6 +559,7 @@ std::span<const double> BodyGeometry::read(std::span<const double> from) {
     c->lost = from[28];
     c->pressed = from[29];
     p.manifold->getContactPoint(at).m_userPersistentData = c;
+    in_->points.push_back(c);
   }
   return from;
 }

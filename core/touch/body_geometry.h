@@ -33,7 +33,7 @@ struct BodyContact {
   Vec3 friction = Vec3::Zero();  // on a [N]
   Vec3 anchor = Vec3::Zero();    // stretch of friction's spring [m]
   bool slipping = false;
-  bool seen = false, used = false;
+  bool seen = false;
 };
 
 // Finds these points, by Bullet's collision library in double precision. All memory is taken when

@@ -9,12 +9,6 @@
 namespace limpid {
 namespace {
 
-Mat3 skew(const Vec3& v) {
-  Mat3 S;
-  S << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return S;
-}
-
 Mat3 turn(const Vec3& axis, double angle) {
   const SineCosine at = sine_cosine(angle);
   const Mat3 K = skew(axis);
@@ -92,6 +86,7 @@ void BodyMotion::place() {
 
 void BodyMotion::begin(double T, bool pushed) {
   theta_ = pushed ? bouncing_theta_ : 0.5;
+  spin_ = spin();
   if (kind_ != Kind::free) {
     const double M = reflected_ / (theta_ * T);
     a_ = 1 / (M + joint_.damping);
@@ -117,7 +112,7 @@ void BodyMotion::begin(double T, bool pushed) {
 
 BodyMotion::Lever BodyMotion::lever(const Vec3& point, double T) const {
   const Vec3 arm = point - p_;
-  return arm + 0.5 * T * spin().cross(arm);
+  return arm + 0.5 * T * spin_.cross(arm);
 }
 
 Mat3 BodyMotion::answer(const Lever& at) const {
@@ -125,21 +120,50 @@ Mat3 BodyMotion::answer(const Lever& at) const {
     const Vec3 j = S_v_ + S_w_.cross(at);
     return a_ * j * j.transpose();
   }
-  const Mat3 K = skew(at);
-  return im_ * Mat3::Identity() - K * Ai_ * K;
+  // im - [at]x Ai [at]x, without the zeros of [at]x. Number by number, here and where it is used: a
+  // processor waits where it reads two at once that it has just written one by one.
+  const double x = at.x(), y = at.y(), z = at.z();
+  double K[3][3];
+  for (int j = 0; j < 3; ++j) {
+    K[0][j] = y * Ai_(2, j) - z * Ai_(1, j);
+    K[1][j] = z * Ai_(0, j) - x * Ai_(2, j);
+    K[2][j] = x * Ai_(1, j) - y * Ai_(0, j);
+  }
+  Mat3 W;
+  for (int i = 0; i < 3; ++i) {
+    W(i, 0) = y * K[i][2] - z * K[i][1];
+    W(i, 1) = z * K[i][0] - x * K[i][2];
+    W(i, 2) = x * K[i][1] - y * K[i][0];
+    W(i, i) += im_;
+  }
+  return W;
 }
 
-void BodyMotion::push(const Lever& at, const Vec3& force) {
+void BodyMotion::twist(const Vec3& torque) {
   if (kind_ != Kind::free) {
-    push_joint((S_v_ + S_w_.cross(at)).dot(force));
+    push_joint(S_w_.dot(torque));
     return;
   }
-  u_ += im_ * force;
-  o_ += Ai_ * at.cross(force);
+  o_ += Ai_ * torque;
 }
 
-void BodyMotion::push_joint(double force) {
-  U_ += a_ * force;
+BodyMotion::Answer BodyMotion::answer() const {
+  Answer all = Answer::Zero();
+  if (kind_ != Kind::free) {
+    Eigen::Matrix<double, 6, 1> j;
+    j << S_v_, S_w_;
+    all = a_ * j * j.transpose();
+    return all;
+  }
+  all.topLeftCorner<3, 3>() = im_ * Mat3::Identity();
+  all.bottomRightCorner<3, 3>() = Ai_;
+  return all;
+}
+
+void BodyMotion::push_joint(double force) { set_joint_speed(U_ + a_ * force); }
+
+void BodyMotion::set_joint_speed(double speed) {
+  U_ = speed;
   u_ = S_v_ * U_;
   o_ = S_w_ * U_;
 }
@@ -213,8 +237,7 @@ void BodyMotion::read(std::span<const double, kNumbers> from) {
 }
 
 bool BodyMotion::alike(const BodyMotion& other) const {
-  return kind_ == other.kind_ && m_ == other.m_ && c_ == other.c_ && I_ == other.I_ &&
-         joint_.axis == other.joint_.axis && pivot_ == other.pivot_ &&
+  return kind_ == other.kind_ && joint_.axis == other.joint_.axis && pivot_ == other.pivot_ &&
          start_.matrix() == other.start_.matrix();
 }
 

@@ -9,6 +9,13 @@
 
 namespace limpid {
 
+// [v]x: the matrix that makes the cross product with v.
+inline Mat3 skew(const Vec3& v) {
+  Mat3 S;
+  S << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return S;
+}
+
 // Free, or on a slider or a hinge. A ball joint is a free body that a row holds (BodyWorld).
 class BodyMotion {
  public:
@@ -33,11 +40,26 @@ class BodyMotion {
   // What a force there adds to it [m/(N s)].
   Mat3 answer(const Lever& at) const;
   // A force acts there [N].
-  void push(const Lever& at, const Vec3& force);
+  void push(const Lever& at, const Vec3& force) {
+    if (kind_ == Kind::free) {
+      u_ += im_ * force;
+      o_ += Ai_ * at.cross(force);
+    } else {
+      push_joint((S_v_ + S_w_.cross(at)).dot(force));
+    }
+  }
+  // Its mean angular velocity [rad/s], and a torque acts on it [N m].
+  const Vec3& turning() const { return o_; }
+  void twist(const Vec3& torque);
+  // What a force at its centre of mass and a torque add to the centre's velocity and to its angular
+  // velocity, SI.
+  using Answer = Eigen::Matrix<double, 6, 6>;
+  Answer answer() const;
   // And one along its joint [N] or [N m].
   bool on_joint() const { return kind_ != Kind::free; }
   void push_joint(double force);
   double joint_speed() const { return U_; }
+  void set_joint_speed(double speed);  // what forces along the joint made of it
   double joint_answer() const { return a_; }
   double joint() const { return s_; }  // [m] or [rad]
   const BodyJoint& of_joint() const { return joint_; }
@@ -60,7 +82,7 @@ class BodyMotion {
   static constexpr int kNumbers = 20;
   void write(std::span<double, kNumbers> into) const;
   void read(std::span<const double, kNumbers> from);
-  // Of the same mass, shape and joint.
+  // It starts in the same place, on the same joint.
   bool alike(const BodyMotion& other) const;
 
  private:
@@ -87,6 +109,7 @@ class BodyMotion {
 
   // Of the tick:
   Vec3 u_, o_;     // mean velocities, world
+  Vec3 spin_;      // at the start, world
   double im_ = 0;  // theta T / m
   Mat3 Ai_;
   Vec3 S_v_, S_w_;  // of the joint, at the centre

@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/math/elementary.h"
 #include "core/touch/wall_force.h"
@@ -11,7 +10,6 @@
 namespace limpid {
 namespace {
 
-constexpr double kZeta = 0.7;         // of a contact's damper, where nothing is said
 constexpr double kEnough = 1e-8;      // change of a force of what the arm touches [N],
 constexpr double kEnoughElse = 1e-5;  // and of all others
 constexpr int kMostSweeps = 30;       // over what it touches; over all others
@@ -21,12 +19,16 @@ constexpr double kFade = 0.05;                // s in which a depth that was the
 constexpr double kSlow = 1e-3;                // what is slower is at rest [m/s]
 constexpr double kQuiet = 0.5;                // s of rest, after which it sleeps
 constexpr double kGone = 20;                  // further off than this nobody looks for it [m]
-constexpr double kHingeArm = 0.01;  // of the two points that make a hinge between bodies [m]
 
-double damping_ratio(double restitution) {
-  if (restitution <= 0) return kZeta;
-  const double log = logarithm(restitution);
-  return std::min(kZeta, -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log));
+// F^T W F, as Eigen adds it up, number by number.
+void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
+  for (int i = 0; i < 3; ++i) {
+    double T[3];
+    for (int j = 0; j < 3; ++j) {
+      T[j] = F(0, i) * W(0, j) + (F(1, i) * W(1, j) + F(2, i) * W(2, j));
+    }
+    for (int j = 0; j < 3; ++j) out(i, j) = T[0] * F(0, j) + (T[1] * F(1, j) + T[2] * F(2, j));
+  }
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene) {
     bodies_.emplace_back(object, scene.gravity);
     names_.push_back(object.name);
     of_bodies_.push_back(*object.body);
-    if (bodies_.back().on_joint()) joints_.push_back({.body = count() - 1});
+    if (bodies_.back().on_joint()) joints_.push_back({.body = count() - 1, .forces = {}});
   }
   const std::size_t n = bodies_.size();
   awake_.assign(n, 1);
@@ -48,10 +50,11 @@ BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene) {
   quiet_island_.assign(n, 0);
   quiet_.assign(n, 0);
   parent_.assign(n, 0);
+  quick_.reserve(n);
   rows_.resize(BodyGeometry::kMost);
   add_links(scene);
   for (auto* numbers : {&before_, &now_, &along_}) {
-    numbers->assign(3 * (rows_.size() + links_.size() + joints_.size()), 0);
+    numbers->assign(3 * (rows_.size() + links_.size() + joints_.size() + held_.size()), 0);
   }
   reset();
 }
@@ -61,57 +64,18 @@ int BodyWorld::number(const std::string& name) const {
   return found == names_.end() ? BodyContact::kStill : static_cast<int>(found - names_.begin());
 }
 
-void BodyWorld::add_links(const Scene& scene) {
-  for (int i = 0; i < count(); ++i) {
-    if (bodies_[at(i)].on_joint() || !of_bodies_[at(i)].joint) continue;
-    const BodyJoint& joint = *of_bodies_[at(i)].joint;
-    if (joint.kind == BodyJoint::Kind::ball) add_link(i, joint, joint.point);
-    if (joint.kind != BodyJoint::Kind::hinge) continue;
-    const Vec3 axis = bodies_[at(i)].pose().linear().transpose() * joint.axis;
-    add_link(i, joint, joint.point + kHingeArm * axis);
-    add_link(i, joint, joint.point - kHingeArm * axis);
-  }
-  for (const BodySpring& spring : scene.springs) {
-    Link link;
-    link.spring = true;
-    link.a = number(spring.between[0]);
-    link.b = number(spring.between[1]);
-    link.on_a = spring.points[0];
-    link.on_b = spring.points[1];
-    if (link.a == BodyContact::kStill) {
-      std::swap(link.a, link.b);
-      std::swap(link.on_a, link.on_b);
-    }
-    if (link.a == BodyContact::kStill) continue;  // between what stands still
-    link.length = spring.length;
-    link.K = spring.stiffness;
-    link.B = spring.damping;
-    link.breaks_at = spring.breaks_at;
-    links_.push_back(link);
-  }
-}
-
-void BodyWorld::add_link(int body, const BodyJoint& joint, const Vec3& point) {
-  Link link;
-  link.a = body;
-  link.b = number(joint.to);
-  link.on_a = point;
-  const Vec3 there = bodies_[at(body)].pose() * point;
-  link.on_b = link.b == BodyContact::kStill ? there : bodies_[at(link.b)].pose().inverse() * there;
-  link.K = of_bodies_[at(body)].contact_stiffness;
-  links_.push_back(link);
-}
-
 void BodyWorld::reset() {
   for (BodyMotion& body : bodies_) body.reset();
   std::ranges::fill(awake_, 1);
   std::ranges::fill(pushed_, 0);
   std::ranges::fill(quiet_, 0);
-  for (JointRow& row : joints_) row = {.body = row.body};
+  for (JointRow& row : joints_) row.forces = {};
   for (Link& link : links_) {
     link.force.setZero();
     link.broken = false;
   }
+  constexpr std::array<double, HeldJoint::kNumbers> kAtRest{};
+  for (Held& held : held_) held.joint.read(kAtRest);
   let_go();
   geometry_.forget();
   for (int i = 0; i < count(); ++i) geometry_.place(i, pose(i));
@@ -128,9 +92,26 @@ void BodyWorld::take_over(const BodyWorld& other) {
   for (int i = 0; i < count(); ++i) {
     const int theirs = other.number(names_[at(i)]);
     if (theirs == BodyContact::kStill || !bodies_[at(i)].alike(other.bodies_[at(theirs)])) continue;
-    other.bodies_[at(theirs)].write(numbers);
+    const BodyMotion& before = other.bodies_[at(theirs)];
+    before.write(numbers);
+    // Its object stays where it is, wherever its mass now is.
+    const Vec3 own = pose(i).inverse() * center(i);
+    const Vec3 moved = before.pose() * own - before.center();
+    if (moved.norm() > 1e-12) {
+      const Vec3 speed = before.spin().cross(moved);
+      for (std::size_t k = 0; k < 3; ++k) {
+        numbers[k] += moved[static_cast<int>(k)];
+        numbers[12 + k] += speed[static_cast<int>(k)];
+      }
+    }
     bodies_[at(i)].read(numbers);
     geometry_.place(i, pose(i));
+  }
+  for (Held& held : held_) {
+    for (const Held& theirs : other.held_) {  // as often turned round
+      if (names_[at(held.a)] == other.names_[at(theirs.a)]) held.joint.place = theirs.joint.place;
+    }
+    follow(held);
   }
 }
 
@@ -150,6 +131,13 @@ void BodyWorld::pulled(const Vec3& force) {
   if (!(force.norm() > Magnet::kBreaks)) return;
   let_go();
   magnet_.spent = true;
+}
+
+double BodyWorld::joint(int body) const {
+  for (const Held& held : held_) {
+    if (held.a == body) return held.joint.place;
+  }
+  return bodies_[at(body)].joint();
 }
 
 Vec3 BodyWorld::place(int body, const Vec3& own) const {
@@ -172,10 +160,9 @@ void BodyWorld::begin(double T) {
   }
   for (Link& link : links_) begin_link(link);
   for (JointRow& row : joints_) {
-    if (moves(row.body)) {
-      bodies_[at(row.body)].push_joint(row.potential + row.stop + row.friction);
-    }
+    if (moves(row.body)) bodies_[at(row.body)].push_joint(row.forces.sum());
   }
+  for (Held& held : held_) begin_held(held);
   take_stock();
 }
 
@@ -191,13 +178,15 @@ void BodyWorld::wake_neighbours() {
     if (quick(link.a) && !moves(link.b)) wake(link.b);
     if (quick(link.b) && !moves(link.a)) wake(link.a);
   }
+  quick_.clear();
   for (int i = 0; i < count(); ++i) {
+    if (quick(i)) quick_.push_back(i);
+  }
+  for (int i = 0; i < count() && !quick_.empty(); ++i) {
     if (moves(i)) continue;
-    for (int j = 0; j < count(); ++j) {
-      if (j == i || !quick(j) || !geometry_.near(i, j)) continue;
-      wake(i);
-      break;
-    }
+    if (std::ranges::none_of(quick_, [&](int j) { return geometry_.near(i, j); })) continue;
+    wake(i);
+    quick_.push_back(i);
   }
 }
 
@@ -258,7 +247,9 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   row.frame.col(0) = contact.normal;
   row.frame.col(1) = contact.normal.unitOrthogonal();
   row.frame.col(2) = contact.normal.cross(row.frame.col(1));
-  row.W = row.frame.transpose() * (answer(row.a) + answer(row.b)) * row.frame;
+  Mat3 W = answer(row.a);
+  if (row.b.body != BodyContact::kStill) W += answer(row.b);
+  turn_into(row.frame, W, row.W);
   const Material& one = of_objects_[static_cast<std::size_t>(contact.object_a)];
   const Material& two = of_objects_[static_cast<std::size_t>(contact.object_b)];
   const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
@@ -272,32 +263,16 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   // First the memory is turned to where the contact now is: a force that no row has would be work
   // from nowhere.
   row.force = contact.force;
-  row.friction = row.frame.rightCols<2>().transpose() * contact.friction;
-  row.anchor = row.frame.rightCols<2>().transpose() * contact.anchor;
+  row.friction.noalias() = row.frame.rightCols<2>().transpose() * contact.friction;
+  row.anchor.noalias() = row.frame.rightCols<2>().transpose() * contact.anchor;
   if (row.radius == 0) row.friction.setZero();
   apply(row.a, row.b, row.force * contact.normal + row.frame.rightCols<2>() * row.friction);
   return true;
 }
 
-void BodyWorld::begin_link(Link& link) {
-  if (link.broken || (!moves(link.a) && !moves(link.b))) return;
-  const Vec3 on_a = place(link.a, link.on_a), on_b = place(link.b, link.on_b);
-  link.end_a = end_at(link.a, on_a);
-  link.end_b = end_at(link.b, on_b);
-  link.stretch = on_a - on_b;
-  link.W = answer(link.end_a) + answer(link.end_b);
-  if (link.spring) {
-    const double length = link.stretch.norm();
-    link.along = length > 0 ? Vec3(link.stretch / length) : Vec3(Vec3::UnitZ());
-    link.c = link.along.dot(link.W * link.along);
-    link.force = link.along * link.along.dot(link.force);
-  } else {
-    const double m_eff = 3 * BodyMotion::kTheta * T_ / link.W.trace();
-    link.B = 2 * kZeta * std::sqrt(link.K * m_eff);
-    const double k = link.K * T_ / 2 + link.B;
-    link.give = k * (Mat3::Identity() + k * link.W).inverse();
-  }
-  apply(link.end_a, link.end_b, link.force);
+// Of a direction in a body's frame, or in the world.
+Vec3 BodyWorld::directed(int body, const Vec3& own) const {
+  return body == BodyContact::kStill ? own : Vec3(pose(body).linear() * own);
 }
 
 BodyWorld::End BodyWorld::end_at(int body, const Vec3& point, bool rolls) const {
@@ -306,32 +281,18 @@ BodyWorld::End BodyWorld::end_at(int body, const Vec3& point, bool rolls) const 
   return {body, rolls ? Vec3(point - motion.center()) : motion.lever(point, T_)};
 }
 
-Vec3 BodyWorld::velocity(const End& end) const {
-  if (end.body == BodyContact::kStill) return Vec3::Zero();
-  return bodies_[at(end.body)].velocity(end.lever);
-}
-
 Mat3 BodyWorld::answer(const End& end) const {
   if (end.body == BodyContact::kStill) return Mat3::Zero();
   return bodies_[at(end.body)].answer(end.lever);
-}
-
-void BodyWorld::push(const End& end, const Vec3& force) {
-  if (end.body == BodyContact::kStill) return;
-  bodies_[at(end.body)].push(end.lever, force);
-  pushed_[at(end.body)] = 1;
-}
-
-void BodyWorld::apply(const End& a, const End& b, const Vec3& force) {
-  if (force.isZero(0)) return;
-  push(a, force);
-  push(b, -force);
 }
 
 double BodyWorld::sweep(bool touched) {
   double most = 0;
   for (JointRow& row : joints_) {
     if (in_turn(row.body, BodyContact::kStill, touched)) most = std::max(most, sweep(row));
+  }
+  for (Held& held : held_) {
+    if (in_turn(held.a, held.b, touched)) most = std::max(most, sweep(held));
   }
   for (Link& link : links_) {
     if (!link.broken && in_turn(link.a, link.b, touched)) most = std::max(most, sweep(link));
@@ -360,59 +321,6 @@ double BodyWorld::sweep(Row& row) {
   return std::abs(change) + more.norm();
 }
 
-double BodyWorld::sweep(Link& link) {
-  const Vec3 v = velocity(link.end_a) - velocity(link.end_b);
-  Vec3 f;
-  if (link.spring) {
-    const double k = link.K * T_ / 2 + link.B, before = link.along.dot(link.force);
-    const double v0 = link.along.dot(v) - link.c * before;
-    f = -(link.K * (link.stretch.norm() - link.length) + k * v0) / (1 + k * link.c) * link.along;
-  } else {
-    const double k = link.K * T_ / 2 + link.B;
-    f = -link.give * (link.K / k * link.stretch + v - link.W * link.force);
-  }
-  const Vec3 change = f - link.force;
-  link.force = f;
-  apply(link.end_a, link.end_b, change);
-  return change.norm();
-}
-
-double BodyWorld::sweep(JointRow& row) {
-  BodyMotion& body = bodies_[at(row.body)];
-  const BodyJoint& joint = body.of_joint();
-  const double w = body.joint_answer(), c = T_ * w;
-  double change = 0;
-  const auto set = [&](double& force, double to) {
-    body.push_joint(to - force);
-    change += std::abs(to - force);
-    force = to;
-  };
-  if (body.potential().any()) {
-    double F = row.potential;
-    body.potential().over_a_tick(body.joint(), T_ * (body.joint_speed() - w * row.potential), c, F);
-    set(row.potential, F);
-  }
-  const double s = body.joint();
-  const bool up = joint.high - s < s - joint.low;  // the nearer stop
-  const double depth = up ? s - joint.high : joint.low - s;
-  if (std::isfinite(depth) || row.stop != 0) {
-    const double m_eff = BodyMotion::kTheta * T_ / w;
-    const double B =
-        2 * damping_ratio(joint.stop_restitution) * std::sqrt(joint.stop_stiffness * m_eff);
-    const double sign = up ? -1 : 1;
-    const double deeper = -sign * T_ * (body.joint_speed() - w * row.stop);
-    set(row.stop, sign * wall_force({joint.stop_stiffness, B, T_, depth, deeper, c}));
-  }
-  if (joint.friction > 0) {
-    const double K = joint.stop_stiffness;
-    const double free = body.joint_speed() - w * row.friction;
-    const double l = -K * (row.anchor + T_ * free) / (1 + K * c);
-    set(row.friction, std::clamp(l, -joint.friction, joint.friction));
-  }
-  pushed_[at(row.body)] |= row.stop != 0 || row.friction != 0;
-  return change;
-}
-
 // Of all rows, three numbers each.
 void BodyWorld::forces(std::vector<double>& into) const {
   auto to = into.begin();
@@ -422,8 +330,11 @@ void BodyWorld::forces(std::vector<double>& into) const {
   }
   for (const Link& link : links_) to = std::copy_n(link.force.data(), 3, to);
   for (const JointRow& row : joints_) {
-    for (const double force : {row.potential, row.stop, row.friction}) *to++ = force;
+    for (const double force : {row.forces.potential, row.forces.stop, row.forces.friction}) {
+      *to++ = force;
+    }
   }
+  for (const Held& held : held_) to = std::ranges::copy(held.joint.numbers(), to).out;
 }
 
 void BodyWorld::add_forces(const std::vector<double>& more) {
@@ -442,17 +353,22 @@ void BodyWorld::add_forces(const std::vector<double>& more) {
     at += 3;
   }
   for (JointRow& row : joints_) {
-    row.potential += at[0];
-    row.stop += at[1];
-    row.friction += at[2];
+    row.forces.potential += at[0];
+    row.forces.stop += at[1];
+    row.forces.friction += at[2];
     const double change = at[0] + at[1] + at[2];
     if (change != 0) bodies_[this->at(row.body)].push_joint(change);
+    at += 3;
+  }
+  for (Held& held : held_) {
+    const Vec3 change = Eigen::Map<const Vec3>(at);
+    if (!change.isZero(0)) push(held, held.joint.add(change));
     at += 3;
   }
 }
 
 double BodyWorld::sweep(bool touched, double enough, int most) {
-  const std::size_t numbers = 3 * (count_ + links_.size() + joints_.size());
+  const std::size_t numbers = 3 * (count_ + links_.size() + joints_.size() + held_.size());
   double last2 = 0;
   for (int i = 1;; ++i) {
     forces(before_);
@@ -488,7 +404,10 @@ void BodyWorld::hold_touched() {
   }
   for (JointRow& row : joints_) {
     if (!in_turn(row.body, BodyContact::kStill, true)) continue;
-    row.friction = -row.anchor * bodies_[at(row.body)].of_joint().stop_stiffness;
+    row.forces.friction = -row.forces.anchor * bodies_[at(row.body)].of_joint().stop_stiffness;
+  }
+  for (Held& held : held_) {
+    if (in_turn(held.a, held.b, true)) held.joint.hold();
   }
   // As if asleep; who is near the tip, or to what moves, is awake again at the next tick.
   for (int i = 0; i < count(); ++i) parent_[at(i)] = root(i);
@@ -519,7 +438,10 @@ void BodyWorld::end_rows() {
     }
   }
   for (JointRow& row : joints_) {
-    row.anchor = -row.friction / bodies_[at(row.body)].of_joint().stop_stiffness;
+    row.forces.anchor = -row.forces.friction / bodies_[at(row.body)].of_joint().stop_stiffness;
+  }
+  for (Held& held : held_) {
+    if (moves(held.a) || moves(held.b)) held.joint.finish(T_, speed(held));
   }
 }
 
@@ -583,15 +505,19 @@ void BodyWorld::take_stock() {
   }
   for (const Link& link : links_) {
     if (link.broken) continue;
-    const double x = (place(link.a, link.on_a) - place(link.b, link.on_b)).norm();
+    Vec3 off = place(link.a, link.on_a) - place(link.b, link.on_b);
+    if (link.rail)
+      off -= off.dot(directed(link.b, link.rail_axis)) * directed(link.b, link.rail_axis);
+    const double x = off.norm();
     E += 0.5 * link.K * (x - link.length) * (x - link.length);
   }
   for (const JointRow& row : joints_) {
     const BodyMotion& body = bodies_[at(row.body)];
     const BodyJoint& joint = body.of_joint();
     const double d = std::max({0.0, joint.low - body.joint(), body.joint() - joint.high});
-    E += 0.5 * joint.stop_stiffness * (d * d + row.anchor * row.anchor);
+    E += 0.5 * joint.stop_stiffness * (d * d + row.forces.anchor * row.forces.anchor);
   }
+  for (const Held& held : held_) E += held.joint.stored();
   energy_ = E;
   if (fresh_) first_energy_ = E - all_given_ - gain_;
   fresh_ = false;
@@ -615,19 +541,25 @@ void BodyWorld::write(std::vector<double>& into) const {
     for (const int n : {int{awake_[at(i)]}, int{pushed_[at(i)]}, quiet_[at(i)]}) into.push_back(n);
   }
   for (const JointRow& row : joints_) {
-    into.insert(into.end(), {row.potential, row.stop, row.friction, row.anchor});
+    const JointForces& forces = row.forces;
+    into.insert(into.end(), {forces.potential, forces.stop, forces.friction, forces.anchor});
   }
   for (const Link& link : links_) {
     into.insert(into.end(),
                 {link.force.x(), link.force.y(), link.force.z(), link.broken ? 1.0 : 0.0});
+  }
+  std::array<double, HeldJoint::kNumbers> of_joint{};
+  for (const Held& held : held_) {
+    held.joint.write(of_joint);
+    into.insert(into.end(), of_joint.begin(), of_joint.end());
   }
   geometry_.write(into);
 }
 
 bool BodyWorld::read(std::span<const double> from) {
   constexpr std::size_t kMagnet = 8, kBody = BodyMotion::kNumbers + 3, kJoint = 4, kLink = 4;
-  const std::size_t own =
-      2 + kMagnet + kBody * bodies_.size() + kJoint * joints_.size() + kLink * links_.size();
+  const std::size_t own = 2 + kMagnet + kBody * bodies_.size() + kJoint * joints_.size() +
+                          kLink * links_.size() + HeldJoint::kNumbers * held_.size();
   if (from.size() < own || from[0] != count() || from[1] != static_cast<double>(links_.size()) ||
       !std::ranges::all_of(from, [](double x) { return std::isfinite(x); })) {
     return false;
@@ -647,13 +579,17 @@ bool BodyWorld::read(std::span<const double> from) {
     geometry_.place(i, pose(i));
   }
   for (JointRow& row : joints_) {
-    row = {row.body, from[0], from[1], from[2], from[3]};
+    row.forces = {from[0], from[1], from[2], from[3]};
     from = from.subspan(kJoint);
   }
   for (Link& link : links_) {
     link.force = Vec3(from[0], from[1], from[2]);
     link.broken = from[3] != 0;
     from = from.subspan(kLink);
+  }
+  for (Held& held : held_) {
+    held.joint.read(from.first<HeldJoint::kNumbers>());
+    from = from.subspan(HeldJoint::kNumbers);
   }
   geometry_.read(from);
   return true;

@@ -9,6 +9,7 @@
 
 #include "core/touch/body_geometry.h"
 #include "core/touch/body_motion.h"
+#include "core/touch/held_joint.h"
 
 namespace limpid {
 
@@ -28,7 +29,7 @@ class BodyWorld {
 
   int count() const { return static_cast<int>(bodies_.size()); }
   void reset();  // as the scene has it
-  // Takes over the books, and where bodies of the same name, mass and joint are in another scene.
+  // Takes over the books, and where bodies of the same name, start and joint are in another scene.
   void take_over(const BodyWorld& other);
 
   // The arm is near to it: it wakes up, and its rows are solved with the arm's.
@@ -42,9 +43,16 @@ class BodyWorld {
   };
   // `rolls`: the place stays where it is while the body turns.
   End end_at(int body, const Vec3& point, bool rolls = false) const;
-  Vec3 velocity(const End& end) const;  // mean over the tick [m/s]
-  Mat3 answer(const End& end) const;    // to a force there [m/(N s)]
-  void push(const End& end, const Vec3& force);
+  Vec3 velocity(const End& end) const {  // mean over the tick [m/s]
+    if (end.body == BodyContact::kStill) return Vec3::Zero();
+    return bodies_[at(end.body)].velocity(end.lever);
+  }
+  Mat3 answer(const End& end) const;  // to a force there [m/(N s)]
+  void push(const End& end, const Vec3& force) {
+    if (end.body == BodyContact::kStill) return;
+    bodies_[at(end.body)].push(end.lever, force);
+    pushed_[at(end.body)] = 1;
+  }
   // Over the rows of what the arm touches and what hangs together with it, or of all others, until
   // no force changes by more than `enough` or it was gone over them `most` times; returns the
   // largest change of the last time [N]. Sweeps alone take as many as a heavy body on a light one
@@ -78,7 +86,7 @@ class BodyWorld {
   const Vec3& center(int body) const { return bodies_[at(body)].center(); }
   Vec3 speed(int body) const { return bodies_[at(body)].speed(); }
   Vec3 spin(int body) const { return bodies_[at(body)].spin(); }
-  double joint(int body) const { return bodies_[at(body)].joint(); }
+  double joint(int body) const;  // how far it is from its start along it [m] or [rad]
   // Of the body in the scene that moves, or none: as BodyWorld counts them.
   int body_of(std::size_t object) const { return body_of_[object]; }
   bool magnetic(int body) const { return of_bodies_[at(body)].magnet; }
@@ -110,7 +118,7 @@ class BodyWorld {
     double force = 0;
     Eigen::Vector2d friction, anchor;
   };
-  // A point of one body held to a point of another or of the world: a ball joint, or a spring with
+  // A point of one body held to a point of another or of the world, of a joint, or by a spring with
   // a length.
   struct Link {
     int a = 0, b = BodyContact::kStill;
@@ -119,24 +127,40 @@ class BodyWorld {
     double length = 0, K = 0, B = 0;
     double breaks_at = std::numeric_limits<double>::infinity();
     bool spring = false;  // else a joint
+    bool rail = false;    // of a slider: along `rail_axis`, in the frame of b, it is free
     bool broken = false;
+    Vec3 rail_axis = Vec3::UnitZ();
     Vec3 force = Vec3::Zero();  // on a [N]
     // Of the tick:
     End end_a, end_b;
     Vec3 stretch = Vec3::Zero(), along = Vec3::Zero();
+    Mat3 held = Mat3::Identity();                // a projection on the directions that are not free
     Mat3 W = Mat3::Zero(), give = Mat3::Zero();  // force that a stretch's velocity without it makes
     double c = 0;
   };
+  // Of a body on a slider or a hinge of the world.
   struct JointRow {
     int body = 0;
-    double potential = 0, stop = 0, friction = 0;  // forces along it [N] or [N m]
-    double anchor = 0;                             // of friction [m] or [rad]
+    JointForces forces;
+  };
+
+  // A joint that links hold, and what acts in it.
+  struct Held {
+    HeldJoint joint;
+    int a = 0, b = BodyContact::kStill;
+    std::size_t first = 0, links = 0;  // those that hold it
+    // At the start: its axis, a direction across it and the centre of mass of a in the frame of b,
+    // and that direction in the frame of a.
+    Vec3 axis = Vec3::UnitZ(), across_b = Vec3::UnitX(), center = Vec3::Zero(),
+         across_a = Vec3::UnitX();
+    End end_a, end_b;  // of the tick, of a force along it
   };
 
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
   bool moves(int body) const { return body != BodyContact::kStill && awake_[at(body)] != 0; }
   void add_links(const Scene& scene);
-  void add_link(int body, const BodyJoint& joint, const Vec3& point);
+  void add_joint(int body, const BodyJoint& joint);
+  void add_link(int body, int to, const Vec3& point, const Vec3* rail_axis);
   int number(const std::string& name) const;
   void wake_neighbours();
   void find_islands();
@@ -145,13 +169,24 @@ class BodyWorld {
   bool in_turn(int a, int b, bool touched);
   bool begin_row(BodyContact& contact);
   void begin_link(Link& link);
+  void begin_rail(Link& link);
+  void begin_held(Held& held);
+  void follow(Held& held) const;
+  Vec3 speed(const Held& held) const;
+  void push(const Held& held, const Vec3& force);
+  Vec3 directed(int body, const Vec3& own) const;  // in the world
   Vec3 place(int body, const Vec3& own) const;
   double stiffness(const BodyContact& contact) const;
-  void apply(const End& a, const End& b, const Vec3& force);
+  void apply(const End& a, const End& b, const Vec3& force) {
+    if (force.isZero(0)) return;
+    push(a, force);
+    push(b, -force);
+  }
   double sweep(bool touched);  // once
   double sweep(Row& row);
   double sweep(Link& link);
   double sweep(JointRow& row);
+  double sweep(Held& held);
   void forces(std::vector<double>& into) const;
   void add_forces(const std::vector<double>& more);
   void end_rows();
@@ -165,6 +200,7 @@ class BodyWorld {
   std::vector<std::uint8_t> quiet_island_;  // by root
   std::vector<int> quiet_;                  // ticks
   std::vector<int> parent_;                 // of islands
+  std::vector<int> quick_;                  // those that wake others
   std::vector<int> body_of_;                // by object
   std::vector<Material> of_objects_;
   BodyGeometry geometry_;
@@ -172,6 +208,7 @@ class BodyWorld {
   std::size_t count_ = 0;
   std::vector<Link> links_;
   std::vector<JointRow> joints_;
+  std::vector<Held> held_;
   Magnet magnet_;
   std::vector<double> before_, now_, along_;  // forces of all rows; where they go on to [N]
   double T_ = 1e-3;

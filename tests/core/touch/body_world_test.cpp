@@ -5,53 +5,12 @@
 #include <cmath>
 
 #include "core/dynamics/random.h"
-#include "tests/support/built_in.h"
+#include "tests/support/body_worlds.h"
 
 namespace limpid::test {
 namespace {
 
-constexpr double T = 1e-3;
-
-Object body(std::string name, Shape shape, double mass, const Vec3& at, double friction = 0.5) {
-  Object o;
-  o.name = std::move(name);
-  o.shape = std::move(shape);
-  o.pose = pose_at(at);
-  o.material = {2000, 0, friction, friction};
-  o.body = Body{};
-  o.body->mass = mass;
-  return o;
-}
-
-Object floor_at(double z) {
-  Object o;
-  o.name = "floor";
-  o.shape = Plane{};
-  o.pose = pose_at({0, 0, z});
-  return o;
-}
-
-Mat3 turned(double angle, const Vec3& about) {
-  return Eigen::AngleAxisd(angle, about.normalized()).matrix();
-}
-
-// Runs it and returns the most that its energy ever grew.
-double run(BodyWorld& world, int ticks) {
-  double most = 0;
-  for (int k = 0; k < ticks; ++k) {
-    world.begin(T);
-    world.settle();
-    world.finish();
-    most = std::max(most, world.gain());
-  }
-  return most;
-}
-
-std::vector<double> state(const BodyWorld& world) {
-  std::vector<double> all;
-  world.write(all);
-  return all;
-}
+constexpr double T = kTick;
 
 TEST(BodyWorld, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
   Scene scene;

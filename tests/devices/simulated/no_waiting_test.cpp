@@ -197,8 +197,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   EXPECT_FALSE(crowded.diverged());
 }
 
-// Of every shape, falling on each other, on a plane, a mesh and the tip; one on a hinge, one on a
-// slider, two on a spring, one that the magnet takes.
+// Of every shape, falling on each other, on a plane, a mesh and the tip; on every kind of joint, of
+// the world and of each other, two on a spring, one that the magnet takes.
 Scene heap(const Vec3& tip) {
   Random random(152);
   Scene scene;
@@ -219,6 +219,17 @@ Scene heap(const Vec3& tip) {
     o.body->mass = random.log_between(0.002, 0.1);
     o.body->magnet = true;
     if (i % 4 == 3) o.body->joint.emplace().kind = static_cast<BodyJoint::Kind>(i / 4);
+    if (i == 5 || i == 9) {  // on one that moves as well
+      BodyJoint& joint = o.body->joint.emplace();
+      joint.kind = i == 5 ? BodyJoint::Kind::slider : BodyJoint::Kind::hinge;
+      joint.to = "body " + std::to_string(i - 1);
+      joint.low = -0.01;
+      joint.force.detent_force = 0.01;
+    }
+    if (o.body->joint) {
+      o.body->joint->damping = 1e-4;
+      o.body->joint->friction = 1e-3;
+    }
     scene.add(o);
   }
   scene.springs.push_back({.between = {"body 0", "body 1"}, .length = 0.02});

@@ -1,0 +1,157 @@
+#include "core/touch/held_joint.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+constexpr int kMostHolds = 3;
+using Mat9 = Eigen::Matrix<double, 3 * kMostHolds, 3 * kMostHolds>;
+using Mat93 = Eigen::Matrix<double, 3 * kMostHolds, 3>;
+using Mat63 = Eigen::Matrix<double, 6, 3>;
+
+// Force at the centre of mass and torque, of a unit force at a lever along each axis.
+Mat63 force_at(const Vec3& lever) {
+  Mat63 J;
+  J << Mat3::Identity(), skew(lever);
+  return J;
+}
+
+Mat63 torque() {
+  Mat63 J;
+  J << Mat3::Zero(), Mat3::Identity();
+  return J;
+}
+
+Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
+
+}  // namespace
+
+// With the springs' answers among themselves M, G what the force does to them and W what it does to
+// itself, all without the springs: W - G^T M^-1 G is left.
+Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
+                  std::span<const JointHold> holds) {
+  const auto n = static_cast<int>(holds.size());
+  Mat9 M = Mat9::Identity();
+  Mat93 G = Mat93::Zero();
+  Mat3 W = Mat3::Zero();
+  for (int i = 0; i < n; ++i) {
+    M.block<3, 3>(3 * i, 3 * i) /= holds[static_cast<std::size_t>(i)].stiffness;
+  }
+  for (const JointSide* side : {&a, &b}) {
+    const Mat63 own = turns ? torque() : force_at(side->lever);
+    const Mat63 moved = side->answer * own;
+    W += own.transpose() * moved;
+    for (int i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Mat63 here = force_at(side->links[at]) * holds[at].directions;
+      G.block<3, 3>(3 * i, 0) += here.transpose() * moved;
+      for (int j = 0; j < n; ++j) {
+        const auto other = static_cast<std::size_t>(j);
+        const Mat63 from = side->answer * force_at(side->links[other]) * holds[other].directions;
+        M.block<3, 3>(3 * i, 3 * j) += here.transpose() * from;
+      }
+    }
+  }
+  // The turning of what spins leaves it a little unsymmetric: sweeps see to that.
+  const Eigen::LLT<Mat9> factor(0.5 * (M + M.transpose()));
+  Mat3 left = symmetric(W);
+  for (int i = 0; i < 3; ++i) left.col(i) -= G.transpose() * factor.solve(G.col(i));
+  return symmetric(left);
+}
+
+bool HeldJoint::needed(const BodyJoint& joint) {
+  return joint.damping != 0 || joint.friction != 0 || std::isfinite(joint.low) ||
+         std::isfinite(joint.high) || !(joint.force == JointForce{});
+}
+
+double HeldJoint::stored() const {
+  if (ball()) return 0.5 * joint.stop_stiffness * anchor.squaredNorm();
+  return limpid::stored(joint, potential, place, forces.anchor);
+}
+
+void HeldJoint::start(const Mat3& now) {
+  answer = now;
+  if (ball()) {
+    damped = (Mat3::Identity() + joint.damping * answer).inverse();
+  } else {
+    damped = Mat3::Identity() / (1 + joint.damping * along.dot(answer * along));
+    damping = along * along.dot(damping);
+  }
+}
+
+double HeldJoint::sweep(double T, const Vec3& speed) {
+  const Vec3 before = damping;
+  if (ball()) {
+    const Vec3 rubbed = friction;
+    const Vec3 free = damped * (speed - answer * (friction + damping));
+    const Mat3 W = damped * answer;
+    friction = friction_torque(joint.stop_stiffness, joint.friction, anchor, T, free, W);
+    damping = -joint.damping * (free + W * friction);
+    return (friction - rubbed).norm() + (damping - before).norm();
+  }
+  const double w = along.dot(answer * along), left = damped(0, 0);
+  AlongJoint now{place, left * (along.dot(speed) - w * along.dot(damping)), left * w};
+  const double change = sweep_joint(joint, potential, T, now, forces);
+  damping = -joint.damping * now.speed * along;
+  return change + (damping - before).norm();
+}
+
+Vec3 HeldJoint::add(const Vec3& change) {
+  Vec3 all = change;
+  if (ball()) {
+    friction += change;
+  } else {
+    forces.potential += change[0];
+    forces.stop += change[1];
+    forces.friction += change[2];
+    all = change.sum() * along;
+  }
+  const Vec3 left = damped * all;
+  damping += left - all;
+  return left;
+}
+
+std::array<double, 3> HeldJoint::numbers() const {
+  if (ball()) return {friction.x(), friction.y(), friction.z()};
+  return {forces.potential, forces.stop, forces.friction};
+}
+
+void HeldJoint::finish(double T, const Vec3& speed) {
+  anchor = -friction / joint.stop_stiffness;
+  forces.anchor = -forces.friction / joint.stop_stiffness;
+  if (!ball()) place += T * along.dot(speed);
+}
+
+void HeldJoint::hold() {
+  friction = -joint.stop_stiffness * anchor;
+  forces.friction = -joint.stop_stiffness * forces.anchor;
+}
+
+void HeldJoint::follow(double sine) {
+  const double there = place + sine;
+  if (limpid::stored(joint, potential, there, 0) <= limpid::stored(joint, potential, place, 0)) {
+    place = there;
+  }
+}
+
+void HeldJoint::write(std::span<double, kNumbers> into) const {
+  auto* to = into.data();
+  for (const double x : {place, forces.potential, forces.stop, forces.friction, forces.anchor}) {
+    *to++ = x;
+  }
+  for (const Vec3* v : {&friction, &anchor, &damping}) to = std::copy_n(v->data(), 3, to);
+}
+
+void HeldJoint::read(std::span<const double, kNumbers> from) {
+  place = from[0];
+  forces = {from[1], from[2], from[3], from[4]};
+  friction = Vec3(from[5], from[6], from[7]);
+  anchor = Vec3(from[8], from[9], from[10]);
+  damping = Vec3(from[11], from[12], from[13]);
+}
+
+}  // namespace limpid
