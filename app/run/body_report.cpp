@@ -120,22 +120,6 @@ double out_of_reach(const Object& object, const Scene& scene, const Vec3& root, 
   return least - reach - scene.tip_radius;
 }
 
-// What a joint says and the loop does not do yet; empty: nothing.
-std::string not_rendered(const std::optional<BodyJoint>& joint) {
-  if (!joint) return {};
-  const bool damped = joint->damping != 0 || joint->friction != 0;
-  if (joint->kind == BodyJoint::Kind::ball) {
-    return damped ? "damping and friction of a ball joint are not rendered" : "";
-  }
-  if (joint->to.empty()) return {};
-  if (joint->kind == BodyJoint::Kind::slider) {
-    return "a slider on another body is not rendered: the body moves freely";
-  }
-  const bool stops = std::isfinite(joint->low) || std::isfinite(joint->high);
-  if (!damped && !stops && joint->force == JointForce{}) return {};
-  return "of a hinge on another body, stops, damping, friction and forces are not rendered";
-}
-
 void warn(const Object& object, const Scene& scene, const Vec3& root, double reach,
           BodyReport& report) {
   const double away = out_of_reach(object, scene, root, reach);
@@ -148,9 +132,6 @@ void warn(const Object& object, const Scene& scene, const Vec3& root, double rea
   if (thick < kThinBody) {
     report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
                                           object.name, 1e3 * thick));
-  }
-  if (const std::string missing = not_rendered(object.body->joint); !missing.empty()) {
-    report.warnings.push_back(fmt::format("'{}': {}", object.name, missing));
   }
   if (object.body->inertia && !possible_inertia(*object.body->inertia)) {
     const Vec3& i = *object.body->inertia;

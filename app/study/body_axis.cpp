@@ -10,6 +10,7 @@ namespace limpid {
 namespace {
 
 using namespace scene_limits;
+using Of = BodyProperty::Of;
 
 // A body of the same shape and another density: its moments, where they are given, go along.
 void set_mass(Object& object, double mass) {
@@ -21,30 +22,30 @@ void set_mass(Object& object, double mass) {
 JointForce& force_of(Object& object) { return object.body->joint->force; }
 
 constexpr BodyProperty kProperties[] = {
-    {"mass", kMass, false, set_mass},
-    {"stiffness", kStiffness, false,
+    {"mass", kMass, Of::any_body, set_mass},
+    {"stiffness", kStiffness, Of::any_body,
      [](Object& object, double x) { object.material.stiffness = x; }},
-    {"friction", kFriction, false,
+    {"friction", kFriction, Of::any_body,
      [](Object& object, double x) {
        object.material.friction_static = object.material.friction_kinetic = x;
      }},
-    {"friction_static", kFriction, false,
+    {"friction_static", kFriction, Of::any_body,
      [](Object& object, double x) { object.material.friction_static = x; }},
-    {"friction_kinetic", kFriction, false,
+    {"friction_kinetic", kFriction, Of::any_body,
      [](Object& object, double x) { object.material.friction_kinetic = x; }},
-    {"contact_stiffness", kStiffness, false,
+    {"contact_stiffness", kStiffness, Of::any_body,
      [](Object& object, double x) { object.body->contact_stiffness = x; }},
-    {"restitution", kFriction, false,
+    {"restitution", kFriction, Of::any_body,
      [](Object& object, double x) { object.body->restitution = x; }},
-    {"joint.damping", kDamping, true,
+    {"joint.damping", kDamping, Of::any_joint,
      [](Object& object, double x) { object.body->joint->damping = x; }},
-    {"joint.friction", kJointForce, true,
+    {"joint.friction", kJointForce, Of::any_joint,
      [](Object& object, double x) { object.body->joint->friction = x; }},
-    {"joint.spring", kJointSpring, true,
+    {"joint.spring", kJointSpring, Of::slider_or_hinge,
      [](Object& object, double x) { force_of(object).spring = x; }},
-    {"joint.detent.force", kJointForce, true,
+    {"joint.detent.force", kJointForce, Of::slider_or_hinge,
      [](Object& object, double x) { force_of(object).detent_force = x; }},
-    {"joint.detent.period", kPeriod, true,
+    {"joint.detent.period", kPeriod, Of::slider_or_hinge,
      [](Object& object, double x) { force_of(object).detent_period = x; }},
 };
 
@@ -82,9 +83,14 @@ std::string why_not(const BodyAxis& axis, const Scene& scene) {
                                      : fmt::format("{}", fmt::join(names, ", ")));
   }
   const auto& joint = found->body->joint;
-  if (axis.property->of_joint && (!joint || joint->kind == BodyJoint::Kind::ball)) {
-    return fmt::format("'{}' is on no slider or hinge; allowed: what does not begin with joint.",
-                       axis.body);
+  if (axis.property->of != Of::any_body && !joint) {
+    return fmt::format("'{}' is on no joint; allowed: what does not begin with joint.", axis.body);
+  }
+  if (axis.property->of == Of::slider_or_hinge && joint->kind == BodyJoint::Kind::ball) {
+    return fmt::format(
+        "'{}' is on a ball joint; allowed: joint.damping, joint.friction, and what does not begin "
+        "with joint.",
+        axis.body);
   }
   return "";
 }

@@ -1,6 +1,7 @@
 // Axes of sweeps that are properties of bodies: scene.body.NAME.mass and the like.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,9 +14,12 @@ namespace limpid {
 inline constexpr const char* kBodyKey = "scene.body.";
 
 struct BodyProperty {
+  // What a body must be on to have it.
+  enum class Of : std::uint8_t { any_body, any_joint, slider_or_hinge };
+
   const char* name;  // what a key ends with
   Range range;
-  bool of_joint;  // of a slider or a hinge; a body without one has none
+  Of of;
   void (*set)(Object&, double);
 };
 

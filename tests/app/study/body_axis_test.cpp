@@ -33,6 +33,17 @@ stiffness = 1000
 [body.joint]
 kind = "slider"
 axis = [0, 0, 1]
+
+[[body]]
+name = "bob"
+sphere = 0.01
+mass = 0.05
+position = [0.3, 0.2, 0]
+stiffness = 1000
+
+[body.joint]
+kind = "ball"
+point = [0, 0, 0.1]
 )";
 
 class BodyAxes : public testing::Test {
@@ -109,7 +120,9 @@ TEST_F(BodyAxes, SayWhatIsWrongAndWhatIsAllowed) {
               AllOf(HasSubstr("numbers from 1e-06 to 100 kg"), HasSubstr("values")));
   EXPECT_THAT(refusal(plan("scene.body.die.stiffness", "[0]")), HasSubstr("numbers above 0"));
   EXPECT_THAT(refusal(plan("scene.body.die.joint.spring", "[1]")),
-              HasSubstr("'die' is on no slider or hinge"));
+              HasSubstr("'die' is on no joint; allowed: what does not begin with joint."));
+  EXPECT_THAT(refusal(plan("scene.body.bob.joint.spring", "[1]")),
+              HasSubstr("'bob' is on a ball joint; allowed: joint.damping, joint.friction, and"));
   EXPECT_THAT(refusal("hand = { tap = 2 }\nmeasure = [\"energy\"]\naxis = [ { key = "
                       "\"scene.body.die.mass\", values = [1] } ]"),
               HasSubstr("a tap has its own wall"));
