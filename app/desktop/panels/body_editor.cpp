@@ -10,7 +10,9 @@
 #include <string>
 
 #include "app/desktop/panels/scene_panel.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/run/body_report.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "core/touch/mass_properties.h"
@@ -293,6 +295,54 @@ BodySpring new_spring(const SceneEditor& editor) {
   return {.between = {body->name, ""}, .points = {Vec3::Zero(), body->pose.translation()}};
 }
 
+bool noted_checkbox(const char* label, bool& on) {
+  const bool changed = ImGui::Checkbox(label, &on);
+  note_place(label);
+  return changed;
+}
+
+// Where its mass is, where that is not what a solid has.
+std::string_view edit_moments(Object& object) {
+  std::string_view what;
+  Body& body = *object.body;
+  bool own = body.center.has_value();
+  if (noted_checkbox("a centre of mass of its own", own)) {
+    body.center = own ? std::optional(mass_properties(object).center) : std::nullopt;
+    what = "own center";
+  }
+  tooltip("Otherwise that of a solid of its shape and its parts.");
+  if (body.center) {
+    Vec3 center = 1e3 * *body.center;
+    if (drag3("Centre of mass x, y, z [mm]", center, 0.1, 1e3 * kPosition.minimum,
+              1e3 * kPosition.maximum, "%.2f",
+              "From the object's own middle, along its own axes.")) {
+      body.center = 1e-3 * center;
+      what = "center";
+    }
+  }
+  own = body.inertia.has_value();
+  if (noted_checkbox("moments of inertia of its own", own)) {
+    body.inertia =
+        own ? std::optional<Vec3>(mass_properties(object).inertia.diagonal()) : std::nullopt;
+    what = "own inertia";
+  }
+  tooltip("Otherwise those of a solid of its shape and its parts.");
+  if (!body.inertia) return what;
+  constexpr double kShown = 1e7;  // g cm^2 in a kg m^2
+  Vec3 shown = kShown * *body.inertia;
+  if (drag3("Inertia about x, y, z [g cm\xC2\xB2]", shown, pace(shown.maxCoeff(), 1e-4), 1e-4,
+            kShown * kInertia.maximum, "%.5g",
+            "About axes through the centre of mass, along the object's own.")) {
+    body.inertia = shown / kShown;
+    what = "inertia";
+  }
+  if (!possible_inertia(*body.inertia)) {
+    read_out("inertia", "no body has it",
+             "None of the three may be more than the other two together.");
+  }
+  return what;
+}
+
 }  // namespace
 
 std::string_view edit_body(Object& object, const Scene& scene, std::size_t place) {
@@ -318,9 +368,7 @@ std::string_view edit_body(Object& object, const Scene& scene, std::size_t place
                   "Against other objects; what the tip feels is the stiffness above.")) {
     what = "contact stiffness";
   }
-  if (!object.parts.empty()) {
-    read_out("parts", fmt::format("{}", object.parts.size()), {}, "From the scene's file.");
-  }
+  if (const auto moments = edit_moments(object); !moments.empty()) what = moments;
   if (const auto joint = edit_joint(body, scene, place); !joint.empty()) what = joint;
   return what;
 }

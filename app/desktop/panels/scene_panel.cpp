@@ -10,12 +10,12 @@
 
 #include "app/desktop/panels/body_editor.h"
 #include "app/desktop/panels/object_signs.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_document.h"
 
@@ -38,6 +38,7 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
   const bool changed =
       ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
                          &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_place(label);
   ImGui::PopID();
   tooltip(help);
   return changed;
@@ -47,7 +48,6 @@ namespace {
 
 using namespace scene_limits;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMillimetreSpeed = 0.25, kDegreeSpeed = 0.5;  // per pixel of a drag
 
 bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
               const char* help = "Forward, left and up from the arm's base.") {
@@ -146,21 +146,11 @@ bool drag_number(const char* label, double& value, double speed, double least, d
   const bool changed =
       ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
                         &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_place(label);
   ImGui::PopID();
   tooltip(help);
   return changed;
 }
-
-namespace {
-
-bool drag_length(const char* label, double& value, const char* help) {
-  double millimetres = 1e3 * value;
-  if (!drag_number(label, millimetres, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", help)) return false;
-  value = 1e-3 * millimetres;
-  return true;
-}
-
-}  // namespace
 
 void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {
   draw_name(document, place);
@@ -171,7 +161,13 @@ void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescript
   }
   Object object = document.scene().objects[place];
   std::string what(std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  const bool coloured =
+      !has_shape<Mesh>(object) && !has_shape<JointStop>(object) && !has_shape<Plane>(object);
+  if (coloured && edit_color(object.color, "Otherwise it has a plain one.")) what = "color";
   if (const auto moved = edit_body(object, document.scene(), place); !moved.empty()) what = moved;
+  if (object.body) {
+    if (const auto part = parts_.edit(object); !part.empty()) what = part;
+  }
   if (!what.empty() && document.may_edit()) document.editor().set(place, std::move(object), what);
 }
 
@@ -185,20 +181,6 @@ void ObjectEditor::draw_name(Document& document, std::size_t place) {
     name_of_.clear();
   }
   tooltip("Its name");
-}
-
-bool ObjectEditor::edit_rotation(Pose& pose) {
-  if (pose.linear() != turned_) {
-    turned_ = pose.linear();
-    degrees_ = (rpy_of(turned_) / kDegree * 1e6).array().round() / 1e6 + 0.0;  // no -0
-  }
-  if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
-             "About the fixed axes x, y and z, one after the other.")) {
-    return false;
-  }
-  turned_ = settled(rotation(degrees_ * kDegree));
-  pose.linear() = turned_;
-  return true;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
@@ -217,8 +199,8 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
   if (position(object.pose, "Centre x, y, z [mm]")) {
     what = "place";
   }
-  if (object.body && edit_rotation(object.pose)) what = "rotation";
-  if (drag_length("Radius", sphere.radius, "Of the ball")) what = "radius";
+  if (object.body && rotation_.edit(object.pose)) what = "rotation";
+  if (const auto size = edit_size(sphere); !size.empty()) what = size;
   return what;
 }
 
@@ -226,32 +208,23 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
 std::string_view ObjectEditor::edit_placed(Object& object) {
   std::string_view what = edit_material(object.material);
   if (position(object.pose)) what = "place";
-  if (edit_rotation(object.pose)) what = "rotation";
+  if (rotation_.edit(object.pose)) what = "rotation";
   return what;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Box& box) {
-  std::string_view what = edit_placed(object);
-  Vec3 size = 1e3 * box.size;
-  if (drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
-    box.size = 1e-3 * size;
-    what = "size";
-  }
-  return what;
+  const std::string_view what = edit_placed(object), size = edit_size(box);
+  return size.empty() ? what : size;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Cylinder& cylinder) {
-  std::string_view what = edit_placed(object);
-  if (drag_length("Radius", cylinder.radius, "Of its faces")) what = "radius";
-  if (drag_length("Length", cylinder.length, "From face to face")) what = "length";
-  return what;
+  const std::string_view what = edit_placed(object), size = edit_size(cylinder);
+  return size.empty() ? what : size;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Capsule& capsule) {
-  std::string_view what = edit_placed(object);
-  if (drag_length("Radius", capsule.radius, "Of its round ends")) what = "radius";
-  if (drag_length("Length", capsule.length, "Between the middles of its ends")) what = "length";
-  return what;
+  const std::string_view what = edit_placed(object), size = edit_size(capsule);
+  return size.empty() ? what : size;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {

@@ -9,6 +9,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/document/document.h"
+#include "app/desktop/panels/parts_editor.h"
 
 namespace limpid {
 
@@ -36,13 +37,12 @@ class ObjectEditor {
   std::string_view edit(Object& object, Capsule& capsule);
   std::string_view edit(Object& object, Mesh& mesh);
   std::string_view edit(Object& object, JointStop& stop);
-  bool edit_rotation(Pose& pose);
   std::string_view edit_placed(Object& object);
 
-  std::string name_;            // being typed
-  std::string name_of_;         // the object's it is
-  Mat3 turned_ = Mat3::Zero();  // the rotation that `degrees_` stand for
-  Vec3 degrees_ = Vec3::Zero();
+  std::string name_;     // being typed
+  std::string name_of_;  // the object's it is
+  RotationField rotation_;
+  PartsEditor parts_;
   std::shared_ptr<const Model> measured_;  // a large one takes a while
   double extent_ = 0;                      // its largest [m]
   const ArmDescription* arm_ = nullptr;    // while drawing

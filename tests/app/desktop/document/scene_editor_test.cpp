@@ -417,6 +417,54 @@ TEST(SceneEditor, WhatMovesComesBackFromItsText) {
   EXPECT_EQ(editor.last_change(), "") << "a step of its own";
 }
 
+// A file's numbers stay as it had them; what is edited is held, written, and undone at once.
+TEST(SceneEditor, PartsMomentsAndColoursComeFromTheTextAndGoBackIntoIt) {
+  const ArmDescription arm = test::random_arm(3, 2);
+  const std::string text = R"([[body]]
+name = "die"
+box = [0.03, 0.03, 0.03]
+mass = 0.05
+center = [0.001, 0, 0]
+inertia = [1e-5, 2e-5, 2.5e-5]
+position = [0.2, 0, 0]
+color = [0.8, 0.2, 0.1]
+[[body.part]]
+sphere = 0.01
+position = [0, 0, 0.02]
+[[body.part]]
+capsule = [0.004, 0.02]
+color = [0.1, 0.2, 0.3]
+)";
+  const auto parsed = [&](const std::string& from) {
+    SceneEditor editor;
+    editor.open(parse_scene(from, "x.toml", "", arm, {}), {});
+    return editor;
+  };
+  SceneEditor editor = parsed(text);
+  const SceneEditor::Version before = editor.version();
+  Object die = editor.scene().objects[0];
+  die.parts[1].pose.translation() = Vec3(0, 0.5, 1e9);
+  die.parts[1].color.reset();
+  die.body->center = Vec3(0, 0, -0.002);
+  die.body->inertia = Vec3(1e-5, 2e-5, 0);
+  die.color = Vec3(0.5, 2, 0);
+  editor.set(0, die, "part 2 place");
+  EXPECT_EQ(editor.last_change(), "0 part 2 place");
+  const Object back = parsed(scene_text(editor.document(), arm)).scene().objects[0];
+  test::expect_same(back, editor.scene().objects[0]);
+  ASSERT_EQ(back.parts.size(), 2u);
+  EXPECT_EQ(back.parts[0].pose.translation(), Vec3(0, 0, 0.02));
+  EXPECT_EQ(back.parts[1].pose.translation().y(), 0.5);
+  EXPECT_LE(back.parts[1].pose.translation().z(), scene_limits::kPosition.maximum);
+  EXPECT_FALSE(back.parts[1].color);
+  EXPECT_EQ(*back.body->center, Vec3(0, 0, -0.002));
+  EXPECT_GT(back.body->inertia->z(), 0);
+  EXPECT_EQ(*back.color, Vec3(0.5, 1, 0));
+  editor.restore(before);
+  EXPECT_FALSE(editor.dirty());
+  EXPECT_EQ(editor.document().toml, text);
+}
+
 TEST(SceneEditor, NothingThatCannotMoveHasABody) {
   SceneEditor editor = full();
   Object top = editor.scene().objects[kTop];
