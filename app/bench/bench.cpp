@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "app/base/version.h"
+#include "app/bench/bodies.h"
 #include "app/bench/mesh_stroke.h"
 #include "app/bench/pressed.h"
 #include "app/bench/recorded_run.h"
@@ -226,10 +227,21 @@ void add_meshes(std::vector<Piece>& all, const Wishes& wishes) {
   }
 }
 
+void add_bodies(std::vector<Piece>& all, const Wishes& wishes, const Line& unit) {
+  for (const int count : {10, 50}) {
+    for (const Boxes what : {Boxes::rest, Boxes::slide, Boxes::asleep}) {
+      all.push_back({id_of(count, what), [&wishes, &unit, count, what](Report& report) {
+                       report.lines.push_back(boxes(wishes, unit, count, what));
+                     }});
+    }
+  }
+}
+
 std::vector<Piece> pieces(const Wishes& wishes, const Line& unit) {
   std::vector<Piece> all;
   all.push_back({"wake", [](Report& report) { report.lines.push_back(wakes()); }});
   add_ticks(all, wishes, unit);
+  add_bodies(all, wishes, unit);
   add_meshes(all, wishes);
   all.push_back({"run", [&unit](Report& report) {
                    for (Line& line : recorded_runs(unit)) report.lines.push_back(std::move(line));

@@ -29,6 +29,9 @@ COUNTED = {  # the line of `limpid bench`, and the function that its instruction
     "tick/30/predictive": "limpid::Tick<-1>::run(*",
     "arm/3": "limpid::VirtualArm<3>::live(*",
     "arm/7": "limpid::VirtualArm<7>::live(*",
+    "bodies/10/rest": "*measured_step*",
+    "bodies/10/slide": "*measured_step*",
+    "bodies/50/asleep": "*measured_step*",
 }
 
 
