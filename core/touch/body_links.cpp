@@ -123,6 +123,14 @@ void BodyWorld::begin_rail(Link& link) {
   const Vec3 spin = moves(link.b) ? bodies_[at(link.b)].spin() : Vec3(Vec3::Zero());
   const auto later = [&](const Vec3& v) { return Vec3(v + 0.5 * T_ * spin.cross(v)); };
   const Vec3 axis = later(now).normalized();
+  // That point is where a is in the middle of the tick: else the force and its answer would turn
+  // both.
+  const auto speed = [&](int body) {
+    if (!moves(body)) return Vec3(Vec3::Zero());
+    const BodyMotion& motion = bodies_[at(body)];
+    return Vec3(motion.speed() + motion.spin().cross(on_a - motion.center()));
+  };
+  link.end_b.lever += 0.5 * T_ * axis * axis.dot(speed(link.a) - speed(link.b));
   link.held = Mat3::Identity() - axis * axis.transpose();
   link.stretch = link.held * later(off - now * now.dot(off));
   const Mat3 W = answer(link.end_a) + answer(link.end_b);
@@ -173,7 +181,7 @@ void BodyWorld::begin_held(Held& held) {
     holds[i] = {link.K * T_ / 2 + link.B, link.held};
   }
   held.joint.start(joint_answer(held.joint.turns(), a, b, {holds.data(), held.links}));
-  push_alone(held, held.joint.force());
+  push(held, held.joint.force());
 }
 
 // Of a against b: of its point on the joint, or how it turns.
@@ -185,7 +193,7 @@ Vec3 BodyWorld::speed(const Held& held) const {
   return turning(held.a) - turning(held.b);
 }
 
-void BodyWorld::push_alone(const Held& held, const Vec3& force) {
+void BodyWorld::push(const Held& held, const Vec3& force) {
   if (!held.joint.turns()) {
     apply(held.end_a, held.end_b, force);
     return;
@@ -198,18 +206,6 @@ void BodyWorld::push_alone(const Held& held, const Vec3& force) {
   if (force.isZero(0)) return;
   twist(held.a, force);
   twist(held.b, -force);
-}
-
-// What holds it gives way at once: else sweeps would go from one to the other for long.
-void BodyWorld::push(const Held& held, const Vec3& force) {
-  if (force.isZero(0)) return;
-  push_alone(held, force);
-  for (std::size_t i = 0; i < held.links; ++i) {
-    Link& link = links_[held.first + i];
-    const Vec3 change = -(held.joint.answer.relieves[i] * force);
-    link.force += change;
-    apply(link.end_a, link.end_b, change);
-  }
 }
 
 double BodyWorld::sweep(Link& link) {

@@ -173,7 +173,6 @@ class BodyWorld {
   void begin_held(Held& held);
   void follow(Held& held) const;
   Vec3 speed(const Held& held) const;
-  void push_alone(const Held& held, const Vec3& force);
   void push(const Held& held, const Vec3& force);
   Vec3 directed(int body, const Vec3& own) const;  // in the world
   Vec3 place(int body, const Vec3& own) const;

@@ -31,9 +31,9 @@ Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
 }  // namespace
 
 // With the springs' answers among themselves M, G what the force does to them and W what it does to
-// itself, all without the springs: they push by M^-1 G less, and W - G^T M^-1 G is left.
-JointAnswer joint_answer(bool turns, const JointSide& a, const JointSide& b,
-                         std::span<const JointHold> holds) {
+// itself, all without the springs: W - G^T M^-1 G is left.
+Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
+                  std::span<const JointHold> holds) {
   const auto n = static_cast<int>(holds.size());
   Mat9 M = Mat9::Identity();
   Mat93 G = Mat93::Zero();
@@ -58,16 +58,9 @@ JointAnswer joint_answer(bool turns, const JointSide& a, const JointSide& b,
   }
   // The turning of what spins leaves it a little unsymmetric: sweeps see to that.
   const Eigen::LLT<Mat9> factor(0.5 * (M + M.transpose()));
-  Mat93 less;
-  for (int i = 0; i < 3; ++i) less.col(i) = factor.solve(G.col(i));
-  JointAnswer answer;
-  answer.moves = symmetric(W);
-  for (int i = 0; i < n; ++i) {
-    const Mat3 relieved = less.block<3, 3>(3 * i, 0);
-    answer.moves -= symmetric(G.block<3, 3>(3 * i, 0).transpose() * relieved);
-    answer.relieves[static_cast<std::size_t>(i)] = relieved;
-  }
-  return answer;
+  Mat3 left = symmetric(W);
+  for (int i = 0; i < 3; ++i) left.col(i) -= G.transpose() * factor.solve(G.col(i));
+  return symmetric(left);
 }
 
 bool HeldJoint::needed(const BodyJoint& joint) {
@@ -80,12 +73,12 @@ double HeldJoint::stored() const {
   return limpid::stored(joint, potential, place, forces.anchor);
 }
 
-void HeldJoint::start(const JointAnswer& now) {
+void HeldJoint::start(const Mat3& now) {
   answer = now;
   if (ball()) {
-    damped = (Mat3::Identity() + joint.damping * answer.moves).inverse();
+    damped = (Mat3::Identity() + joint.damping * answer).inverse();
   } else {
-    damped = Mat3::Identity() / (1 + joint.damping * along.dot(answer.moves * along));
+    damped = Mat3::Identity() / (1 + joint.damping * along.dot(answer * along));
     damping = along * along.dot(damping);
   }
 }
@@ -94,13 +87,13 @@ double HeldJoint::sweep(double T, const Vec3& speed) {
   const Vec3 before = damping;
   if (ball()) {
     const Vec3 rubbed = friction;
-    const Vec3 free = damped * (speed - answer.moves * (friction + damping));
-    const Mat3 W = damped * answer.moves;
+    const Vec3 free = damped * (speed - answer * (friction + damping));
+    const Mat3 W = damped * answer;
     friction = friction_torque(joint.stop_stiffness, joint.friction, anchor, T, free, W);
     damping = -joint.damping * (free + W * friction);
     return (friction - rubbed).norm() + (damping - before).norm();
   }
-  const double w = along.dot(answer.moves * along), left = damped(0, 0);
+  const double w = along.dot(answer * along), left = damped(0, 0);
   AlongJoint now{place, left * (along.dot(speed) - w * along.dot(damping)), left * w};
   const double change = sweep_joint(joint, potential, T, now, forces);
   damping = -joint.damping * now.speed * along;

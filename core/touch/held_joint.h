@@ -24,13 +24,9 @@ struct JointHold {
 };
 
 // What a torque about it, or a force along it, adds to the angular velocity or velocity of one side
-// against the other while the springs hold; and by how much these push less for it.
-struct JointAnswer {
-  Mat3 moves = Mat3::Zero();
-  std::array<Mat3, 3> relieves{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
-};
-JointAnswer joint_answer(bool turns, const JointSide& a, const JointSide& b,
-                         std::span<const JointHold> holds);
+// against the other, where the springs that hold it give way to that at once.
+Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
+                  std::span<const JointHold> holds);
 
 // What damps and rubs in a ball joint, and all that acts in a hinge or a slider whose other half
 // moves as well.
@@ -47,8 +43,8 @@ struct HeldJoint {
   Vec3 damping = Vec3::Zero();  // [N] or [N m]
 
   // Of the tick:
-  Vec3 along = Vec3::Zero();  // its axis, in the world
-  JointAnswer answer;
+  Vec3 along = Vec3::Zero();       // its axis, in the world
+  Mat3 answer = Mat3::Zero();      // see joint_answer()
   Mat3 damped = Mat3::Identity();  // what damping leaves of a force on it [-]
 
   bool ball() const { return joint.kind == BodyJoint::Kind::ball; }
@@ -58,7 +54,7 @@ struct HeldJoint {
   // Whether anything acts in a joint besides what holds it.
   static bool needed(const BodyJoint& joint);
 
-  void start(const JointAnswer& now);
+  void start(const Mat3& now);
   // Its force anew, where one side moves against the other with this angular velocity or velocity.
   // Returns by how much it changed.
   double sweep(double T, const Vec3& speed);

@@ -348,6 +348,88 @@ TEST(BodyJoints, ASliderStaysOnItsLineWhileAllOfItTurns) {
   EXPECT_LT((momentum() - before).norm(), 2e-3 * before.norm());
 }
 
+// Far out on its line, where that turns fast.
+TEST(BodyJoints, ASliderMakesNothingFarOutOnALineThatTurns) {
+  BodyJoint spring;
+  spring.force.spring = 6;
+  spring.low = -0.15;
+  spring.high = 0.15;
+  BodyWorld world(drawer(spring));
+  set_moving(world, 0, Vec3::Zero(), {0, 0, 8});
+  set_moving(world, 1, {0.6, 0, 0}, {0, 0, 8});
+  double most = 0;
+  for (int k = 0; k < 2000; ++k) {
+    ASSERT_LT(run(world, 1), 1e-12) << k;
+    most = std::max(most, world.joint(1));
+    const Pose relative = world.pose(0).inverse() * world.pose(1);
+    ASSERT_LT(relative.translation().tail<2>().norm(), 1e-4) << k;
+  }
+  EXPECT_GT(most, 0.05);
+}
+
+// However often it has gone round.
+TEST(BodyJoints, AHingeIsWhereItsHalvesAre) {
+  BodyJoint light;
+  light.damping = 1e-9;
+  BodyWorld world(two_on_an_axis(light));
+  set_moving(world, 1, Vec3::Zero(), {0, 0, 60});
+  run(world, 3000);
+  EXPECT_GT(world.joint(1), 2 * M_PI * 20);
+  const Mat3 R = world.pose(0).linear().transpose() * world.pose(1).linear();
+  EXPECT_NEAR(std::remainder(world.joint(1) - std::atan2(R(1, 0), R(0, 0)), 2 * M_PI), 0, 1e-4);
+}
+
+// What holds a joint gives way with what acts in it: else each would wait for the other.
+TEST(BodyJoints, AreFoundInFewSweeps) {
+  for (const auto& [damping, friction] : {std::pair{0.0, 1e-3}, std::pair{1e-3, 0.0}}) {
+    BodyWorld world(pendulum(0.5, damping, friction));
+    int most = 0;
+    for (int k = 0; k < 500; ++k) {
+      run(world, 1);
+      most = std::max(most, world.sweeps());
+    }
+    EXPECT_LE(most, 12) << damping << " " << friction;
+  }
+}
+
+// A force goes on as others let it go on: a change from outside, of which damping takes its share,
+// is the whole of what is done to both halves, and the next sweep finds the same forces again.
+TEST(BodyJoints, KeepAccountOfAllThatTheyPushWith) {
+  Random random(5);
+  for (const Kind kind : {Kind::ball, Kind::hinge}) {
+    HeldJoint held;
+    held.joint.kind = kind;
+    held.joint.damping = 0.02;
+    held.joint.friction = 0.05;
+    held.along = random.direction();
+    const Mat3 R = random.rotation();
+    const Mat3 answer = R * Vec3(20, 50, 90).asDiagonal() * R.transpose();
+    held.start(answer);
+    const Vec3 free = 3 * random.direction();
+    Vec3 pushed = Vec3::Zero();
+    const auto speed = [&] { return Vec3(free + answer * pushed); };
+    const auto sweep = [&] {
+      const Vec3 before = held.force();
+      const double change = held.sweep(kTick, speed());
+      pushed += held.force() - before;
+      return change;
+    };
+    for (int i = 0; i < 50; ++i) sweep();
+    const Vec3 found = held.force();
+    EXPECT_GT(found.norm(), 0.01);
+    EXPECT_LT(sweep(), 1e-12);
+    pushed += held.add(kind == Kind::ball ? Vec3(0.01, -0.02, 0.015) : Vec3(0, 0, 0.015));
+    EXPECT_LT((held.force() - pushed).norm(), 1e-15);
+    for (int i = 0; i < 50; ++i) sweep();
+    EXPECT_LT((held.force() - found).norm(), 1e-10);
+    if (kind == Kind::ball) {
+      EXPECT_LT((held.damping + 0.02 * speed()).norm(), 1e-12);
+    } else {
+      EXPECT_NEAR(held.damping.dot(held.along), -0.02 * speed().dot(held.along), 1e-12);
+    }
+  }
+}
+
 // A door that hangs on a door, both on springs and dampers, under their weight.
 TEST(BodyJoints, AChainOfHingesMakesNoEnergy) {
   Scene scene;

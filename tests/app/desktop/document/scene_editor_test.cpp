@@ -462,7 +462,7 @@ color = [0.1, 0.2, 0.3]
   EXPECT_EQ(*back.color, Vec3(0.5, 1, 0));
   editor.restore(before);
   EXPECT_FALSE(editor.dirty());
-  EXPECT_EQ(scene_text(editor.document(), arm), text);
+  EXPECT_EQ(editor.document().toml, text);
 }
 
 TEST(SceneEditor, NothingThatCannotMoveHasABody) {

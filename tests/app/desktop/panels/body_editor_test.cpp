@@ -52,7 +52,7 @@ class BodyFields : public ImGuiFrames {
     ImGui::GetIO().AddInputCharactersUTF8(text);
     frames();
     for (const bool down : {true, false}) {
-      ImGui::GetIO().AddKeyEvent(ImGuiKey_Enter, down);
+      show_key(GLFW_KEY_ENTER, down);
       frames();
     }
   }

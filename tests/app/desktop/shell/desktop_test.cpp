@@ -263,6 +263,30 @@ TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   EXPECT_TRUE(until([&] { return !held(); }));
 }
 
+// On the virtual arm, on a device that is plugged in, and on the virtual arm again.
+TEST_F(ADesktop, HasWhatMovesWithADeviceAsWell) {
+  const Vec3 tip = desktop->live.controls().goal;
+  const fs::path file = dir / "die.toml";
+  std::ofstream(file) << fmt::format(
+      "tip_radius = 0.004\n[[plane]]\nname = \"floor\"\npoint = [0, 0, {}]\nnormal = [0, 0, 1]\n"
+      "stiffness = 600\n[[body]]\nname = \"die\"\nbox = [0.02, 0.02, 0.02]\nmass = 0.02\n"
+      "position = [{}, {}, {}]\n",
+      tip.z() - 0.05, tip.x(), tip.y() + 0.05, tip.z() - 0.035);
+  desktop->world.open_scene(file);
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  const auto lies = [&] {  // it has fallen by 5 mm
+    const auto pose = loop().layout().in(desktop->live.row(), Column::body_pose);
+    return pose.size() == 7 && std::abs(pose[2] - (tip.z() - 0.04)) < 1e-4;
+  };
+  EXPECT_TRUE(until(lies));
+  const auto wire = plug_in(3);
+  EXPECT_TRUE(has("die"));
+  EXPECT_TRUE(until(lies));
+  desktop->world.close_device();
+  EXPECT_TRUE(has("die"));
+  EXPECT_TRUE(until(lies));
+}
+
 TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
   auto wire = std::make_shared<Wire>();
   wire->buttons = 2;
