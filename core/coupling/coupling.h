@@ -1,6 +1,9 @@
 // Device and proxy tied together by one law at a time.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "core/coupling/laws.h"
 #include "core/coupling/predictive.h"
 #include "core/coupling/proposed.h"
@@ -25,7 +28,11 @@ template <int N>
 class Coupling {
  public:
   void start(const LawStart<N>& at) {
-    std::apply([&](auto&... law) { (law.start(at), ...); }, laws_);
+    if (at.reserve) reserve_ = *at.reserve;
+    // A law that accounts for energy hands on to the next one what it has left.
+    LawStart<N> all = at;
+    if (std::isfinite(reserve_)) all.reserve = reserve_;
+    std::apply([&](auto&... law) { (law.start(all), ...); }, laws_);
   }
   // First in a tick: where the law takes the device to be.
   template <class P>
@@ -38,18 +45,19 @@ class Coupling {
   template <class P>
   Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
     Vec<N> torque;
-    with(laws_, kind, [&](auto& law) { torque = law.step(p, in, proxy); });
+    with(laws_, kind, [&](auto& law) {
+      torque = law.step(p, in, proxy);
+      if (const double reserve = law.report().reserve; std::isfinite(reserve)) reserve_ = reserve;
+    });
     return torque;
   }
   // Last: what left of it [N m].
   void applied(CouplingKind kind, const Vec<N>& torque) {
     with(laws_, kind, [&](auto& law) { law.applied(torque); });
   }
-  // What laws that account for it may still give the human, whichever law is in force [J].
-  double reserve() const {
-    return std::apply([](const auto&... law) { return std::min({law.report().reserve...}); },
-                      laws_);
-  }
+  // What the last law that accounts for it may still give the human, whichever law is in force;
+  // infinite before there was one [J].
+  double reserve() const { return reserve_; }
   LawReport report(CouplingKind kind) const {
     LawReport report;
     with(laws_, kind, [&](const auto& law) { report = law.report(); });
@@ -67,6 +75,7 @@ class Coupling {
   }
 
   detail::Instances<Laws>::Of<N> laws_;
+  double reserve_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace limpid

@@ -192,6 +192,16 @@ PROMISES = {
             ("given to the human at that wall [J]", AT_MOST, 5e-3),
             ("stiffness felt there off that set, of it", AT_MOST, 0.05))
     ],
+    "link": [
+        ("tank, delays to 100 ms: highest E_c [J]", AT_MOST, 5e-3),
+        ("tank, 60 links with delay, jitter and loss: highest E_c [J]", AT_MOST, 5e-3),
+        ("standard, gains by condition (3): highest E_c [J]", AT_MOST, 5e-5),
+        ("standard, gains by condition (3): stiffest wall [N/m]", AT_LEAST, 20000),
+        ("tank, delays to 50 ms: stiffest wall [N/m]", AT_LEAST, 20000),
+        ("standard: longest delay at which a tap rests, by that of theory", AT_LEAST, 0.75),
+        ("the same, at most", AT_MOST, 1.25),
+        ("proposed, delays to 2 ms: stiffest wall by that of theory", AT_LEAST, 1),
+    ],
     "walls": [
         (f"{step}: {what}", relation, bound)
         for step, some in zip(STEPS, (36, 36, 24))
