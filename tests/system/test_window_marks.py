@@ -261,5 +261,29 @@ class BrokenPassivity(WindowTest):
         self.assertEqual(after["tried"], "", "nobody chose a law, or eta, or pressed anything")
 
 
+class Experiments(WindowTest):
+    RUN_ALL = (575, 600)  # in the dialog, and Stop in its place while they run
+
+    def test_they_go_on_beside_the_window_which_says_so_and_are_stopped(self) -> None:
+        self.key("F5")
+        self.wait("the dialog", lambda s: s["dialog"] == "experiments")
+        self.click(*self.RUN_ALL)
+        self.wait("a result", lambda s: any("coordination: passed" in n for n in s["notices"]), 240)
+        self.key("Escape")
+        self.wait("a banner", lambda s: any("Experiments go on: " in b["text"]
+                                            for b in s["banners"]))
+        kind = self.state()["kind"]
+        self.key("c")  # the window is free
+        self.wait("the next law", lambda s: s["kind"] == kind + 1)
+        show = "Show (F5)"
+        self.click(*next(b["buttons"][show] for b in self.settled()["banners"]
+                         if show in b["buttons"]))
+        self.wait("the dialog", lambda s: s["dialog"] == "experiments")
+        self.click(*self.RUN_ALL)
+        self.wait_for_notice("Stopped")
+        self.key("Escape")
+        self.wait("nothing under way", lambda s: s["dialog"] == "" and not s["banners"])
+
+
 if __name__ == "__main__":
     unittest.main()
