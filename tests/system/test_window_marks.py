@@ -261,6 +261,28 @@ class BrokenPassivity(WindowTest):
         self.assertEqual(after["tried"], "", "nobody chose a law, or eta, or pressed anything")
 
 
+class Places(WindowTest):
+    NEW_FOLDER = (418, 529)  # in the dialog that saves a scene
+    HOME = (246, 251)        # the first of its places
+
+    def prepare(self) -> None:
+        self.environment["HOME"] = str(self.home)
+
+    def test_a_scene_is_saved_in_a_new_folder_of_a_place(self) -> None:
+        self.key("ctrl+shift+s")
+        self.wait("the dialog", lambda s: s["dialog"] == "save scene" and s["typing"])
+        self.click(*self.HOME)
+        self.click(*self.NEW_FOLDER)
+        self.wait("its name to be asked for", lambda s: s["typing"])
+        self.type("mine")
+        self.key("Return")
+        self.wait_until("the folder", (self.home / "mine").is_dir)
+        self.settled()
+        self.key("Return")
+        self.wait("the dialog to close", lambda s: s["dialog"] == "")
+        self.assertTrue((self.home / "mine/table.toml").is_file())
+
+
 class Experiments(WindowTest):
     RUN_ALL = (575, 600)  # in the dialog, and Stop in its place while they run
 
