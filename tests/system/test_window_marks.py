@@ -181,6 +181,8 @@ class Ranges(Recorded):
 
 
 class Exports(Recorded):
+    SAVE_PNG = (250, 650)  # in the menu of the first plot, opened at (200, 560)
+
     def prepare(self) -> None:
         """Stand-ins for the desktop's programs: they say what they were asked for."""
         tools = self.home / "bin"
@@ -224,6 +226,21 @@ class Exports(Recorded):
         self.key("Return")
         self.press("coordination-error-002.png", "Show in folder")
         self.wait_until("the folder", lambda: str(self.sessions()) in self.opened.read_text().split("\n"))
+
+
+    def test_the_menu_of_a_plot_saves_the_same_picture(self) -> None:
+        self.go_on(2)
+        left, _, right, _ = self.state()["plots"][0]["area"]
+        self.move(200, 560)
+        self.settled()
+        self.xdotool("click", "3")
+        self.click(*self.SAVE_PNG)
+        self.wait("it to be said", lambda s: any("coordination-error-001.png" in b["text"]
+                                                 for b in s["banners"]))
+        data = next(self.sessions().glob("coordination-error-*.png")).read_bytes()
+        width, _ = struct.unpack(">II", data[16:24])
+        self.assertGreater(width, 3 * (right - left), "more than what is on the screen")
+        self.assertAlmostEqual(width, 160 / 25.4 * 300, delta=3)
 
 
 class YourTurn(WindowTest):
