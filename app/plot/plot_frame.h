@@ -87,7 +87,7 @@ void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, Im
 void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale);
 
 // The values of the curves at a time, in their colours, in the margin beside the area: that at the
-// mouse, or at the right end; and how wide that margin has to be.
+// mouse, where playback stands, or at the right end; and how wide that margin has to be.
 float end_label_width();
 void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      double time);

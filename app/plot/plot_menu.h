@@ -20,9 +20,8 @@ struct PlotNotice {
 struct PlotSaving {
   std::filesystem::path folder;  // created when missing
 
-  // Asked to save what is on the screen between two corners [px, ImGui coordinates] as a PNG; it
-  // is called while the frame is built, so the pixels are to be read after it is drawn, and who
-  // reads them says what became of it. Without it PNG is not offered.
+  // Asked to save the plot that is drawn between two corners [px, ImGui coordinates] as a PNG; who
+  // does that says what became of it. Without it PNG is not offered.
   std::function<void(const ScreenRect& box, const std::filesystem::path& file)> save_png;
 
   // Does work on a file that may take its time somewhere else, and says what became of it. Without

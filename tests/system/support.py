@@ -128,8 +128,11 @@ class SystemTest(unittest.TestCase):
     def assert_same_rows(self, first: Path, second: Path) -> None:
         """To the last bit of every dataset, but how long the ticks took and when they began."""
         with h5py.File(first, "r") as a, h5py.File(second, "r") as b:
-            self.assertEqual(datasets(a), datasets(b))
-            for name in datasets(a):
+            # What people noted is of one recording, and no row.
+            names, others = ([name for name in datasets(file) if not name.startswith("marks/")]
+                             for file in (a, b))
+            self.assertEqual(names, others)
+            for name in names:
                 if name.startswith("timing/"):
                     continue
                 x, y = a[name][()], b[name][()]

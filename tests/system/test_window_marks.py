@@ -181,6 +181,8 @@ class Ranges(Recorded):
 
 
 class Exports(Recorded):
+    SAVE_PNG = (250, 650)  # in the menu of the first plot, opened at (200, 560)
+
     def prepare(self) -> None:
         """Stand-ins for the desktop's programs: they say what they were asked for."""
         tools = self.home / "bin"
@@ -226,6 +228,21 @@ class Exports(Recorded):
         self.wait_until("the folder", lambda: str(self.sessions()) in self.opened.read_text().split("\n"))
 
 
+    def test_the_menu_of_a_plot_saves_the_same_picture(self) -> None:
+        self.go_on(2)
+        left, _, right, _ = self.state()["plots"][0]["area"]
+        self.move(200, 560)
+        self.settled()
+        self.xdotool("click", "3")
+        self.click(*self.SAVE_PNG)
+        self.wait("it to be said", lambda s: any("coordination-error-001.png" in b["text"]
+                                                 for b in s["banners"]))
+        data = next(self.sessions().glob("coordination-error-*.png")).read_bytes()
+        width, _ = struct.unpack(">II", data[16:24])
+        self.assertGreater(width, 3 * (right - left), "more than what is on the screen")
+        self.assertAlmostEqual(width, 160 / 25.4 * 300, delta=3)
+
+
 class YourTurn(WindowTest):
     LAW = None  # a first start's
 
@@ -259,6 +276,52 @@ class BrokenPassivity(WindowTest):
         after = self.wait("the hand to let go",
                           lambda s: s["grip"] == 0 and s["kind"] == before["kind"])
         self.assertEqual(after["tried"], "", "nobody chose a law, or eta, or pressed anything")
+
+
+class Places(WindowTest):
+    NEW_FOLDER = (418, 529)  # in the dialog that saves a scene
+    HOME = (246, 251)        # the first of its places
+
+    def prepare(self) -> None:
+        self.environment["HOME"] = str(self.home)
+
+    def test_a_scene_is_saved_in_a_new_folder_of_a_place(self) -> None:
+        self.key("ctrl+shift+s")
+        self.wait("the dialog", lambda s: s["dialog"] == "save scene" and s["typing"])
+        self.click(*self.HOME)
+        self.click(*self.NEW_FOLDER)
+        self.wait("its name to be asked for", lambda s: s["typing"])
+        self.type("mine")
+        self.key("Return")
+        self.wait_until("the folder", (self.home / "mine").is_dir)
+        self.settled()
+        self.key("Return")
+        self.wait("the dialog to close", lambda s: s["dialog"] == "")
+        self.assertTrue((self.home / "mine/table.toml").is_file())
+
+
+class Experiments(WindowTest):
+    RUN_ALL = (575, 600)  # in the dialog, and Stop in its place while they run
+
+    def test_they_go_on_beside_the_window_which_says_so_and_are_stopped(self) -> None:
+        self.key("F5")
+        self.wait("the dialog", lambda s: s["dialog"] == "experiments")
+        self.click(*self.RUN_ALL)
+        self.wait("a result", lambda s: any("coordination: passed" in n for n in s["notices"]), 240)
+        self.key("Escape")
+        self.wait("a banner", lambda s: any("Experiments go on: " in b["text"]
+                                            for b in s["banners"]))
+        kind = self.state()["kind"]
+        self.key("c")  # the window is free
+        self.wait("the next law", lambda s: s["kind"] == kind + 1)
+        show = "Show (F5)"
+        self.click(*next(b["buttons"][show] for b in self.settled()["banners"]
+                         if show in b["buttons"]))
+        self.wait("the dialog", lambda s: s["dialog"] == "experiments")
+        self.click(*self.RUN_ALL)
+        self.wait_for_notice("Stopped")
+        self.key("Escape")
+        self.wait("nothing under way", lambda s: s["dialog"] == "" and not s["banners"])
 
 
 if __name__ == "__main__":

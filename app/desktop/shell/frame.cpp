@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/desktop/base/passivity_break.h"
@@ -232,14 +233,24 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
   if (section("For the re-run (E)", true)) draw_coupling_of_rerun(desktop_.tuning.edited(), now);
 }
 
+// As the export dialog has it at first: the picture of the SVG, dense enough for print.
+void Frame::save_plot(const ScreenRect& box, const std::filesystem::path& file) {
+  const Stage& stage = desktop_.shown.stage();
+  const auto here = [&](const Plot& plot) { return box.contains(plot.area().min); };
+  const auto plot = std::ranges::find_if(stage.plots, here);
+  if (plot == stage.plots.end()) return;
+  ExportOrder order;
+  order.plot = static_cast<std::size_t>(plot - stage.plots.begin());
+  order.file = file;
+  desktop_.exporter.carry_out(order, stage);
+}
+
 // The row of plots, and what is asked for there.
 void Frame::draw_plot_row(ScreenRect rect) {
   const PlotSaving saving{
       .folder = sessions_dir(),
-      .save_png =
-          [this](const ScreenRect& box, const std::filesystem::path& file) {
-            window_.save_picture(file, box.min.x, box.min.y, box.max.x, box.max.y);
-          },
+      .save_png = [this](const ScreenRect& box,
+                         const std::filesystem::path& file) { save_plot(box, file); },
       .beside =
           [this](std::function<PlotNotice()> work) { desktop_.live.save_beside(std::move(work)); },
       .arranged = true};
