@@ -80,7 +80,8 @@ class ThroughALink(SystemTest):
     def test_tanks_bound_what_is_given_where_the_standard_law_diverges(self) -> None:
         worst = {}
         for law in ("standard", "tank"):
-            words = ["--coupling", law, *_TAPS, "--set", "link.delay=10"]
+            words = ["--coupling", law, *_TAPS[:-2], "--set", "link.delay=10", "--set", "coupling.k_vc=20",
+                     "--duration", "4"]  # fmt: skip
             out = self.directory / f"{law}_diverges.h5"
             limpid("run", *words, "--record", out)
             worst[law] = read_session(out)["/energy/controller_total"].max()

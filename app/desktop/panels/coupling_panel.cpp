@@ -81,7 +81,13 @@ void kind_buttons(Parameters& p) {
   const Palette& colours = palette(current_theme());
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 size((width - gap * (kLaws - 1)) / kLaws, ImGui::GetFrameHeight() * 1.2f);
+  // Each as wide as its word, and what is left shared: they fit beside each other in the narrowest
+  // panel.
+  float left = width - gap * (kLaws - 1);
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    left -= ImGui::CalcTextSize(info(static_cast<CouplingKind>(i)).label).x;
+  }
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     const auto kind = static_cast<CouplingKind>(i);
     const bool chosen = p.kind == kind;
@@ -92,11 +98,14 @@ void kind_buttons(Parameters& p) {
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
       ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(text_on(law)));
     }
+    const ImVec2 size(ImGui::CalcTextSize(info(kind).label).x + left / kLaws,
+                      ImGui::GetFrameHeight() * 1.2f);
     if (ImGui::Button(info(kind).label, size)) p.kind = kind;
     if (chosen) ImGui::PopStyleColor(3);
     underline_button(law);
     tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
+  ImGui::PopStyleVar();
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
   // As high for every law, so that nothing below it moves when they change.
   const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
@@ -155,8 +164,11 @@ void draw_link(Parameters& p) {
 
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
-  const std::string device = device_broken(p, a);
-  const std::string proxy = proxy_broken(p, a);
+  // The tanks are passive without it, and the predictive law knows no link.
+  const bool asked =
+      !info(p.kind).keeps_ledger || (p.kind == CouplingKind::predictive && !p.linked());
+  const std::string device = asked ? device_broken(p, a) : "";
+  const std::string proxy = asked ? proxy_broken(p, a) : "";
   const auto draw = [&](bool which) {
     for (const std::string_view key : info(p.kind).sliders) {
       if (advanced(key) != which || of_link(key)) continue;

@@ -44,6 +44,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .link import linked
 from .report import Check, not_applicable
 from .session import Session
 from .torques import mean_proxy_velocity, sampled_velocity
@@ -118,6 +119,8 @@ def check_slopes(s: Session) -> list[Check]:
     """Slopes of the coordination error, per joint and over all joints, for each coupling used."""
     if np.max(s.number("proxy.inertia_ratio")) > _HEAVIEST:
         return [not_applicable("slopes", f"proxy heavier than {_HEAVIEST:g} of the device")]
+    if np.any(linked(s)):
+        return [not_applicable("slopes", "each side knows the other as it was a while ago")]
     k_vc = float(np.mean(s.number("coupling.k_vc")))
     checks = [
         check
