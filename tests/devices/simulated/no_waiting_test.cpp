@@ -167,6 +167,9 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       p.kind = static_cast<CouplingKind>(k / 100 % kLaws);
       p.hand_mass_at_tip = k / 150 % 2 ? 0.1 : 0;
       p.device_delay = p.delay = k / 170 % 3;
+      p.link_delay = k / 130 % 3 * 8;
+      p.link_jitter = k / 110 % 2 * 5;
+      p.link_loss = k / 140 % 2 * 0.3;
       p.velocity = static_cast<VelocitySource>(k / 200 % 3);
       p.encoder_step = k % 300 < 150 ? 4e-4 : 0;
       p.inertia_ratio = k / 250 % 2 ? 1e-4 : 1e-2;
