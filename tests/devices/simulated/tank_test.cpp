@@ -19,7 +19,7 @@ using test::Rows;
 // A hand that shakes, taps and presses, on an arm above a wall.
 struct Tapping {
   ArmDescription arm;
-  Parameters p;
+  Parameters p{};
   double wall = 600;   // 0: none [N/m]
   double press = 4;    // [N]
   double shaking = 5;  // [rad/s]
