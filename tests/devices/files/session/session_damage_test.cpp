@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "core/coupling/laws.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_source.h"
