@@ -24,10 +24,11 @@ Scene on_a_floor(int count) {
   scene.add(floor);
   const int side = static_cast<int>(std::ceil(std::sqrt(count)));
   for (int i = 0; i < count; ++i) {
+    const int column = i % side, row = i / side;
     Object box;
     box.name = fmt::format("box {}", i);
     box.shape = Box{Vec3::Constant(0.03)};
-    box.pose = pose_at({0.04 * (i % side), 0.04 * (i / side), 0.015});
+    box.pose = pose_at({0.04 * column, 0.04 * row, 0.015});
     box.material = {2000, 0, 0.2, 0.2};
     box.body = Body{};
     scene.add(box);
@@ -82,7 +83,8 @@ Line boxes(const Wishes& wishes, const Line& unit, int count, Boxes what) {
                       fmt::format("{} bodies, {}", count, kWords[static_cast<std::size_t>(what)]),
                       taken, &unit);
   if (const auto counted = counter.total()) {
-    line.instructions = static_cast<double>(*counted) / static_cast<double>(wishes.ticks / 2);
+    const int ticks = wishes.ticks / 2;
+    line.instructions = static_cast<double>(*counted) / ticks;
   }
   return line;
 }

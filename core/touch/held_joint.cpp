@@ -110,7 +110,7 @@ Vec3 HeldJoint::add(const Vec3& change) {
     forces.friction += change[2];
     all = change.sum() * along;
   }
-  const Vec3 left = damped * all;
+  Vec3 left = damped * all;
   damping += left - all;
   return left;
 }

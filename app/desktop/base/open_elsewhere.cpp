@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cctype>
 #include <cstdlib>
 #include <memory>
 #include <string>
-
-extern char** environ;
 
 namespace limpid {
 namespace {
