@@ -141,7 +141,8 @@ Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind l
                                : fmt::format("tick in contact, n = {}, {}", joints, info(law).key);
   Line line = line_of(id, name + remark(pressed.diverged(), touching, wishes.ticks), taken, &unit);
   if (const auto counted = counter.total()) {
-    line.instructions = static_cast<double>(*counted) / static_cast<double>(wishes.ticks / 2);
+    const int ticks = wishes.ticks / 2;
+    line.instructions = static_cast<double>(*counted) / ticks;
   }
   return line;
 }

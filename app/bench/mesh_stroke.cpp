@@ -14,7 +14,7 @@ constexpr double kSize = 0.05;  // of the body, its radius [m]
 constexpr double kDepth = 0.0015;
 
 double radius_at(const Vec3& direction) {
-  const Vec3 p = direction;
+  const Vec3& p = direction;
   return kSize * (1 + 0.1 * std::sin(7 * p.x()) * std::sin(8 * p.y() + 1) +
                   0.01 * std::sin(40 * p.x() + 2) * std::sin(50 * p.z()));
 }

@@ -75,7 +75,7 @@ std::filesystem::path free_file(const std::filesystem::path& folder, const std::
         fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
   }
   for (int number = 1;; ++number) {
-    const auto file = folder / fmt::format("{}-{:03}.{}", name, number, extension);
+    auto file = folder / fmt::format("{}-{:03}.{}", name, number, extension);
     if (!std::filesystem::exists(file, error)) return file;
   }
 }

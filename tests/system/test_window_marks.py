@@ -268,7 +268,7 @@ class YourTurn(WindowTest):
 class BrokenPassivity(WindowTest):
     def test_a_hand_is_put_where_energy_climbs_and_goes_with_it(self) -> None:
         before = self.state()
-        self.click(150, 236)  # Break passivity
+        self.click(150, 266)  # Break passivity
         self.wait("a hand", lambda s: s["grip"] == 1 and s["banners"])
         self.wait("energy that grows",
                   lambda s: s["energy_total"] > before["energy_total"] + 0.02, 60)

@@ -5,7 +5,7 @@ import unittest
 
 from window import WindowTest
 
-BREAK = (150, 236)  # the button, which says Repair once it was pressed
+BREAK = (150, 266)  # the button, which says Repair once it was pressed
 FAULT = 1e-3  # from here on the panel says so [J]
 
 
@@ -66,6 +66,19 @@ class Energy(WindowTest):
             if kind != 2:  # the predictive law promises another thing, in its ledger
                 self.assertLess(after["energy_own"], FAULT, f"law {kind}")
         self.xdotool("mouseup", "1")
+
+    def test_a_key_goes_round_the_laws_and_to_tanks_where_there_is_a_link(self) -> None:
+        first = self.state()["kind"]
+        for kind in [(first + i) % 3 for i in range(1, 4)]:
+            self.key("c")
+            self.wait("the next law", lambda s: s["kind"] == kind)
+        self.stop(self.app)
+        self.words = [*self.words, "--set", "link.delay=5"]
+        self.start()
+        first = self.state()["kind"]
+        for kind in [(first + i) % 4 for i in range(1, 5)]:
+            self.key("c")
+            self.wait("the next law", lambda s: s["kind"] == kind)
 
 
 if __name__ == "__main__":

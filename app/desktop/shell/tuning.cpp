@@ -31,7 +31,10 @@ Parameters& Tuning::edited() {
 
 void Tuning::next_law() {
   if (passivity_broken(settings_)) return end_break();
-  edited().kind = next(edited().kind);
+  Parameters& p = edited();
+  p.kind = next(p.kind);
+  // Tanks are for links: without one they only take something off the standard law.
+  if (p.kind == CouplingKind::tank && !p.linked()) p.kind = next(p.kind);
 }
 
 void Tuning::toggle_twin() {
