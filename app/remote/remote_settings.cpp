@@ -14,7 +14,6 @@ using nlohmann::json;
 
 // What bounds what a person can be done by motors. Other bounds are the device's own settings,
 // which cannot be reached from here at all.
-constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"};
 
 ParameterValue parameter_value(const std::string& key, const json& value) {
   if (value.is_boolean()) return value.get<bool>();

@@ -1,6 +1,7 @@
 // Settings as JSON has them, and what programs on the control socket may not set.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -9,6 +10,10 @@
 #include "core/tick/parameters.h"
 
 namespace limpid {
+
+// Limits of motors and of their energy, which a program may lower and never raise.
+inline constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy",
+                                    "tank.most"};
 
 inline constexpr std::size_t kMostSettings = 200;  // that one request names
 

@@ -31,7 +31,7 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
 
 std::string limits_of(const Parameters& p) {
   std::string text;
-  for (const char* key : {"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"}) {
+  for (const char* key : kLimits) {
     text += parameter_text(p, *find_parameter(key)) + " ";
   }
   return text;

@@ -68,41 +68,6 @@ bool MarkTable::close() {
   return tick && text;
 }
 
-namespace {
-
-std::vector<std::uint64_t> read_ticks(const Source& source, const fs::path& file) {
-  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
-  std::vector<std::uint64_t> ticks(source.rows);
-  if (H5Tget_class(type.get()) != H5T_INTEGER ||
-      (!ticks.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL,
-                                 H5P_DEFAULT, ticks.data()) < 0)) {
-    refuse(file, fmt::format("{}: cannot be read as row numbers", source.path));
-  }
-  return ticks;
-}
-
-std::vector<std::string> read_texts(const Source& source, const fs::path& file) {
-  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
-  const std::size_t length = H5Tget_size(type.get());
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 ||
-      length > kMarkLength) {
-    refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, kMarkLength));
-  }
-  std::string all(source.rows * length, '\0');
-  if (!all.empty() &&
-      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
-    refuse(file, fmt::format("{}: cannot be read", source.path));
-  }
-  std::vector<std::string> texts;
-  for (std::size_t at = 0; at < all.size(); at += length) {
-    const std::string text = all.substr(at, length);
-    texts.emplace_back(text.c_str(), std::min(text.find('\0'), length));
-  }
-  return texts;
-}
-
-}  // namespace
-
 void read_marks(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
   if (!hdf5::has(root, kMarkTickPath, file) || !hdf5::has(root, kMarkTextPath, file)) return;
   const Source ticks_at = open_source(root, kMarkTickPath, 1, file);
@@ -116,8 +81,8 @@ void read_marks(hid_t root, Session& session, const fs::path& file, hdf5::Claims
   }
   claims.take(ticks_at.rows, sizeof(std::uint64_t), ticks_at.path);
   claims.take(texts_at.rows, sizeof(std::string) + 2 * kMarkLength, texts_at.path);
-  const auto ticks = read_ticks(ticks_at, file);
-  const auto texts = read_texts(texts_at, file);
+  const auto ticks = read_row_numbers(ticks_at, file);
+  const auto texts = read_texts(texts_at, kMarkLength, file);
   const bool leftover = is_leftover(file);
   if (ticks.size() != texts.size() && !leftover) {
     refuse(file, "/marks/tick and /marks/text differ in length; needed: the same");

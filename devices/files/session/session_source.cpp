@@ -184,4 +184,37 @@ bool read_row(const Source& source, hsize_t row, std::uint64_t* out) {
   return read_as(source, row, 1, H5T_NATIVE_UINT64, out);
 }
 
+std::vector<std::uint64_t> read_row_numbers(const Source& source,
+                                            const std::filesystem::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  std::vector<std::uint64_t> rows(source.rows);
+  if (H5Tget_class(type.get()) != H5T_INTEGER ||
+      (!rows.empty() && H5Dread(source.dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL,
+                                H5P_DEFAULT, rows.data()) < 0)) {
+    refuse(file, fmt::format("{}: cannot be read as row numbers", source.path));
+  }
+  return rows;
+}
+
+std::vector<std::string> read_texts(const Source& source, std::size_t most,
+                                    const std::filesystem::path& file) {
+  const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
+  const std::size_t length = H5Tget_size(type.get());
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 ||
+      length > most) {
+    refuse(file, fmt::format("{}: not text of at most {} bytes", source.path, most));
+  }
+  std::string all(source.rows * length, '\0');
+  if (!all.empty() &&
+      H5Dread(source.dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) {
+    refuse(file, fmt::format("{}: cannot be read", source.path));
+  }
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < all.size(); at += length) {
+    const std::string text = all.substr(at, length);
+    texts.emplace_back(text.c_str(), std::min(text.find('\0'), length));
+  }
+  return texts;
+}
+
 }  // namespace limpid

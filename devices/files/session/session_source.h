@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/tick/row.h"
 #include "devices/files/session/hdf5_reading.h"
@@ -98,5 +99,12 @@ bool read_block(const Source& source, hsize_t from, hsize_t count, double* out);
 bool read_block(const Source& source, hsize_t from, hsize_t count, std::int8_t* out);
 // One row of whole numbers.
 bool read_row(const Source& source, hsize_t row, std::uint64_t* out);
+
+// The whole of a list beside the rows: numbers of rows, or texts of at most so many bytes. Errors:
+// FileError for lists of another kind.
+std::vector<std::uint64_t> read_row_numbers(const Source& source,
+                                            const std::filesystem::path& file);
+std::vector<std::string> read_texts(const Source& source, std::size_t most,
+                                    const std::filesystem::path& file);
 
 }  // namespace limpid
