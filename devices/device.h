@@ -13,6 +13,7 @@
 #include "core/math/sizes.h"
 #include "core/tick/parameters.h"
 #include "core/tick/safety.h"
+#include "core/touch/body.h"
 
 namespace limpid {
 
@@ -23,6 +24,7 @@ struct HandInput {
   double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
   std::span<const double> torque{};  // pushed on the joints besides [N m]; empty: none
   bool magnet = false;               // picks up what it may
+  BodyPull pull{};                   // what somebody pulls on besides, with no arm
 };
 
 // What it is; does not change while it is connected.

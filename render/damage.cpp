@@ -64,7 +64,8 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
   const Near near{tolerance};
   const auto switches = [](const ViewState& s) {
     return std::tuple(s.show_hand, s.hand_grips, s.show_ghost, s.show_error, s.show_trail,
-                      s.show_forces, s.show_grid, s.show_joints, s.theme, s.magnet, s.magnet_holds);
+                      s.show_forces, s.show_grid, s.show_joints, s.theme, s.magnet, s.magnet_holds,
+                      s.pull);
   };
   const bool hands = !(a.show_hand && b.show_hand) || near(a.hand_target, b.hand_target);
   return switches(a) == switches(b) && near(a.device, b.device) && near(a.proxy, b.proxy) &&

@@ -1,6 +1,7 @@
 // Something of the world that is only looked at.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -58,6 +59,8 @@ struct ViewState {
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
   bool magnet = false;             // at the proxy's tip: picks up what it may
   bool magnet_holds = false;       // something
+  // Of a body that is pulled on: the point of it, and where it is pulled to [m].
+  std::optional<std::array<Vec3, 2>> pull;
   std::vector<ContactMark> contacts;
   std::optional<ContactShade> shade;
   // The frames of the scene's objects that move, in their order; without one, or with one that is

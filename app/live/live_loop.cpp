@@ -135,7 +135,11 @@ HandInput LiveLoop::follow_path() {
   const HandPath& path = path_->hand;
   const std::size_t k = path_runs_ ? path_tick_++ : path_tick_;
   const double T = parameters_.tick;
-  return {path.sample(k, T), path.grip_sample(k, T), {}, path.magnet_sample(k, T)};
+  return {path.sample(k, T),
+          path.grip_sample(k, T),
+          {},
+          path.magnet_sample(k, T),
+          path.pull_sample(k, T)};
 }
 
 // A path that was given leads the hand, or else the mouse; a guide does while the mouse does not.
@@ -232,6 +236,7 @@ void LiveLoop::tick(const TickTiming& timing) {
   }
   HandInput hand = hand_input(controls);
   hand.magnet = hand.magnet || controls.magnet;
+  if (controls.pull.body >= 0) hand.pull = controls.pull;
   follow_recorder(hand.target);
   const RigInput input = rig_input(timing, hand);
   if (!in_place_) twin_.step(controls.twin, controls.twin_parameters, *rig_, input, of_twin_);

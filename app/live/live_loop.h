@@ -26,6 +26,7 @@ struct Controls {
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // where the mouse wants it [m]
   bool magnet = false;       // picks up what it may
+  BodyPull pull{};           // what the mouse pulls on instead of the arm
   std::uint32_t resets = 0;  // start over whenever this counts on
   // A virtual arm's time: its tick comes with every so many of the loop's. Paused, it comes only
   // when `steps` counts on, or where it starts over or force comes or goes.

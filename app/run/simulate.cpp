@@ -105,12 +105,14 @@ class Run {
   HandInput hand(std::size_t k) const {
     const Vec3 target = plan_.hand.sample(k, T());
     const bool magnet = plan_.hand.magnet_sample(k, T());
-    if (plan_.hand_torque.empty()) return {target, plan_.hand.grip_sample(k, T()), {}, magnet};
+    const BodyPull pull = plan_.hand.pull_sample(k, T());
+    if (plan_.hand_torque.empty())
+      return {target, plan_.hand.grip_sample(k, T()), {}, magnet, pull};
     const auto n = static_cast<std::size_t>(lanes_[0].rig.dof());
     const std::size_t last = plan_.hand_torque.size() / n - 1;
     const double recorded = static_cast<double>(k) * T() / plan_.hand.tick;
     const auto row = std::min(static_cast<std::size_t>(std::llround(recorded)), last);
-    return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n), magnet};
+    return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n), magnet, pull};
   }
 
   ForceRequest wish(std::size_t k) {

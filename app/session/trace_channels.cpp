@@ -119,7 +119,8 @@ std::string part_name(ColumnWidth width, int part) {
     case ColumnWidth::if_bodies: return "";
     case ColumnWidth::poses:
     case ColumnWidth::velocities: break;  // bodies have channels of their own
-    case ColumnWidth::three: return axis;
+    case ColumnWidth::three:
+    case ColumnWidth::three_if_bodies: return axis;
     case ColumnWidth::dof: return "joint " + std::to_string(part + 1);
     case ColumnWidth::contacts: return "contact " + std::to_string(part / 3 + 1) + " " + axis;
   }

@@ -352,8 +352,9 @@ def marbles():
 def stack():
     """Pushes the tower a little, feels it rock, and then knocks it over."""
     toys = Toys("stack")
-    touch = toys.at("block 4") - [0.01 + toys.tip, 0, -0.004]
-    ahead = np.array([1.0, 0, 0])
+    ahead = toys.at("block 4") * [1, 1, 0] - np.array(REST)
+    ahead /= np.linalg.norm(ahead)
+    touch = toys.at("block 4") - (0.01 + toys.tip) * ahead + [0, 0, 0.004]
     return along([(0.4, touch - 0.012 * ahead), (0.3, touch), (0.35, touch + 0.004 * ahead),
                   (0.2, touch - 0.004 * ahead), (0.35, touch + 0.03 * ahead), (0.3, touch),
                   (0.5, touch)])

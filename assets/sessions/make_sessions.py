@@ -66,7 +66,7 @@ SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")
 # re-run begins with and is led by, the first row and the hand, stays as it was, so that a re-run
 # gives all numbers again.
 ROUNDED = {"m": 18, "rad": 18, "m/s": 11, "rad/s": 11, "N": 8, "N m": 12, "J": 27, "s": 17}
-WHOLE = {"/time", "/hand/target", "/objects/state"}
+WHOLE = {"/time", "/hand/target", "/hand/pull_point", "/hand/pull_target", "/objects/state"}
 
 
 def rounded(item):

@@ -61,6 +61,10 @@ enum class Column : std::uint8_t {
   objects_left_out,
   magnet,
   hand_magnet,
+  hand_pull,
+  pull_point,
+  pull_target,
+  energy_pulled,
   wake_latency,
   compute,
   count_,
@@ -72,7 +76,21 @@ inline constexpr int kColumns = static_cast<int>(Column::count_);
 inline constexpr int kRowContacts = 4;
 
 // Contacts: x, y, z of each. Those of bodies are only there where something moves.
-enum class ColumnWidth : std::uint8_t { one, three, dof, contacts, poses, velocities, if_bodies };
+enum class ColumnWidth : std::uint8_t {
+  one,
+  three,
+  dof,
+  contacts,
+  poses,
+  velocities,
+  if_bodies,
+  three_if_bodies
+};
+
+// x, y, z.
+constexpr bool of_axes(ColumnWidth width) {
+  return width == ColumnWidth::three || width == ColumnWidth::three_if_bodies;
+}
 
 // Numbers of each body in its columns: a place and a quaternion, and two velocities.
 inline constexpr int kPoseNumbers = 7, kVelocityNumbers = 6;
@@ -166,7 +184,9 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::energy_objects, "/energy/objects", ColumnWidth::if_bodies, "J",
      "of bodies: kinetic energy, weight, and what contacts and springs among them store"},
     {Column::objects_gain, "/energy/objects_gain", ColumnWidth::if_bodies, "J",
-     "what bodies have beyond what they had and were given; less than 0 while they lose some"},
+     "what bodies have beyond what they had and were given, by pulls too; less than 0 while they "
+     "lose "
+     "some"},
     {Column::objects_awake, "/objects/awake", ColumnWidth::if_bodies, "-", "bodies that move"},
     {Column::objects_sweeps, "/objects/sweeps", ColumnWidth::if_bodies, "-",
      "over all contacts, until a tick's forces were found"},
@@ -176,6 +196,13 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "number of the body that the magnet held over the tick, from 1 on; 0 none"},
     {Column::hand_magnet, "/hand/magnet", ColumnWidth::if_bodies, "-",
      "1 the hand wants the tip to pick up what it may, 0 it does not", true},
+    {Column::hand_pull, "/hand/pull", ColumnWidth::if_bodies, "-",
+     "number of the body that is pulled on in the picture, from 1 on; 0 none", true},
+    {Column::pull_point, "/hand/pull_point", ColumnWidth::three_if_bodies, "m",
+     "where on it, in its frame"},
+    {Column::pull_target, "/hand/pull_target", ColumnWidth::three_if_bodies, "m", "where to"},
+    {Column::energy_pulled, "/energy/pulled", ColumnWidth::if_bodies, "J",
+     "what these pulls have given to bodies"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
@@ -207,6 +234,7 @@ class RowLayout {
       case ColumnWidth::poses: return kPoseNumbers * bodies_;
       case ColumnWidth::velocities: return kVelocityNumbers * bodies_;
       case ColumnWidth::if_bodies: return bodies_ > 0 ? 1 : 0;
+      case ColumnWidth::three_if_bodies: return bodies_ > 0 ? 3 : 0;
     }
     return 0;
   }

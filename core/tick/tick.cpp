@@ -47,7 +47,7 @@ void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   if (BodyWorld* world = proxy_.contacts().world(); world != nullptr && !world->read(start.world)) {
     world->reset();
   }
-  to_bodies_ = 0;
+  to_bodies_ = pulled_ = 0;
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
   compensation_.start(p);
@@ -110,6 +110,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceReque
   kinetic_ = proxy_.kinetic_energy();
   write_bodies(row);
   proxy_.contacts().want_magnet(in.magnet);
+  if (BodyWorld* world = proxy_.contacts().world()) world->pull(in.pull);
   const Vec<N> left = own_forces(p, in.health.guarded, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   const LawInput<N> now{in.measured,    v1,
@@ -252,6 +253,10 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
     const auto& magnet = proxy_.contacts().magnet();
     set(Column::magnet, magnet.on ? magnet.body + 1 : 0);
     set(Column::hand_magnet, in.magnet ? 1 : 0);
+    set(Column::hand_pull, in.pull.body + 1);
+    std::copy_n(in.pull.point.data(), 3, layout_.in(row, Column::pull_point).begin());
+    std::copy_n(in.pull.target.data(), 3, layout_.in(row, Column::pull_target).begin());
+    set(Column::energy_pulled, pulled_);
   }
 }
 
@@ -270,6 +275,7 @@ void Tick<N>::write_bodies(std::span<double> row) {
     velocity = std::copy_n(world->spin(i).data(), 3, velocity);
   }
   to_bodies_ = world->all_given();
+  pulled_ = world->all_pulled();
   layout_.in(row, Column::energy_to_objects)[0] = to_bodies_;
 }
 

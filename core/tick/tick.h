@@ -58,6 +58,7 @@ struct Reading {
   // That the motors gave since, where it is known to differ from what was sent [N m].
   std::optional<Vec<N>> acted{};
   bool magnet = false;  // the tip picks up what it may
+  BodyPull pull{};      // what is pulled on besides
 };
 
 // Where a loop starts.
@@ -148,6 +149,7 @@ class Tick {
   Vec<N> x2_, v2_, f1_hat_, command_, loads_;
   double kinetic_ = 0, potential_ = 0, first_potential_ = 0;
   double to_bodies_ = 0;  // given to what moves in the scene, since the start [J]
+  double pulled_ = 0;     // the same, by who pulls on it from outside [J]
   // Of the last tick, for the books and for the delayed terms of (1):
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;

@@ -72,4 +72,12 @@ struct BodySpring {
   friend bool operator==(const BodySpring&, const BodySpring&) = default;
 };
 
+// Somebody pulls on a body from outside, as with the mouse in the picture.
+struct BodyPull {
+  int body = -1;               // as BodyWorld counts them; -1: none
+  Vec3 point = Vec3::Zero();   // of it, in its object's frame [m]
+  Vec3 target = Vec3::Zero();  // where it is pulled to [m]
+  friend bool operator==(const BodyPull&, const BodyPull&) = default;
+};
+
 }  // namespace limpid

@@ -97,7 +97,8 @@ struct BodyGeometry::Inside {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
     btCollisionObject at;
-    std::optional<btVector3> level;  // of a plane: its normal
+    std::optional<btVector3> level;  // of a plane: its normal,
+    btScalar height = 0;             // and how far along it it is [m]
     btVector3 low, high;             // box around it, a little larger
     double least = 0;                // its smallest extent [m]
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
@@ -106,9 +107,10 @@ struct BodyGeometry::Inside {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
-    bool single = false;  // they meet in one point at most
-    bool refresh = true;  // what finds its points leaves those that are gone
-    int points = 0;       // of its manifold
+    bool single = false;   // they meet in one point at most
+    bool refresh = true;   // what finds its points leaves those that are gone
+    bool corners = false;  // a box on a plane: no more than its corners is asked for
+    int points = 0;        // of its manifold
   };
 
   explicit Inside(const Scene& scene);
@@ -120,6 +122,7 @@ struct BodyGeometry::Inside {
   static bool overlap(const Solid& a, const Solid& b);
   static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
+  static void find_corners(const Pair& pair, Points& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void meet(Pair& pair);
   void take(Pair& pair);
@@ -205,7 +208,10 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
   for (std::size_t i = before; i < solids.size(); ++i) {
     Solid& solid = *solids[i];
     const auto* plane = std::get_if<Plane>(&o.shape);
-    if (plane != nullptr) solid.level = to_bullet(plane->normal);
+    if (plane != nullptr) {
+      solid.level = to_bullet(plane->normal);
+      solid.height = plane->normal.dot(Vec3(o.pose.translation()));
+    }
     solid.at.setWorldTransform(
         to_bullet(plane != nullptr ? block_below(*plane, o.pose) : o.pose * solid.in_object));
     bound(solid);
@@ -282,7 +288,8 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   };
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
   p.single = (ball(a) || ball(b)) && convex;
-  p.refresh = !convex || (ball(a) && ball(b));
+  p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && b.level;
+  p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
   // Else Bullet turns the shapes a little, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
@@ -373,8 +380,40 @@ void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> be
   }
 }
 
+// Those of a box that are near to the plane, the four lowest if there are more.
+void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
+  const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
+  const btTransform& at = p.a->at.getWorldTransform();
+  const btVector3& normal = *p.b->level;
+  const btVector3 half = box.getHalfExtentsWithMargin();
+  const btVector3 rise = normal * at.getBasis();  // of each of its axes
+  const btScalar middle = normal.dot(at.getOrigin()) - p.b->height;
+  const btScalar near = p.manifold->getContactBreakingThreshold();
+  struct Corner {
+    btScalar distance;
+    int number;
+    btVector3 own;
+  };
+  std::array<Corner, 8> found;
+  std::size_t count = 0;
+  for (int i = 0; i < 8; ++i) {
+    const btVector3 own((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
+                        (i & 4) != 0 ? half.z() : -half.z());
+    const btScalar distance = middle + rise.dot(own);
+    if (distance <= near) found[count++] = {distance, i, own};
+  }
+  if (count > kPointsOfPair) {
+    std::ranges::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), {},
+                      [](const Corner& c) { return std::pair(c.distance, c.number); });
+    count = kPointsOfPair;
+  }
+  for (const Corner& corner : std::span(found.data(), count)) {
+    result.addContactPoint(normal, at * corner.own - corner.distance * normal, corner.distance);
+  }
+}
+
 void BodyGeometry::Inside::meet(Pair& p) {
-  slide_along(p);
+  if (!p.corners) slide_along(p);
   std::array<BodyContact*, kPointsOfPair> before{};
   std::size_t count = 0;
   for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
@@ -387,7 +426,11 @@ void BodyGeometry::Inside::meet(Pair& p) {
                                       p.b->at.getWorldTransform(), -1, -1);
   Points result(&on_a, &on_b);
   result.setPersistentManifold(p.manifold);
-  p.algorithm->processCollision(&on_a, &on_b, info, &result);
+  if (p.corners) {
+    find_corners(p, result);
+  } else {
+    p.algorithm->processCollision(&on_a, &on_b, info, &result);
+  }
   if (p.refresh) result.refreshContactPoints();
   if (p.single) keep_deepest(p);
   p.points = p.manifold->getNumContacts();

@@ -11,6 +11,9 @@ namespace {
 
 // From one to the next of the points that make a hinge or a slider between bodies [m].
 constexpr double kJointArm = 0.01;
+// How fast a body that is pulled would swing if the pull did not damp it critically [rad/s].
+constexpr double kPullSwing = 25;
+constexpr double kLongestPull = 0.04;  // it pulls no harder than this far off [m]
 
 }  // namespace
 
@@ -111,6 +114,23 @@ void BodyWorld::begin_link(Link& link) {
     link.give = k * (Mat3::Identity() + k * link.W).inverse();
   }
   apply(link.end_a, link.end_b, link.force);
+}
+
+void BodyWorld::begin_pull() {
+  pulling_ = Link{};
+  pulling_.a = pull_.body;
+  if (!moves(pull_.body)) return;
+  const Vec3 on_a = place(pull_.body, pull_.point);
+  pulling_.end_a = end_at(pull_.body, on_a);
+  pulling_.W = answer(pulling_.end_a);
+  pulling_.stretch = on_a - pull_.target;
+  const double length = pulling_.stretch.norm();
+  if (length > kLongestPull) pulling_.stretch *= kLongestPull / length;
+  const double mass = of_bodies_[at(pull_.body)].mass;
+  pulling_.K = mass * kPullSwing * kPullSwing;
+  pulling_.B = 2 * mass * kPullSwing;
+  const double k = pulling_.K * T_ / 2 + pulling_.B;
+  pulling_.give = k * (Mat3::Identity() + k * pulling_.W).inverse();
 }
 
 // What has slid is held where it is now: by its own point of the other body.

@@ -54,7 +54,7 @@ BodyWorld::BodyWorld(const Scene& scene) : geometry_(scene) {
   rows_.resize(BodyGeometry::kMost);
   add_links(scene);
   for (auto* numbers : {&before_, &now_, &along_}) {
-    numbers->assign(3 * (rows_.size() + links_.size() + joints_.size() + held_.size()), 0);
+    numbers->assign(3 * (rows_.size() + links_.size() + joints_.size() + held_.size() + 1), 0);
   }
   reset();
 }
@@ -81,12 +81,13 @@ void BodyWorld::reset() {
   for (int i = 0; i < count(); ++i) geometry_.place(i, pose(i));
   count_ = 0;
   fresh_ = true;
-  given_ = given_now_ = all_given_ = energy_ = first_energy_ = gain_ = 0;
+  given_ = given_now_ = all_given_ = all_pulled_ = energy_ = first_energy_ = gain_ = 0;
 }
 
 void BodyWorld::take_over(const BodyWorld& other) {
   given_ = other.given_;
   all_given_ = other.all_given_;
+  all_pulled_ = other.all_pulled_;
   gain_ = other.gain_;
   std::array<double, BodyMotion::kNumbers> numbers{};
   for (int i = 0; i < count(); ++i) {
@@ -147,6 +148,11 @@ Vec3 BodyWorld::place(int body, const Vec3& own) const {
 void BodyWorld::begin(double T) {
   T_ = T;
   sweeps_ = 0;
+  if (pull_.body >= count()) pull_ = {};
+  if (pull_.body != BodyContact::kStill) {
+    awake_[at(pull_.body)] = 1;
+    quiet_[at(pull_.body)] = 0;
+  }
   wake_neighbours();
   geometry_.search(awake_);
   for (int i = 0; i < count(); ++i) {
@@ -159,6 +165,7 @@ void BodyWorld::begin(double T) {
     if (begin_row(*contact)) ++count_;
   }
   for (Link& link : links_) begin_link(link);
+  begin_pull();
   for (JointRow& row : joints_) {
     if (moves(row.body)) bodies_[at(row.body)].push_joint(row.forces.sum());
   }
@@ -297,6 +304,7 @@ double BodyWorld::sweep(bool touched) {
   for (Link& link : links_) {
     if (!link.broken && in_turn(link.a, link.b, touched)) most = std::max(most, sweep(link));
   }
+  if (in_turn(pulling_.a, pulling_.b, touched)) most = std::max(most, sweep(pulling_));
   for (Row& row : std::span(rows_.data(), count_)) {
     if (in_turn(row.contact->a, row.contact->b, touched)) most = std::max(most, sweep(row));
   }
@@ -335,6 +343,7 @@ void BodyWorld::forces(std::vector<double>& into) const {
     }
   }
   for (const Held& held : held_) to = std::ranges::copy(held.joint.numbers(), to).out;
+  std::copy_n(pulling_.force.data(), 3, to);
 }
 
 void BodyWorld::add_forces(const std::vector<double>& more) {
@@ -365,10 +374,13 @@ void BodyWorld::add_forces(const std::vector<double>& more) {
     if (!change.isZero(0)) push(held, held.joint.add(change));
     at += 3;
   }
+  const Vec3 change = Eigen::Map<const Vec3>(at);
+  pulling_.force += change;
+  apply(pulling_.end_a, pulling_.end_b, change);
 }
 
 double BodyWorld::sweep(bool touched, double enough, int most) {
-  const std::size_t numbers = 3 * (count_ + links_.size() + joints_.size() + held_.size());
+  const std::size_t numbers = 3 * (count_ + links_.size() + joints_.size() + held_.size() + 1);
   double last2 = 0;
   for (int i = 1;; ++i) {
     forces(before_);
@@ -455,6 +467,7 @@ void BodyWorld::finish() {
   given_ = given_now_;
   all_given_ += given_now_;
   given_now_ = 0;
+  all_pulled_ += T_ * pulling_.force.dot(velocity(pulling_.end_a));
   end_rows();
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
@@ -519,9 +532,10 @@ void BodyWorld::take_stock() {
   }
   for (const Held& held : held_) E += held.joint.stored();
   energy_ = E;
-  if (fresh_) first_energy_ = E - all_given_ - gain_;
+  const double from_outside = all_given_ + all_pulled_;
+  if (fresh_) first_energy_ = E - from_outside - gain_;
   fresh_ = false;
-  gain_ = E - first_energy_ - all_given_;
+  gain_ = E - first_energy_ - from_outside;
 }
 
 int BodyWorld::awake() const {

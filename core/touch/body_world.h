@@ -72,6 +72,13 @@ class BodyWorld {
   void let_go() { magnet_ = {}; }
   Vec3 magnet_point() const { return place(magnet_.body, magnet_.point); }  // [m]
   void pulled(const Vec3& force);  // by the magnet, over the tick [N]
+  // From the next begin() on: a spring and damper from the point of the body to the target, as
+  // stiff as the body is heavy, with at most 2.5 times its weight, however far off the target is.
+  // Implicit as all rows are: whatever the mass, it does not swing up.
+  void pull(const BodyPull& pull) { pull_ = pull; }
+
+  // By that, since the start [J]: neither the arm's nor the bodies' own.
+  double all_pulled() const { return all_pulled_; }
 
   // What the arm touches, and what hangs together with it, stays where it is for this tick, at
   // rest, with the forces of the last one: it can only lose energy by that.
@@ -93,7 +100,8 @@ class BodyWorld {
 
   double given() const { return given_; }    // by the arm over the last tick [J]
   double energy() const { return energy_; }  // then: kinetic, weight and stored [J]
-  // At the start of the last tick, beyond what there was at first and what the arm gave [J].
+  // At the start of the last tick, beyond what there was at first, and what the arm and pull() gave
+  // [J].
   double gain() const { return gain_; }
   double all_given() const { return all_given_; }  // by the arm since the start [J]
   int awake() const;
@@ -169,6 +177,7 @@ class BodyWorld {
   bool in_turn(int a, int b, bool touched);
   bool begin_row(BodyContact& contact);
   void begin_link(Link& link);
+  void begin_pull();
   void begin_rail(Link& link);
   void begin_held(Held& held);
   void follow(Held& held) const;
@@ -210,10 +219,13 @@ class BodyWorld {
   std::vector<JointRow> joints_;
   std::vector<Held> held_;
   Magnet magnet_;
+  BodyPull pull_;
+  Link pulling_;  // what pull_ is in the tick; of a body that stands still: none
   std::vector<double> before_, now_, along_;  // forces of all rows; where they go on to [N]
   double T_ = 1e-3;
   bool fresh_ = true;  // first_energy_ is to be taken
   double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;
+  double all_pulled_ = 0;
   int sweeps_ = 0;
 };
 

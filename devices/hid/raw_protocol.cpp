@@ -54,9 +54,9 @@ std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   return ~crc;
 }
 
-using Body = std::span<const std::uint8_t>;
+using Payload = std::span<const std::uint8_t>;
 
-bool undamaged(Body body) {
+bool undamaged(Payload body) {
   return body[kAtMagic] == kMagic && body[kAtVersion] == kVersion &&
          load_le<std::uint32_t>(body, kAtCrc) == crc32(body.first(kAtCrc));
 }
@@ -65,7 +65,7 @@ void check(bool good, const std::string& found, const char* allowed) {
   if (!good) throw HidError(fmt::format("the device says {}; {}", found, allowed));
 }
 
-std::string printable_name(Body body) {
+std::string printable_name(Payload body) {
   std::string name;
   for (std::size_t i = kAtName; i < kAtCrc && body[i] != 0; ++i) {
     name += body[i] >= 0x20 && body[i] < 0x7F ? static_cast<char>(body[i]) : '?';
@@ -76,7 +76,7 @@ std::string printable_name(Body body) {
 double milli(std::uint16_t value) { return 1e-3 * value; }
 double milli_signed(std::uint16_t value) { return 1e-3 * static_cast<std::int16_t>(value); }
 
-void read_joint(Body body, std::size_t joint, DeviceTraits& traits) {
+void read_joint(Payload body, std::size_t joint, DeviceTraits& traits) {
   const double lower = milli_signed(load_le<std::uint16_t>(body, kAtRanges + 4 * joint));
   const double upper = milli_signed(load_le<std::uint16_t>(body, kAtRanges + 4 * joint + 2));
   check(lower < upper, fmt::format("joint {} goes from {} to {} rad", joint + 1, lower, upper),
@@ -90,7 +90,7 @@ void read_joint(Body body, std::size_t joint, DeviceTraits& traits) {
   traits.effort.push_back(effort);
 }
 
-DeviceTraits read_traits(Body body) {
+DeviceTraits read_traits(Payload body) {
   DeviceTraits traits;
   traits.dof = body[kAtJoints];
   check(traits.dof >= 1 && traits.dof <= static_cast<int>(RawProtocol::kMaxJoints),
@@ -132,7 +132,7 @@ void RawProtocol::open(HidTransport& transport) {
   if (size != static_cast<int>(kReportSize)) {
     throw HidError("the device does not answer when asked what it is (feature report)");
   }
-  const Body body = Body(feature).subspan(1);
+  const Payload body = Payload(feature).subspan(1);
   if (!undamaged(body)) {
     throw HidError("the device's feature report has a wrong magic, version or CRC");
   }
@@ -144,7 +144,7 @@ void RawProtocol::open(HidTransport& transport) {
 
 Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
   if (report.size() != kReportSize || report[0] != 0) return Decoded::unusable;
-  const Body body = report.subspan(1);
+  const Payload body = report.subspan(1);
   if (!undamaged(body) || body[kAtJoints] != traits_.dof) return Decoded::unusable;
 
   // Frozen firmware repeats itself, and a repetition must not pass for news.

@@ -110,7 +110,9 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
   const auto truth = device->truth();
-  if (!truth) return {x, x, v, health, now.periods, now.dt, {}, now.hand.magnet};
+  if (!truth) {
+    return {x, x, v, health, now.periods, now.dt, {}, now.hand.magnet, now.hand.pull};
+  }
   return {x,
           of_joints(truth->x),
           of_joints(truth->v),
@@ -118,7 +120,8 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
           now.periods,
           now.dt,
           of_joints(truth->motor_torque),
-          now.hand.magnet};
+          now.hand.magnet,
+          now.hand.pull};
 }
 
 template <int N>

@@ -83,6 +83,34 @@ class Bodies(WindowTest):
             self.wait(f"{name} to fall", lambda _: self.moved(name, before) > 40)
         self.let_go()
 
+    def test_the_stack_is_hit_by_a_drag_to_the_right(self) -> None:
+        self.open("stack")
+        before = self.places()
+        for _ in range(40):
+            self.pointer(self.at + [5, 0])
+            time.sleep(0.03)
+        self.wait("the tower to fall", lambda _: self.moved("block 5", before) > 40)
+        self.let_go()
+
+    def test_a_block_is_pulled_with_ctrl(self) -> None:
+        self.open("stack")
+        self.let_go()
+        before = self.places()
+        x, y = before["block 5"]
+        self.xdotool("keydown", "ctrl")
+        self.move(round(x), round(y))
+        time.sleep(0.2)
+        self.xdotool("mousedown", "1")
+        for k in range(1, 21):
+            self.move(round(x + 4 * k), round(y - 5 * k))
+            time.sleep(0.03)
+        self.wait("it to hang where the mouse is", lambda _: np.linalg.norm(
+            self.places()["block 5"] - [x + 80, y - 100]) < 25)  # fmt: skip
+        self.assertLess(self.moved("block 1", before), 5, "the others stand")
+        self.let_go()
+        self.xdotool("keyup", "ctrl")
+        self.wait("it to fall", lambda _: self.places()["block 5"][1] > y - 60)
+
     def test_dominoes_fall_without_the_hand(self) -> None:
         self.open("dominoes")
         before = self.places()

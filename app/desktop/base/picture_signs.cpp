@@ -81,6 +81,26 @@ void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Ca
 
 }  // namespace
 
+void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
+  if (!view.pull) return;
+  const float em = font(Face::small)->FontSize;
+  const Rgb hand = ink(current_palette(), Ink::hand);
+  const auto place = [&](const Vec3& point) -> std::optional<ImVec2> {
+    const auto pixel = camera.project(point);
+    if (!pixel) return std::nullopt;
+    return ImVec2(picture.min.x + static_cast<float>(pixel->x()),
+                  picture.min.y + static_cast<float>(pixel->y()));
+  };
+  const auto from = place((*view.pull)[0]), to = place((*view.pull)[1]);
+  if (from && to) {
+    const ImU32 rim = colour(current_palette().backdrop, 0.75f);
+    list.AddLine(*from, *to, rim, 0.15f * em + 2);
+    list.AddLine(*from, *to, colour(hand), 0.15f * em);
+  }
+  draw_ring((*view.pull)[0], 0.3f * em, 0.3f * em, hand, camera, picture, list);
+  draw_ring((*view.pull)[1], 0.6f * em, 0.15f * em, hand, camera, picture, list);
+}
+
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture,
                  ImDrawList& list) {
   if (!view.magnet || view.proxy.links.empty()) return;

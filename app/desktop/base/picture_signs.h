@@ -24,6 +24,8 @@ struct GapPlace {
 // name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
+// A line from the body that is pulled on to where it is pulled.
+void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // A ring around the proxy's tip while its magnet is on, thick while that holds something.
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // A ring around the device's tip: the mouse has hold of it, or would have.

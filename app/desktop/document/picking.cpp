@@ -119,32 +119,60 @@ double way_to(const Ray& ray, const Shape& shape, const Pose& pose, const Model*
   return std::visit([&](const auto& each) { return way_to(local, each, model); }, shape);
 }
 
+// As the loop counts those that move.
+int number_of_body(const Scene& scene, std::size_t place) {
+  int number = 0;
+  for (std::size_t i = 0; i < place; ++i) number += scene.objects[i].body ? 1 : 0;
+  return number;
+}
+
 }  // namespace
 
 Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> bodies) {
   Object object = scene.objects.at(place);
   if (!object.body) return object;
-  std::size_t body = 0;
-  for (std::size_t i = 0; i < place; ++i) body += scene.objects[i].body ? 1 : 0;
+  const auto body = static_cast<std::size_t>(number_of_body(scene, place));
   if (body < bodies.size() && bodies[body].matrix().allFinite()) object.pose = bodies[body];
   return object;
 }
 
-std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
-                                        const MeshModels& models, std::span<const Pose> bodies) {
-  std::optional<std::size_t> found;
-  double nearest = kNone;
+namespace {
+
+struct Met {
+  std::size_t object = 0;
+  double way = kNone;  // [m]
+};
+
+// The first one along the ray.
+Met first_met(const Ray& ray, const Scene& scene, const MeshModels& models,
+              std::span<const Pose> bodies) {
+  Met met;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object object = placed_now(scene, i, bodies);
     double way = way_to(ray, object.shape, object.pose, models.at(i).get());
     for (const BodyPart& part : object.parts) {
       way = std::min(way, way_to(ray, part.shape, object.pose * part.pose, nullptr));
     }
-    if (way >= nearest) continue;
-    nearest = way;
-    found = i;
+    if (way < met.way) met = {i, way};
   }
-  return found;
+  return met;
+}
+
+}  // namespace
+
+std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
+                                        const MeshModels& models, std::span<const Pose> bodies) {
+  const Met met = first_met(ray, scene, models, bodies);
+  return met.way < kNone ? std::optional(met.object) : std::nullopt;
+}
+
+std::optional<BodyPull> body_under(const Ray& ray, const Scene& scene, const MeshModels& models,
+                                   std::span<const Pose> bodies) {
+  const Met met = first_met(ray, scene, models, bodies);
+  if (!(met.way < kNone) || !scene.objects[met.object].body) return std::nullopt;
+  const Vec3 point = ray.origin + met.way * ray.direction;
+  return BodyPull{number_of_body(scene, met.object),
+                  placed_now(scene, met.object, bodies).pose.inverse() * point, point};
 }
 
 }  // namespace limpid

@@ -15,6 +15,11 @@ namespace limpid {
 std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
                                         const MeshModels& models, std::span<const Pose> bodies);
 
+// The body under the ray, by the point that is there, for the mouse to pull; none where something
+// that stands still is nearer.
+std::optional<BodyPull> body_under(const Ray& ray, const Scene& scene, const MeshModels& models,
+                                   std::span<const Pose> bodies);
+
 // The object as it is in the world now.
 Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> bodies);
 

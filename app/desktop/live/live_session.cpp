@@ -52,6 +52,7 @@ void LiveSession::open(ArmDescription arm, SceneDocument document, const MeshMod
     loop_.open(fresh->arm(), fresh->document().scene, p, rest);
   }
   controls_.grab = controls_.magnet = controls_.paused = false;
+  controls_.pull = {};
   controls_.slow = 1;
   controls_.goal = rest;
   take_stage(std::move(fresh));
@@ -70,6 +71,7 @@ void LiveSession::open_beside(SceneDocument document, const MeshModels& models, 
 }
 
 void LiveSession::touch(const Scene& scene) {
+  controls_.pull = {};  // bodies may be counted anew
   loop_.exchange(std::make_unique<TouchWorlds>(stage_->arm(), scene));
 }
 
@@ -126,6 +128,7 @@ void LiveSession::start_over() {
     return;
   }
   controls_.grab = controls_.magnet = false;
+  controls_.pull = {};
   ++controls_.resets;
   const bool off = loop_.device_in_place() || !force_armed();
   notices_.say(off ? "Started over, at rest and without force; F arms it."

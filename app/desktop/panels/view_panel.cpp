@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kDepthStep = 0.004;  // of one wheel notch while dragging [m]
 constexpr double kPullReach = 40;     // of the mouse around the tips, at the scale 1 [px]
+constexpr double kFarthestPull = 5;   // [m]
 constexpr double kClickReach = 4;     // that a click may move [px]
 
 ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
@@ -242,6 +243,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
     draw_grid_labels(scene.stage.picture.grid(), view, camera, rect, magnifier_.rect(), list);
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
+  draw_pull(view, camera, rect, list);
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
@@ -291,7 +293,10 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   const Eigen::Vector2d pixel(io.MousePos.x - rect.min.x, io.MousePos.y - rect.min.y);
   const RowLayout& layout = scene.stage.channels().layout();
   const bool free = !ImGui::IsAnyMouseDown() || ImGui::IsMouseClicked(ImGuiMouseButton_Left);
-  if (free) pulls_ = over && !io.KeyAlt && !scene.recorded && near_tip(scene, camera, pixel);
+  const bool on_body = pull_body(scene, camera, controls, rect, pixel, over);
+  if (free) {
+    pulls_ = over && !io.KeyAlt && !io.KeyCtrl && !scene.recorded && near_tip(scene, camera, pixel);
+  }
   if (pulls_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 
   if (pulls_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
@@ -314,7 +319,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   ViewRequest asked;
   for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right}) {
     const auto i = static_cast<std::size_t>(button);
-    if (over && ImGui::IsMouseClicked(button)) {
+    if (over && !on_body && ImGui::IsMouseClicked(button)) {
       pressed_[i] = pixel;
       moved_[i] = false;
     }
@@ -333,7 +338,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   } else if (moved && (left || right)) {
     camera.orbit(io.MouseDelta.x, io.MouseDelta.y);
   }
-  const bool zoom = over && !dragging_ && io.MouseWheel != 0;
+  const bool zoom = over && !dragging_ && !on_body && io.MouseWheel != 0;
   if (zoom) camera.zoom(io.MouseWheel, pixel);
   asked.turned = zoom || (moved && (pan || left || right));
   return asked;
@@ -343,15 +348,51 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
 // plane. Where it is looked at otherwise than a frame ago, the target stays in the world.
 void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
                           ScreenRect rect, const Eigen::Vector2d& pixel) {
+  stay(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
+  if (ImGui::GetIO().MouseWheel != 0) pushed_ = true;
+  controls.goal = within_reach(arm, dragged_to(camera, pixel));
+  controls.grab = true;
+}
+
+void ViewPanel::stay(const Camera& camera, ScreenRect rect, const Vec3& point,
+                     const Eigen::Vector2d& pixel) {
   const Eigen::Matrix4d looks = camera.projection() * camera.view();
   if (looks != looked_ || rect.min.x != corner_.x || rect.min.y != corner_.y) {
-    hold(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
+    hold(camera, rect, point, pixel);
   }
-  if (ImGui::GetIO().MouseWheel != 0) pushed_ = true;
+}
+
+Vec3 ViewPanel::dragged_to(const Camera& camera, const Eigen::Vector2d& pixel) {
   anchor_ += kDepthStep * static_cast<double>(ImGui::GetIO().MouseWheel) * camera.forward();
-  const Vec3 goal = camera.plane_drag(pixel, anchor_ - offset_) + offset_;
-  controls.goal = within_reach(arm, goal);
-  controls.grab = true;
+  return camera.plane_drag(pixel, anchor_ - offset_) + offset_;
+}
+
+// With Ctrl the left button pulls the body under the mouse. True while the mouse is there for that.
+bool ViewPanel::pull_body(const ViewScene& scene, const Camera& camera, Controls& controls,
+                          ScreenRect rect, const Eigen::Vector2d& pixel, bool over) {
+  if (pulling_) {
+    pulling_ =
+        !scene.recorded && controls.pull.body >= 0 && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    if (!pulling_) controls.pull = {};
+  } else if (over && ImGui::GetIO().KeyCtrl && !scene.recorded && scene.grasp) {
+    const bool clicked = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    if (ImGui::IsAnyMouseDown() && !clicked) return false;
+    const auto pull = scene.grasp(camera.ray(pixel));
+    if (!pull) return false;
+    if (clicked) {
+      controls.pull = *pull;
+      pulling_ = true;
+      hold(camera, rect, pull->target, pixel);
+    } else {
+      ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    }
+  }
+  if (!pulling_) return false;
+  ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+  stay(camera, rect, controls.pull.target, pixel);
+  const Vec3 target = dragged_to(camera, pixel);
+  if (target.norm() < kFarthestPull) controls.pull.target = target;
+  return true;
 }
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -29,6 +30,8 @@ struct ViewScene {
   std::string told = {};               // a story's sentence
   std::string pad = {};                // the gamepad that leads the hand; or none
   std::optional<Object> selected = {};
+  // The body under the mouse, to be pulled by the point that is there; null: none may be.
+  std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
   bool blind = false;      // nothing but the picture: no words, no numbers
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point
@@ -49,7 +52,8 @@ struct ViewRequest {
 
 class ViewPanel {
  public:
-  // The mouse leads the hand, in the controls, from near the tips; elsewhere it turns the camera.
+  // The mouse leads the hand, in the controls, from near the tips; with Ctrl it pulls a body;
+  // elsewhere it turns the camera.
   // `taken`: what it does belongs to somebody else.
   ViewRequest draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                    ScreenRect rect, bool taken);
@@ -65,6 +69,10 @@ class ViewPanel {
   static ViewState twin_of(const ViewScene& scene, const Settings& settings);
   ViewRequest handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
                            Settings& settings, ScreenRect rect, bool taken);
+  bool pull_body(const ViewScene& scene, const Camera& camera, Controls& controls, ScreenRect rect,
+                 const Eigen::Vector2d& pixel, bool over);
+  void stay(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
+  Vec3 dragged_to(const Camera& camera, const Eigen::Vector2d& pixel);
   bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) const;
   void hold(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
   void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
@@ -74,6 +82,7 @@ class ViewPanel {
   std::optional<ScreenRect> drawn_;                          // where the view was
   bool dragging_ = false;                                    // the hand
   bool pulls_ = false;                                       // what the left button would do here
+  bool pulling_ = false;                                     // a body
   std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where
   std::array<bool, 2> moved_{};                              // since then
   bool pushed_ = false;                                      // the hand, by the wheel

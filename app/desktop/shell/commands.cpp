@@ -460,6 +460,7 @@ struct Hint {
 };
 constexpr std::array kBefore{
     Hint{"left drag at the tip", "pull the arm; wheel meanwhile: nearer and farther"},
+    Hint{"Ctrl+left drag", "pull what moves, without the arm; wheel meanwhile: nearer and farther"},
     Hint{"left drag elsewhere, right drag", "turn the camera"},
     Hint{"middle drag, Shift+right drag", "move the camera"},
     Hint{"wheel", "zoom to the cursor"},

@@ -124,6 +124,14 @@ ViewScene Frame::view_scene() {
   if (!scene.recorded) scene.twin = desktop_.live.twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();
   scene.blind = desktop_.blind;
+  if (!scene.recorded && !scene.blind) {
+    scene.grasp = [this](const Ray& ray) {
+      const SceneEditor& editor = desktop_.document.editor();
+      const Stage& stage = desktop_.shown.stage();
+      const auto bodies = stage.rows().bodies(stage.channels().layout(), desktop_.shown.row());
+      return body_under(ray, editor.scene(), editor.models(), bodies);
+    };
+  }
   if (scene.blind && !scene.twin.empty()) scene.names = {"left", "right", true};
   scene.pad = desktop_.pads.leading();
   scene.overlaid = desktop_.settings.twin_overlaid;

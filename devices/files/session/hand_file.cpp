@@ -157,6 +157,43 @@ bool HandPath::magnet_sample(std::size_t k, double T) const {
   return !magnet.empty() && magnet[row(k, T)];
 }
 
+BodyPull HandPath::pull_sample(std::size_t k, double T) const {
+  return pull.empty() ? BodyPull{} : pull[row(k, T)];
+}
+
+namespace {
+
+// Empty where nothing was pulled on. Errors: FileError.
+std::vector<BodyPull> pulls_of(const Session& session, const std::string& where) {
+  std::vector<BodyPull> pulls;
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const double number = session.at(k, Column::hand_pull)[0];
+    if (!(number >= 0 && number <= kMostBodies)) {
+      throw FileError(
+          fmt::format("{}: /hand/pull: row {}: {} is not allowed; allowed: 0 to {}, of the "
+                      "bodies, from 1 on",
+                      where, k, number, kMostBodies));
+    }
+    if (number == 0) continue;
+    if (pulls.empty()) pulls.resize(session.size());
+    const auto vector = [&](Column column) {
+      const auto at = session.at(k, column);
+      for (const double x : at) {
+        if (std::abs(x) <= kFarthest) continue;
+        throw FileError(fmt::format("{}: {}: row {}: {} is not allowed; allowed: from -{} to {} m",
+                                    where, kColumnInfo[static_cast<std::size_t>(column)].path, k, x,
+                                    kFarthest, kFarthest));
+      }
+      return Vec3(at[0], at[1], at[2]);
+    };
+    pulls[k] = {static_cast<int>(number) - 1, vector(Column::pull_point),
+                vector(Column::pull_target)};
+  }
+  return pulls;
+}
+
+}  // namespace
+
 HandPath hand_of(const Session& session, const std::string& where) {
   if (session.size() == 0) {
     throw FileError(fmt::format("{}: no rows, so no hand to follow", where));
@@ -187,6 +224,7 @@ HandPath hand_of(const Session& session, const std::string& where) {
       path.magnet.push_back(session.at(k, Column::hand_magnet)[0] > 0);
     }
   }
+  if (session.layout.bodies() > 0) path.pull = pulls_of(session, where);
   start_at_zero(path);
   find_velocities(path);
   return path;

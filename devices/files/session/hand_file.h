@@ -21,6 +21,7 @@ struct HandPath {
   std::vector<Vec3> velocity;  // N, of the cubic at the samples [m/s]
   std::vector<double> grip;    // N, 1 the hand holds, 0 it let go [-]
   std::vector<bool> magnet;    // N, whether it picks up; empty: never
+  std::vector<BodyPull> pull;  // N, what was pulled on besides; empty: nothing ever
   std::string source;          // the file, for people
   double tick = 0;             // T of the session it came from [s]; 0 from CSV
 
@@ -36,6 +37,7 @@ struct HandPath {
   Vec3 sample(std::size_t k, double T) const;
   double grip_sample(std::size_t k, double T) const;
   bool magnet_sample(std::size_t k, double T) const;
+  BodyPull pull_sample(std::size_t k, double T) const;
 
  private:
   std::size_t row(std::size_t k, double T) const;

@@ -53,7 +53,7 @@ std::string body_column_name(bool velocity, int part, const std::string& body,
 std::string column_name(const ColumnInfo& info, int width, int i, const std::string& unit) {
   std::string name = plain(info.path);
   if (info.width == ColumnWidth::contacts) name += fmt::format("_{}", i / 3 + 1);
-  if (info.width == ColumnWidth::contacts || info.width == ColumnWidth::three) {
+  if (info.width == ColumnWidth::contacts || of_axes(info.width)) {
     name += fmt::format("_{:c}", 'x' + i % 3);
   } else if (width > 1) {
     name += fmt::format("_{}", i + 1);

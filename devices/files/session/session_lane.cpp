@@ -127,6 +127,10 @@ std::optional<double> mostly(Column column) {
     case Column::contact_force:
     case Column::body_velocity:  // they sleep
     case Column::magnet:
+    case Column::hand_pull:
+    case Column::pull_point:
+    case Column::pull_target:
+    case Column::energy_pulled:
     case Column::compensation_torque:
     case Column::energy_compensation: return 0.0;
     default: return std::nullopt;
@@ -235,7 +239,7 @@ void SessionLane::attach(const hdf5::Scales& scales) const {
     if (column.width == ColumnWidth::dof && scales.joint) {
       hdf5::attach_scale(dataset, scales.joint, 1, path_);
     }
-    if (column.width == ColumnWidth::three && scales.axis) {
+    if (of_axes(column.width) && scales.axis) {
       hdf5::attach_scale(dataset, scales.axis, 1, path_);
     }
   }

@@ -72,6 +72,10 @@ std::optional<double> default_of(Column column) {
     case Column::objects_left_out:
     case Column::magnet:
     case Column::hand_magnet:
+    case Column::hand_pull:
+    case Column::pull_point:
+    case Column::pull_target:
+    case Column::energy_pulled:
     case Column::energy_ledger: return 0.0;
     // What the human and objects were given, and that nothing touched, is not known.
     case Column::energy_port:

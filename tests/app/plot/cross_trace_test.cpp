@@ -6,18 +6,19 @@
 #include <numbers>
 
 #include "app/plot/trace.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kTick = 0.001;
+using test::T;
 
 // x = cos, y = sin: a circle of radius 1, once in a second.
 History circle(int rows) {
   History history({.channels = 2, .seconds = 20});
   for (int i = 0; i < rows; ++i) {
-    const double turn = 2 * std::numbers::pi * i * kTick;
-    history.append(i * kTick, std::array{std::cos(turn), std::sin(turn)});
+    const double turn = 2 * std::numbers::pi * i * T;
+    history.append(i * T, std::array{std::cos(turn), std::sin(turn)});
   }
   return history;
 }
@@ -46,7 +47,7 @@ TEST(CrossTrace, IsOneChannelOverAnother) {
 
 TEST(CrossTrace, StandsStillAsOnePoint) {
   History history({.channels = 2});
-  for (int i = 0; i < 100; ++i) history.append(i * kTick, std::array{0.25, 0.5});
+  for (int i = 0; i < 100; ++i) history.append(i * T, std::array{0.25, 0.5});
   EXPECT_EQ(cross(history).points.size(), 1u);
 }
 
@@ -58,7 +59,7 @@ TEST(CrossTrace, EndsARunWhereEitherChannelOrARowIsMissing) {
       if (gone && missing == 2) continue;
       const double x = gone && missing == 0 ? std::nan("") : i * 0.01;
       const double y = gone && missing == 1 ? std::nan("") : -i * 0.01;
-      history.append(i * kTick, std::array{x, y});
+      history.append(i * T, std::array{x, y});
     }
     EXPECT_EQ(cross(history).runs.size(), 2u) << missing;
   }
@@ -67,7 +68,7 @@ TEST(CrossTrace, EndsARunWhereEitherChannelOrARowIsMissing) {
 TEST(Spectrum, OfAHistoryHasTheSineAtItsPixel) {
   History history({.channels = 1, .seconds = 20});
   for (int i = 0; i < 8000; ++i) {
-    history.append(i * kTick, std::array{0.02 * std::sin(2 * std::numbers::pi * 50 * i * kTick)});
+    history.append(i * T, std::array{0.02 * std::sin(2 * std::numbers::pi * 50 * i * T)});
   }
   const AmplitudeSpectrum s = spectrum_between(history, 0, 0, 8);
   EXPECT_DOUBLE_EQ(s.step, 0.25);
@@ -87,9 +88,9 @@ TEST(Spectrum, OfAHistoryHasTheSineAtItsPixel) {
 // Rows before a start over are not one signal with those after it.
 TEST(Spectrum, IsOfTheLongestPartWithoutAGap) {
   History history({.channels = 1, .seconds = 20});
-  for (int i = 0; i < 1000; ++i) history.append(i * kTick, std::array{5.0});
+  for (int i = 0; i < 1000; ++i) history.append(i * T, std::array{5.0});
   for (int i = 0; i < 4000; ++i) {
-    history.append(i * kTick, std::array{std::sin(2 * std::numbers::pi * 50 * i * kTick)});
+    history.append(i * T, std::array{std::sin(2 * std::numbers::pi * 50 * i * T)});
   }
   const AmplitudeSpectrum s = spectrum_between(history, 0, 0, 100);
   EXPECT_DOUBLE_EQ(s.step, 0.5);

@@ -11,10 +11,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/tick.h"
+
 namespace limpid {
 namespace {
 
-constexpr double kTick = 0.001;
+using test::T;
 
 // What the history should know, kept the plain way.
 struct Plain {
@@ -34,7 +36,7 @@ Plain fill(History& history, int rows, unsigned seed) {
   Plain plain;
   for (int i = 0; i < rows; ++i) {
     const double value = i % 97 == 0 ? std::numeric_limits<double>::quiet_NaN() : noise(random);
-    plain.times.push_back(i * kTick);
+    plain.times.push_back(i * T);
     plain.values.push_back(static_cast<float>(value));
     history.append(plain.times.back(), std::array{value});
   }
@@ -54,7 +56,7 @@ void compare_random_windows(const History& history, const Plain& plain, unsigned
 }
 
 TEST(History, ExtentsOfRandomWindowsAreThoseOfTheSamples) {
-  History history({.seconds = 60, .tick = kTick});
+  History history({.seconds = 60, .tick = T});
   const Plain plain = fill(history, 30011, 1);
   EXPECT_EQ(history.first(), 0u);
   compare_random_windows(history, plain, 2);
@@ -62,7 +64,7 @@ TEST(History, ExtentsOfRandomWindowsAreThoseOfTheSamples) {
 
 TEST(History, ExtentsStayRightAfterTheOldestSamplesWereOverwritten) {
   for (const int rows : {8192, 8193, 12000, 16384, 30011}) {
-    History history({.seconds = 8, .tick = kTick});
+    History history({.seconds = 8, .tick = T});
     const Plain plain = fill(history, rows, 3);
     EXPECT_EQ(history.end(), static_cast<SampleIndex>(rows));
     EXPECT_GE(history.end() - history.first(), 8000u);
@@ -73,16 +75,16 @@ TEST(History, ExtentsStayRightAfterTheOldestSamplesWereOverwritten) {
 // A second run may come at any time: before, within and after the first lap.
 TEST(History, ExtentsAreRightWhereverTheFirstNumberComes) {
   for (const int nothing : {0, 1, 7, 8, 500, 4096, 8191, 8192, 8193, 20011}) {
-    History history({.seconds = 8, .tick = kTick});
+    History history({.seconds = 8, .tick = T});
     Plain plain;
     for (int i = 0; i < nothing; ++i) {
-      plain.times.push_back(i * kTick);
+      plain.times.push_back(i * T);
       plain.values.push_back(std::numeric_limits<float>::quiet_NaN());
       history.append(plain.times.back(), std::array{std::numeric_limits<double>::quiet_NaN()});
     }
     compare_random_windows(history, plain, 3);
     for (int i = nothing; i < nothing + 9001; ++i) {
-      plain.times.push_back(i * kTick);
+      plain.times.push_back(i * T);
       plain.values.push_back(static_cast<float>(std::sin(0.37 * i)));
       history.append(plain.times.back(), std::array{static_cast<double>(plain.values.back())});
       if (i == nothing + 3) compare_random_windows(history, plain, 4);
@@ -102,23 +104,23 @@ TEST(History, ChannelsThatNeverHadANumberTakeNoMemory) {
     return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   };
   constexpr int kChannels = 200;
-  History history({.channels = kChannels, .tick = kTick});
+  History history({.channels = kChannels, .tick = T});
   const std::vector<double> nothing(kChannels, std::numeric_limits<double>::quiet_NaN());
   const std::size_t before = resident();
-  for (int i = 0; i < 60'000; ++i) history.append(i * kTick, nothing);
+  for (int i = 0; i < 60'000; ++i) history.append(i * T, nothing);
   // Of numbers it would be 60 MB; times take 0.5 MB.
   EXPECT_LT(resident() - before, 5'000'000u);
 }
 
 TEST(History, RemembersSamplesByNumberAndTime) {
-  History history({.seconds = 8, .tick = kTick});
+  History history({.seconds = 8, .tick = T});
   const Plain plain = fill(history, 20000, 5);
   for (SampleIndex i = history.first(); i < history.end(); i += 37) {
     EXPECT_EQ(history.time(i), plain.times[i]);
     if (std::isfinite(plain.values[i])) {
       EXPECT_EQ(history.value(0, i), plain.values[i]);
     }
-    EXPECT_EQ(history.nearest(plain.times[i] + 0.3 * kTick), i);
+    EXPECT_EQ(history.nearest(plain.times[i] + 0.3 * T), i);
     EXPECT_EQ(history.lower_bound(plain.times[i]), i);
   }
   EXPECT_EQ(history.nearest(-100), history.first());
@@ -126,7 +128,7 @@ TEST(History, RemembersSamplesByNumberAndTime) {
 }
 
 TEST(History, LowerBoundFromAnyRowBeforeIsTheSame) {
-  History history({.seconds = 8, .tick = kTick});
+  History history({.seconds = 8, .tick = T});
   fill(history, 5000, 6);
   for (SampleIndex from = 0; from < 4000; from += 333) {
     EXPECT_EQ(history.lower_bound(4.0005, from), 4001u);
@@ -135,7 +137,7 @@ TEST(History, LowerBoundFromAnyRowBeforeIsTheSame) {
 }
 
 TEST(History, ExtentBetweenTimesHasBothEnds) {
-  History history({.seconds = 1, .tick = kTick});
+  History history({.seconds = 1, .tick = T});
   for (int i = 0; i < 10; ++i) history.append(i * 0.5, std::array{static_cast<double>(i)});
   const Extent extent = history.extent_between(0, 1.0, 3.0);
   EXPECT_EQ(extent.low, 2);
@@ -143,7 +145,7 @@ TEST(History, ExtentBetweenTimesHasBothEnds) {
 }
 
 TEST(History, DroppedTicksAreAGap) {
-  History history({.tick = kTick});
+  History history({.tick = T});
   for (const double time : {0.0, 0.001, 0.002, 0.005, 0.006}) history.append(time, std::array{1.0});
   EXPECT_FALSE(history.gap_before(1));
   EXPECT_FALSE(history.gap_before(2));
@@ -152,9 +154,9 @@ TEST(History, DroppedTicksAreAGap) {
 }
 
 TEST(History, TimeThatStartsAgainGoesOnAfterAGapAndIsMarked) {
-  History history({.tick = kTick});
-  for (int i = 0; i < 100; ++i) history.append(i * kTick, std::array{1.0});
-  for (int i = 0; i < 100; ++i) history.append(i * kTick, std::array{2.0});
+  History history({.tick = T});
+  for (int i = 0; i < 100; ++i) history.append(i * T, std::array{1.0});
+  for (int i = 0; i < 100; ++i) history.append(i * T, std::array{2.0});
   EXPECT_TRUE(history.gap_before(100));
   EXPECT_GT(history.time(100), history.time(99));
   EXPECT_NEAR(history.time(150) - history.offset(), 0.050, 1e-12);
@@ -164,18 +166,18 @@ TEST(History, TimeThatStartsAgainGoesOnAfterAGapAndIsMarked) {
 }
 
 TEST(History, MarksOfOneGestureBecomeOneAndOldOnesAreForgotten) {
-  History history({.seconds = 2, .tick = kTick});
+  History history({.seconds = 2, .tick = T});
   history.append(0, std::array{0.0});
   for (int i = 0; i < 10; ++i) history.mark(i * 0.1, "eta " + std::to_string(i), "eta");
   history.mark(0.95, "standard", "kind");
   ASSERT_EQ(history.marks().size(), 2u);
   EXPECT_EQ(history.marks().front().label, "eta 9");
-  for (int i = 1; i < 20000; ++i) history.append(i * kTick, std::array{0.0});
+  for (int i = 1; i < 20000; ++i) history.append(i * T, std::array{0.0});
   EXPECT_TRUE(history.marks().empty());
 }
 
 TEST(History, ClearForgetsEverything) {
-  History history({.seconds = 1, .tick = kTick});
+  History history({.seconds = 1, .tick = T});
   fill(history, 5000, 7);
   history.mark(5, "here");
   history.clear();
@@ -186,10 +188,10 @@ TEST(History, ClearForgetsEverything) {
 }
 
 TEST(History, InfiniteValuesDoNotSpoilTheExtent) {
-  History history({.tick = kTick});
+  History history({.tick = T});
   history.append(0, std::array{1.0});
-  history.append(kTick, std::array{std::numeric_limits<double>::infinity()});
-  history.append(2 * kTick, std::array{3.0});
+  history.append(T, std::array{std::numeric_limits<double>::infinity()});
+  history.append(2 * T, std::array{3.0});
   EXPECT_EQ(history.extent(0, 0, 3).high, 3);
 }
 
@@ -203,10 +205,10 @@ TEST(History, RefusesRowsOfTheWrongWidthAndTimesThatAreNone) {
 
 // A second run counts its time from zero again; its marks stand in it, not in the first one.
 TEST(History, MarksOfASecondRunStandInThatRun) {
-  History history({.seconds = 8, .tick = kTick});
-  for (int i = 0; i < 1000; ++i) history.append(i * kTick, std::array{1.0});
+  History history({.seconds = 8, .tick = T});
+  for (int i = 0; i < 1000; ++i) history.append(i * T, std::array{1.0});
   history.mark(0.2, "eta of the first", "eta");
-  for (int i = 0; i < 1000; ++i) history.append(i * kTick, std::array{2.0});
+  for (int i = 0; i < 1000; ++i) history.append(i * T, std::array{2.0});
   ASSERT_GT(history.offset(), 0.9);
   history.mark(0.2, "eta", "eta");
   history.mark(0.3, "eta moved on", "eta");

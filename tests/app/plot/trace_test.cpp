@@ -7,10 +7,12 @@
 #include <numbers>
 #include <random>
 
+#include "tests/support/tick.h"
+
 namespace limpid {
 namespace {
 
-constexpr double kTick = 0.001;
+using test::T;
 
 Trace trace_of(const History& history, const Curve& curve, const PixelWindow& window) {
   std::vector<SampleIndex> rows;
@@ -34,7 +36,7 @@ TEST(Trace, BandsHoldEverySampleOfTheirPixel) {
   History history({.seconds = 20});
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
-  for (int i = 0; i < 20000; ++i) history.append(i * kTick, std::array{noise(random)});
+  for (int i = 0; i < 20000; ++i) history.append(i * T, std::array{noise(random)});
   const PixelWindow window = pixel_window(19, 15, 333);
   const Trace trace = trace_of(history, {.channel = 0}, window);
   ASSERT_TRUE(trace.band);
@@ -57,7 +59,7 @@ TEST(Trace, BandsHoldEverySampleOfTheirPixel) {
 TEST(Trace, NeighbouringBandsTouchHoweverSteepTheSignal) {
   History history({.seconds = 20});
   for (int i = 0; i < 20000; ++i) {
-    history.append(i * kTick, std::array{(i / 700) % 2 == 0 ? 0.0 : 1.0});
+    history.append(i * T, std::array{(i / 700) % 2 == 0 ? 0.0 : 1.0});
   }
   const Trace trace = trace_of(history, {.channel = 0}, pixel_window(20, 20, 500));
   for (std::size_t i = 1; i < trace.points.size(); ++i) {
@@ -69,7 +71,7 @@ TEST(Trace, NeighbouringBandsTouchHoweverSteepTheSignal) {
 TEST(Trace, AGapEndsARunInBothKindsOfTraces) {
   History history({.seconds = 20});
   for (int i = 0; i < 10000; ++i) {
-    if (i < 4000 || i >= 5000) history.append(i * kTick, std::array{1.0});
+    if (i < 4000 || i >= 5000) history.append(i * T, std::array{1.0});
   }
   EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(10, 10, 500)).runs.size(), 2u);
   const Trace close = trace_of(history, {.channel = 0}, pixel_window(5.1, 1.2, 4000));
@@ -81,7 +83,7 @@ TEST(Trace, MissingValuesAreAGapOfTheirCurveAlone) {
   History history({.channels = 2, .seconds = 20});
   for (int i = 0; i < 10000; ++i) {
     const bool missing = i >= 4000 && i < 5000;
-    history.append(i * kTick, std::array{missing ? std::nan("") : 1.0, 2.0});
+    history.append(i * T, std::array{missing ? std::nan("") : 1.0, 2.0});
   }
   EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(10, 10, 500)).runs.size(), 2u);
   EXPECT_EQ(trace_of(history, {.channel = 1}, pixel_window(10, 10, 500)).runs.size(), 1u);

@@ -8,6 +8,7 @@
 #include "app/run/replay.h"
 #include "app/view/row_view.h"
 #include "render/gl/offscreen.h"
+#include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/render/model/gltf_builder.h"
 #include "tests/support/test_session.h"
@@ -17,15 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::first_difference;
+using test::recorded;
 using test::rows_of;
-
-Session recorded(const RunPlan& plan, const fs::path& out) {
-  Recorder recorder(out, session_info(plan), plan.parameters, false);
-  simulate(plan, {},
-           [&](std::span<const double> row, LaneChanges) { return recorder.push_waiting(row); });
-  recorder.finish();
-  return read_session(out);
-}
 
 RunPlan rerun_of(const fs::path& file) {
   const Session session = read_session(file);

@@ -6,6 +6,7 @@
 #include "app/run/analysis.h"
 #include "app/run/recorder.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/test_session.h"
 
@@ -13,18 +14,8 @@ namespace limpid {
 namespace {
 
 using test::first_difference;
+using test::recorded;
 using test::rows_of;
-
-// Runs a plan and records it, as `limpid run --record` does.
-Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
-  Recorder recorder(out, session_info(plan), plan.parameters, false);
-  simulate(plan, {}, [&](std::span<const double> row, LaneChanges changed) {
-    if (changed[0] != nullptr) recorder.changed(*changed[0]);
-    return recorder.push_waiting(row);
-  });
-  recorder.finish();
-  return read_session(out);
-}
 
 RunPlan eventful() {
   RunPlan plan = test::plan("obstacles.toml", "touch.csv", 3);

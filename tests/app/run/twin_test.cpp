@@ -6,6 +6,7 @@
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "devices/files/session/session_csv.h"
+#include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/test_session.h"
 
@@ -13,6 +14,7 @@ namespace limpid {
 namespace {
 
 using test::first_difference;
+using test::recorded;
 using test::Rows;
 using test::rows_of;
 
@@ -50,19 +52,6 @@ RunPlan alone(const RunPlan& plan) {
   one.changes = plan.beside[0].changes;
   one.beside.clear();
   return one;
-}
-
-Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
-  Recorder recorder(out, session_info(plan), plan.parameters, false, Recorder::kWaitingRoom,
-                    plan.twin());
-  simulate(plan, {}, [&](std::span<const double> rows, const auto& changed) {
-    for (std::size_t lane = 0; lane < 2; ++lane) {
-      if (changed[lane] != nullptr) recorder.changed(*changed[lane], lane);
-    }
-    return recorder.push_waiting(rows);
-  });
-  recorder.finish();
-  return read_session(out);
 }
 
 TEST(Twin, GivesEachRunWhatItGivesAlone) {

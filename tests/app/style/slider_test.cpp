@@ -50,8 +50,8 @@ TEST(ParameterSlider, HoldsValuesWithinTheAllowedRange) {
   EXPECT_EQ(p.kind, CouplingKind::standard);
 }
 
-// Relative luminance and contrast as WCAG 2 defines them.
-double luminance(Rgb c) {
+// Relative luminance_by_wcag and contrast as WCAG 2 defines them.
+double luminance_by_wcag(Rgb c) {
   const auto linear = [](std::uint8_t byte) {
     const double x = byte / 255.0;
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
@@ -60,8 +60,8 @@ double luminance(Rgb c) {
 }
 
 double contrast_by_wcag(Rgb a, Rgb b) {
-  const double high = std::max(luminance(a), luminance(b));
-  const double low = std::min(luminance(a), luminance(b));
+  const double high = std::max(luminance_by_wcag(a), luminance_by_wcag(b));
+  const double low = std::min(luminance_by_wcag(a), luminance_by_wcag(b));
   return (high + 0.05) / (low + 0.05);
 }
 

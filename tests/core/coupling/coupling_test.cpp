@@ -13,8 +13,6 @@ namespace limpid {
 namespace {
 
 using test::Random;
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 
 constexpr std::array kPaperDamping{0.012, 0.012, 0.012};
 
@@ -209,7 +207,7 @@ struct Random2 {
   }
   Random random;
   Dynamics<kAnyDof> one, two;
-  Vector f1, f2;
+  Eigen::VectorXd f1, f2;
 };
 
 class CouplingOfJoints : public testing::TestWithParam<int> {};
@@ -221,8 +219,8 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
   Random2 r(n, 70);
   Proxy<kAnyDof> proxy(test::random_arm(n, 70), Scene{});
   for (int i = 0; i < 20; ++i) {
-    const Vector x1 = r.random.vector(n, 1), x2 = r.random.vector(n, 1);
-    const Vector v1 = r.random.vector(n, 1), vbar2 = r.random.vector(n, 1);
+    const Eigen::VectorXd x1 = r.random.vector(n, 1), x2 = r.random.vector(n, 1);
+    const Eigen::VectorXd v1 = r.random.vector(n, 1), vbar2 = r.random.vector(n, 1);
     proxy.place(x2, r.two.v, 0.1);
     LawSettings p;
     p.k_vc = 7;
@@ -230,14 +228,15 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
     p.eta = 0.3;
     Coupling<kAnyDof> coupling;
     const Vec<kAnyDof> x = x1, v = v1, f1 = r.f1, vbar = vbar2;
-    const Vec<kAnyDof> b = Vector::Zero(n), limit = Vector::Constant(n, 1);
+    const Vec<kAnyDof> b = Eigen::VectorXd::Zero(n), limit = Eigen::VectorXd::Constant(n, 1);
     const Arm<kAnyDof>::Frames frames{};
     const LawInput<kAnyDof> in{x, v, r.one, f1, vbar, 0.001, frames, b, b, limit, 1, 0.001, 0, 0};
-    const Vector tau = coupling.step(CouplingKind::standard, p, in, proxy);
-    const Vector on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
+    const Eigen::VectorXd tau = coupling.step(CouplingKind::standard, p, in, proxy);
+    const Eigen::VectorXd on_device = -0.3 * (v1 - vbar2) - 7 * (x1 - x2);
     EXPECT_LT((tau - on_device).norm(), 1e-13);
-    const Vector mean = proxy.vbar();
-    const Vector on_proxy = 0.3 * (v1 - mean) - 7 * (x2 + 0.001 / 2 * mean - x1) - p.b_v * mean;
+    const Eigen::VectorXd mean = proxy.vbar();
+    const Eigen::VectorXd on_proxy =
+        0.3 * (v1 - mean) - 7 * (x2 + 0.001 / 2 * mean - x1) - p.b_v * mean;
     EXPECT_LT((proxy.tau() - on_proxy).norm(), 1e-12 * (1 + on_proxy.norm()));
   }
 }
@@ -257,14 +256,14 @@ TEST_P(CouplingOfJoints, ProposedAddsFourteenAndFifteen) {
   const Random2 r(n, 71);
   for (const double eta : {0.3, 0.6, 1.0, 5.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
+    const Eigen::MatrixXd phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
-    const Matrix I = Matrix::Identity(n, n);
-    const Matrix phi_T = (r.two.M * (r.one.M + r.two.M).inverse()).eval();  // M symmetric
-    const Vector sum = r.f1 + r.f2;
-    const Vector tau1 = C_EL * d.v_L + (I - phi_T) * C_LE * d.v_E +
-                        ((1 - eta) / eta * I - phi_T / eta) * sum + r.f2;
-    const Vector tau2 = -C_EL * d.v_L + phi_T * C_LE * d.v_E + phi_T / eta * sum - r.f2;
+    const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd phi_T = (r.two.M * (r.one.M + r.two.M).inverse()).eval();  // M symmetric
+    const Eigen::VectorXd sum = r.f1 + r.f2;
+    const Eigen::VectorXd tau1 = C_EL * d.v_L + (I - phi_T) * C_LE * d.v_E +
+                                 ((1 - eta) / eta * I - phi_T / eta) * sum + r.f2;
+    const Eigen::VectorXd tau2 = -C_EL * d.v_L + phi_T * C_LE * d.v_E + phi_T / eta * sum - r.f2;
     EXPECT_LT((ff.tau1 + ff.on_device.of(r.f2, r.two.M) - tau1).norm(), 1e-12 * (1 + tau1.norm()));
     EXPECT_LT((ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2 - tau2).norm(),
               1e-12 * (1 + tau2.norm()));
@@ -278,11 +277,11 @@ TEST_P(CouplingOfJoints, ProposedScalesWhatReachesTheLockedSystem) {
   const Random2 r(n, 72);
   for (const double eta : {0.5, 1.0, 3.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
+    const Eigen::MatrixXd phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
-    const Vector both =
+    const Eigen::VectorXd both =
         ff.tau1 + ff.on_device.of(r.f2, r.two.M) + ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2;
-    const Vector wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + C_LE * d.v_E;
+    const Eigen::VectorXd wanted = (r.f1 + r.f2) / eta - (r.f1 + r.f2) + C_LE * d.v_E;
     EXPECT_LT((both - wanted).norm(), 1e-12 * (1 + wanted.norm()));
   }
 }
@@ -294,12 +293,12 @@ TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
   const Random2 r(n, 73);
   for (const double eta : {0.5, 1.0, 3.0}) {
     const Decomposition<kAnyDof> d(r.one, r.two);
-    const Matrix phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
+    const Eigen::MatrixXd phi = d.phi(), C_LE = d.C_LE(d.phi()), C_EL = -C_LE.transpose();
     const auto ff = feedforward<kAnyDof>(eta, d, r.f1);
-    const Vector tau1 = ff.tau1 + ff.on_device.of(r.f2, r.two.M);
-    const Vector tau2 = ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2;
-    const Vector f_E = phi.transpose() * (r.f1 + r.f2) - r.f2;
-    const Vector shape = phi.transpose() * (tau1 + tau2) - tau2 + f_E;
+    const Eigen::VectorXd tau1 = ff.tau1 + ff.on_device.of(r.f2, r.two.M);
+    const Eigen::VectorXd tau2 = ff.tau2 + ff.on_proxy.of(r.f2, r.two.M) - r.f2;
+    const Eigen::VectorXd f_E = phi.transpose() * (r.f1 + r.f2) - r.f2;
+    const Eigen::VectorXd shape = phi.transpose() * (tau1 + tau2) - tau2 + f_E;
     EXPECT_LT((shape - C_EL * d.v_L).norm(), 1e-12 * (1 + f_E.norm()));
   }
 }
@@ -313,11 +312,11 @@ TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
   const Decomposition<kAnyDof> d(r.one, r.two);
   const auto ff = feedforward<kAnyDof>(1, d, Vec<kAnyDof>::Zero(n));
   EXPECT_LT(ff.tau1.norm() + ff.tau2.norm(), 1e-15);
-  const Vector device = ff.on_device.of(r.f2, r.two.M);
-  const Vector proxy = ff.on_proxy.of(r.f2, r.two.M);
+  const Eigen::VectorXd device = ff.on_device.of(r.f2, r.two.M);
+  const Eigen::VectorXd proxy = ff.on_proxy.of(r.f2, r.two.M);
   EXPECT_LT((device + proxy - r.f2).norm(), 1e-13);
   // Both then accelerate alike.
-  const Vector a1 = r.one.M.inverse() * device, a2 = r.two.M.inverse() * proxy;
+  const Eigen::VectorXd a1 = r.one.M.inverse() * device, a2 = r.two.M.inverse() * proxy;
   EXPECT_LT((a1 - a2).norm(), 1e-10 * a1.norm());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using test::Random;
 using Any = Vec<kAnyDof>;
 
-constexpr double T = 0.001;
+using test::T;
 constexpr double kE0 = 0.005, kCap = 4 * kE0;  // [J]
 
 class LedgerOfJoints : public testing::TestWithParam<int> {

@@ -13,7 +13,6 @@ namespace limpid {
 namespace {
 
 using test::Random;
-using Vector = Eigen::VectorXd;
 
 struct Numbered {
   int number = -1;
@@ -149,17 +148,18 @@ struct AllSettings : LawSettings, LinkSettings {};
 class Followed {
  public:
   Followed(int n, unsigned seed) : n_(n), seed_(seed), proxy_(test::random_arm(n, seed), Scene{}) {
-    proxy_.place(Vector::Zero(n), Vector::Zero(n), 0.1);
+    proxy_.place(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), 0.1);
     link_.start();
     coupling_.start({zero_(), zero_(), zero_()});
   }
 
   // All torques, one under the other.
-  Vector run(CouplingKind kind, const AllSettings& p, bool through) {
+  Eigen::VectorXd run(CouplingKind kind, const AllSettings& p, bool through) {
     Random random(seed_);
-    Vector all(0);
-    Vec<kAnyDof> x = Vector::Zero(n_), before = x, vbar2 = x;
-    const Vec<kAnyDof> b = Vector::Constant(n_, 0.01), limit = Vector::Constant(n_, 1);
+    Eigen::VectorXd all(0);
+    Vec<kAnyDof> x = Eigen::VectorXd::Zero(n_), before = x, vbar2 = x;
+    const Vec<kAnyDof> b = Eigen::VectorXd::Constant(n_, 0.01),
+                       limit = Eigen::VectorXd::Constant(n_, 1);
     const Arm<kAnyDof>::Frames frames{};
     for (int k = 0; k < 40; ++k) {
       proxy_.catch_up();
@@ -172,7 +172,7 @@ class Followed {
       LawInput<kAnyDof> in{x, v, device, f1, vbar2, 0.001, frames, b, b, limit, 1, 0.001, 0, 0};
       in.link = through ? &link_ : link;
       coupling_.locate(kind, p, {x, v, k > 0 ? 0.001 : 0, 0});
-      const Vector tau = coupling_.step(kind, p, in, proxy_);
+      const Eigen::VectorXd tau = coupling_.step(kind, p, in, proxy_);
       coupling_.applied(kind, tau);
       vbar2 = proxy_.vbar();
       const Eigen::Index at = all.size();
@@ -185,7 +185,7 @@ class Followed {
 
  private:
   const Vec<kAnyDof>& zero_() {
-    zero = Vector::Zero(n_);
+    zero = Eigen::VectorXd::Zero(n_);
     return zero;
   }
 
@@ -205,7 +205,7 @@ TEST(Link, WithoutDelayAndLossGivesTheSameBitsAsNone) {
     for (const int n : {1, 3, 7}) {
       AllSettings p;
       p.eta = 0.7;
-      const Vector direct = Followed(n, 5).run(kind, p, false);
+      const Eigen::VectorXd direct = Followed(n, 5).run(kind, p, false);
       EXPECT_EQ(direct, Followed(n, 5).run(kind, p, true)) << info(kind).key << ' ' << n;
       p.link_delay = 1;
       EXPECT_NE(direct, Followed(n, 5).run(kind, p, false)) << info(kind).key << ' ' << n;
@@ -215,7 +215,7 @@ TEST(Link, WithoutDelayAndLossGivesTheSameBitsAsNone) {
 
 TEST(Link, DoesNothingUnderThePredictiveLaw) {
   AllSettings p;
-  const Vector direct = Followed(3, 5).run(CouplingKind::predictive, p, false);
+  const Eigen::VectorXd direct = Followed(3, 5).run(CouplingKind::predictive, p, false);
   p.link_delay = 50;
   EXPECT_EQ(direct, Followed(3, 5).run(CouplingKind::predictive, p, false));
 }
@@ -227,16 +227,16 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
   SpringDamper p;
   p.b_vc = 0.02;
   Proxy<kAnyDof> proxy(test::random_arm(n, 9), Scene{});
-  proxy.place(Vector::Zero(n), Vector::Zero(n), 0.1);
+  proxy.place(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), 0.1);
   ProxyLink<kAnyDof> link_of;
   link_of.start();
   StandardLaw::Of<kAnyDof> law;
   Random random(3);
-  std::vector<Vec<kAnyDof>> x1{Vector::Zero(n)}, x2, vbar2{Vector::Zero(n)};
-  const Vec<kAnyDof> b = Vector::Zero(n), limit = Vector::Constant(n, 1);
+  std::vector<Vec<kAnyDof>> x1{Eigen::VectorXd::Zero(n)}, x2, vbar2{Eigen::VectorXd::Zero(n)};
+  const Vec<kAnyDof> b = Eigen::VectorXd::Zero(n), limit = Eigen::VectorXd::Constant(n, 1);
   const Arm<kAnyDof>::Frames frames{};
   const Dynamics<kAnyDof> device{random.positive_definite(n, 1e-4, 1e-3), random.matrix(n, 1e-3),
-                                 Vector::Zero(n)};
+                                 Eigen::VectorXd::Zero(n)};
   for (std::size_t k = 0; k < 50; ++k) {
     proxy.catch_up();
     if (k > 0) x1.push_back(x1.back() + random.vector(n, 1e-3));
@@ -244,13 +244,14 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
     const Vec<kAnyDof> v1 = k > 0 ? Vec<kAnyDof>((x1[k] - x1[k - 1]) / T) : b;
     LawInput<kAnyDof> in{x1[k], v1, device, b, vbar2[k], T, frames, b, b, limit, 1, T, 0, 0};
     in.link = link_of.of(link(kDelay, 0, 0));
-    const Vector tau1 = law.step(p, in, proxy);
+    const Eigen::VectorXd tau1 = law.step(p, in, proxy);
     vbar2.push_back(proxy.vbar());
     const std::size_t old = k > kDelay ? k - kDelay : 0;  // at first as it was at the start
-    const Vector v1_old = old > 0 ? Vector((x1[old] - x1[old - 1]) / T) : Vector(b);
-    const Vector wanted1 = -p.b_vc * (v1 - vbar2[old]) - p.k_vc * (x1[k] - x2[old]);
-    const Vector mean = vbar2.back();
-    const Vector wanted2 =
+    const Eigen::VectorXd v1_old =
+        old > 0 ? Eigen::VectorXd((x1[old] - x1[old - 1]) / T) : Eigen::VectorXd(b);
+    const Eigen::VectorXd wanted1 = -p.b_vc * (v1 - vbar2[old]) - p.k_vc * (x1[k] - x2[old]);
+    const Eigen::VectorXd mean = vbar2.back();
+    const Eigen::VectorXd wanted2 =
         -p.b_vc * (mean - v1_old) - p.b_v * mean - p.k_vc * (x2[k] + T / 2 * mean - x1[old]);
     EXPECT_LT((tau1 - wanted1).norm(), 1e-13) << k;
     EXPECT_LT((proxy.tau() - wanted2).norm(), 1e-11) << k;

@@ -7,15 +7,14 @@
 #include "core/tick/parameters.h"
 #include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 
-constexpr double T = 1e-3;
+using test::T;
 
 // Fast, and tenths of a radian apart: the terms of C count. At eta 1 there is no network, in free
 // space no contact, and nobody's torque is known:
@@ -35,7 +34,7 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     const Vec<3> b_d = Vec<3>::Constant(0.013), most = Vec<3>::Constant(1e6);
     Proxy<3> proxy(description, Scene{});
     proxy.place(x2, v2, 0.6);
-    const Matrix M2 = proxy.M(), C2 = proxy.C();
+    const Eigen::MatrixXd M2 = proxy.M(), C2 = proxy.C();
     Arm<3>::Frames frames;
     Dynamics<3> device{{}, {}, v1};
     arm.frames(x1, frames);
@@ -44,28 +43,29 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     PredictiveLaw::Of<3> law;
     law.start({x1, v1, zero});
     law.locate(p, {x1, v1, 0, 0});
-    const Vector tau1 =
+    const Eigen::VectorXd tau1 =
         law.step(p, {x1, v1, device, zero, zero, T, frames, b_d, zero, most, 1, T, 0, 0}, proxy);
-    const Vector tau2 = proxy.tau(), u = (proxy.x() - x2) / T;
+    const Eigen::VectorXd tau2 = proxy.tau(), u = (proxy.x() - x2) / T;
 
-    const Matrix I = Matrix::Identity(3, 3), M1 = device.M, C1 = device.C;
-    const Matrix phi = (M1 + M2).inverse() * M2;
-    const Matrix C_EL = phi.transpose() * C1 + (phi.transpose() - I) * C2;
-    const Matrix C_LE = -C_EL.transpose();
-    const Matrix sum = C_LE - p.b_v * I;
-    const Vector w = sum.fullPivLu().solve(tau1 + tau2 + C_LE * u);
-    const Vector v_E = w - u, v_L = w - phi * v_E;
-    const Vector s0 = p.k_vc * (x1 - x2);
+    const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(3, 3), M1 = device.M, C1 = device.C;
+    const Eigen::MatrixXd phi = (M1 + M2).inverse() * M2;
+    const Eigen::MatrixXd C_EL = phi.transpose() * C1 + (phi.transpose() - I) * C2;
+    const Eigen::MatrixXd C_LE = -C_EL.transpose();
+    const Eigen::MatrixXd sum = C_LE - p.b_v * I;
+    const Eigen::VectorXd w = sum.fullPivLu().solve(tau1 + tau2 + C_LE * u);
+    const Eigen::VectorXd v_E = w - u, v_L = w - phi * v_E;
+    const Eigen::VectorXd s0 = p.k_vc * (x1 - x2);
     const double c = p.b_vc + p.k_vc * T / 2;
-    const Vector shape = C_LE * v_E, locked = C_EL * v_L;
-    const Vector wanted = -c * v_E - s0 + locked - p.b_v * w + shape - phi.transpose() * shape;
+    const Eigen::VectorXd shape = C_LE * v_E, locked = C_EL * v_L;
+    const Eigen::VectorXd wanted =
+        -c * v_E - s0 + locked - p.b_v * w + shape - phi.transpose() * shape;
     EXPECT_LT((tau1 - wanted).norm(), 1e-9 * tau1.norm()) << seed;
     EXPECT_GT(locked.norm(), 1e-6 * tau1.norm()) << "the term counts";
     // The midpoint rule, or where a joint dies out within a tick the exact decay of each.
     const Eigen::Array3d a = T * 0.013 * M1.inverse().diagonal().array();
-    Vector ahead = Vector::Constant(3, 2);
+    Eigen::VectorXd ahead = Eigen::VectorXd::Constant(3, 2);
     if ((a > 1).any()) ahead = a / (a / (1 - (-a).exp()) - 1);
-    const Matrix Mp = M1 * ahead.asDiagonal() / T, D0 = Mp + C1 + 0.013 * I;
+    const Eigen::MatrixXd Mp = M1 * ahead.asDiagonal() / T, D0 = Mp + C1 + 0.013 * I;
     EXPECT_LT((D0 * w - Mp * v1 - tau1).norm(), 1e-9 * (Mp * v1).norm()) << seed;
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
@@ -17,7 +18,7 @@ using test::Random;
 using Matrix = Mat<kAnyDof>;
 using Vector = Vec<kAnyDof>;
 
-constexpr double T = 0.001;
+using test::T;
 
 // Of constant M, C and damping, moved by the midpoint rule.
 struct Device {

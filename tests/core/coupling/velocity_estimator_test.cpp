@@ -6,13 +6,14 @@
 
 #include "core/coupling/force_observer.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 using Vector = Vec<kAnyDof>;
-constexpr double T = 1e-3;
+using test::T;
 
 Vector one(double x) { return Vector::Constant(1, x); }
 double quantised(double x, double step) { return std::round(x / step) * step; }

@@ -313,15 +313,6 @@ TEST(Arm, OfSlidesAcrossEachOtherReachesAsFarAsTheirBox) {
               1e-15);
 }
 
-TEST(RestPose, IsTheMiddleOfTheLimits) {
-  ArmDescription arm = random_arm(2, 1);
-  arm.joints[1].lower = -0.4;
-  arm.joints[1].upper = 1.2;
-  const Eigen::VectorXd x = rest_pose(arm);
-  EXPECT_EQ(x[0], 0);
-  EXPECT_NEAR(x[1], 0.4, 1e-15);
-}
-
 TEST(Arm, TurnsItsAnglesOnToRoundOff) {
   Random random(141);
   const Any arm(random_arm(5, 140));

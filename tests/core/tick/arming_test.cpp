@@ -7,13 +7,14 @@
 #include <map>
 
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 using enum Arming;
-constexpr double T = 1e-3;
+using test::T;
 
 // Written out again from the description, in words.
 TEST(Arming, GoesWhereEachEventTakesIt) {

@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 using Vector = Vec<kAnyDof>;
-constexpr double T = 1e-3;
+using test::T;
 constexpr double kSlew = 0.1;  // from no torque to the limit [s]
 
 Vector three(double a, double b, double c) { return Vec3(a, b, c); }

@@ -13,10 +13,9 @@ namespace {
 
 using test::random_arm;
 using test::Rows;
-using Vector = Eigen::VectorXd;
 
 // A device that is led back and forth whatever the motors do, at times fast, at times slowly.
-Vector led(std::size_t k, double T) {
+Eigen::VectorXd led(std::size_t k, double T) {
   const double t = static_cast<double>(k) * T;
   const double swing = 0.2 * std::sin(2 * t) + 0.02 * std::sin(40 * t) * std::sin(0.9 * t);
   return Vec3(0.4 + swing, 0.7 - 0.7 * swing + 0.01 * std::sin(70 * t), 1 + 0.4 * swing);
@@ -54,7 +53,7 @@ TEST_P(LedgerOf, TheTickIsThatOfTheTorqueThatActedAndOfTheDampingThatIsSure) {
     tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceRequest::as_it_is, rows.add());
   }
   const auto stored = [&](std::size_t k) {
-    const Vector apart =
+    const Eigen::VectorXd apart =
         rows.vec(k, Column::measured_position) - rows.vec(k, Column::proxy_position);
     double sum = rows.at(k, Column::proxy_kinetic);
     for (int i = 0; i < 3; ++i) {
@@ -67,10 +66,10 @@ TEST_P(LedgerOf, TheTickIsThatOfTheTorqueThatActedAndOfTheDampingThatIsSure) {
   double E = p.energy + stored(0), least = 1, most = 0, worked = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k > 0) {
-      const Vector dx = led(k, p.tick) - led(k - 1, p.tick);
+      const Eigen::VectorXd dx = led(k, p.tick) - led(k - 1, p.tick);
       const auto sent = static_cast<std::size_t>(1 + delay);
-      const Vector acted =
-          k >= sent ? rows.vec(k - sent, Column::motor_torque) : Vector(Vector::Zero(3));
+      const Eigen::VectorXd acted = k >= sent ? rows.vec(k - sent, Column::motor_torque)
+                                              : Eigen::VectorXd(Eigen::VectorXd::Zero(3));
       E -= acted.dot(dx);
       worked += std::abs(acted.dot(dx));
       if (!guarded) E += kDamping / p.tick * dx.squaredNorm();

@@ -7,11 +7,12 @@
 #include <limits>
 
 #include "tests/support/random_arm.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
-constexpr double T = 1e-3;
+using test::T;
 using Vector = Vec<kAnyDof>;
 
 // An arm of two joints, well, armed and at rest; the tip moves as the joints do, in x and y.

@@ -17,12 +17,10 @@ namespace {
 using test::Random;
 using test::random_arm;
 using test::Rows;
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 
 // A device that is led along a path whatever the motors do.
-Vector led(int n, std::size_t k, double T) {
-  Vector x(n);
+Eigen::VectorXd led(int n, std::size_t k, double T) {
+  Eigen::VectorXd x(n);
   const double t = static_cast<double>(k) * T;
   for (int i = 0; i < n; ++i) x[i] = 0.4 + 0.3 * i + 0.25 * std::sin((3 + 0.7 * i) * t + i);
   return x;
@@ -48,9 +46,10 @@ Scene stop() {
 }
 
 struct Model {
-  Matrix M, C;
+  Eigen::MatrixXd M, C;
 };
-Model model(const ArmDescription& description, const Vector& x, const Vector& v, double factor) {
+Model model(const ArmDescription& description, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+            double factor) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames f;
   Mat<kAnyDof> M, C;
@@ -76,29 +75,29 @@ TEST_P(TickOfJoints, CouplesByOneAndTwoOrFourteenAndFifteen) {
     const Rows rows = run(arm, stop(), p, 1500);
     int touched = 0;
     for (std::size_t k = 2; k + 1 < rows.size(); ++k) {
-      const Vector x1 = rows.vec(k, Column::measured_position);
-      const Vector v1 = (x1 - rows.vec(k - 1, Column::measured_position)) / T;
-      const Vector x2 = rows.vec(k, Column::proxy_position);
-      const Vector next2 = rows.vec(k + 1, Column::proxy_position);
-      const Vector vbar2 = (next2 - x2) / T, xbar2 = (next2 + x2) / 2;
-      const Vector last2 = (x2 - rows.vec(k - 1, Column::proxy_position)) / T;
-      const Vector f2 = rows.vec(k, Column::contact_torque);
+      const Eigen::VectorXd x1 = rows.vec(k, Column::measured_position);
+      const Eigen::VectorXd v1 = (x1 - rows.vec(k - 1, Column::measured_position)) / T;
+      const Eigen::VectorXd x2 = rows.vec(k, Column::proxy_position);
+      const Eigen::VectorXd next2 = rows.vec(k + 1, Column::proxy_position);
+      const Eigen::VectorXd vbar2 = (next2 - x2) / T, xbar2 = (next2 + x2) / 2;
+      const Eigen::VectorXd last2 = (x2 - rows.vec(k - 1, Column::proxy_position)) / T;
+      const Eigen::VectorXd f2 = rows.vec(k, Column::contact_torque);
       touched += f2.norm() > 0 ? 1 : 0;
-      Vector tau1 = -p.b_vc * (v1 - last2) - p.k_vc * (x1 - x2);
-      Vector tau2 = -p.b_v * vbar2 - p.b_vc * (vbar2 - v1) - p.k_vc * (xbar2 - x1);
+      Eigen::VectorXd tau1 = -p.b_vc * (v1 - last2) - p.k_vc * (x1 - x2);
+      Eigen::VectorXd tau2 = -p.b_v * vbar2 - p.b_vc * (vbar2 - v1) - p.k_vc * (xbar2 - x1);
       if (kind == CouplingKind::proposed) {
-        const Vector vm = rows.vec(k, Column::measured_velocity);
-        const Vector v2 = rows.vec(k, Column::proxy_velocity);
+        const Eigen::VectorXd vm = rows.vec(k, Column::measured_velocity);
+        const Eigen::VectorXd v2 = rows.vec(k, Column::proxy_velocity);
         const Model one = model(arm, x1, vm, p.inertia_error);
         const Model two = model(arm, x2, v2, p.inertia_ratio);
-        const Matrix I = Matrix::Identity(n, n);
-        const Matrix M_L = one.M + two.M;
-        const Matrix phi = M_L.inverse() * two.M;
-        const Vector v_L = M_L.inverse() * (one.M * vm + two.M * v2), v_E = vm - v2;
-        const Matrix C_EL = phi.transpose() * one.C + (phi.transpose() - I) * two.C;
-        const Matrix C_LE = -C_EL.transpose();
-        const Vector f = rows.vec(k, Column::hand_torque_estimate) + f2;
-        const Matrix scale = (1 - p.eta) / p.eta * I - phi.transpose() / p.eta;
+        const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
+        const Eigen::MatrixXd M_L = one.M + two.M;
+        const Eigen::MatrixXd phi = M_L.inverse() * two.M;
+        const Eigen::VectorXd v_L = M_L.inverse() * (one.M * vm + two.M * v2), v_E = vm - v2;
+        const Eigen::MatrixXd C_EL = phi.transpose() * one.C + (phi.transpose() - I) * two.C;
+        const Eigen::MatrixXd C_LE = -C_EL.transpose();
+        const Eigen::VectorXd f = rows.vec(k, Column::hand_torque_estimate) + f2;
+        const Eigen::MatrixXd scale = (1 - p.eta) / p.eta * I - phi.transpose() / p.eta;
         tau1 += C_EL * v_L + (I - phi.transpose()) * C_LE * v_E + scale * f + f2;
         tau2 += -C_EL * v_L + phi.transpose() * C_LE * v_E + phi.transpose() / p.eta * f - f2;
       }
@@ -121,9 +120,11 @@ TEST_P(TickOfJoints, KeepsTheEnergyBooksOfTheContract) {
   for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
     ASSERT_NEAR(rows.at(k, Column::energy_total), total, 1e-12);
     ASSERT_NEAR(rows.at(k, Column::energy_commanded), commanded, 1e-12);
-    const auto moved = [&](Column c) { return Vector(rows.vec(k + 1, c) - rows.vec(k, c)); };
-    const Vector dx1 = moved(Column::device_position), dx2 = moved(Column::proxy_position);
-    const Vector tau2 = rows.vec(k, Column::proxy_torque);
+    const auto moved = [&](Column c) {
+      return Eigen::VectorXd(rows.vec(k + 1, c) - rows.vec(k, c));
+    };
+    const Eigen::VectorXd dx1 = moved(Column::device_position), dx2 = moved(Column::proxy_position);
+    const Eigen::VectorXd tau2 = rows.vec(k, Column::proxy_torque);
     const double work = rows.vec(k, Column::motor_torque).dot(dx1) + tau2.dot(dx2);
     commanded += work;
     total += work - 0.02 / p.tick * dx1.dot(dx1);
@@ -142,8 +143,8 @@ TEST(Tick, ClampsTheCommandToTheArmsOwnLimitOrTheOneThatIsSet) {
     const Rows rows = run(arm, stop(), p, 800);
     int clamped = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Vector command = rows.vec(k, Column::commanded_torque);
-      const Vector motor = rows.vec(k, Column::motor_torque);
+      const Eigen::VectorXd command = rows.vec(k, Column::commanded_torque);
+      const Eigen::VectorXd motor = rows.vec(k, Column::motor_torque);
       for (int i = 0; i < 3; ++i) {
         const double most =
             std::isnan(limit) ? arm.joints[static_cast<std::size_t>(i)].effort : limit;
@@ -168,7 +169,8 @@ TEST(Tick, SwitchesTheCouplingWithoutAJumpOfTheMotors) {
     tick.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, rows.add());
     if (k == 0 || tick.steady()) continue;
     slewed = true;
-    const Vector jump = rows.vec(k, Column::motor_torque) - rows.vec(k - 1, Column::motor_torque);
+    const Eigen::VectorXd jump =
+        rows.vec(k, Column::motor_torque) - rows.vec(k - 1, Column::motor_torque);
     for (int i = 0; i < 3; ++i) {
       const double limit = arm.joints[static_cast<std::size_t>(i)].effort;
       ASSERT_LE(std::abs(jump[i]), limit * p.tick / 0.1 * (1 + 1e-9)) << "tick " << k;
@@ -247,9 +249,9 @@ TEST(Tick, WritesTheVelocityThatTheObserverUsed) {
   const Rows rows = run(arm, stop(), p, 400);
   const double w = 2 * 3.14159265358979323846 * 50;
   const double g = p.tick * w / (1 + p.tick * w);
-  Vector v = Vector::Zero(3);
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(3);
   for (std::size_t k = 1; k < rows.size(); ++k) {
-    const Vector raw =
+    const Eigen::VectorXd raw =
         (rows.vec(k, Column::measured_position) - rows.vec(k - 1, Column::measured_position)) /
         p.tick;
     v += g * (raw - v);
@@ -296,14 +298,14 @@ TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double own = rows.at(k, Column::energy_commanded) - rows.at(k, Column::energy_total);
     ASSERT_NEAR(own, lost, 1e-12) << k;
-    const Vector x2 = rows.vec(k, Column::proxy_position);
-    const Vector v2 = rows.vec(k, Column::proxy_velocity);
+    const Eigen::VectorXd x2 = rows.vec(k, Column::proxy_position);
+    const Eigen::VectorXd v2 = rows.vec(k, Column::proxy_velocity);
     const Model two = model(arm, x2, v2, ratio(k));
     ASSERT_NEAR(rows.at(k, Column::proxy_kinetic), 0.5 * v2.dot(two.M * v2),
                 1e-9 * (1e-9 + v2.dot(two.M * v2)))
         << k;
     if (k + 1 == rows.size()) break;
-    const Vector dx = led(3, k + 1, p.tick) - led(3, k, p.tick);
+    const Eigen::VectorXd dx = led(3, k + 1, p.tick) - led(3, k, p.tick);
     lost += damping(k) / p.tick * dx.dot(dx);
   }
 }
@@ -323,10 +325,10 @@ TEST(Tick, GivesARealArmNoMoreThanItsOwnLimitNorFaster) {
       const Vec<3> x = led(3, k, p.tick);
       tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = true}}, ForceRequest::as_it_is, rows.add());
     }
-    Vector largest = Vector::Zero(3), fastest = Vector::Zero(3);
+    Eigen::VectorXd largest = Eigen::VectorXd::Zero(3), fastest = Eigen::VectorXd::Zero(3);
     for (std::size_t k = 1; k < rows.size(); ++k) {
-      const Vector now = rows.vec(k, Column::motor_torque);
-      const Vector before = rows.vec(k - 1, Column::motor_torque);
+      const Eigen::VectorXd now = rows.vec(k, Column::motor_torque);
+      const Eigen::VectorXd before = rows.vec(k - 1, Column::motor_torque);
       largest = largest.cwiseMax(now.cwiseAbs());
       fastest = fastest.cwiseMax(now.cwiseAbs() - before.cwiseAbs());
     }

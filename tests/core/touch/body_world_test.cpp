@@ -6,11 +6,10 @@
 
 #include "core/dynamics/random.h"
 #include "tests/support/body_worlds.h"
+#include "tests/support/tick.h"
 
 namespace limpid::test {
 namespace {
-
-constexpr double T = kTick;
 
 TEST(BodyWorld, AFreeBodyTumblesWithoutLosingEnergyOrAngularMomentum) {
   Scene scene;

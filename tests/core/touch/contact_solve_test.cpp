@@ -9,6 +9,7 @@
 
 #include "core/touch/wall_force.h"
 #include "tests/support/meshes.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using test::Random;
 using Arm3 = Arm<3>;
 
-constexpr double T = 0.001;
+using test::T;
 
 // A device, its proxy on a stiff coupling, and what the contacts' torque does to both.
 struct Answer {

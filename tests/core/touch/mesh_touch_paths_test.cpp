@@ -7,6 +7,7 @@
 
 #include "core/touch/mesh_touch.h"
 #include "tests/support/meshes.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using test::Random;
 using test::Triangles;
 
-constexpr double T = 0.001;
+using test::T;
 constexpr double kSlip = 0.1 * T;  // of the anchor beyond what the centre does, in a tick [m]
 
 // A ball, its force over the stiffness, and what must be true of it in every tick.

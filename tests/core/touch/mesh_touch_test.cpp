@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/support/meshes.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using test::Random;
 using test::Triangles;
 
-constexpr double T = 0.001;
+using test::T;
 
 // What pulls at the ball's centre, over the stiffness [m].
 Vec3 pull(const MeshTouch& touch, const Vec3& c) {

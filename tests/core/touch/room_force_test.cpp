@@ -7,13 +7,15 @@
 #include "core/touch/contact_solve.h"
 #include "core/touch/wall_force.h"
 #include "tests/support/meshes.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 
-constexpr double T = 0.001, kRadius = 0.005;
+using test::T;
+constexpr double kRadius = 0.005;
 constexpr double kParts = 32;  // of a segment on which planes come or go
 
 // A surface of flat faces around the origin, open upwards: the room above is convex. Its rays are

@@ -14,7 +14,7 @@ namespace {
 using test::Random;
 using test::Triangles;
 
-constexpr double kAnywhere = std::numeric_limits<float>::max();
+constexpr double kFarthestFloat = std::numeric_limits<float>::max();
 
 // The nearest point by what is nearest on the plane if it lies inside, else on the three edges.
 Vec3 nearest_by_parts(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -94,7 +94,7 @@ TEST_P(TrianglesOfEverySize, AreFoundNearestAsByAskingEachOfThem) {
       const Vec3 p = random_.point(size * std::pow(10.0, random_.between(-1, 2)));
       const double wanted = distance_to_all(triangles, mesh->middle(), p);
       MeshPoint found;
-      ASSERT_TRUE(mesh->nearest(p, kAnywhere, MeshPoint::kNone, found));
+      ASSERT_TRUE(mesh->nearest(p, kFarthestFloat, MeshPoint::kNone, found));
       // Coordinates are kept as floats around the middle.
       EXPECT_NEAR(found.distance, wanted, 2e-7 * mesh->radius());
       EXPECT_NEAR((found.point - p).norm(), found.distance, 1e-14 * (size + p.norm()));
@@ -114,11 +114,11 @@ TEST_P(TrianglesOfEverySize, AreFoundAlikeWhateverTheHint) {
   for (int round = 0; round < 300; ++round) {
     const Vec3 p = random_.point(2 * size);
     MeshPoint plain;
-    ASSERT_TRUE(mesh->nearest(p, kAnywhere, MeshPoint::kNone, plain));
+    ASSERT_TRUE(mesh->nearest(p, kFarthestFloat, MeshPoint::kNone, plain));
     const auto any = static_cast<std::uint32_t>(random_.between(0, 299));
     for (const std::uint32_t hint : {plain.triangle, any, 299u, 300u, MeshPoint::kNone - 1}) {
       MeshPoint hinted;
-      ASSERT_TRUE(mesh->nearest(p, kAnywhere, hint, hinted));
+      ASSERT_TRUE(mesh->nearest(p, kFarthestFloat, hint, hinted));
       EXPECT_EQ(hinted.distance, plain.distance);
       EXPECT_EQ(hinted.point, plain.point);
       EXPECT_EQ(hinted.normal, plain.normal);

@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "devices/simulated/hands.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
-constexpr double T = 1e-3;
+using test::T;
 constexpr double kFastest = 0.25;  // [m/s]
 
 DeviceReading cap(double x, double y, double z) {

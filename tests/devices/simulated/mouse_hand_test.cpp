@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "devices/simulated/hands.h"
+#include "tests/support/tick.h"
 
 namespace limpid {
 namespace {
 
-constexpr double T = 1e-3;
+using test::T;
 constexpr double kGrip = 10;  // [N/m]: so soft that the hand's strength sets no bound
 const Vec3 kTip(0.1, -0.2, 0.3);
 const Vec3 kGoal(0.15, -0.1, 0.25);

@@ -145,6 +145,48 @@ TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
   }
 }
 
+// A body that is pulled against the tip gives the hand no more than it was given.
+TEST_P(MovingBodies, ArePulledAgainstTheTip) {
+  Scene scene;
+  scene.tip_radius = 0.004;
+  scene.gravity.setZero();
+  scene.add(block(0.05, {0.18, 0.05, 0}, 0, GetParam()));
+  const ArmDescription arm = omni();
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  Rig first(arm, scene), second(arm, scene);
+  first.start(p, rest_at(arm, Vec3(0.18, 0, 0)));
+  second.start(p, rest_at(arm, Vec3(0.18, 0, 0)));
+  const RowLayout& layout = first.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride())), again = row;
+  const auto at = [&](Column c) { return layout.in(std::span<const double>(row), c); };
+  double most = -1, touched = 0, gain = -1;
+  for (int k = 0; k < 2000; ++k) {
+    RigInput input;
+    input.hand.target = Vec3(0.18, 0, 0);
+    if (k % 500 < 400) {
+      input.hand.pull = {0, {0.005, 0, 0.005}, {0.18, 0.05 - 0.1 * std::sin(0.01 * k), 0.005}};
+    }
+    first.step(p, input, row);
+    // As it is run again from its recording.
+    input.hand.pull.body = static_cast<int>(at(Column::hand_pull)[0]) - 1;
+    for (int i = 0; i < 3; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      input.hand.pull.point[i] = at(Column::pull_point)[j];
+      input.hand.pull.target[i] = at(Column::pull_target)[j];
+    }
+    second.step(p, input, again);
+    ASSERT_EQ(row, again) << k;
+    most = std::max(most, at(Column::energy_port)[0] + at(Column::energy_to_objects)[0]);
+    touched = std::max(touched, at(Column::contact_potential)[0]);
+    gain = std::max(gain, at(Column::objects_gain)[0]);
+  }
+  EXPECT_GT(touched, 0);
+  EXPECT_LE(most, 5e-5);
+  EXPECT_LE(gain, 1e-6);
+  EXPECT_GT(at(Column::energy_pulled)[0], 1e-4);
+}
+
 // The tip touches a model's triangles, not its hull.
 TEST(Magnet, PicksUpAModel) {
   Scene scene;

@@ -59,6 +59,27 @@ double distance(const Shape& shape, const Vec3& p) {
   return (p - Vec3(0, 0, z)).norm() - pill.radius;
 }
 
+TEST(Picking, GraspsABodyByThePointUnderTheMouse) {
+  Shapes all;
+  Object block{.name = "block", .pose = pose_at({0.1, 0, 0}), .shape = Box{{0.02, 0.02, 0.02}}};
+  block.body = Body{};
+  all.scene.add({.name = "post", .pose = pose_at({0, 0, 0}), .shape = Sphere{0.02}});
+  all.scene.add(block);
+  all.models.resize(2);
+  const std::array now{Pose(turned({0.1, 0, 0.3}, {0, 0, 1}, 0.7))};
+  const auto under = [&](const Vec3& from, const Vec3& way) {
+    return body_under({from, way.normalized()}, all.scene, all.models, now);
+  };
+  const auto pull = under({0.103, 0.002, 1}, {0, 0, -1});
+  ASSERT_TRUE(pull);
+  EXPECT_EQ(pull->body, 0) << "of those that move, the first";
+  EXPECT_LT((pull->target - Vec3(0.103, 0.002, 0.31)).norm(), 1e-12);
+  EXPECT_LT((now[0] * pull->point - pull->target).norm(), 1e-12);
+  EXPECT_FALSE(under({0, 0, 1}, {0, 0, -1})) << "a post stands still";
+  EXPECT_FALSE(under({-1, 0, -3}, {1.1, 0, 3.3})) << "the post is before it";
+  EXPECT_FALSE(under({0.5, 0, 1}, {0, 0, -1})) << "nothing is there";
+}
+
 // Against a walk along the ray in steps of a tenth of a millimetre.
 TEST(Picking, MeetsAShapeWhereTheRayGoesIntoIt) {
   std::mt19937 random(7);

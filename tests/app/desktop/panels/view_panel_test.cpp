@@ -30,7 +30,11 @@ class AView : public ImGuiFrames {
     camera_.reset(stage_->picture.bounds());
     camera_.finish();
   }
-  ViewScene scene() { return {.stage = *stage_, .row = row_, .pixel_height = 600}; }
+  ViewScene scene() {
+    ViewScene all{.stage = *stage_, .row = row_, .pixel_height = 600};
+    all.grasp = [this](const Ray&) { return under_; };
+    return all;
+  }
   void draw() {
     frame([&] { asked_ = panel_.draw(scene(), camera_, controls_, settings_, rect_, taken_); });
   }
@@ -42,6 +46,12 @@ class AView : public ImGuiFrames {
   void press(int button, bool down) {
     show_mouse_button(button, down);
     draw();
+  }
+  // Ctrl and the left button down there.
+  void point_at_body(const Eigen::Vector2d& at) {
+    show_modifiers(true, false, false);
+    point(at);
+    press(0, true);
   }
   Eigen::Vector2d seen(const Vec3& point) const {
     const auto pixel = *camera_.project(point);
@@ -62,6 +72,7 @@ class AView : public ImGuiFrames {
   Controls controls_;
   ScreenRect rect_{{0, 0}, {400, 300}};
   bool taken_ = false;
+  std::optional<BodyPull> under_;
   ViewRequest asked_;
   Settings settings_;
 };
@@ -113,6 +124,52 @@ TEST_F(AView, PullsTheArmFromNearItsTipAndTurnsElsewhere) {
   EXPECT_NE(camera_.eye(), eye);
   press(0, false);
   EXPECT_FALSE(asked_.clicked) << "it has turned the camera";
+}
+
+TEST_F(AView, PullsABodyWithCtrl) {
+  draw();
+  const Vec3 point = tip() + Vec3(0, 0.03, 0.02);
+  const Eigen::Vector2d at = seen(point);
+  const Vec3 eye = camera_.eye();
+  under_ = BodyPull{2, {0.01, 0, 0}, point};
+  point_at_body(at);
+  EXPECT_EQ(controls_.pull.body, 2);
+  EXPECT_FALSE(controls_.grab);
+  EXPECT_LT((controls_.pull.target - point).norm(), 1e-6) << "nothing has moved yet";
+  this->point(at + Eigen::Vector2d(15, -10));
+  EXPECT_LT((seen(controls_.pull.target) - at - Eigen::Vector2d(15, -10)).norm(), 1e-3);
+  EXPECT_EQ(controls_.pull.point, Vec3(0.01, 0, 0));
+  EXPECT_EQ(camera_.eye(), eye);
+  show_modifiers(false, false, false);
+  draw();
+  EXPECT_EQ(controls_.pull.body, 2) << "as long as the button is down";
+  press(0, false);
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  EXPECT_FALSE(asked_.clicked);
+}
+
+TEST_F(AView, StopsPullingWhenTheSceneHasChanged) {
+  draw();
+  under_ = BodyPull{0, Vec3::Zero(), tip()};
+  point_at_body(seen(tip()));
+  ASSERT_EQ(controls_.pull.body, 0);
+  controls_.pull = {};
+  point(seen(tip()) + Eigen::Vector2d(20, 0));
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  press(0, false);
+  show_modifiers(false, false, false);
+}
+
+TEST_F(AView, TurnsWithCtrlWhereNoBodyIs) {
+  draw();
+  const Eigen::Vector2d aside = seen(tip()) + Eigen::Vector2d(0, -60);
+  const Vec3 eye = camera_.eye();
+  point_at_body(aside);
+  point(aside + Eigen::Vector2d(30, 0));
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  EXPECT_NE(camera_.eye(), eye);
+  press(0, false);
+  show_modifiers(false, false, false);
 }
 
 TEST_F(AView, SaysWhereSomebodyClicked) {

@@ -51,6 +51,7 @@ inline std::vector<double> sample_rows(const RowLayout& layout, std::size_t from
     layout.in(row, Column::hand_grip)[0] = static_cast<double>(k / 3 % 2);
     if (layout.has(Column::hand_magnet)) {
       layout.in(row, Column::hand_magnet)[0] = static_cast<double>(k / 4 % 2);
+      layout.in(row, Column::hand_pull)[0] = static_cast<double>(k / 6 % 3);
     }
     layout.in(row, Column::solved)[0] = static_cast<double>(k / 5 % 4);
   }
