@@ -263,8 +263,10 @@ std::optional<std::pair<double, double>> y_range(const FigurePanel& panel) {
 std::string plot_words(const Series& series, const std::string& data) {
   const std::string end = fmt::format("lc rgb '{}' notitle", series.color);
   switch (series.style) {
-    case Series::Style::line: return data + " using 1:2 with lines lw 1.8 " + end;
-    case Series::Style::dashed: return data + " using 1:2 with lines lw 1.8 dt (7,4) " + end;
+    case Series::Style::line:
+      return data + fmt::format(" using 1:2 with lines lw {} ", series.width) + end;
+    case Series::Style::dashed:
+      return data + fmt::format(" using 1:2 with lines lw {} dt (7,4) ", series.width) + end;
     case Series::Style::points: return data + " using 1:2 with points pt 7 ps 0.35 " + end;
     case Series::Style::cells:
       return data + " using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder " +
@@ -308,8 +310,9 @@ std::string sample_of(const Series& series, const Screen& screen, double x, doub
   switch (series.style) {
     case Series::Style::line:
     case Series::Style::dashed:
-      return fmt::format("set arrow from {} to {} nohead lw 1.8 {} lc rgb '{}'\n", left, right,
-                         series.style == Series::Style::line ? "dt 1" : "dt (7,4)", series.color);
+      return fmt::format("set arrow from {} to {} nohead lw {} {} lc rgb '{}'\n", left, right,
+                         series.width, series.style == Series::Style::line ? "dt 1" : "dt (7,4)",
+                         series.color);
     case Series::Style::points:
       return fmt::format("set label '' at {} point pt 7 ps 0.6 lc rgb '{}'\n",
                          screen.at(x + kSample / 2, y), series.color);

@@ -30,6 +30,7 @@ struct Series {
   Style style = Style::line;
   std::vector<FigurePoint> points;
   std::vector<FigureCell> cells = {};  // of a map, whose label stands at the bar of colours
+  double width = 1.8;                  // of a line, for those that lie under another one [px]
 };
 
 // One pair of axes.

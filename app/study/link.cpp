@@ -25,6 +25,7 @@ struct LinkStudy {
   static constexpr double kAtRest = 5e-3;                                   // [m/s]
   static constexpr double kWalls[] = {600, 5000};                           // for the energy [N/m]
   static constexpr unsigned kRandom = 60;                                   // links for the tanks
+  static constexpr std::pair kDrawn{1e-3, 1e5};                             // energies [mJ]
   static constexpr const char* kStandardTint = "#B4B9C3";
 };
 
@@ -37,6 +38,7 @@ struct LinkCurve {
   std::string label;
   const char* ink;
   TapSetting base;
+  double width = 1.8;  // of its line: curves of which much is the same lie on one another [px]
   std::vector<double> walls = {}, felt = {}, energy = {};  // [N/m, N/m, J]
 
   // The predictive law knows no link: the whole trip is put into its motors, as far as that goes.
@@ -60,16 +62,18 @@ struct LinkCurve {
   }
 };
 
-enum : std::size_t { kStandard, kFitted, kProposed, kTank, kPredictive };
+enum : std::size_t { kFitted, kStandard, kProposed, kTank, kPredictive };
 
 std::vector<LinkCurve> linked_laws() {
   using enum CouplingKind;
-  return {
-      {"standard", kStandardInk, {.kind = standard}},
-      {"standard, gains by (3)", LinkStudy::kStandardTint, {.kind = standard, .fits_link = true}},
-      {"proposed", kProposedInk, {.kind = proposed}},
-      {"tank", kTankInk, {.kind = tank}},
-      {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
+  return {{"standard, gains by (3)",
+           LinkStudy::kStandardTint,
+           {.kind = standard, .fits_link = true},
+           7},
+          {"standard", kStandardInk, {.kind = standard}, 4},
+          {"proposed", kProposedInk, {.kind = proposed}},
+          {"tank", kTankInk, {.kind = tank}},
+          {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
 }
 
 // What theory says at the table, in the hand of the taps.
@@ -217,11 +221,12 @@ FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& t
   FigurePanel panel{
       .title = title, .x_label = "delay each way [ms]", .y_label = y, .log_x = true, .log_y = true};
   panel.x_range = {0.45, 112};
-  panel.y_range = range;
+  panel.y_range = {0.5 * range.first, 2 * range.second};  // what is at an end is seen
   panel.x_ticks = {{0.5, "none"}, {1, "1"},   {2, "2"},   {5, "5"},
                    {10, "10"},    {20, "20"}, {50, "50"}, {100, "100"}};
   for (const LinkCurve& law : laws) {
     Series line{law.label, law.ink, Series::Style::line, {}};
+    line.width = law.width;
     const std::vector<int> delays = law.delays();
     for (std::size_t k = 0; k < delays.size(); ++k) {
       const double value = scale * (law.*values)[k];
@@ -236,7 +241,7 @@ FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& t
 
 std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheory& theory) {
   FigurePanel walls = over_delays(laws, "The stiffest wall on which a tap comes to rest",
-                                  "stiffness [N/m]", {80, 25000}, &LinkCurve::walls, 1);
+                                  "stiffness [N/m]", {kSoftest, kStiffest}, &LinkCurve::walls, 1);
   Series standard{"standard, theory", kStandardInk, Series::Style::dashed, {}};
   Series proposed{"proposed, theory", kProposedInk, Series::Style::dashed, {}};
   Series named{"predictive, as analyze names it", kPredictiveInk, Series::Style::dashed, {}};
@@ -255,7 +260,7 @@ std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheo
   FigurePanel energy = over_delays(laws,
                                    fmt::format("Highest E_c on walls of {} and {} N/m",
                                                LinkStudy::kWalls[0], LinkStudy::kWalls[1]),
-                                   "energy [mJ]", {1e-3, 1e5}, &LinkCurve::energy, 1e3);
+                                   "energy [mJ]", LinkStudy::kDrawn, &LinkCurve::energy, 1e3);
   const double bound = 1e3 * LinkStudy::kGiven;
   energy.series.push_back({"what the tanks hold at the start",
                            kHandInk,
@@ -330,14 +335,16 @@ Outcome link(TrialRunner& lab) {
   outcome.figure.caption = fmt::format(
       "Taps at {} m/s, {} N, held for {} s, eta 1. At rest: E_c at most {} mJ, and the tip at most "
       "{} mm/s at the end. Walls of {} to {} N/m were tried: a curve at the top has no limit in "
-      "them, one at the bottom has none that rests. The link delays each packet alike and loses "
+      "them, one at the bottom has none that rests. Energies are drawn from {} mJ to {} J, what is "
+      "beyond at these ends. The link delays each packet alike and loses "
       "none; the random links of the checks do. Gains by (3): k_vc, b_vc and b_v as condition (3) "
       "has them for the link and the arm's damping. The predictive coupling knows no link; in its "
       "place the torque of the motors comes the whole trip later, which it knows, as far as 20 ms. "
       "Theory: of the standard coupling the poles of hand, device, spring and wall; of the "
       "proposed one the damping against the lag of the contact.",
       TapBench::kSpeed, TapSetting{}.press, LinkStudy::kHold, 1e3 * LinkStudy::kGiven,
-      1e3 * LinkStudy::kAtRest, kSoftest, kStiffest);
+      1e3 * LinkStudy::kAtRest, kSoftest, kStiffest, LinkStudy::kDrawn.first,
+      1e-3 * LinkStudy::kDrawn.second);
   outcome.figure.columns = 2;
   outcome.figure.panels = draw(laws, theory);
   outcome.checks = judge(lab, laws, theory);

@@ -10,12 +10,19 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/coupling/decomposition.h"
 #include "core/coupling/laws.h"
 
 namespace limpid {
+
+// The numbers of a vector or matrix, as they lie in memory.
+template <class M>
+auto numbers(M& m) {
+  return std::span(m.data(), static_cast<std::size_t>(m.size()));
+}
 
 // What the device's side knows at t_k.
 template <int N>
@@ -25,6 +32,21 @@ struct FromDevice {
   Vec<N> f1_hat;       // human torque, as observed [N m]
   double sent = 0;     // energy for the proxy's side, all of it since the start [J]
 
+  static FromDevice zero(Eigen::Index joints) {
+    const Vec<N> v = Vec<N>::Zero(joints);
+    const Mat<N> M = Mat<N>::Zero(joints, joints);
+    return {v, v, {M, M, v}, v};
+  }
+  // All that it is made of, of a packet that is const or not.
+  static auto parts(auto& p) {
+    return std::array{numbers(p.x1),
+                      numbers(p.v1),
+                      numbers(p.device.M),
+                      numbers(p.device.C),
+                      numbers(p.device.v),
+                      numbers(p.f1_hat),
+                      std::span(&p.sent, std::size_t{1})};
+  }
   void come_to_rest() {
     v1.setZero();
     device.C.setZero();  // linear in the velocity
@@ -40,6 +62,21 @@ struct FromProxy {
   Vec<N> f2;          // contacts over the tick that begins [N m]
   double sent = 0;    // energy for the device's side, all of it since the start [J]
 
+  static FromProxy zero(Eigen::Index joints) {
+    const Vec<N> v = Vec<N>::Zero(joints);
+    const Mat<N> M = Mat<N>::Zero(joints, joints);
+    return {v, v, {M, M, v}, v};
+  }
+  // As FromDevice::parts().
+  static auto parts(auto& p) {
+    return std::array{numbers(p.x2),
+                      numbers(p.vbar2),
+                      numbers(p.proxy.M),
+                      numbers(p.proxy.C),
+                      numbers(p.proxy.v),
+                      numbers(p.f2),
+                      std::span(&p.sent, std::size_t{1})};
+  }
   void come_to_rest() {
     vbar2.setZero();
     proxy.C.setZero();
@@ -70,11 +107,17 @@ inline Fate fate_of(const LinkSettings& s, std::uint64_t direction, std::uint64_
           static_cast<int>(((second >> 32) * choices) >> 32)};
 }
 
-// One direction. Storage for all that can be on its way is set aside beforehand.
+// One direction. Storage for all that can be on its way is set aside beforehand, as large as the
+// arm needs it, and written, so that no tick is the first to touch a page of it.
 template <class Packet>
 class OneWay {
  public:
-  explicit OneWay(std::uint64_t direction) : direction_(direction), packets_(kSlots) {}
+  // `first`: of the sizes that all packets have.
+  OneWay(std::uint64_t direction, const Packet& first)
+      : direction_(direction), size_(size_of(first)), packets_(kSlots * size_), known_(first) {}
+
+  // What is set aside for packets.
+  std::span<const double> storage() const { return packets_; }
 
   // Nothing is on its way, and packets are counted anew.
   void start() {
@@ -93,13 +136,13 @@ class OneWay {
       fresh_ = false;
     }
     const Fate fate = fate_of(s, direction_, tick_);
-    packets_[tick_ % kSlots] = now;
+    store(now, tick_ % kSlots);
     arrives_[tick_ % kSlots] =
         fate.lost ? kNever : tick_ + static_cast<std::uint64_t>(s.link_delay + fate.late);
     const std::uint64_t oldest = tick_ >= kSlots ? tick_ - (kSlots - 1) : 0;
     for (std::uint64_t i = tick_ + 1; i-- > std::max(next_, oldest);) {
       if (arrives_[i % kSlots] > tick_) continue;
-      known_ = packets_[i % kSlots];
+      load(i % kSlots, known_);
       next_ = i + 1;
       break;
     }
@@ -112,8 +155,26 @@ class OneWay {
   static_assert(kSlots > kMostLinkDelay + kMostLinkJitter);
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
+  static std::size_t size_of(const Packet& packet) {
+    std::size_t size = 0;
+    for (const auto part : Packet::parts(packet)) size += part.size();
+    return size;
+  }
+  void store(const Packet& packet, std::size_t slot) {
+    double* to = packets_.data() + slot * size_;
+    for (const auto part : Packet::parts(packet)) to = std::copy(part.begin(), part.end(), to);
+  }
+  void load(std::size_t slot, Packet& packet) const {
+    const double* from = packets_.data() + slot * size_;
+    for (const auto part : Packet::parts(packet)) {
+      std::copy_n(from, part.size(), part.begin());
+      from += part.size();
+    }
+  }
+
   std::uint64_t direction_;
-  std::vector<Packet> packets_;  // by their number, the tick in which they were sent
+  std::size_t size_;             // of a packet, in numbers
+  std::vector<double> packets_;  // by their number, the tick in which they were sent
   std::array<std::uint64_t, kSlots> arrives_{};
   Packet known_;            // to the other side
   std::uint64_t next_ = 0;  // the first number that is newer than it
@@ -124,6 +185,9 @@ class OneWay {
 template <int N>
 class ProxyLink {
  public:
+  explicit ProxyLink(Eigen::Index joints)
+      : to_proxy_(1, FromDevice<N>::zero(joints)), to_device_(2, FromProxy<N>::zero(joints)) {}
+
   // Both sides know how the other one now stands, at rest; nothing is on its way.
   void start() {
     to_proxy_.start();
@@ -143,8 +207,8 @@ class ProxyLink {
 
  private:
   LinkSettings s_;
-  OneWay<FromDevice<N>> to_proxy_{1};
-  OneWay<FromProxy<N>> to_device_{2};
+  OneWay<FromDevice<N>> to_proxy_;
+  OneWay<FromProxy<N>> to_device_;
 };
 
 }  // namespace limpid

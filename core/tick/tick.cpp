@@ -25,6 +25,7 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
       velocity_(arm.dof()),
       observer_(arm.dof()),
       proxy_(arm, scene),
+      link_(arm.dof()),
       compensation_(arm),
       motors_(arm.dof()),
       safety_(arm),

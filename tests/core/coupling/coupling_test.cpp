@@ -130,14 +130,17 @@ double given_through_link(const SpringDamper& p, double b_d, const std::vector<i
 }
 
 struct Tagged {
-  int number = 0;
+  double number = 0;
+  static auto parts(auto& p) { return std::array{std::span(&p.number, std::size_t{1})}; }
   void come_to_rest() {}
 };
 
 std::vector<int> ages(const LinkSettings& s, std::uint64_t direction, int ticks) {
-  OneWay<Tagged> channel(direction);
+  OneWay<Tagged> channel(direction, {});
   std::vector<int> ages;
-  for (int k = 0; k < ticks; ++k) ages.push_back(k - channel.pass({k}, s).number);
+  for (int k = 0; k < ticks; ++k) {
+    ages.push_back(k - static_cast<int>(channel.pass({static_cast<double>(k)}, s).number));
+  }
   return ages;
 }
 

@@ -1,9 +1,12 @@
 #include "core/coupling/link.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/coupling/coupling.h"
 #include "core/touch/proxy.h"
@@ -15,10 +18,14 @@ namespace {
 using test::Random;
 
 struct Numbered {
-  int number = -1;
-  bool resting = false;
-  void come_to_rest() { resting = true; }
+  double number = -1, resting = 0;
+  static auto parts(auto& p) {
+    return std::array{std::span(&p.number, std::size_t{1}), std::span(&p.resting, std::size_t{1})};
+  }
+  void come_to_rest() { resting = 1; }
 };
+
+Numbered numbered(int number) { return {static_cast<double>(number)}; }
 
 LinkSettings link(int delay, int jitter, double loss, int seed = 1) {
   return {.link_delay = delay, .link_jitter = jitter, .link_loss = loss, .link_seed = seed};
@@ -46,7 +53,7 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
   Random random(1);
   for (int round = 0; round < 60; ++round) {
     const auto direction = static_cast<std::uint64_t>(1 + round % 2);
-    OneWay<Numbered> channel(direction);
+    OneWay<Numbered> channel(direction, {});
     Queue queue;
     LinkSettings s;
     int lost = 0;
@@ -56,7 +63,7 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
                  static_cast<int>(random.between(0, 50.99)), random.one_of({0.0, 0.3, 0.9}),
                  1 + round);
       }
-      const Numbered known = channel.pass({k}, s);
+      const Numbered known = channel.pass(numbered(k), s);
       const int wanted = queue.newest(k, s, direction);
       if (wanted < 0) {  // the first one, at rest
         EXPECT_EQ(known.number, 0);
@@ -74,11 +81,11 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
 // And so the condition for passivity may count on it.
 TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
   for (const auto& [delay, jitter] : {std::pair(0, 5), {20, 0}, {7, 50}, {200, 50}}) {
-    OneWay<Numbered> channel(1);
+    OneWay<Numbered> channel(1, {});
     const LinkSettings s = link(delay, jitter, 0);
     int oldest = 0;
     for (int k = 0; k < 5000; ++k) {
-      const int age = k - channel.pass({k}, s).number;
+      const int age = k - static_cast<int>(channel.pass(numbered(k), s).number);
       EXPECT_LE(age, s.oldest());
       if (k < 250) continue;  // what was known at the start is older
       oldest = std::max(oldest, age);
@@ -90,25 +97,98 @@ TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
 
 TEST(Link, StartsAnewAsItStartedAtFirst) {
   const LinkSettings s = link(3, 9, 0.4);
-  OneWay<Numbered> channel(2);
-  std::vector<int> first;
-  for (int k = 0; k < 400; ++k) first.push_back(channel.pass({k}, s).number);
+  OneWay<Numbered> channel(2, {});
+  std::vector<double> first;
+  for (int k = 0; k < 400; ++k) first.push_back(channel.pass(numbered(k), s).number);
   channel.start();
-  for (int k = 0; k < 400; ++k) ASSERT_EQ(channel.pass({k}, s).number, first[std::size_t(k)]);
+  for (int k = 0; k < 400; ++k)
+    ASSERT_EQ(channel.pass(numbered(k), s).number, first[std::size_t(k)]);
 }
 
 TEST(Link, ThatWasOffKnowsWhatIsSoWhenItComesOn) {
   const LinkSettings s = link(30, 0, 0);
-  OneWay<Numbered> channel(1);
-  for (int k = 0; k < 100; ++k) channel.pass({k}, s);
+  OneWay<Numbered> channel(1, {});
+  for (int k = 0; k < 100; ++k) channel.pass(numbered(k), s);
   channel.forget();
   for (int k = 500; k < 530; ++k) {
-    const Numbered known = channel.pass({k}, s);
+    const Numbered known = channel.pass(numbered(k), s);
     EXPECT_EQ(known.number, 500);
     EXPECT_TRUE(known.resting);
   }
-  EXPECT_EQ(channel.pass({530}, s).number, 500);
-  EXPECT_FALSE(channel.pass({531}, s).resting);
+  EXPECT_EQ(channel.pass(numbered(530), s).number, 500);
+  EXPECT_FALSE(channel.pass(numbered(531), s).resting);
+}
+
+// Faults of the thread at pages that it touches for the first time.
+long first_touches() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt;
+}
+
+// So many packets go there and back, and are all different.
+void exchange(ProxyLink<kAnyDof>& link, int joints, int ticks) {
+  Random random(4);
+  auto device = FromDevice<kAnyDof>::zero(joints);
+  auto proxy = FromProxy<kAnyDof>::zero(joints);
+  for (int k = 0; k < ticks; ++k) {
+    device.x1 = random.vector(joints, 1);
+    proxy.x2 = device.x1;
+    link.to_proxy(device);
+    link.to_device(proxy);
+  }
+}
+
+// The first tick that touches a page waits for it, a few microseconds each.
+TEST(Link, TouchesNoPageForTheFirstTimeInATick) {
+  for (const int joints : {6, kMaxDof}) {
+    ProxyLink<kAnyDof> used(joints), fresh(joints);
+    for (ProxyLink<kAnyDof>* each : {&used, &fresh}) {
+      each->start();
+      each->of(link(200, 50, 0.1));
+    }
+    exchange(used, joints, 300);  // its code and its stack
+    const long before = first_touches();
+    exchange(fresh, joints, 300);
+    // Two directions of 256 packets; a page has 512 numbers.
+    const long pages = 2 * 256 * (4 * joints + 2 * joints * joints + 1) / 512;
+    EXPECT_LT(first_touches() - before, pages / 20) << joints << " joints, " << pages << " pages";
+  }
+}
+
+TEST(Link, SetsAsideWhatTheArmNeedsAndNoMore) {
+  for (const int joints : {1, 6, kMaxDof}) {
+    const OneWay<FromDevice<kAnyDof>> channel(1, FromDevice<kAnyDof>::zero(joints));
+    const int numbers = 4 * joints + 2 * joints * joints + 1;  // f, v, v, x; M, C; the energy
+    EXPECT_EQ(channel.storage().size(), 256u * static_cast<unsigned>(numbers));
+  }
+}
+
+// A packet that went through is the same in all of its parts.
+TEST(Link, LosesNoPartOfAPacket) {
+  Random random(8);
+  for (const int n : {1, 6, kMaxDof}) {
+    OneWay<FromProxy<kAnyDof>> back(2, FromProxy<kAnyDof>::zero(n));
+    OneWay<FromDevice<kAnyDof>> there(1, FromDevice<kAnyDof>::zero(n));
+    std::vector<FromDevice<kAnyDof>> of_device;
+    std::vector<FromProxy<kAnyDof>> of_proxy;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const Dynamics<kAnyDof> d{random.matrix(n, 1), random.matrix(n, 1), random.vector(n, 1)};
+      of_device.push_back(
+          {random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1), random.between(0, 1)});
+      of_proxy.push_back(
+          {random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1), random.between(0, 1)});
+      const auto& a = there.pass(of_device.back(), link(3, 0, 0));
+      const auto& b = back.pass(of_proxy.back(), link(3, 0, 0));
+      if (k < 3) continue;
+      const auto& x = of_device[k - 3];
+      const auto& y = of_proxy[k - 3];
+      EXPECT_TRUE(a.x1 == x.x1 && a.v1 == x.v1 && a.f1_hat == x.f1_hat && a.sent == x.sent);
+      EXPECT_TRUE(a.device.M == x.device.M && a.device.C == x.device.C && a.device.v == x.device.v);
+      EXPECT_TRUE(b.x2 == y.x2 && b.vbar2 == y.vbar2 && b.f2 == y.f2 && b.sent == y.sent);
+      EXPECT_TRUE(b.proxy.M == y.proxy.M && b.proxy.C == y.proxy.C && b.proxy.v == y.proxy.v);
+    }
+  }
 }
 
 // Counts against what they should be, within four and a half standard deviations.
@@ -147,7 +227,8 @@ struct AllSettings : LawSettings, LinkSettings {};
 // A device that is moved along, and a proxy that follows it under a law.
 class Followed {
  public:
-  Followed(int n, unsigned seed) : n_(n), seed_(seed), proxy_(test::random_arm(n, seed), Scene{}) {
+  Followed(int n, unsigned seed)
+      : n_(n), seed_(seed), proxy_(test::random_arm(n, seed), Scene{}), link_(n) {
     proxy_.place(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), 0.1);
     link_.start();
     coupling_.start({zero_(), zero_(), zero_()});
@@ -228,7 +309,7 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
   p.b_vc = 0.02;
   Proxy<kAnyDof> proxy(test::random_arm(n, 9), Scene{});
   proxy.place(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), 0.1);
-  ProxyLink<kAnyDof> link_of;
+  ProxyLink<kAnyDof> link_of(n);
   link_of.start();
   StandardLaw::Of<kAnyDof> law;
   Random random(3);
