@@ -47,7 +47,8 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, fonts-inter, libegl1, libgl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, libgl1-mesa-dri, rtkit")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3, python3-h5py, python3-numpy, python3-scipy")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS
+  "python3, python3-h5py, python3-numpy, python3-scipy, xdg-desktop-portal")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "touch a virtual world through a haptic device
 A haptic device, a small robot arm in the hand, is tied to its avatar in a
 simulated world by a virtual coupling. Limpid runs the usual spring and

@@ -11,6 +11,8 @@
 
 #include "app/base/window_system.h"
 #include "app/doctor/doctor.h"
+#include "app/portal/file_portal.h"
+#include "app/portal/session_bus.h"
 #include "render/gl/offscreen.h"
 #include "render/quality.h"
 
@@ -133,8 +135,18 @@ Finding window() {
           "nvidia-driver"};
 }
 
+// Both do; which one opens is worth knowing.
+Finding file_dialog() {
+  const auto version = file_portal_version();
+  const std::string found =
+      version ? fmt::format("the desktop's own, by its portal (FileChooser {})", *version)
+      : has_session_bus() ? "Limpid's own: no portal of the desktop answers with one"
+                          : "Limpid's own: there is no session bus to ask the desktop over";
+  return {kPictureArea, "file dialog", State::fine, found, {}, {}};
+}
+
 }  // namespace
 
-DoctorFindings look_at_picture() { return {offscreen(), window()}; }
+DoctorFindings look_at_picture() { return {offscreen(), window(), file_dialog()}; }
 
 }  // namespace limpid

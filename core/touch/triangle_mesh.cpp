@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/touch/embree.h"
 
@@ -14,32 +15,73 @@ namespace limpid {
 
 namespace {
 
-std::size_t hash_of(const Eigen::Vector3f& place) {
-  std::uint64_t h = 0;
-  for (const float x : place) {
-    h = (h ^ std::bit_cast<std::uint32_t>(x == 0 ? 0.0f : x)) * 0x9e37'79b9'7f4a'7c15;  // 0 is -0
-    h ^= h >> 32;
+// Vertices no further apart than this part of the mesh's diagonal are one: by about that much
+// floats round at its far end, and so the two sides of a seam that was computed all the way round
+// are off (sin 2 pi is no zero). What is further apart is a gap.
+constexpr double kSamePlace = 1e-7;
+
+// Gives vertices that are within a length of each other one name: the number of the one that was
+// asked for first. Cells are many times that long, so that most vertices are in reach of one only.
+class NearNames {
+ public:
+  NearNames(const std::vector<Eigen::Vector3f>& places, double within)
+      : places_(places),
+        within_(within),
+        cell_(within > 0 ? 64 * within : 1),
+        buckets_(std::bit_ceil(places.size() + 1), kFree),
+        next_(places.size(), kFree) {}
+
+  std::uint32_t name(std::uint32_t vertex) {
+    const Vec3 at = places_[vertex].cast<double>();
+    const Cell low = cell_of((at.array() - within_).matrix());
+    const Cell high = cell_of((at.array() + within_).matrix());
+    std::uint32_t first = kFree;
+    Cell cell;
+    for (cell[0] = low[0]; cell[0] <= high[0]; ++cell[0]) {
+      for (cell[1] = low[1]; cell[1] <= high[1]; ++cell[1]) {
+        for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) {
+          first = std::min(first, nearest_name(bucket(cell), at));
+        }
+      }
+    }
+    if (first != kFree) return first;
+    std::uint32_t& own = buckets_[bucket(cell_of(at))];
+    next_[vertex] = std::exchange(own, vertex);
+    return vertex;
   }
-  return h;
-}
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  static constexpr std::uint32_t kFree = ~std::uint32_t{0};
+
+  Cell cell_of(const Vec3& at) const {
+    const auto along = [&](int k) { return static_cast<std::int64_t>(std::floor(at[k] / cell_)); };
+    return {along(0), along(1), along(2)};
+  }
+  std::size_t bucket(const Cell& cell) const {
+    std::uint64_t h = 0;
+    for (const std::int64_t x : cell) {
+      h = (h ^ static_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
+      h ^= h >> 32;
+    }
+    return h & (buckets_.size() - 1);
+  }
+  // The lowest number, whatever the order in the bucket.
+  std::uint32_t nearest_name(std::size_t bucket, const Vec3& at) const {
+    std::uint32_t first = kFree;
+    for (std::uint32_t other = buckets_[bucket]; other != kFree; other = next_[other]) {
+      if ((places_[other].cast<double>() - at).norm() <= within_) first = std::min(first, other);
+    }
+    return first;
+  }
+
+  const std::vector<Eigen::Vector3f>& places_;
+  double within_, cell_;
+  std::vector<std::uint32_t> buckets_;  // the last that came in
+  std::vector<std::uint32_t> next_;     // that came in before it
+};
 
 }  // namespace
-
-std::vector<std::uint32_t> names_of(const std::vector<Eigen::Vector3f>& places) {
-  constexpr std::uint32_t kFree = ~std::uint32_t{0};
-  const std::size_t slots = std::bit_ceil(2 * places.size() + 1);
-  std::vector<std::uint32_t> table(slots, kFree), names(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    names[i] = static_cast<std::uint32_t>(i);
-    if (!places[i].allFinite()) continue;
-    std::size_t slot = hash_of(places[i]) & (slots - 1);
-    while (table[slot] != kFree && places[table[slot]] != places[i])
-      slot = (slot + 1) & (slots - 1);
-    if (table[slot] == kFree) table[slot] = names[i];
-    names[i] = table[slot];
-  }
-  return names;
-}
 
 // Sorted into one list for each lower end, which are short: several times faster than sorting all.
 EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names) {
@@ -217,24 +259,34 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
   for (const Eigen::Vector3f& v : vertices) {
     places.emplace_back((v.cast<double>() - middle_).cast<float>());
   }
-  const std::vector<std::uint32_t> names = names_of(places);
-  std::vector<std::uint32_t> renamed(places.size(), MeshPoint::kNone);
-  indices_.reserve(indices.size());
+  constexpr std::uint32_t kNone = MeshPoint::kNone;
+  std::vector<std::uint32_t> names(places.size(), kNone);    // of those that are corners
+  std::vector<std::uint32_t> renamed(places.size(), kNone);  // their numbers among places_
+  NearNames near(places, box.isEmpty() ? 0 : kSamePlace * box.diagonal().norm());
   std::size_t apart = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) apart += names[i] == i;
+  for (const std::uint32_t i : indices) {
+    if (names[i] == kNone && (names[i] = near.name(i)) == i) ++apart;
+  }
+  indices_.reserve(indices.size());
   places_.reserve(apart + 2);
   for (std::size_t i = 0; i < indices.size(); i += 3) {
+    std::array<std::uint32_t, 3> named{};
     std::array<Eigen::Vector3f, 3> t;
-    for (std::size_t k = 0; k < 3; ++k) t[k] = places[indices[i + k]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      named[k] = names[indices[i + k]];
+      const std::uint32_t known = renamed[named[k]];
+      t[k] = known == kNone ? places[indices[i + k]] : places_[known];
+    }
     const Vec3 a = t[0].cast<double>(), ab = t[1].cast<double>() - a, ac = t[2].cast<double>() - a;
     const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    if (!(ab.cross(ac).norm() > kSliver * longest) || longest < 1e-30) {
+    if (!(ab.cross(ac).norm() > kSliver * longest) || longest < 1e-30 || named[0] == named[1] ||
+        named[1] == named[2] || named[2] == named[0]) {
       ++health_.degenerate;
       continue;
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& name = renamed[names[indices[i + k]]];
-      if (name == MeshPoint::kNone) {
+      std::uint32_t& name = renamed[named[k]];
+      if (name == kNone) {
         name = static_cast<std::uint32_t>(places_.size());
         places_.push_back(t[k]);
       }

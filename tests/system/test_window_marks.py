@@ -192,8 +192,6 @@ class Exports(Recorded):
         tool.write_text(f'#!/bin/sh\necho "$1" >> {self.opened}\n')
         tool.chmod(0o755)
         self.environment["PATH"] = f"{tools}:{os.environ['PATH']}"
-        for name in ("DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR"):
-            self.environment.pop(name, None)
 
     def press(self, banner: str, button: str) -> None:
         self.wait("the banner", lambda s: any(

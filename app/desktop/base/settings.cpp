@@ -104,6 +104,7 @@ void each(S& s, Visit&& visit) {
   visit("show_joints", s.show_joints);
   visit("twin_overlaid", s.twin_overlaid);
   visit("hold_on_release", s.hold_on_release);
+  visit("own_file_dialogs", s.own_file_dialogs);
   visit("hint_seen", s.hint_seen);
   visit("your_turn", s.your_turn);
   visit("tried", s.tried);

@@ -50,6 +50,7 @@ struct Settings {
   bool show_joints = true;
   bool twin_overlaid = false;  // both runs in one picture, else one beside the other
   bool hold_on_release = false;
+  bool own_file_dialogs = false;              // also where the desktop has some
   bool hint_seen = false;                     // the story was offered, and somebody went on
   bool your_turn = false;                     // the list of what to try is shown
   std::string tried;                          // of it, see first_steps.h

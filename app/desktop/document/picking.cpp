@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/desktop/document/scene_editor.h"
+#include "core/touch/triangle_mesh.h"
 
 namespace limpid {
 namespace {
@@ -134,6 +135,26 @@ Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> b
   const auto body = static_cast<std::size_t>(number_of_body(scene, place));
   if (body < bodies.size() && bodies[body].matrix().allFinite()) object.pose = bodies[body];
   return object;
+}
+
+// Meshes by what is touched of them, which answers at once however large they are.
+bool covered(const Ray& ray, double within, const Scene& scene, std::span<const Pose> bodies) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (std::holds_alternative<Plane>(scene.objects[i].shape)) continue;
+    const Object object = placed_now(scene, i, bodies);
+    double way = way_to(ray, object.shape, object.pose, nullptr);
+    for (const BodyPart& part : object.parts) {
+      way = std::min(way, way_to(ray, part.shape, object.pose * part.pose, nullptr));
+    }
+    if (way < within) return true;
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh == nullptr || !mesh->triangles) continue;
+    const Ray local = in_frame(ray, mesh->stood(object.pose), mesh->size());
+    const Vec3 from = local.origin - mesh->triangles->middle();
+    MeshPoint met;
+    if (mesh->triangles->crossing(from, from + within * local.direction, met)) return true;
+  }
+  return false;
 }
 
 namespace {

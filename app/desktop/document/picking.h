@@ -20,6 +20,10 @@ std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
 std::optional<BodyPull> body_under(const Ray& ray, const Scene& scene, const MeshModels& models,
                                    std::span<const Pose> bodies);
 
+// Whether one of the scene's objects is met within so many metres of the ray's origin. Planes are
+// none: what is drawn lies on them.
+bool covered(const Ray& ray, double within, const Scene& scene, std::span<const Pose> bodies);
+
 // The object as it is in the world now.
 Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> bodies);
 

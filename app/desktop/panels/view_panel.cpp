@@ -10,6 +10,7 @@
 
 #include "app/desktop/base/first_steps.h"
 #include "app/desktop/base/picture_signs.h"
+#include "app/desktop/document/picking.h"
 #include "app/desktop/live/pad_hand.h"
 #include "app/desktop/panels/object_signs.h"
 #include "app/style/palette.h"
@@ -49,9 +50,11 @@ float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVe
   return nearest;
 }
 
-// Lengths along the far edge, where they cover nothing.
-void draw_grid_labels(const Bounds& grid, const ViewState& view, const Camera& camera,
-                      ScreenRect rect, const std::optional<ScreenRect>& lens, ImDrawList& list) {
+// Lengths along the far edge, where they cover nothing and nothing is before them: words stand over
+// the whole picture, and would say that what is behind an object were in front of it.
+void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState& view,
+                      const Camera& camera, ScreenRect rect, const std::optional<ScreenRect>& lens,
+                      ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
@@ -73,8 +76,14 @@ void draw_grid_labels(const Bounds& grid, const ViewState& view, const Camera& c
     const ImVec2 middle(place.x + 0.5f * wide, place.y + 0.5f * em);
     const bool over = std::min(apart_from(view.device, camera, rect, middle),
                                apart_from(view.proxy, camera, rect, middle)) < 0.5f * wide + em;
+    const auto behind = [&](float along) {
+      const Ray ray = camera.ray({pixel->x() + along, pixel->y() + 0.5 * em});
+      const double far = (point - ray.origin).norm();
+      return covered(ray, 0.99 * far, objects, view.bodies);
+    };
     if (crowded || cut || over || hidden(0) || hidden(3 * em)) continue;
-    list.AddText(small, em, place, colour(colours.muted, 0.9f), text.c_str());
+    if (behind(0) || behind(wide)) continue;
+    list.AddText(small, em, place, colour(colours.text, 0.9f), text.c_str());
     last = place;
   }
 }
@@ -240,7 +249,8 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (scene.selected) draw_outline(*scene.selected, camera, rect, list);
   list.PushClipRect(rect.min, rect.max);
   if (settings.show_grid) {
-    draw_grid_labels(scene.stage.picture.grid(), view, camera, rect, magnifier_.rect(), list);
+    draw_grid_labels(scene.stage.document().scene, scene.stage.picture.grid(), view, camera, rect,
+                     magnifier_.rect(), list);
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
   draw_pull(view, camera, rect, list);

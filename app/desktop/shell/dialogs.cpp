@@ -14,6 +14,7 @@
 #include "app/desktop/base/window_layout.h"
 #include "app/desktop/panels/experiments_panel.h"
 #include "app/desktop/panels/export_dialog.h"
+#include "app/desktop/panels/file_question.h"
 #include "app/desktop/panels/gallery.h"
 #include "app/desktop/panels/identify_dialog.h"
 #include "app/desktop/panels/mark_dialog.h"
@@ -25,8 +26,8 @@
 #include "app/desktop/panels/video_dialog.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/desktop/shell/window.h"
 #include "app/desktop/widgets/modal.h"
-#include "app/desktop/widgets/path_dialog.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
 
@@ -151,22 +152,24 @@ DrawDialog gallery(Desktop& d) {
   };
 }
 
-std::vector<PathDialog::Place> places_of(const Desktop& d) {
-  return PathDialog::places({{"My scenes", scenes_dir()},
-                             {"My recordings", sessions_dir()},
-                             {"Scenes of Limpid", data_dir() / "assets/scenes"}},
-                            d.settings.recent);
+FileQuestion::Place place_of(const Desktop& d, fs::path first) {
+  return {.first = std::move(first),
+          .places = PathDialog::places({{"My scenes", scenes_dir()},
+                                        {"My recordings", sessions_dir()},
+                                        {"Scenes of Limpid", data_dir() / "assets/scenes"}},
+                                       d.settings.recent),
+          .own = d.settings.own_file_dialogs,
+          .parent = window_for_portals()};
 }
 
 // A model or an arm, from the folder that the last of them came from.
 DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
                         void (*open_file)(Desktop&, const fs::path&)) {
-  return [&d, open_file, dialog = std::make_shared<PathDialog>(std::move(options))](bool& open,
-                                                                                    ScreenRect) {
+  return [&d, open_file, question = std::make_shared<FileQuestion>(std::move(options))](
+             bool& open, ScreenRect) {
     fs::path& folder = d.dialog.last_folder;
     if (folder.empty()) folder = data_dir() / "assets/scenes";
-    const fs::path file =
-        dialog->draw(open, folder / "", open ? places_of(d) : std::vector<PathDialog::Place>());
+    const fs::path file = question->draw(open, [&] { return place_of(d, folder / ""); });
     if (file.empty()) return;
     folder = file.parent_path();
     open_file(d, file);
@@ -212,12 +215,13 @@ DrawDialog expand_xacro(Desktop& d) {
 DrawDialog save_scene_as(Desktop& d) {
   const PathDialog::Options options{
       .title = "Save scene as", .action = "Save", .extensions = {".toml"}, .new_file = true};
-  return [&d, dialog = std::make_shared<PathDialog>(options)](bool& open, ScreenRect) {
+  return [&d, question = std::make_shared<FileQuestion>(options)](bool& open, ScreenRect) {
     Document& document = d.document;
-    fs::path first = document.own_file();
-    if (first.empty()) first = scenes_dir() / fs::path(document.file()).filename();
-    const fs::path file =
-        dialog->draw(open, first, open ? places_of(d) : std::vector<PathDialog::Place>());
+    const fs::path file = question->draw(open, [&] {
+      const fs::path own = document.own_file();
+      const fs::path name = fs::path(document.file()).filename();
+      return place_of(d, own.empty() ? scenes_dir() / name : own);
+    });
     if (!file.empty()) document.save_as(file);
   };
 }

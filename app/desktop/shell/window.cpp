@@ -2,6 +2,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <dlfcn.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -48,6 +49,15 @@ void when_display_is_lost(std::function<void()> leave) {
   if (set == nullptr) return;
   what_to_do() = std::move(leave);
   set(leave_once);
+}
+
+std::string window_for_portals() {
+  GLFWwindow* window = glfwGetCurrentContext();
+  if (window == nullptr || on_wayland()) return {};
+  // GLFW for Wayland alone has none of it.
+  using Number = unsigned long (*)(GLFWwindow*);
+  const auto number = reinterpret_cast<Number>(dlsym(RTLD_DEFAULT, "glfwGetX11Window"));
+  return number != nullptr ? fmt::format("x11:{:x}", number(window)) : "";
 }
 
 WorkArea work_area() {

@@ -21,6 +21,10 @@ namespace limpid {
 // Does nothing where the window is not X11's. After the window is there.
 void when_display_is_lost(std::function<void()> leave);
 
+// The program's window as it is named to the desktop's portals; empty where it has no name for
+// them, as on Wayland.
+std::string window_for_portals();
+
 // Where windows may be on the screen.
 
 inline constexpr int kLeastWidth = 900, kLeastHeight = 560;  // of a window

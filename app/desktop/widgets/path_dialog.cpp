@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "app/desktop/widgets/modal.h"
 #include "app/style/palette.h"
@@ -87,7 +88,7 @@ fs::path PathDialog::draw(bool& open, const fs::path& first, const std::vector<P
     return {};
   }
   const bool appears = !was_open_;
-  if (appears) {
+  if (appears && !std::exchange(goes_on_, false)) {
     text_ = first.string();
     listed_.clear();
     complaint_.clear();
@@ -223,6 +224,17 @@ void PathDialog::go_to(const fs::path& folder) {
   text_ = (folder / name).string();
   complaint_.clear();
   replaced_.clear();
+}
+
+fs::path PathDialog::take(const fs::path& file) {
+  text_ = file.string();
+  listed_.clear();
+  complaint_.clear();
+  names_folder_ = false;
+  replaced_ = file;
+  const fs::path taken = choose();
+  goes_on_ = taken.empty();
+  return taken;
 }
 
 fs::path PathDialog::choose() {

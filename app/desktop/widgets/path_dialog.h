@@ -29,6 +29,10 @@ class PathDialog {
   // there when it opens, `places` are beside the list.
   std::filesystem::path draw(bool& open, const std::filesystem::path& first,
                              const std::vector<Place>& places = {});
+  // Of a file that was chosen elsewhere, where one that is replaced was asked about: it, or nothing
+  // where it cannot be taken as it is. The dialog then opens with it, and says why.
+  std::filesystem::path take(const std::filesystem::path& file);
+  const Options& options() const { return options_; }
   // Home, documents, `own` folders, and those of the `recent` files: those that are there, each
   // once.
   static std::vector<Place> places(const std::vector<Place>& own,
@@ -45,6 +49,7 @@ class PathDialog {
 
   Options options_;
   bool was_open_ = false;
+  bool goes_on_ = false;  // opens with what was not taken
   std::string text_, listed_, complaint_;
   std::filesystem::path replaced_;  // the file that would be, once asked
   bool names_folder_ = false;       // a new one is being named

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/touch/triangle_mesh.h"
@@ -53,6 +55,54 @@ TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
   EXPECT_TRUE(mesh->health().closed());
   EXPECT_EQ(mesh->health().text(), "2 triangles without an area left out");
   EXPECT_EQ(mesh->triangles(), 20u);
+}
+
+// A ring of a round section, computed all the way round, so that the vertices of its two seams are
+// there twice. `apart` [rad]: by how much it does not close along its length.
+Triangles ring_with_seams(int along, int round, double scale, double apart = 0) {
+  const double pi = std::numbers::pi;
+  return test::grid(along, round).mapped([&](const Vec3& p) {
+    const double a = (2 * pi - apart) * p.x(), b = 2 * pi * p.y();
+    const double far = 1 + 0.3 * std::cos(b);
+    return Vec3(scale * Vec3(far * std::cos(a), far * std::sin(a), 0.3 * std::sin(b)));
+  });
+}
+
+TEST(Health, OfASeamThatIsOffByRoundingIsSpotless) {
+  for (const double scale : {1.0, 0.02, 300.0}) {
+    const Triangles ring = ring_with_seams(24, 16, scale);
+    const auto seam = [&](int i) { return ring.vertices[static_cast<std::size_t>(24 * 17 + i)]; };
+    int differ = 0;
+    for (int i = 0; i < 16; ++i) differ += ring.vertices[static_cast<std::size_t>(i)] != seam(i);
+    ASSERT_GT(differ, 8) << "sin 2 pi is no zero";
+    const auto mesh = ring.mesh();
+    EXPECT_EQ(mesh->health().text(), "") << scale;
+    EXPECT_TRUE(mesh->health().closed());
+    EXPECT_EQ(mesh->triangles(), ring.count());
+    EXPECT_LE(mesh->radius(), 1.3 * scale * (1 + 1e-6));
+  }
+}
+
+TEST(Health, OfATrueGapSaysSo) {
+  const double diagonal = std::hypot(2.6, 2.6, 0.6);
+  for (const double gap : {1e-2, 1e-5, 1e-6}) {  // parts of the diagonal, at the inner side
+    const auto mesh = ring_with_seams(24, 16, 1, gap * diagonal / 0.7).mesh();
+    EXPECT_EQ(mesh->health().open_edges, 2u * 16) << gap;
+    EXPECT_EQ(mesh->triangles(), 2u * 24 * 16);
+  }
+}
+
+// Whatever the order: all of what is near becomes one, and what has no area by that is left out.
+TEST(Health, CountsATriangleThatIsSmallerThanRounding) {
+  Triangles body = test::icosphere(1);
+  const std::uint32_t corner = body.indices[0],
+                      first = static_cast<std::uint32_t>(body.vertices.size());
+  body.vertices.emplace_back(body.vertices[corner] + Eigen::Vector3f(2e-8f, 6e-8f, 0));
+  body.vertices.emplace_back(body.vertices[corner] + Eigen::Vector3f(6e-8f, 0, 6e-8f));
+  body.add(corner, first, first + 1);
+  const auto mesh = body.mesh();
+  EXPECT_EQ(mesh->health().degenerate, 1u);
+  EXPECT_TRUE(mesh->health().closed());
 }
 
 void expect_refused(const Triangles& triangles, const std::string& why) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "app/desktop/document/scene_editor.h"
+#include "core/touch/triangle_mesh.h"
 
 namespace limpid {
 namespace {
@@ -146,6 +147,57 @@ TEST(Picking, LooksForWhatMovesWhereItIs) {
   EXPECT_EQ(placed_now(all.scene, 1, {{there}}).pose.matrix(), there.matrix());
   EXPECT_EQ(placed_now(all.scene, 0, {{there}}).pose.translation().y(), 0.2);
   EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}), 1u) << "where it starts, as long as nobody knows";
+}
+
+// Along a line through their middles, whose way into each is known.
+TEST(Covered, IsWhatLiesBehindAnObjectAndNotWhatLiesBeforeIt) {
+  const std::pair<Shape, double> shapes[] = {{Sphere{.radius = 0.03}, 0.03},
+                                             {Box{.size = Vec3::Constant(0.04)}, 0.02},
+                                             {Cylinder{.radius = 0.025, .length = 0.06}, 0.025},
+                                             {Capsule{.radius = 0.015, .length = 0.05}, 0.015}};
+  for (const auto& [shape, reach] : shapes) {
+    Shapes all;
+    all.add("it", shape, pose_at({0.1, 0, 0}));
+    const Ray ray{{0.5, 0, 0}, {-1, 0, 0}};
+    const double met = 0.4 - reach;
+    EXPECT_TRUE(covered(ray, met + 1e-6, all.scene, {})) << shape.index();
+    EXPECT_FALSE(covered(ray, met - 1e-6, all.scene, {})) << shape.index();
+    EXPECT_FALSE(covered({{0.5, 0.1, 0}, {-1, 0, 0}}, 1, all.scene, {})) << "beside it";
+    EXPECT_FALSE(covered({{0.5, 0, 0}, {1, 0, 0}}, 1, all.scene, {})) << "behind the eye";
+  }
+}
+
+// The triangles that are touched and those of the model are the same ones.
+TEST(Covered, SeesMeshesWhereTheyAreMet) {
+  const auto model = tetrahedron();
+  std::vector<Eigen::Vector3f> corners;
+  for (const Vertex& vertex : model->vertices) corners.push_back(vertex.position);
+  Mesh mesh{.model = "m", .scale = 2, .unit = 1e-3, .y_up = true};
+  mesh.triangles = std::make_shared<const TriangleMesh>(corners, model->indices);
+  Shapes all;
+  all.add("model", mesh, turned({0.1, 0.02, 0}, {1, 2, 3}, 0.7));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vec = [&] { return Vec3(any(random), any(random), any(random)); };
+  int met = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 from = Vec3(0.5, 0.1, 0.3) + 0.1 * vec(), at = Vec3(0.1, 0.02, 0) + 0.02 * vec();
+    const bool hit = covered({from, (at - from).normalized()}, 2, all.scene, {});
+    EXPECT_EQ(hit, all.under(from, at).has_value()) << i;
+    EXPECT_FALSE(covered({from, (at - from).normalized()}, 0.2, all.scene, {}));
+    met += hit ? 1 : 0;
+  }
+  EXPECT_GT(met, 60);
+  EXPECT_LT(met, 280);
+}
+
+TEST(Covered, LooksForWhatMovesWhereItIs) {
+  Shapes all;
+  all.scene.add({.name = "die", .shape = Box{.size = Vec3::Constant(0.02)}, .body = Body{}});
+  const Ray ray{{0.5, 0, 0}, {-1, 0, 0}};
+  const Pose aside = pose_at({0, 0.2, 0});
+  EXPECT_TRUE(covered(ray, 1, all.scene, {}));
+  EXPECT_FALSE(covered(ray, 1, all.scene, {{aside}}));
 }
 
 }  // namespace
