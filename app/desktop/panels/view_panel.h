@@ -29,6 +29,7 @@ struct ViewScene {
   std::string told = {};               // a story's sentence
   std::string pad = {};                // the gamepad that leads the hand; or none
   std::optional<Object> selected = {};
+  bool asked = false;      // a question stands over its lower edge, where hints are
   bool blind = false;      // nothing but the picture: no words, no numbers
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point

@@ -279,19 +279,26 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   if (d_.document.asking() || d_.identify.busy()) {
     throw RemoteError("ask: the window has a question of its own");
   }
+  const bool ends = keys.has("seconds");
   auto choices = keys.texts_if("choices", PersonQuestion::kMostChoices);
-  if (!choices || choices->empty()) choices = {"Go on"};
-  d_.question.ask(keys.text("text"), *choices);
+  if (!choices || choices->empty()) {
+    choices = ends ? std::vector<std::string>() : std::vector<std::string>{"Go on"};
+  }
+  const double seconds = keys.number_or("seconds", 0, 0.1, 3600);
+  d_.question.ask(keys.text("text"), *choices, {keys.flag_or("beside", false), seconds});
   asks_ = client;
   d_.dialog.open("ask");
   return Answer::Later([this]() -> std::optional<json> {
     const auto answer = d_.question.take();
     if (!answer) return std::nullopt;
     asks_.reset();
-    return json{{"answer", d_.question.choice(answer->choice)},
-                {"index", answer->choice},
-                {"seconds", answer->seconds},
-                {"tick", tick_}};
+    json said{
+        {"answer", nullptr}, {"index", nullptr}, {"seconds", answer->seconds}, {"tick", tick_}};
+    if (answer->choice) {
+      said["answer"] = d_.question.choice(*answer->choice);
+      said["index"] = *answer->choice;
+    }
+    return said;
   });
 }
 

@@ -57,16 +57,17 @@ def simulated(scene: str, law: str, distance: float, chance: random.Random, out:
 def person(loop: limpid.Client, distance: float, out: Path) -> float:
     """The same of a person, who says when the tip is there; outside of the place it is done again."""
     while True:
-        out.unlink(missing_ok=True)
+        study.remove_session(out)
         loop.ask("Hold the tip on the table beside the first ball. Enter begins: then bring it beside "
-                 f"the ball {100 * distance:g} cm further as fast as you can.")
+                 f"the ball {100 * distance:g} cm further as fast as you can.", beside=True)
         loop.record(out)
-        taken = loop.ask("Enter, as soon as the tip is there.").seconds
+        taken = loop.ask("Now. Enter, as soon as the tip is there.", beside=True).seconds
         loop.stop()
         off = limpid.session(out).proxy_tip[-20:, 0].mean() - (START + distance)
         if abs(off) < WIDTH / 2:
             return taken
-        loop.ask(f"It was {1000 * abs(off):.1f} mm off the place; once more.")
+        loop.ask(f"It was {1000 * abs(off):.1f} mm off the place, allowed are "
+                 f"{500 * WIDTH:g} mm; once more.")
 
 
 def main() -> None:
@@ -77,6 +78,8 @@ def main() -> None:
         loop.open(scene=scene)
     who = study.Person(loop) if loop else study.Simulated(1.0)
     run = study.Study("placing", arguments.out, arguments.participant, who)
+    run.tell("You bring the tip from ball to ball along the table, as fast as you can. What counts is where "
+             "you see the tip. A ball is reached within 1 mm.")
     found = {}
     for law in run.blocks(LAWS):
         if loop:
@@ -104,8 +107,9 @@ def main() -> None:
                  [[law, *(f"{x:.2f}" for x in numbers)] for law, numbers in found.items()])
     report.write("placing")
     for law, (mean, low, high) in found.items():
-        print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})")
+        print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})", flush=True)
+    run.tell("That was all. Thank you.")
 
 
 if __name__ == "__main__":
-    main()
+    study.carry_out(main)

@@ -1,7 +1,12 @@
-"""The words that a study is started with."""
+"""The words that a study is started with, and how it ends."""
 
 import argparse
+import sys
 from pathlib import Path
+from typing import Callable
+
+from limpid.errors import LimpidError
+from limpid.study.trials import folder_for
 
 
 def words(about: str, count: str, usual: int, help: str) -> argparse.Namespace:
@@ -14,5 +19,21 @@ def words(about: str, count: str, usual: int, help: str) -> argparse.Namespace:
     parser.add_argument("--simulate", action="store_true", help="a simulated participant")
     parser.add_argument(f"--{count}", type=int, default=usual, help=help)
     found = parser.parse_args()
-    found.out.mkdir(parents=True, exist_ok=True)
+    if found.participant < 0:
+        parser.error(f"--participant: {found.participant} is not allowed; allowed: a number from 0 on")
+    if getattr(found, count) < 1:
+        parser.error(f"--{count}: {getattr(found, count)} is not allowed; allowed: a number from 1 on")
+    folder_for(found.out)
     return found
+
+
+def carry_out(main: Callable[[], None]) -> None:
+    """Runs a study; what goes wrong is said in a sentence, and the status is 1 then."""
+    try:
+        main()
+    except LimpidError as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"{error.filename}: {error.strerror}")
+    except KeyboardInterrupt:
+        sys.exit("\nStopped. Every answer up to now is kept; the same words go on behind them.")
