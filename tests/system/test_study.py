@@ -479,6 +479,37 @@ class TestStudies(unittest.TestCase):
         self.check_report("weight")
         self.assertEqual(self.run_study("weight", "--pairs", "6"), printed)  # of the same answers
 
+    def test_a_person_places_from_the_first_ball_to_the_place_or_once_more(self) -> None:
+        """With a window's part played: each recording is a run, of which only the last one is right."""
+        import limpid
+        from limpid.studies import placing
+
+        scene, out = placing.scene_in(self.folder), self.folder / "a.h5"
+        first, place, press = placing.START, placing.START + 0.02, placing.PRESSED
+        ways = [((place, 0.0), (place, 0.0)), ((first, press), (first, press)), ((first, press), (place, press))]
+
+        class Loop:
+            texts: list[str] = []
+
+            def ask(self, text, **how):
+                self.texts.append(text)
+                return limpid.client.Answer("Go on", 0, 1.5, 0)
+
+            def record(self, file):
+                (x, z), (to_x, to_z) = ways.pop(0)
+                limpid.run(scene=scene, coupling="predictive", record=file, hand=[
+                    (0, x, 0, z), (1, x, 0, z), (2, to_x, 0, to_z), (3, to_x, 0, to_z)])
+
+            def stop(self):
+                """The run is complete."""
+
+        self.assertEqual(placing.person(Loop(), 0.02, out), 1.5)
+        wrong = [text for text in Loop.texts if "Once more" in text]
+        self.assertEqual(len(wrong), 2, Loop.texts)
+        self.assertIn("It began 20.0 mm beside the large ball, 40.0 mm above the table; allowed: 4 and 2 mm", wrong[0])
+        self.assertIn("It ended 20.0 mm off the place; allowed: 1 mm", wrong[1])
+        self.assertEqual(ways, [])
+
     def test_studies_are_short(self) -> None:
         for script in (PACKAGE / "limpid/studies").glob("[a-z]*.py"):
             self.assertLess(len(script.read_text().splitlines()), 120, script.name)
