@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -338,6 +339,35 @@ class TestRemoteWindow(WindowTest):
             self.app.wait(30)
 
         self.check_goes_on(kill)
+
+    def test_a_disk_that_is_full_is_named_and_the_study_goes_on_where_there_is_room(self) -> None:
+        from limpid import study
+
+        answers = self.home / "answers"
+        answers.mkdir()
+
+        def mount(*words: str) -> bool:
+            return subprocess.run(["mount", "-t", "tmpfs", *words, "tmpfs", answers],
+                                  capture_output=True).returncode == 0
+
+        if not mount("-o", "size=900k"):
+            self.skipTest("needs to be allowed to mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", "-l", answers])
+        run = study.Study("full", answers, 0, study.Person(self.loop, seconds=6))
+        result, thread = self.beside(lambda: self.compares(run))
+        self.answer("Return")
+        thread.join(60)
+        self.assertIsInstance(result[0], study.StudyError)
+        self.assertIn("No space left on device", str(result[0]))
+        self.assertIn(f"Every answer up to then is in {run.file}", str(result[0]))
+        self.assertTrue(mount("-o", "remount,size=50m"))
+        again = study.Study("full", answers, 0, study.Person(self.loop, seconds=0.3))
+        result, thread = self.beside(lambda: self.compares(again))
+        for key in 2 * ("Return", "Return", "1"):
+            self.answer(key)
+        thread.join(20)
+        self.assertEqual(len(result[0]), 2)
+        self.assertEqual(list(answers.glob("*.part")), [])
 
     def test_a_study_that_was_killed_in_a_trial_goes_on_at_the_same_window(self) -> None:
         """What it had recorded is ended by the next one."""

@@ -559,6 +559,13 @@ class TestTrouble(unittest.TestCase):
         self.assertEqual(again.stdout.strip(), "30", again.stderr)
         self.assertTrue(file.read_bytes().startswith(kept))
 
+    def test_what_cannot_be_written_beside_the_answers_is_said_in_a_sentence(self) -> None:
+        full = self.run_code("from pathlib import Path\nfrom limpid import study\n"
+                             "study.carry_out(lambda: Path('/dev/full').write_text('a'))")
+        self.assertEqual(full.returncode, 1)
+        self.assertIn("a file in the folder of --out: No space left on device. Every answer", full.stderr)
+        self.assertNotIn("Traceback", full.stderr)
+
     def test_a_folder_that_cannot_be_written_is_named(self) -> None:
         file = self.folder / "file"
         file.write_text("")

@@ -213,6 +213,7 @@ Answer WindowRemote::record(const Keys& keys) {
   }
   d_.notices.clear();
   d_.world.record(file);
+  records_ = true;
   return Answer::Later([this]() -> std::optional<json> {
     if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));
     const LiveLoop& loop = d_.live.loop();
@@ -222,7 +223,9 @@ Answer WindowRemote::record(const Keys& keys) {
 }
 
 Answer WindowRemote::stop() {
-  if (!d_.live.recording()) throw RemoteError("stop: nothing is being recorded");
+  const bool began = std::exchange(records_, false);
+  if (!d_.live.recording() && !began) throw RemoteError("stop: nothing is being recorded");
+  // One that ended by itself, as on a disk that is full, says why.
   return Answer::Later([this, asked = false]() mutable -> std::optional<json> {
     if (d_.live.recording()) {
       if (d_.live.loop().recording()) run("session.record");  // which stops it

@@ -34,6 +34,9 @@ def carry_out(main: Callable[[], None]) -> None:
     except LimpidError as error:
         sys.exit(str(error))
     except OSError as error:
-        sys.exit(f"{error.filename}: {error.strerror}")
+        # Of a file that is open already the system does not say the name.
+        where = error.filename or "a file in the folder of --out"
+        sys.exit(f"{where}: {error.strerror}. Every answer up to now is kept; the same words go on "
+                 "behind them.")  # fmt: skip
     except KeyboardInterrupt:
         sys.exit("\nStopped. Every answer up to now is kept; the same words go on behind them.")
