@@ -506,7 +506,7 @@ class TestStudies(unittest.TestCase):
         self.assertEqual(placing.person(Loop(), 0.02, out), 1.5)
         wrong = [text for text in Loop.texts if "Once more" in text]
         self.assertEqual(len(wrong), 2, Loop.texts)
-        self.assertIn("It began 20.0 mm beside the large ball, 40.0 mm above the table; allowed: 4 and 2 mm", wrong[0])
+        self.assertIn("It began 20.0 mm off the ball, 40.0 mm above the table; allowed: 4 and 2 mm", wrong[0])
         self.assertIn("It ended 20.0 mm off the place; allowed: 1 mm", wrong[1])
         self.assertEqual(ways, [])
 
@@ -582,7 +582,8 @@ class TestTrouble(unittest.TestCase):
     def test_numbers_that_cannot_be_are_refused(self) -> None:
         self.assertIn("--participant: -1 is not allowed", self.start("--out", str(self.folder),
                                                                      "--participant", "-1"))
-        self.assertIn("--trials: 0 is not allowed", self.start("--out", str(self.folder), "--trials", "0"))
+        self.assertIn("--trials: 4 is not allowed; allowed: a number from 5 on",
+                      self.start("--out", str(self.folder), "--trials", "4"))
 
 
 class TestPackage(unittest.TestCase):

@@ -68,7 +68,7 @@ def person(loop: limpid.Client, distance: float, out: Path) -> float:
         aside, above = abs(tip[0, 0] - 1000 * START), tip[0, 2] + 40
         off = abs(tip[-20:, 0].mean() - 1000 * (START + distance))
         if aside > 4 or above > 2:
-            wrong = f"It began {aside:.1f} mm beside the large ball, {above:.1f} mm above the table; allowed: 4 and 2"
+            wrong = f"It began {aside:.1f} mm off the ball, {above:.1f} mm above the table; allowed: 4 and 2"
         elif off >= 500 * WIDTH:
             wrong = f"It ended {off:.1f} mm off the place; allowed: {500 * WIDTH:g}"
         else:
@@ -105,7 +105,7 @@ def main() -> None:
             plan.answer(True)
         found[law] = study.mean_interval(rates)
     report = Report("Placing under each law", arguments.out)
-    report.text(f"A task of Fitts' kind, places {1000 * WIDTH:g} mm wide; {2 * arguments.repeats} trials a law.")
+    report.text(f"Fitts' task, places {1000 * WIDTH:g} mm wide; {2 * arguments.repeats} trials a law.")
     report.figure("placing", intervals("Placing", "throughput [bit/s]", found), "Mean, interval of 95 %.")
     report.table(["law", "throughput [bit/s]", "from", "to"],
                  [[law, *(f"{x:.2f}" for x in numbers)] for law, numbers in found.items()])

@@ -63,7 +63,7 @@ def participant(arguments: argparse.Namespace, walls: Walls):
 
 
 def main() -> None:
-    arguments = study.words(__doc__, "trials", 60, "at most, for each law")
+    arguments = study.words(__doc__, "trials", 60, "at most, for each law", least=5)
     walls = Walls(arguments.out)
     run = study.Study("stiffness", arguments.out, arguments.participant, participant(arguments, walls))
     run.tell("You feel two walls, one after the other. Press on each with the tip, as often as you like "

@@ -36,7 +36,8 @@ def participant(simulate: bool, connect: str, seed: int, scene: Path):
 
 
 def main() -> None:
-    arguments = study.words(__doc__, "pairs", 5, "of trials for each reference, from above and below")
+    arguments = study.words(__doc__, "pairs", 5, "of trials for each reference, from above and below",
+                            least=2)
     scene = (arguments.out / "nothing.toml").resolve()
     scene.write_text(SCENE)
     run = study.Study("weight", arguments.out, arguments.participant, participant(
@@ -49,8 +50,8 @@ def main() -> None:
             law, stimulus(law, 1.0), lambda eta: stimulus(LAW, eta),
             "Make the arm as heavy as the reference.", ("lighter", "heavier"), low=LOW, high=HIGH,
             trials=2 * arguments.pairs, practice=1, pause_every=10)
-    fits = equality_report("As heavy as the other laws", arguments.out, "eta of the predictive law",
-                           matches, f"Method of adjustment; participant {arguments.participant}.", "weight")
+    fits = equality_report("As heavy as the other laws", arguments.out, "eta of the predictive law", matches,
+                           f"Method of adjustment; participant {arguments.participant}.", "weight")
     for law, found in fits.items():
         print(f"{law:>10}: as eta {found}", flush=True)
     run.tell("That was all. Thank you.")

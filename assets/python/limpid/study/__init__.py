@@ -17,6 +17,7 @@ from limpid.study.words import carry_out, words
 
 __all__ = [
     "Adjustment", "ConstantStimuli", "Fit", "Person", "Quest", "Report", "Shown", "Simulated",
-    "Staircase", "Stimulus", "Study", "StudyError", "carry_out", "equality", "fit", "latin_square", "mean_interval", "order_for",
+    "Staircase", "Stimulus", "Study", "StudyError", "carry_out", "equality", "fit", "latin_square",
+    "mean_interval", "order_for",
     "proportion_interval", "remove_session", "words",
 ]  # fmt: skip

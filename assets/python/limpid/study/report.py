@@ -214,8 +214,8 @@ def equality_report(title: str, folder: "os.PathLike[str] | str", quantity: str,
     report = Report(title, folder)
     report.text(about)
     report.figure(f"{name}-equality", matched(title, quantity, matches, fits),
-                  "What felt like the reference: each trial as a small point, and the mean of their logarithms "
-                  "with its interval of 95 %.")  # fmt: skip
+                  "What felt like the reference: each trial as a small point, and the mean of their "
+                  "logarithms with its interval of 95 %.")  # fmt: skip
     report.table(["condition", quantity, "from", "to", "trials"], [
         [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
         for condition, f in fits.items()])  # fmt: skip

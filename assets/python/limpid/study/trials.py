@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import errno
+import functools
 import io
 import math
 import os
@@ -236,7 +237,8 @@ class Study:
                 make: Callable[[float], Stimulus], question: str, words: Tuple[str, str]) -> None:  # fmt: skip
         """A trial; `asked` is what its rows have in common."""
         name = self._name_of(asked["condition"], asked["trial"])
-        first = Shown(reference, reference, "This is the reference. Feel it, then go on to yours.", ("Go on",), 0)
+        told = "This is the reference. Feel it, then go on to yours."
+        first = Shown(reference, reference, told, ("Go on",), 0)
         step, again = 0, True
         while not method.done:
             if again:
@@ -247,7 +249,8 @@ class Study:
                 shown = Shown(make(method.level), reference, text, choices, step)
             row = {"kind": "reference" if again else "adjust", **asked, "level": shown.stimulus.level,
                    "standard": reference.level}  # fmt: skip
-            answer = self._row(row, lambda shown=shown: self._press(shown, name))["answer"]  # type: ignore[misc]
+            ask = functools.partial(self._press, shown, name)
+            answer = self._row(row, ask)["answer"]
             if not again and answer != "reference":
                 method.answer(answer)
             again = answer == "reference"

@@ -9,9 +9,10 @@ from limpid.errors import LimpidError
 from limpid.study.trials import folder_for
 
 
-def words(about: str, count: str, usual: int, help: str) -> argparse.Namespace:
+def words(about: str, count: str, usual: int, help: str, least: int = 1) -> argparse.Namespace:
     """Those of the command line, of a study that `about` tells of in its first line: `out`, a folder
-    that is there then, `participant`, `connect`, `simulate`, and the number named `count`."""
+    that is there then, `participant`, `connect`, `simulate`, and the number named `count`, which is at
+    `least` so large."""
     parser = argparse.ArgumentParser(description=about.splitlines()[0])
     parser.add_argument("--out", type=Path, required=True, help="folder of answers, sessions, report")
     parser.add_argument("--participant", type=int, default=0, help="number, from 0 on")
@@ -21,8 +22,8 @@ def words(about: str, count: str, usual: int, help: str) -> argparse.Namespace:
     found = parser.parse_args()
     if found.participant < 0:
         parser.error(f"--participant: {found.participant} is not allowed; allowed: a number from 0 on")
-    if getattr(found, count) < 1:
-        parser.error(f"--{count}: {getattr(found, count)} is not allowed; allowed: a number from 1 on")
+    if getattr(found, count) < least:
+        parser.error(f"--{count}: {getattr(found, count)} is not allowed; allowed: a number from {least} on")
     folder_for(found.out)
     return found
 
