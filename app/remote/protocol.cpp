@@ -24,7 +24,7 @@ constexpr std::array kRow{"channels"};
 constexpr std::array kFollow{"channels", "rate"};
 constexpr std::array kTwin{"on", "values"};
 constexpr std::array kBlind{"on"};
-constexpr std::array kAsk{"text", "choices"};
+constexpr std::array kAsk{"text", "choices", "beside", "seconds"};
 constexpr std::array kPicture{"file"};
 
 constexpr std::array kVerbs{
@@ -41,7 +41,9 @@ constexpr std::array kVerbs{
     Verb{"follow", kFollow, "rows of \"channels\" from now on, \"rate\" a second; none ends it"},
     Verb{"twin", kTwin, "a second run on the same hand, with \"values\" of its own"},
     Verb{"blind", kBlind, "the window hides law, settings and plots while this client is there"},
-    Verb{"ask", kAsk, "a person \"text\"; answers which of the \"choices\", and after how long"},
+    Verb{"ask", kAsk,
+         "a person \"text\"; answers which of the \"choices\", and after how long; \"beside\" the "
+         "picture, which can be used meanwhile; for \"seconds\" only"},
     Verb{"picture", kPicture, "into \"file\", a PNG"},
     Verb{"cut", kNone, "no force, at once"},
     Verb{"bye", kNone, "ends the connection"},

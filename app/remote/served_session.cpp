@@ -263,7 +263,8 @@ Answer ServedSession::record(const Keys& keys) {
 
 Answer ServedSession::stop() {
   if (!recording() && loop_.recorder() == nullptr && !recording_.closing.valid()) {
-    throw RemoteError("stop: nothing is being recorded");
+    const std::string failure = std::exchange(recording_.failure, {});  // it ended by itself
+    throw RemoteError("stop: " + (failure.empty() ? "nothing is being recorded" : failure));
   }
   return Answer::Later([this]() -> std::optional<json> {
     if (recording_.opening.valid()) return std::nullopt;  // it is stopped as soon as it is there

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -211,6 +212,182 @@ class TestRemoteWindow(WindowTest):
                 for name in row["sessions"].split()]
         self.assertEqual(etas, [0.5, 0.7] if row["order"] == "2" else [0.7, 0.5])
         self.assertGreater(float(row["seconds"]), 0)
+
+    def test_a_question_beside_the_picture_leaves_the_arm_to_the_hand(self) -> None:
+        result, thread = self.beside(lambda: self.loop.ask("Make it as heavy.", ("lighter", "heavier", "the same"),
+                                                           beside=True))
+        self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+        self.hold_tip()
+        self.keep_picture("ask_beside")
+        self.key("9")  # is no answer
+        self.key("Escape")
+        self.assertEqual(self.settled()["dialog"], "ask")
+        self.assertEqual((result, self.state()["grip"], self.state()["force"]), ([], 1, True))
+        self.key("2")
+        thread.join(20)
+        self.assertEqual((result[0].answer, result[0].index), ("heavier", 1))
+        self.assertEqual(self.settled()["grip"], 1)
+        self.wait("the question to go", lambda s: not s["asking"])
+
+    def test_what_is_said_for_a_time_goes_by_itself(self) -> None:
+        result, thread = self.beside(lambda: self.loop.ask("Feel it now.", beside=True, seconds=2))
+        self.wait("the text", lambda s: s["dialog"] == "ask")
+        self.key("1")
+        self.key("Return")
+        self.keep_picture("said_for_a_time")
+        thread.join(30)
+        self.assertEqual((result[0].answer, result[0].index), ("", -1))
+        self.assertGreaterEqual(result[0].seconds, 2)
+        self.wait("it to go", lambda s: not s["asking"])
+        with self.assertRaisesRegex(limpid.RequestError, "ask: seconds: 0 is not allowed"):
+            self.loop.ask("?", seconds=0)
+        # One before it, which is answered, leaves the arm to the mouse.
+        result, thread = self.asked()
+        self.key("Return")
+        thread.join(20)
+        self.beside(lambda: self.loop.ask("Feel it now.", beside=True, seconds=60))
+        self.wait("the text", lambda s: s["dialog"] == "ask")
+        self.hold_tip()
+
+    def answer(self, key: str) -> None:
+        """The question that is there, or comes."""
+        self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+        self.settled()
+        asked = self.state()["question"]
+        self.key(key)
+        self.wait("an answer", lambda s: s["question"] != asked or not s["question"])
+
+    def test_a_person_adjusts_until_it_feels_like_the_reference(self) -> None:
+        """By keys, wrong ones among them; each is a row, the trial a session that has all values."""
+        from limpid import study
+
+        run = study.Study("adjust", self.home / "answers", 0, study.Person(self.loop))
+
+        def etas(value: float) -> study.Stimulus:
+            return study.Stimulus(value, {"coupling.kind": "predictive", "coupling.eta": value})
+
+        result, thread = self.beside(lambda: run.adjustments(
+            "a", etas(0.5), etas, "Make the arm as heavy.", ("lighter", "heavier"), trials=2))
+        for key in 2 * ("Return", "2", "3", "Return", "1", "4"):
+            for wrong in ("9", "c", "bracketright"):
+                self.key(wrong)
+            self.keep_picture(f"adjust_{len(run.rows):02d}")
+            before = len(run.rows)
+            self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
+            self.settled()
+            self.key(key)
+            self.wait_until("the key's row", lambda before=before: len(run.rows) > before)
+        thread.join(20)
+        [[(a, b)]] = result
+        self.assertEqual([row["answer"] for row in run.rows], 2 * ["on", "more", "reference", "on", "less", "same"])
+        self.assertEqual([row["value"] for row in run.rows if row["value"]], [repr(a), repr(b)])
+        for k in range(2):
+            rows = run.rows[6 * k : 6 * k + 6]
+            [name] = {row["sessions"] for row in rows}
+            session = limpid.session(self.home / "answers" / name)
+            eta = session["coupling/eta"][:]
+            changes = [float(eta[0]), *(float(y) for x, y in zip(eta, eta[1:]) if x != y)]
+            self.assertEqual(changes, [float(row["level"]) for row in rows])
+            self.assertEqual([text for _, text in session.marks][::3], ["reference"] * 2)
+        self.assertTrue(all(float(row["seconds"]) > 0 for row in run.rows))
+
+    def compares(self, run):
+        from limpid import study
+
+        return run.two_intervals(study.ConstantStimuli([0.2], 2, "a"), "standard", 0.5,
+                                 lambda eta: study.Stimulus(eta, {"coupling.eta": eta}), "Which one is heavier?")
+
+    def check_goes_on(self, cut_off) -> None:
+        """A study that is cut off in the second trial's recording goes on with that trial."""
+        from limpid import study
+
+        answers = self.home / "answers"
+        run = study.Study("cut", answers, 0, study.Person(self.loop, seconds=3))
+        result, thread = self.beside(lambda: self.compares(run))
+        for key in ("Return", "Return", "2", "Return"):
+            self.answer(key)
+        self.wait("recording", lambda s: s["recording"])
+        cut_off()
+        thread.join(60)
+        [error] = result
+        self.assertIsInstance(error, study.StudyError)
+        self.assertIn(f"Every answer up to then is in {run.file}", str(error))
+        self.assertIn("goes on behind the 1 answers", str(error))
+        self.start()
+        again = study.Study("cut", answers, 0, study.Person(self.loop, seconds=0.3))
+        result, thread = self.beside(lambda: self.compares(again))
+        for key in ("Return", "Return", "1"):
+            self.answer(key)
+        thread.join(20)
+        self.assertEqual(len(result[0]), 2)
+        self.assertEqual(again.rows[0], run.rows[0])
+        for row in again.rows:
+            for name in row["sessions"].split():
+                self.assertGreater(len(limpid.session(answers / name)), 100)
+        self.assertEqual(list(answers.glob("*.part")), [])
+
+    def test_goes_on_after_the_window_was_closed_in_a_trial(self) -> None:
+        def close() -> None:
+            self.close_by_cross()
+            self.app.wait(30)
+
+        self.check_goes_on(close)
+
+    def test_goes_on_after_the_program_was_killed_in_a_trial(self) -> None:
+        def kill() -> None:
+            self.app.kill()
+            self.app.wait(30)
+
+        self.check_goes_on(kill)
+
+    def test_a_disk_that_is_full_is_named_and_the_study_goes_on_where_there_is_room(self) -> None:
+        from limpid import study
+
+        answers = self.home / "answers"
+        answers.mkdir()
+
+        def mount(*words: str) -> bool:
+            return subprocess.run(["mount", "-t", "tmpfs", *words, "tmpfs", answers],
+                                  capture_output=True).returncode == 0
+
+        if not mount("-o", "size=900k"):
+            self.skipTest("needs to be allowed to mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", "-l", answers])
+        run = study.Study("full", answers, 0, study.Person(self.loop, seconds=6))
+        result, thread = self.beside(lambda: self.compares(run))
+        self.answer("Return")
+        thread.join(60)
+        self.assertIsInstance(result[0], study.StudyError)
+        self.assertIn("No space left on device", str(result[0]))
+        self.assertIn(f"Every answer up to then is in {run.file}", str(result[0]))
+        self.assertTrue(mount("-o", "remount,size=50m"))
+        again = study.Study("full", answers, 0, study.Person(self.loop, seconds=0.3))
+        result, thread = self.beside(lambda: self.compares(again))
+        for key in 2 * ("Return", "Return", "1"):
+            self.answer(key)
+        thread.join(20)
+        self.assertEqual(len(result[0]), 2)
+        self.assertEqual(list(answers.glob("*.part")), [])
+
+    def test_a_study_that_was_killed_in_a_trial_goes_on_at_the_same_window(self) -> None:
+        """What it had recorded is ended by the next one."""
+        from limpid import study
+
+        answers = self.home / "answers"
+        run = study.Study("cut", answers, 0, study.Person(self.loop, seconds=60))
+        self.beside(lambda: self.compares(run))
+        self.answer("Return")
+        self.wait("recording", lambda s: s["recording"])
+        self.loop._socket.shutdown(2)  # as the kernel does for a process that is killed
+        self.wait("nothing hidden any more", lambda s: not s["blind"] and not s["asking"])
+        self.loop = limpid.Client(self.path)
+        self.addCleanup(self.loop.close)
+        again = study.Study("cut", answers, 0, study.Person(self.loop, seconds=0.3))
+        result, thread = self.beside(lambda: self.compares(again))
+        for key in 2 * ("Return", "Return", "1"):
+            self.answer(key)
+        thread.join(20)
+        self.assertEqual(len(result[0]), 2)
 
     def test_scenes_and_sessions_are_opened(self) -> None:
         self.assertEqual(self.loop.open(scene="spheres.toml")["scene"], "Soft and hard")

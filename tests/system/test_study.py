@@ -105,6 +105,156 @@ class TestThresholds(unittest.TestCase):
         self.assertAlmostEqual(fits.chance_of(1e9, 2.0, 0.1), 0.95)
 
 
+class TestAdjustments(unittest.TestCase):
+    """Of participants for whom a quantity feels like the reference at a value that is known."""
+
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    Kind = study.Study
+
+    def pairs(self, who, participant: int, name: str = "t", **more) -> list[tuple[float, float]]:
+        run = self.Kind(name, self.folder, participant, who)
+        return run.adjustments("a", study.Stimulus(300.0), lambda x: study.Stimulus(x, {"own": 1}), "?", **more)
+
+    @staticmethod
+    def who(equal: float, seed: int, threshold: float = 45.0, **more) -> study.Simulated:
+        """Feels what it adjusts as more, so that `equal` is like the reference of 300."""
+        return study.Simulated(threshold, seed=seed, percept=lambda s: s.level * (
+            300 / equal if s.settings else 1), **more)
+
+    def test_the_interval_has_the_point_of_equality(self) -> None:
+        """For 95 of 100; were it less or more often, as many hits would come in less than one of a
+        thousand tries."""
+
+        class Unwritten(study.Study):
+            def _append(self, cells):
+                """Nothing: thousands of rows are not wanted."""
+
+        self.Kind = Unwritten
+        for equal, trials in ((300.0, 10), (430.0, 10), (200.0, 12)):
+            found = [study.equality(self.pairs(self.who(equal, k), k, f"t{equal:g}", trials=trials))
+                     for k in range(100)]
+            hits = sum(f.low <= equal <= f.high for f in found)
+            low, high = binomial_ends(100, 0.95, 0.001)
+            self.assertTrue(low <= hits <= high, f"{equal}: {hits} of 100; allowed: {low} to {high}")
+            middle = sorted(f.threshold for f in found)[50]
+            self.assertAlmostEqual(middle / equal, 1, delta=0.05)
+            self.assertEqual({f.trials for f in found}, {trials})
+
+    def test_equality_is_the_mean_of_pairs_with_students_interval(self) -> None:
+        """By hand: the logarithms' means are 0, 2 and 4, so 2 with 4.303 * 2 / sqrt(3) on either side."""
+        e = math.e
+        found = study.equality([(1 / e, e), (e, e**3), (e**4, e**4)])
+        half = 4.303 * 2 / math.sqrt(3)
+        for value, wanted in ((found.threshold, 2), (found.low, 2 - half), (found.high, 2 + half)):
+            self.assertAlmostEqual(math.log(value), wanted, delta=0.06)
+        for wrong, why in (([(1.0, 1.0)], "at least 2 pairs"), ([(0.0, 1.0)] * 3, "above 0")):
+            with self.assertRaisesRegex(ValueError, why):
+                study.equality(wrong)
+
+    def test_each_pair_starts_once_above_and_once_below(self) -> None:
+        self.pairs(self.who(300, 1), 1, trials=12, practice=1, around=200.0, spread=3.0)
+        starts: dict[str, dict] = {}
+        for row in self.rows(1):
+            if row["kind"] == "adjust":
+                starts.setdefault(row["trial"], row)
+        above = [float(row["level"]) > 200 for trial, row in starts.items() if trial != "0"]
+        self.assertEqual(len(above), 12)
+        self.assertTrue(all(a != b for a, b in zip(above[::2], above[1::2])), above)
+        self.assertEqual(len(set(above[::2])), 2)  # either comes first
+        for row in starts.values():
+            factor = max(float(row["level"]) / 200, 200 / float(row["level"]))
+            self.assertTrue(3**0.5 <= factor <= 3, row)
+            self.assertEqual(row["order"], "2" if float(row["level"]) > 200 else "1")
+        self.assertEqual({row["practice"] for row in self.rows(1) if row["trial"] == "0"}, {"1"})
+
+    def test_each_key_is_a_row_and_trials_begin_with_the_reference(self) -> None:
+        keys = ["Go on", "more", "feel the reference again", "Go on", "less", "it feels the same"]
+        shown = []
+
+        class Pressing(study.Simulated):
+            def adjust(self, what, folder, name):
+                shown.append((what.stimulus.level, tuple(what.choices)))
+                key = keys[(len(shown) - 1) % len(keys)]
+                return super().adjust(what, folder, name)[0]._replace(
+                    index=what.choices.index(key), answer=key), [f"{name}.h5"]
+
+        [(a, b)] = self.pairs(Pressing(1.0), 0, trials=2)
+        rows = self.rows(0)
+        self.assertEqual([row["answer"] for row in rows], 2 * ["on", "more", "reference", "on", "less", "same"])
+        self.assertEqual([row["kind"] for row in rows], 2 * ["reference", "adjust", "adjust",
+                                                             "reference", "adjust", "adjust"])
+        self.assertEqual([float(row["level"]) for row in rows], [level for level, _ in shown])
+        self.assertEqual([row["value"] for row in rows if row["value"]], [repr(a), repr(b)])
+        first = shown[1][0]
+        self.assertEqual([level for level, _ in shown[:6]],
+                         [300, first, first * 1.5, 300, first * 1.5, first * 1.5 / math.sqrt(1.5)])
+        self.assertEqual({row["sessions"] for row in rows}, {"t-000-a-000.h5", "t-000-a-001.h5"})
+
+    def test_goes_on_within_a_trial_after_a_crash(self) -> None:
+        """Cut off behind every key once, each is asked for once, and all is as without a crash."""
+        asked: list[tuple] = []
+
+        class Failing(study.Simulated):
+            most = 0
+
+            def adjust(self, shown, folder, name):
+                if len(asked) >= self.most:
+                    raise Crash
+                asked.append((name, shown.step))
+                return super().adjust(shown, folder, name)
+
+        who = Failing(45.0)
+        for who.most in range(1, 400):
+            try:
+                crashed = self.pairs(who, 2, trials=4, practice=1)
+                break
+            except Crash:
+                continue
+        self.assertEqual(len(asked), len(set(asked)))
+        rows = self.rows(2)
+        shutil.rmtree(self.folder)
+        self.assertEqual(crashed, self.pairs(study.Simulated(45.0), 2, trials=4, practice=1))
+        self.assertEqual(rows, self.rows(2))
+        self.assertEqual(len(rows), len(asked))
+
+    def test_levels_stay_within_their_limits_and_the_question_says_so(self) -> None:
+        texts = []
+
+        class Always(study.Simulated):
+            def adjust(self, shown, folder, name):
+                texts.append(shown.text)
+                self.last = shown.stimulus.level
+                return super().adjust(shown, folder, name)[0]._replace(
+                    index=0 if len(shown.choices) == 1 or len(texts) % 20 else 3), []
+
+        self.pairs(Always(1.0), 0, trials=2, low=250.0, high=320.0)
+        levels = {float(row["level"]) for row in self.rows(0)}
+        self.assertEqual((min(levels), max(levels)), (250, 320))
+        self.assertIn("? It goes no further.", texts)
+
+    def test_a_trial_without_an_end_is_left_and_its_pair_with_it(self) -> None:
+        class Undecided(study.Simulated):
+            def adjust(self, shown, folder, name):
+                said, sessions = super().adjust(shown, folder, name)
+                return (said if "-002" not in name else said._replace(index=0)), sessions
+
+        pairs = self.pairs(Undecided(45.0), 0, trials=6)
+        self.assertEqual(len(pairs), 2)
+        self.assertEqual(sum(row["trial"] == "2" and row["kind"] == "adjust" for row in self.rows(0)), 100)
+        with self.assertRaisesRegex(ValueError, "in pairs"):
+            self.pairs(study.Simulated(1.0), 1, trials=3)
+
+    def rows(self, participant: int) -> list[dict]:
+        with open(self.folder / f"t-{participant:03d}.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            del row["time"]
+        return rows
+
+
 class TestMethods(unittest.TestCase):
     def test_a_staircase_goes_down_after_three_and_up_after_one(self) -> None:
         stairs = study.Staircase(8.0, steps=(2.0,), reversals=3)
@@ -314,9 +464,126 @@ class TestStudies(unittest.TestCase):
         self.check_report("placing")
         self.assertEqual(len(list(self.folder.glob("*.h5"))), 36)
 
+    def test_an_arm_as_heavy_as_under_another_law_is_found(self) -> None:
+        """Its eta is that at which runs of the loop have the same inertia."""
+        from limpid.studies.inertia import felt
+
+        printed = self.run_study("weight", "--pairs", "6")
+        scene = (self.folder / "nothing.toml").resolve()
+        for line in printed.splitlines():
+            law, words = line.split(":")
+            low, high = (float(x) for x in words.split("(")[1].split(",")[0].split(" to "))
+            wanted = felt(law.strip(), 1.0, scene)
+            self.assertLess(felt("predictive", low, scene), wanted, line)
+            self.assertGreater(felt("predictive", high, scene), wanted, line)
+        self.check_report("weight")
+        self.assertEqual(self.run_study("weight", "--pairs", "6"), printed)  # of the same answers
+
+    def test_a_person_places_from_the_first_ball_to_the_place_or_once_more(self) -> None:
+        """With a window's part played: each recording is a run, of which only the last one is right."""
+        import limpid
+        from limpid.studies import placing
+
+        scene, out = placing.scene_in(self.folder), self.folder / "a.h5"
+        first, place, press = placing.START, placing.START + 0.02, placing.PRESSED
+        ways = [((place, 0.0), (place, 0.0)), ((first, press), (first, press)), ((first, press), (place, press))]
+
+        class Loop:
+            texts: list[str] = []
+
+            def ask(self, text, **how):
+                self.texts.append(text)
+                return limpid.client.Answer("Go on", 0, 1.5, 0)
+
+            def record(self, file):
+                (x, z), (to_x, to_z) = ways.pop(0)
+                limpid.run(scene=scene, coupling="predictive", record=file, hand=[
+                    (0, x, 0, z), (1, x, 0, z), (2, to_x, 0, to_z), (3, to_x, 0, to_z)])
+
+            def stop(self):
+                """The run is complete."""
+
+        self.assertEqual(placing.person(Loop(), 0.02, out), 1.5)
+        wrong = [text for text in Loop.texts if "Once more" in text]
+        self.assertEqual(len(wrong), 2, Loop.texts)
+        self.assertIn("It began 20.0 mm off the ball, 40.0 mm above the table; allowed: 4 and 2 mm", wrong[0])
+        self.assertIn("It ended 20.0 mm off the place; allowed: 1 mm", wrong[1])
+        self.assertEqual(ways, [])
+
     def test_studies_are_short(self) -> None:
         for script in (PACKAGE / "limpid/studies").glob("[a-z]*.py"):
             self.assertLess(len(script.read_text().splitlines()), 120, script.name)
+
+
+class TestTrouble(unittest.TestCase):
+    """What goes wrong is said in a sentence that names the file, and nothing that was answered is lost."""
+
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.environment = {**os.environ, "PYTHONPATH": str(PACKAGE), "XDG_RUNTIME_DIR": str(self.folder)}
+
+    def run_code(self, code: str) -> subprocess.CompletedProcess:
+        return subprocess.run([sys.executable, "-c", code, self.folder], text=True, capture_output=True,
+                              env=self.environment, timeout=120)
+
+    def start(self, *words: str) -> str:
+        """Of a study that ends at once; what it says."""
+        done = subprocess.run([sys.executable, "-m", "limpid.studies.stiffness", *words], text=True,
+                              capture_output=True, env=self.environment, timeout=120)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertNotIn("Traceback", done.stderr)
+        return done.stderr
+
+    STUDY = ("import resource, sys\n"
+             "from limpid import study\n"
+             "def main():\n"
+             "    {before}\n"
+             "    run = study.Study('full', sys.argv[1], 0, study.Simulated(1.0))\n"
+             "    print(len(run.two_intervals(study.Staircase(2.0, trials=30, reversals=99), 'a', 5.0,\n"
+             "                                study.Stimulus, '?')))\n"
+             "study.carry_out(main)\n")
+
+    def test_a_disk_that_is_full_loses_no_answer(self) -> None:
+        """A file that may get no longer stands for it: a row's beginning is written, not its end."""
+        full = self.run_code(self.STUDY.format(before="resource.setrlimit(resource.RLIMIT_FSIZE, (900, 900))"))
+        self.assertEqual(full.returncode, 1)
+        self.assertNotIn("Traceback", full.stderr)
+        file = self.folder / "full-000.csv"
+        self.assertIn(f"{file}: ", full.stderr)
+        kept = file.read_bytes()
+        self.assertTrue(kept.endswith(b"\n"))
+        answers = kept.count(b"\n") - 1
+        self.assertIn(f"goes on behind the {answers} answers", full.stderr)
+        again = self.run_code(self.STUDY.format(before="pass"))
+        self.assertEqual(again.stdout.strip(), "30", again.stderr)
+        self.assertTrue(file.read_bytes().startswith(kept))
+
+    def test_what_cannot_be_written_beside_the_answers_is_said_in_a_sentence(self) -> None:
+        full = self.run_code("from pathlib import Path\nfrom limpid import study\n"
+                             "study.carry_out(lambda: Path('/dev/full').write_text('a'))")
+        self.assertEqual(full.returncode, 1)
+        self.assertIn("a file in the folder of --out: No space left on device. Every answer", full.stderr)
+        self.assertNotIn("Traceback", full.stderr)
+
+    def test_a_folder_that_cannot_be_written_is_named(self) -> None:
+        file = self.folder / "file"
+        file.write_text("")
+        for folder in (file, file / "below", Path("/proc/limpid")):
+            said = self.start("--out", str(folder), "--simulate")
+            self.assertIn(f"{folder}: answers cannot be written there: ", said)
+            self.assertIn("choose another folder", said)
+
+    def test_a_program_that_does_not_listen_is_named(self) -> None:
+        said = self.start("--out", str(self.folder), "--connect", "nobody")
+        self.assertIn("limpid/nobody.control: ", said)
+        self.assertIn("start `limpid --listen`", said)
+
+    def test_numbers_that_cannot_be_are_refused(self) -> None:
+        self.assertIn("--participant: -1 is not allowed", self.start("--out", str(self.folder),
+                                                                     "--participant", "-1"))
+        self.assertIn("--trials: 4 is not allowed; allowed: a number from 5 on",
+                      self.start("--out", str(self.folder), "--trials", "4"))
 
 
 class TestPackage(unittest.TestCase):

@@ -1,5 +1,6 @@
 """A window under Xvfb that tests drive with xdotool, as a person would."""
 
+import ctypes
 import json
 import os
 import shutil
@@ -83,6 +84,22 @@ class WindowTest(unittest.TestCase):
         self.xdotool("key", "--window", self.window, "--delay", "120", name, check=not closes)
         if closes:
             self.xdotool("keyup", name)  # or it repeats into the next window
+
+    def close_by_cross(self) -> None:
+        """As a window manager says that somebody wants the window closed."""
+        x11 = ctypes.CDLL("libX11.so.6")
+        x11.XOpenDisplay.restype = ctypes.c_void_p
+        x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
+        x11.XInternAtom.restype = ctypes.c_ulong
+        x11.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
+        x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+        display = x11.XOpenDisplay(self.environment["DISPLAY"].encode())
+        protocols, close = (x11.XInternAtom(display, name, 0) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW"))
+        # XClientMessageEvent, in the room of an XEvent: type, serial, send_event, display, window,
+        # message_type, format, data.
+        event = (ctypes.c_long * 24)(33, 0, 1, 0, int(self.window), protocols, 32, close)
+        x11.XSendEvent(display, int(self.window), 0, 0, event)
+        x11.XCloseDisplay(display)
 
     def type(self, text: str) -> None:
         self.xdotool("type", "--window", self.window, "--delay", "60", text)

@@ -257,7 +257,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
-  if (!scene.recorded && scene.twin.empty() && !settings.your_turn) {
+  if (!scene.recorded && scene.twin.empty() && !settings.your_turn && !scene.asked) {
     draw_hint(scene.pad, settings, rect, list);
   }
   list.PopClipRect();

@@ -32,6 +32,7 @@ struct ViewScene {
   std::optional<Object> selected = {};
   // The body under the mouse, to be pulled by the point that is there; null: none may be.
   std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
+  bool asked = false;      // a question stands over its lower edge, where hints are
   bool blind = false;      // nothing but the picture: no words, no numbers
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point

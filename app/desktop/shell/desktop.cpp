@@ -287,7 +287,8 @@ void Desktop::follow_playback(double dt) {
 
 void Desktop::follow_pads(std::vector<Pad> plugged, bool focused, double dt) {
   const Focus who = focus();
-  const bool listens = focused && !playback.on() && !who.question && !who.modal;
+  const bool asked_beside = dialog.name() == "ask" && question.beside();
+  const bool listens = focused && !playback.on() && !who.question && (!who.modal || asked_beside);
   const auto asked_for = pads.follow(
       std::move(plugged), {.device = !devices.hub().in_use().empty(), .listens = listens},
       shown.camera, dt);
@@ -309,6 +310,7 @@ Focus Desktop::focus() const {
           .popup = popup_open(),
           .question = document.asking(),
           .dialog = dialog.name(),
+          .asked = question.number(),
           .modal = dialog.modal(),
           .playback = playback.on(),
           .selection = document.editor().selected().has_value(),

@@ -288,7 +288,7 @@ DrawDialog preset_list(Desktop& d) {
 }
 
 DrawDialog question(Desktop& d) {
-  return [&d](bool& open, ScreenRect) { d.question.draw(open); };
+  return [&d](bool& open, ScreenRect view) { d.question.draw(open, view); };
 }
 
 DrawDialog identify(Desktop& d) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -17,6 +18,7 @@ struct Focus {
   bool popup = false;         // a menu or a list is open
   bool question = false;      // about unsaved changes, above any dialog
   std::string_view dialog{};  // that is open; empty: none
+  std::size_t asked = 0;      // the number of the question in it that a program asks
   bool modal = false;         // it asks something: nothing behind it acts meanwhile
   bool playback = false;
   bool selection = false;  // an object of the scene is selected

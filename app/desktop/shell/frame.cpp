@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/picture_signs.h"
@@ -64,7 +65,8 @@ void Frame::draw() {
     }
   });
   part([&] {
-    if (desktop_.dialog.name() == "sweep") return;  // which it would cover
+    const std::string_view open = desktop_.dialog.name();
+    if (open == "sweep" || open == "ask") return;  // which it would cover
     const bool hinted = desktop_.shown.twin_row().empty();
     if (story_asked_for(desktop_.playback, settings, at.view, hinted)) act_("help.story");
   });
@@ -132,6 +134,7 @@ ViewScene Frame::view_scene() {
       return body_under(ray, editor.scene(), editor.models(), bodies);
     };
   }
+  scene.asked = desktop_.dialog.name() == "ask";
   if (scene.blind && !scene.twin.empty()) scene.names = {"left", "right", true};
   scene.pad = desktop_.pads.leading();
   scene.overlaid = desktop_.settings.twin_overlaid;

@@ -175,7 +175,7 @@ nlohmann::json question_of(const Desktop& d) {
   nlohmann::json places = nlohmann::json::object();
   for (std::size_t i = 0; i < d.question.choices(); ++i) {
     const std::string& label = d.question.choice(i);
-    if (const auto at = noted_place(PersonQuestion::kTitle, label.c_str())) {
+    if (const auto at = noted_place(d.question.title(), label.c_str())) {
       places[label] = place(*at);
     }
   }

@@ -213,6 +213,7 @@ Answer WindowRemote::record(const Keys& keys) {
   }
   d_.notices.clear();
   d_.world.record(file);
+  records_ = true;
   return Answer::Later([this]() -> std::optional<json> {
     if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));
     const LiveLoop& loop = d_.live.loop();
@@ -222,7 +223,9 @@ Answer WindowRemote::record(const Keys& keys) {
 }
 
 Answer WindowRemote::stop() {
-  if (!d_.live.recording()) throw RemoteError("stop: nothing is being recorded");
+  const bool began = std::exchange(records_, false);
+  if (!d_.live.recording() && !began) throw RemoteError("stop: nothing is being recorded");
+  // One that ended by itself, as on a disk that is full, says why.
   return Answer::Later([this, asked = false]() mutable -> std::optional<json> {
     if (d_.live.recording()) {
       if (d_.live.loop().recording()) run("session.record");  // which stops it
@@ -279,19 +282,26 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   if (d_.document.asking() || d_.identify.busy()) {
     throw RemoteError("ask: the window has a question of its own");
   }
+  const bool ends = keys.has("seconds");
   auto choices = keys.texts_if("choices", PersonQuestion::kMostChoices);
-  if (!choices || choices->empty()) choices = {"Go on"};
-  d_.question.ask(keys.text("text"), *choices);
+  if (!choices || choices->empty()) {
+    choices = ends ? std::vector<std::string>() : std::vector<std::string>{"Go on"};
+  }
+  const double seconds = keys.number_or("seconds", 0, 0.1, 3600);
+  d_.question.ask(keys.text("text"), *choices, {keys.flag_or("beside", false), seconds});
   asks_ = client;
   d_.dialog.open("ask");
   return Answer::Later([this]() -> std::optional<json> {
     const auto answer = d_.question.take();
     if (!answer) return std::nullopt;
     asks_.reset();
-    return json{{"answer", d_.question.choice(answer->choice)},
-                {"index", answer->choice},
-                {"seconds", answer->seconds},
-                {"tick", tick_}};
+    json said{
+        {"answer", nullptr}, {"index", nullptr}, {"seconds", answer->seconds}, {"tick", tick_}};
+    if (answer->choice) {
+      said["answer"] = d_.question.choice(*answer->choice);
+      said["index"] = *answer->choice;
+    }
+    return said;
   });
 }
 

@@ -56,6 +56,7 @@ class WindowRemote {
   std::uint64_t tick_ = 0;                   // of the newest row
   std::optional<LineServer::Client> hides_;  // the client that asked for it
   std::optional<LineServer::Client> asks_;   // the same of the question
+  bool records_ = false;                     // a client has begun what nobody has stopped
   std::vector<SavedPicture> saved_;          // that somebody waits for
   Remote remote_;                            // last: it goes first
 };

@@ -17,4 +17,4 @@ for law in LAWS:
     print(f"{law:>10}: {apart[law][-1]:6.3f} mm")
 
 # %% To be felt.
-show(**{"coupling.kind": "standard"})
+show("Press onto the table: device and proxy drift apart.", **{"coupling.kind": "standard"})

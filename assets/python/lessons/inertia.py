@@ -30,4 +30,4 @@ for law, both in found.items():
                                      for eta, (inertia, damping) in zip(ETAS, both)))
 
 # %% To be felt: lighter than the arm is.
-show(**{"coupling.kind": "predictive", "coupling.eta": 0.25})
+show("Shake it to and fro: it is lighter than it is.", **{"coupling.kind": "predictive", "coupling.eta": 0.25})

@@ -27,9 +27,14 @@ def figure(name: str, title: str, x: str, y: str, lines: dict, top: float | None
     return file
 
 
-def show(scene: str | None = None, **settings: object) -> None:
-    """With --window on the command line: the same in a window, to be felt; ends with it."""
+def show(what: str, scene: str | None = None, **settings: object) -> None:
+    """With --window on the command line: the same in a window, which says `what` is to be felt; ends
+    with it."""
     if "--window" not in sys.argv:
         return
     with limpid.serve(scene=scene, settings=settings, window=True) as loop:
-        loop.ask("Pull the arm by its tip with the left mouse button. Enter ends the lesson.")
+        try:
+            loop.ask(f"Pull the arm by its tip with the left mouse button. {what}", ("End the lesson",),
+                     beside=True)
+        except limpid.ProgramError:
+            pass  # somebody has closed the window, which ends the lesson, too

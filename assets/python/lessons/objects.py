@@ -31,4 +31,4 @@ for law, s in sessions.items():
           f"{1000 * float(s['energy/objects_gain'].max()):.2g} mJ from nowhere")
 
 # %% To be felt.
-show(str(scene), **{"coupling.kind": "predictive"})
+show("Push the block: it goes on by itself. Backspace brings it back.", str(scene), **{"coupling.kind": "predictive"})

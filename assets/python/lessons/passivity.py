@@ -20,4 +20,5 @@ for eta, s in sessions.items():
     print(f"eta {eta:g}: E_c is {float(s['energy/controller_total'].max()):.3f} J at most")
 
 # %% To be felt, with the force off at a touch of the space bar.
-show(**{"coupling.kind": "proposed", "coupling.eta": 0.4})
+show("Touch the table: it may tremble, as the controller can give energy. The space bar takes the force off.",
+     **{"coupling.kind": "proposed", "coupling.eta": 0.4})

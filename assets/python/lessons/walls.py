@@ -28,4 +28,5 @@ for law, values in found.items():
     print(f"{law:>10}: " + ", ".join(f"{value:.0f}" for value in values))
 
 # %% To be felt.
-show(str(folder / "800.toml"), **{"coupling.kind": "standard"})
+show("Press onto the wall: it has 800 N/m, and feels like one of 183.", str(folder / "800.toml"),
+     **{"coupling.kind": "standard"})

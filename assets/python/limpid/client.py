@@ -38,8 +38,8 @@ class Rows(NamedTuple):
 class Answer(NamedTuple):
     """What a person has answered."""
 
-    answer: str
-    index: int
+    answer: str  # empty: none within the time that there was
+    index: int  # -1: likewise
     seconds: float  # since the question was first seen
     tick: int
 
@@ -175,14 +175,23 @@ class Client:
         """The window hides law, settings and plots until blind(False) or the end of this client."""
         self.request("blind", on=on)
 
-    def ask(self, text: str, choices: Sequence[str] = (), timeout: float = 3600.0) -> Answer:
-        """Asks whoever is at the window; one of at most nine choices is the answer."""
+    def ask(self, text: str, choices: Sequence[str] = (), timeout: float = 3600.0,
+            beside: bool = False, seconds: Optional[float] = None) -> Answer:  # fmt: skip
+        """Asks whoever is at the window; one of at most nine choices is the answer. `beside`: below
+        the picture, which can be used meanwhile. `seconds`: it goes by itself after so long [s];
+        without choices it only says something for that time."""
         asked: Dict[str, Any] = {"text": text}
         if choices:
             asked["choices"] = list(choices)
+        if beside:
+            asked["beside"] = True
+        if seconds is not None:
+            asked["seconds"] = seconds
+            timeout = max(timeout, seconds + self.timeout)
         found = self._request("ask", asked, timeout)
-        return Answer(str(found["answer"]), int(found["index"]), float(found["seconds"]),
-                      int(found["tick"]))  # fmt: skip
+        none = found["index"] is None
+        return Answer("" if none else str(found["answer"]), -1 if none else int(found["index"]),
+                      float(found["seconds"]), int(found["tick"]))  # fmt: skip
 
     def picture(self, file: PathLike) -> str:
         """Saves a picture, a PNG."""

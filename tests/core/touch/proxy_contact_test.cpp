@@ -5,17 +5,17 @@
 #include <tuple>
 
 #include "core/touch/proxy.h"
+#include "tests/support/proxy_drive.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
 namespace {
 
+using test::no_drive;
 using test::Random;
 using test::random_arm;
 using AnyProxy = Proxy<kAnyDof>;
 using Vector = Vec<kAnyDof>;
-
-ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0}; }
 
 TEST(ProxyInContact, OfOneJointFollowsTheScalarMidpointRule) {
   constexpr double T = 0.001, K = 20, k_vc = 10, b = 0.013, kAngle = 0.2;

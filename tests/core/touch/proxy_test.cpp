@@ -6,17 +6,17 @@
 #include <Eigen/Cholesky>
 #include <tuple>
 
+#include "tests/support/proxy_drive.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
 namespace {
 
+using test::no_drive;
 using test::Random;
 using test::random_arm;
 using AnyProxy = Proxy<kAnyDof>;
 using Vector = Vec<kAnyDof>;
-
-ProxyDrive<kAnyDof> no_drive(int n) { return {Vector::Zero(n), 0}; }
 
 class ProxyOfJoints : public testing::TestWithParam<std::tuple<int, double, double>> {
  protected:

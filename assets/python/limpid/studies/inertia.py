@@ -11,6 +11,7 @@ the acceleration, with an error.
 """
 
 import argparse
+import functools
 import math
 from pathlib import Path
 
@@ -37,19 +38,20 @@ def shaking(seconds: float = 2.0, size: float = 0.02) -> list:
     return rows
 
 
-def felt(eta: float, scene: Path) -> float:
+@functools.lru_cache(maxsize=None)
+def inertia(law: str, eta: float, scene: Path) -> float:
     """What of the hand's torque about the vertical goes with the acceleration, and not with the speed:
-    the inertia that is felt, in units of eta, by that at the standard."""
+    the inertia that is felt [kg m^2]."""
+    session = limpid.run(scene=scene, hand=shaking(), coupling=law, eta=eta)
+    velocity = session["device/velocity"][1000:, 0]
+    acceleration = numpy.gradient(velocity, session.tick)
+    shares = numpy.stack([acceleration, velocity], axis=1)
+    return float(numpy.linalg.lstsq(shares, session["hand/torque"][1000:, 0], rcond=None)[0][0])
 
-    def inertia(value: float) -> float:
-        session = limpid.run(scene=scene, hand=shaking(), coupling=LAW, eta=value)
-        velocity = session["device/velocity"][1000:, 0]
-        acceleration = numpy.gradient(velocity, session.tick)
-        shares = numpy.stack([acceleration, velocity], axis=1)
-        return float(numpy.linalg.lstsq(shares, session["hand/torque"][1000:, 0], rcond=None)[0][0])
 
-    felt.standard = getattr(felt, "standard", None) or inertia(STANDARD)
-    return STANDARD * inertia(eta) / felt.standard
+def felt(law: str, eta: float, scene: Path) -> float:
+    """The same in units of eta, by that at the standard."""
+    return STANDARD * inertia(law, round(eta, 3), scene) / inertia(LAW, STANDARD, scene)
 
 
 def participant(arguments: argparse.Namespace, scene: Path):
@@ -59,15 +61,8 @@ def participant(arguments: argparse.Namespace, scene: Path):
         loop.open(scene=scene)
         loop.set({"coupling.kind": LAW})
         return study.Person(loop)
-    known = {}
-
-    def percept(stimulus: study.Stimulus) -> float:
-        eta = round(stimulus.level, 3)
-        if eta not in known:
-            known[eta] = felt(eta, scene)
-        return known[eta]
-
-    return study.Simulated(WEBER * STANDARD, seed=arguments.participant, percept=percept)
+    return study.Simulated(WEBER * STANDARD, seed=arguments.participant,
+                           percept=lambda stimulus: felt(LAW, stimulus.level, scene))
 
 
 def main() -> None:
@@ -75,7 +70,8 @@ def main() -> None:
     scene = (arguments.out / "nothing.toml").resolve()
     scene.write_text(SCENE)
     run = study.Study("inertia", arguments.out, arguments.participant, participant(arguments, scene))
-    run.tell("Shake the arm twice. Which time is it heavier?")
+    run.tell("You feel the arm two times, one after the other. Shake it to and fro each time; then say "
+             "which time it was heavier.")
     method = study.Quest(guess=0.5 * STANDARD, low=0.01, high=2.0, trials=arguments.trials)
     answers = run.two_intervals(
         method, LAW, STANDARD, lambda eta: study.Stimulus(eta, {"coupling.eta": eta}),
@@ -84,8 +80,9 @@ def main() -> None:
     threshold_report("Just noticeable difference of inertia", arguments.out, "eta", {LAW: answers},
                      f"Two-interval forced choice beside eta {STANDARD:g}; QUEST-like; participant "
                      f"{arguments.participant}.", "inertia", {LAW: found})
-    print(f"eta: {found}, {100 * found.threshold / STANDARD:.0f} %")
+    print(f"eta: {found}, {100 * found.threshold / STANDARD:.0f} %", flush=True)
+    run.tell("That was all. Thank you.")
 
 
 if __name__ == "__main__":
-    main()
+    study.carry_out(main)

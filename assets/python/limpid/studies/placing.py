@@ -24,7 +24,8 @@ WIDTH = 0.002  # of the place [m]
 START, ABOVE, PRESSED = 0.17, 0.0, -0.05  # the table is at -0.04 [m]
 FIRST, ANOTHER, LOOK = 0.6, 0.3, 0.2  # of the simulated participant's motions, and a look [s]
 ERROR = 0.05  # of them: a share of the way
-BALL = '[[sphere]]\nname = "to {cm:g} cm"\ncenter = [{x}, 0.015, -0.039]\nradius = 0.001\nstiffness = 1000\n'
+BALL = '[[sphere]]\nname = "to {cm:g} cm"\ncenter = [{x}, 0.015, {z}]\nradius = {r}\nstiffness = 1000\n'
+LARGE, SMALL = 0.004, 0.0025  # balls, at the beginning and at the places [m]
 TABLE = 'title = "Places"\n[[plane]]\nname = "table"\npoint = [0, 0, -0.04]\nnormal = [0, 0, 1]\n'
 
 
@@ -32,15 +33,15 @@ def scene_in(folder: Path) -> str:
     """A table without friction, with a ball at the beginning and one beside each place."""
     file = (folder / "places.toml").resolve()
     file.write_text(TABLE + "stiffness = 1000\n" + "".join(
-        BALL.format(cm=100 * d, x=START + d) for d in (0.0, *DISTANCES)))
+        BALL.format(cm=100 * d, x=START + d, r=r, z=r - 0.04)
+        for d, r in ((0.0, LARGE), *((d, SMALL) for d in DISTANCES))))
     return str(file)
 
 
 def simulated(scene: str, law: str, distance: float, chance: random.Random, out: Path) -> float:
     """Until the proxy is at the place [s]."""
-    place, goal = START + distance, START + distance * (1 + chance.gauss(0, ERROR))
+    place, goal, taken = START + distance, START + distance * (1 + chance.gauss(0, ERROR)), FIRST
     path = [(0, START, 0, ABOVE), (0.3, START, 0, PRESSED), (0.5, START, 0, PRESSED)]
-    taken = FIRST
     for _ in range(10):
         moved, rested = 0.5 + taken, 0.5 + taken + LOOK
         path += [(moved, goal, 0, PRESSED), (rested, goal, 0, PRESSED)]
@@ -55,18 +56,24 @@ def simulated(scene: str, law: str, distance: float, chance: random.Random, out:
 
 
 def person(loop: limpid.Client, distance: float, out: Path) -> float:
-    """The same of a person, who says when the tip is there; outside of the place it is done again."""
+    """The same of a person, who says when it is there; again if it began or ended somewhere else."""
     while True:
-        out.unlink(missing_ok=True)
-        loop.ask("Hold the tip on the table beside the first ball. Enter begins: then bring it beside "
-                 f"the ball {100 * distance:g} cm further as fast as you can.")
+        study.remove_session(out)
+        loop.ask("Hold the tip on the table beside the large ball. Enter begins: then bring it beside "
+                 f"the small one {100 * distance:g} cm further as fast as you can.", beside=True)
         loop.record(out)
-        taken = loop.ask("Enter, as soon as the tip is there.").seconds
+        taken = loop.ask("Now. Enter, as soon as the tip is there.", beside=True).seconds
         loop.stop()
-        off = limpid.session(out).proxy_tip[-20:, 0].mean() - (START + distance)
-        if abs(off) < WIDTH / 2:
+        tip = 1000 * limpid.session(out).proxy_tip  # [mm]
+        aside, above = abs(tip[0, 0] - 1000 * START), tip[0, 2] + 40
+        off = abs(tip[-20:, 0].mean() - 1000 * (START + distance))
+        if aside > 4 or above > 2:
+            wrong = f"It began {aside:.1f} mm off the ball, {above:.1f} mm above the table; allowed: 4 and 2"
+        elif off >= 500 * WIDTH:
+            wrong = f"It ended {off:.1f} mm off the place; allowed: {500 * WIDTH:g}"
+        else:
             return taken
-        loop.ask(f"It was {1000 * abs(off):.1f} mm off the place; once more.")
+        loop.ask(f"{wrong} mm. Once more.")
 
 
 def main() -> None:
@@ -77,6 +84,8 @@ def main() -> None:
         loop.open(scene=scene)
     who = study.Person(loop) if loop else study.Simulated(1.0)
     run = study.Study("placing", arguments.out, arguments.participant, who)
+    run.tell("You bring the tip from ball to ball along the table, as fast as you can. What counts is "
+             "where you see the tip. A ball is reached within 1 mm.")
     found = {}
     for law in run.blocks(LAWS):
         if loop:
@@ -96,16 +105,15 @@ def main() -> None:
             plan.answer(True)
         found[law] = study.mean_interval(rates)
     report = Report("Placing under each law", arguments.out)
-    report.text(f"Throughput of a task of Fitts' kind, places {1000 * WIDTH:g} mm wide; "
-                f"{len(DISTANCES) * arguments.repeats} trials a law.")
-    report.figure("placing", intervals("Placing", "throughput [bit/s]", found),
-                  "Mean with its interval of 95 %.")
+    report.text(f"Fitts' task, places {1000 * WIDTH:g} mm wide; {2 * arguments.repeats} trials a law.")
+    report.figure("placing", intervals("Placing", "throughput [bit/s]", found), "Mean, interval of 95 %.")
     report.table(["law", "throughput [bit/s]", "from", "to"],
                  [[law, *(f"{x:.2f}" for x in numbers)] for law, numbers in found.items()])
     report.write("placing")
     for law, (mean, low, high) in found.items():
-        print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})")
+        print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})", flush=True)
+    run.tell("That was all. Thank you.")
 
 
 if __name__ == "__main__":
-    main()
+    study.carry_out(main)

@@ -63,10 +63,11 @@ def participant(arguments: argparse.Namespace, walls: Walls):
 
 
 def main() -> None:
-    arguments = study.words(__doc__, "trials", 60, "at most, for each law")
+    arguments = study.words(__doc__, "trials", 60, "at most, for each law", least=5)
     walls = Walls(arguments.out)
     run = study.Study("stiffness", arguments.out, arguments.participant, participant(arguments, walls))
-    run.tell("Press on the wall twice. Which one is stiffer?")
+    run.tell("You feel two walls, one after the other. Press on each with the tip, as often as you like "
+             "while it is there; then say which one is stiffer.")
     answers = {}
     for law in run.blocks(LAWS):
         answers[law] = run.two_intervals(
@@ -79,8 +80,9 @@ def main() -> None:
                             f"Two-interval forced choice beside a wall of {STANDARD:g} N/m; 1-up-3-down "
                             f"staircases; participant {arguments.participant}.", "stiffness")
     for law, found in fits.items():
-        print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %")
+        print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %", flush=True)
+    run.tell("That was all. Thank you.")
 
 
 if __name__ == "__main__":
-    main()
+    study.carry_out(main)

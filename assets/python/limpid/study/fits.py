@@ -18,7 +18,8 @@ _CHI2 = {0.95: 3.841458820694124, 0.99: 6.6348966010212145, 0.9: 2.7055434540954
 
 
 class Fit(NamedTuple):
-    """A threshold, in the unit of the levels, and the interval that has it with 95 %."""
+    """A threshold, or a point of equality, in the unit of the levels, and the interval that has it
+    with 95 %."""
 
     threshold: float
     low: float
@@ -97,6 +98,21 @@ def _crossing(f, bound: float, inside: float, outside: float) -> float:  # type:
         else:
             outside = middle
     return 0.5 * (inside + outside)
+
+
+def equality(matches: Sequence[Tuple[float, float]]) -> Fit:
+    """The point of subjective equality of matches by adjustment: pairs of levels, of which one was
+    approached from above and one from below. The mean and its interval are those of the logarithms,
+    as the levels are adjusted by factors; a pair counts once, by its mean, so that what a participant
+    stops short of the reference on either side is no part of the spread.
+
+    Raises ValueError for fewer than 2 pairs or levels that are not above 0."""
+    if len(matches) < 2:
+        raise ValueError(f"a point of equality needs at least 2 pairs of matches; found: {len(matches)}")
+    if not all(level > 0 and math.isfinite(level) for pair in matches for level in pair):
+        raise ValueError("levels of matches are numbers above 0")
+    found = mean_interval([0.5 * (math.log(a) + math.log(b)) for a, b in matches])
+    return Fit(*(math.exp(x) for x in found), 2 * len(matches))
 
 
 def proportion_interval(right: int, of: int, part: float = 0.95) -> Tuple[float, float]:

@@ -136,27 +136,33 @@ class Adjustment:
     """The participant moves the level up and down until it is as the standard: an answer is "more",
     "less" or "same"; a step is a factor, and smaller after each change of direction."""
 
-    def __init__(self, start: float, step: float = 1.5, finest: float = 1.02, trials: int = 100) -> None:
-        if not (start > 0 and step >= finest > 1):
-            raise ValueError("an adjustment needs a start above 0 and steps above 1")
+    def __init__(self, start: float, step: float = 1.5, finest: float = 1.02, trials: int = 100,
+                 low: float = 0.0, high: float = math.inf) -> None:  # fmt: skip
+        """Levels stay between `low` and `high`; it ends after so many answers, `trials`, whether it is
+        as the standard or not."""
+        if not (start > 0 and low <= start <= high and step >= finest > 1):
+            raise ValueError("an adjustment needs a start above 0 between its limits, and steps above 1")
         self.level, self._step, self._finest = start, step, finest
+        self._low, self._high = low, high
         self._direction, self._trials, self._count = 0, trials, 0
-        self._same = False
+        self.matched = False  # the participant has said that it is the same
+        self.at_limit = False  # the last answer has led to one
 
     @property
     def done(self) -> bool:
-        return self._same or self._count >= self._trials
+        return self.matched or self._count >= self._trials
 
     def answer(self, wanted: str) -> None:
         """Of the participant."""
         if wanted not in ("more", "less", "same"):
             raise ValueError(f'"{wanted}" is not allowed; allowed: more, less, same')
         self._count += 1
-        self._same = wanted == "same"
-        if self._same:
+        self.matched = wanted == "same"
+        if self.matched:
             return
         direction = 1 if wanted == "more" else -1
         if self._direction and direction != self._direction:
             self._step = max(math.sqrt(self._step), self._finest)
         self._direction = direction
-        self.level *= self._step**direction
+        self.level = min(max(self.level * self._step**direction, self._low), self._high)
+        self.at_limit = self.level in (self._low, self._high)

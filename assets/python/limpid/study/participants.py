@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import random
-import time
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -28,6 +28,16 @@ class Said(NamedTuple):
     seconds: float  # from the question to its answer
 
 
+class Shown(NamedTuple):
+    """What a participant is given to adjust."""
+
+    stimulus: Stimulus  # that is felt now
+    reference: Stimulus
+    text: str
+    choices: Sequence[str]  # go on; or less, more, the reference again, the same
+    step: int  # of its trial, from 0 on
+
+
 class Person:
     """At the window of a program that listens: `limpid --listen`. Law, settings and plots are hidden
     meanwhile."""
@@ -35,10 +45,16 @@ class Person:
     def __init__(self, loop: Client, seconds: float = 4.0) -> None:
         """`seconds`: how long an interval is [s]."""
         self._loop, self._seconds = loop, seconds
+        self._session, self._scene = "", ""  # of a trial that is adjusted
+        state = loop.state()
+        if state["recording"]:  # of a study that was cut off
+            loop.stop()
+        self._how = "" if state["device"] else " Pull the arm by its tip, with the left mouse button."
         loop.blind()
 
     def tell(self, text: str) -> None:
-        """Waits for Enter."""
+        """Waits for Enter. The first time it says what the hand is, too."""
+        text, self._how = text + self._how, ""
         self._loop.ask(text)
 
     def choose(self, text: str, choices: Sequence[str]) -> Said:
@@ -55,14 +71,51 @@ class Person:
             if stimulus.scene is not None:
                 self._loop.open(scene=stimulus.scene)
             self._loop.set(stimulus.settings)
-            place = f"{i + 1} of {len(stimuli)}" if len(stimuli) > 1 else ""
-            self._loop.ask(f"Interval {place}: Enter begins.".replace(" : ", ": "))
+            place = f"Interval {i + 1} of {len(stimuli)}" if len(stimuli) > 1 else "Interval"
+            self._loop.ask(f"{place}, {self._seconds:g} s. Enter begins.")
             file = folder / f"{name}-{i + 1}.h5"
-            file.unlink(missing_ok=True)  # of a trial that was cut off
+            remove_session(file)  # of a trial that was cut off
             sessions.append(os.path.basename(self._loop.record(file)))
-            time.sleep(self._seconds)
+            self._loop.ask(f"{place}: feel it now.", beside=True, seconds=self._seconds)
             self._loop.stop()
         return self.choose(question, choices), sessions
+
+    def adjust(self, shown: Shown, folder: Path, name: str) -> Tuple[Said, List[str]]:
+        """Goes on with a trial: what is shown is felt while the question stands beside the picture.
+        The trial is one session, or one for each time that it needs another scene."""
+        scene, self._scene = self._scene, shown.stimulus.scene or self._scene
+        if scene != self._scene:
+            self.rest()
+            self._loop.open(scene=self._scene)
+        self._loop.set(shown.stimulus.settings)
+        if not self._session:
+            parts = (folder / f"{name}-{part}.h5" for part in itertools.count(1))
+            file = next(file for file in parts if not (file.exists() or part_of(file).exists()))
+            self._session = os.path.basename(self._loop.record(file))
+        session = self._session
+        self._loop.mark("reference" if len(shown.choices) == 1 else f"{shown.stimulus.level:g}")
+        found = self._loop.ask(shown.text, shown.choices, beside=True)
+        if found.index == len(shown.choices) - 1 and len(shown.choices) > 1:
+            self.rest()  # it is the same: the session is complete before the answer is kept
+        return Said(found.index, found.answer, found.seconds), [session]
+
+    def rest(self) -> None:
+        """Ends the session of the trial that is adjusted."""
+        if self._session:
+            self._session = ""
+            self._loop.stop()
+
+
+def part_of(session: Path) -> Path:
+    """What a session is written to until it is complete."""
+    return session.with_name(session.name + ".part")
+
+
+def remove_session(session: Path) -> None:
+    """With what a program that was killed has left of it."""
+    for file in (session, part_of(session)):
+        if file.exists():
+            file.unlink()
 
 
 class Simulated:
@@ -100,3 +153,23 @@ class Simulated:
             felt = [self._percept(stimulus) + chance.gauss(0, self.sigma) for stimulus in stimuli]
             index = max(range(len(felt)), key=felt.__getitem__)
         return Said(index, choices[index], 0.0), []
+
+    def adjust(self, shown: Shown, folder: Path, name: str) -> Tuple[Said, List[str]]:
+        """Compares what is shown with the reference, and takes what is nearer than half of its
+        threshold for the same; slips, too. The threshold is that at the reference, and grows with
+        what is felt, as Weber's law has it."""
+        del folder
+        if len(shown.choices) == 1:
+            return Said(0, shown.choices[0], 0.0), []
+        chance = random.Random(f"{self._seed} {name} {shown.step}")
+        if chance.random() < self.lapse:
+            index = chance.randrange(2)
+        else:
+            reference = self._percept(shown.reference)
+            off = math.log(self._percept(shown.stimulus) / reference)
+            off += chance.gauss(0, math.sqrt(2) * self.sigma / reference)
+            index = 3 if abs(off) < self.threshold / 2 / reference else 0 if off > 0 else 1
+        return Said(index, shown.choices[index], 0.0), []
+
+    def rest(self) -> None:
+        """There is nothing to end."""

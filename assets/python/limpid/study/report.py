@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
-from limpid.study.fits import Fit, chance_of, fit, proportion_interval
+from limpid.study.fits import Fit, chance_of, equality, fit, proportion_interval
 
 WIDTH, HEIGHT = 560, 340  # of a figure [px]
 LEFT, RIGHT, TOP, BOTTOM = 64, 16, 34, 48  # its margins [px]
@@ -135,6 +135,20 @@ def intervals(title: str, unit: str, found: Dict[str, Tuple[float, float, float]
     return axes.svg()
 
 
+def matched(title: str, quantity: str, matches: Dict[str, List[Tuple[float, float]]],
+            fits: Dict[str, Fit]) -> str:  # fmt: skip
+    """Each match beside the point of equality with its interval, for each condition."""
+    top = 1.1 * max([level for each in matches.values() for pair in each for level in pair]
+                    + [f.high for f in fits.values()])  # fmt: skip
+    axes = Axes(title, "", quantity, (-0.6, len(fits) - 0.4), (0, top), list(fits))
+    for i, (condition, colour) in enumerate(zip(fits, COLOURS)):
+        for level in (level for pair in matches[condition] for level in pair):
+            axes.bar(i - 0.12, level, level, level, colour, 2)
+        f = fits[condition]
+        axes.bar(i, f.threshold, f.low, f.high, colour, 5)
+    return axes.svg()
+
+
 class Report:
     """FOLDER/NAME.html with its figures beside it as SVG."""
 
@@ -185,6 +199,24 @@ def threshold_report(title: str, folder: "os.PathLike[str] | str", unit: str,
         condition: (f.threshold, f.low, f.high) for condition, f in fits.items()}),
         "The difference of 75 % right answers, with the interval of 95 %.")  # fmt: skip
     report.table(["condition", f"threshold [{unit}]", "from", "to", "trials"], [
+        [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
+        for condition, f in fits.items()])  # fmt: skip
+    report.write(name)
+    return fits
+
+
+def equality_report(title: str, folder: "os.PathLike[str] | str", quantity: str,
+                    matches: Dict[str, List[Tuple[float, float]]], about: str, name: str = "report"
+                    ) -> Dict[str, Fit]:  # fmt: skip
+    """The point of subjective equality of each condition's pairs of matches, from above and below,
+    and the page of it: NAME.html. `quantity`: what was adjusted, with its unit in brackets."""
+    fits = {condition: equality(each) for condition, each in matches.items()}
+    report = Report(title, folder)
+    report.text(about)
+    report.figure(f"{name}-equality", matched(title, quantity, matches, fits),
+                  "What felt like the reference: each trial as a small point, and the mean of their "
+                  "logarithms with its interval of 95 %.")  # fmt: skip
+    report.table(["condition", quantity, "from", "to", "trials"], [
         [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
         for condition, f in fits.items()])  # fmt: skip
     report.write(name)

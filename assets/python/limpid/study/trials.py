@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import errno
+import functools
 import io
+import math
 import os
 import random
+import tempfile
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
 
-from limpid.errors import LimpidError
-from limpid.study.methods import ConstantStimuli, Quest, Staircase
+from limpid.errors import LimpidError, ProgramError, RequestError
+from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
 from limpid.study.orders import order_for
-from limpid.study.participants import Person, Simulated, Stimulus
+from limpid.study.participants import Person, Shown, Simulated, Stimulus
 
+WANTED = ("less", "more", "reference", "same")  # by the keys 1 to 4 of who adjusts
 COLUMNS = ("study", "participant", "row", "kind", "block", "condition", "trial", "practice", "level",
            "standard", "order", "answer", "correct", "value", "seconds", "sessions", "time")  # fmt: skip
 Method = Union[Staircase, Quest, ConstantStimuli]
@@ -25,6 +31,20 @@ class StudyError(LimpidError):
     """A study that cannot begin, or go on where it stopped."""
 
 
+def folder_for(folder: "os.PathLike[str] | str") -> Path:
+    """The folder, which is there then. Raises StudyError where that cannot be, or nothing can be
+    written to it."""
+    path = Path(folder)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        raise StudyError(f"{path}: answers cannot be written there: {error.strerror}; choose another "
+                         "folder, or make room in it") from error  # fmt: skip
+    return path
+
+
 class Study:
     """One participant of a study. The answers are in FOLDER/NAME-PARTICIPANT.csv, a row each, and the
     sessions beside it; rows that are there already are taken as they are, in their order, so that a
@@ -32,14 +52,16 @@ class Study:
 
     def __init__(self, name: str, folder: "os.PathLike[str] | str", participant: int, who: Who) -> None:
         """`participant`: a number from 0 on, which decides orders and chance. Raises StudyError for a
-        file that is not this study's."""
+        file that is not this study's, or a folder that cannot be written to."""
+        if participant < 0:
+            raise StudyError(f"participant: {participant} is not allowed; allowed: a number from 0 on")
         self.name, self.participant, self.who = name, participant, who
-        self.folder = Path(folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder_for(folder)
         self.file = self.folder / f"{name}-{participant:03d}.csv"
+        self.rows: List[Dict[str, str]] = []
+        self._known: List[Dict[str, str]] = []
         self._known = self._read()
         self._next = 0
-        self.rows: List[Dict[str, str]] = []
 
     def _read(self) -> List[Dict[str, str]]:
         """Half a row, as a crash may leave it, was no answer yet."""
@@ -60,10 +82,33 @@ class Study:
     def _append(self, cells: List[str]) -> None:
         line = io.StringIO()
         csv.writer(line, lineterminator="\n").writerow(cells)
-        with open(self.file, "ab") as out:
-            out.write(line.getvalue().encode())
-            out.flush()
-            os.fsync(out.fileno())
+        data = line.getvalue().encode()
+        try:
+            with open(self.file, "ab", buffering=0) as out:
+                before = out.tell()
+                if out.write(data) < len(data):
+                    os.truncate(out.fileno(), before)
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+                os.fsync(out.fileno())
+        except OSError as error:
+            raise StudyError(f"{self.file}: {error.strerror}; the last answer is not in it. Make room for "
+                             f"it there and start the study again with the same words: {self._goes_on()}"
+                             ) from error  # fmt: skip
+
+    def _goes_on(self) -> str:
+        kept = max(len(self._known), len(self.rows))
+        return f"it goes on behind the {kept} answers that are there"
+
+    @contextlib.contextmanager
+    def _asking(self) -> Iterator[None]:
+        """What goes wrong meanwhile, as where somebody closes the window, says where the answers are."""
+        try:
+            yield
+        except (ProgramError, RequestError) as error:
+            ended = isinstance(error, ProgramError)
+            raise StudyError(f"{error}. Every answer up to then is in {self.file}; start "
+                             f"{'`limpid --listen` and ' * ended}the study again with the same words: "
+                             f"{self._goes_on()}") from error  # fmt: skip
 
     def _row(self, asked: Dict[str, Any], ask: Callable[[], Dict[str, Any]]) -> Dict[str, str]:
         """What is known of the next row, or else what is asked and written now."""
@@ -77,7 +122,8 @@ class Study:
                 raise StudyError(f"{self.file}: row {number + 1}: {other[0]} is {row[other[0]]}; needed: "
                                  f"{plan[other[0]]}, as the study has it now")  # fmt: skip
         else:
-            answers = {key: _text(value) for key, value in ask().items()}
+            with self._asking():
+                answers = {key: _text(value) for key, value in ask().items()}
             now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
             row = {**dict.fromkeys(COLUMNS, ""), "study": self.name,
                    "participant": str(self.participant), "row": str(number + 1), **plan, **answers,
@@ -90,18 +136,18 @@ class Study:
         """The same for the same row of the same participant, whenever that is asked for."""
         return random.Random(f"{self.name} {self.participant} {self._next}")
 
-    def blocks(self, conditions: Sequence[str], pause: str = "Take a break. Enter goes on."
-               ) -> Iterator[str]:  # fmt: skip
+    def blocks(self, conditions: Sequence[str]) -> Iterator[str]:
         """The conditions in this participant's order, with breaks in between."""
         for i, condition in enumerate(order_for(self.participant, conditions)):
-            if i > 0 and self._next >= len(self._known):
-                self.who.tell(pause)
+            if i > 0:
+                self.tell(f"Take a break. Part {i + 1} of {len(conditions)} comes next.")
             yield condition
 
     def tell(self, text: str) -> None:
         """Something to read, where the study is not past it already."""
         if self._next >= len(self._known):
-            self.who.tell(text)
+            with self._asking():
+                self.who.tell(text)
 
     def question(self, text: str, choices: Sequence[str], condition: str = "") -> str:
         """A question beside the trials; its answer is a row."""
@@ -136,8 +182,7 @@ class Study:
             practised = trial < practice
             level = first_level if practised else method.level
             second = self.chance().random() < 0.5  # the comparison comes second
-            if pause_every and trial and trial % pause_every == 0:
-                self.tell("Take a break. Enter goes on.")
+            self._before(trial, practice, pause_every, " You are told whether you were right.")
             correct = self._compare(condition, trial, practised, level, standard, second, make, question)
             if practised:
                 self.tell("Right." if correct else "It was the other one.")
@@ -147,9 +192,85 @@ class Study:
             trial += 1
         return counted
 
+    def _before(self, trial: int, practice: int, pause_every: int, told: str) -> None:
+        """What there is to read before a trial."""
+        if practice and trial == 0:
+            self.tell(f"First some practice: {practice} trial{'s' * (practice > 1)}, which "
+                      f"do{'es' * (practice == 1)} not count.{told}")  # fmt: skip
+        elif practice and trial == practice:
+            self.tell("That was the practice. From now on it counts.")
+        elif pause_every and trial and trial % pause_every == 0:
+            self.tell("Take a break.")
+
+    def adjustments(self, condition: str, reference: Stimulus, make: Callable[[float], Stimulus],
+                    question: str, words: Tuple[str, str] = ("less", "more"), trials: int = 10,
+                    around: Optional[float] = None, spread: float = 2.0, practice: int = 0,
+                    pause_every: int = 0, low: float = 0.0, high: float = math.inf
+                    ) -> List[Tuple[float, float]]:  # fmt: skip
+        """Method of adjustment: the participant changes a quantity with keys until it feels like the
+        reference, feels that again whenever it wants, and confirms with a key. `make` gives the
+        stimulus of a value, `words` what its first two keys make of it. Of each two trials one starts
+        above `around`, the reference's level, and one below, in an order of chance, by a factor up to
+        `spread`. Each key is a row; the one that confirms has the value that was found.
+
+        Returns the pairs for equality(). A trial that takes 100 keys is left, and its pair with it.
+        Raises ValueError for a number of trials that is not even."""
+        if trials < 2 or trials % 2:
+            raise ValueError(f"trials come in pairs, from above and from below; found: {trials}")
+        middle = reference.level if around is None else around
+        found: List[Optional[float]] = []
+        above = False
+        for trial in range(practice + trials):
+            chance = self.chance()
+            first = (trial - practice) % 2 == 0  # of its pair
+            above = chance.random() < 0.5 if first else not above
+            factor = spread ** ((1 if above else -1) * chance.uniform(0.5, 1))
+            method = Adjustment(min(max(middle * factor, low), high), low=low, high=high)
+            self._before(trial, practice, pause_every, "")
+            self._adjust({"condition": condition, "trial": trial, "practice": int(trial < practice),
+                          "order": 2 if above else 1}, reference, method, make, question, words)  # fmt: skip
+            if trial >= practice:
+                found.append(method.level if method.matched else None)
+        return [(a, b) for a, b in zip(found[::2], found[1::2]) if a is not None and b is not None]
+
+    def _adjust(self, asked: Dict[str, Any], reference: Stimulus, method: Adjustment,
+                make: Callable[[float], Stimulus], question: str, words: Tuple[str, str]) -> None:  # fmt: skip
+        """A trial; `asked` is what its rows have in common."""
+        name = self._name_of(asked["condition"], asked["trial"])
+        told = "This is the reference. Feel it, then go on to yours."
+        first = Shown(reference, reference, told, ("Go on",), 0)
+        step, again = 0, True
+        while not method.done:
+            if again:
+                shown = first._replace(step=step)
+            else:
+                text = question + (" It goes no further." if method.at_limit else "")
+                choices = (*words, "feel the reference again", "it feels the same")
+                shown = Shown(make(method.level), reference, text, choices, step)
+            row = {"kind": "reference" if again else "adjust", **asked, "level": shown.stimulus.level,
+                   "standard": reference.level}  # fmt: skip
+            ask = functools.partial(self._press, shown, name)
+            answer = self._row(row, ask)["answer"]
+            if not again and answer != "reference":
+                method.answer(answer)
+            again = answer == "reference"
+            step += 1
+        if not method.matched:
+            with self._asking():
+                self.who.rest()
+
+    def _press(self, shown: Shown, name: str) -> Dict[str, Any]:
+        said, sessions = self.who.adjust(shown, self.folder, name)
+        answer = WANTED[said.index] if len(shown.choices) > 1 else "on"
+        return {"answer": answer, "value": shown.stimulus.level if answer == "same" else None,
+                "seconds": said.seconds, "sessions": " ".join(sessions)}  # fmt: skip
+
+    def _name_of(self, condition: str, trial: int) -> str:
+        return f"{self.name}-{self.participant:03d}-{condition}-{trial:03d}".replace("/", "-")
+
     def _compare(self, condition: str, trial: int, practised: bool, level: float, standard: float,
                  second: bool, make: Callable[[float], Stimulus], question: str) -> bool:  # fmt: skip
-        name = f"{self.name}-{self.participant:03d}-{condition}-{trial:03d}".replace("/", "-")
+        name = self._name_of(condition, trial)
         stimuli = [make(standard), make(standard + level)]
 
         def ask() -> Dict[str, Any]:

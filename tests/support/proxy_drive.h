@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/touch/proxy.h"
+
+namespace limpid::test {
+
+// No torque and no damping on any of n joints.
+inline ProxyDrive<kAnyDof> no_drive(int n) { return {Vec<kAnyDof>::Zero(n), 0}; }
+
+}  // namespace limpid::test
