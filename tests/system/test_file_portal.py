@@ -172,6 +172,25 @@ class Answers(WithABus):
         self.wait("the scene", lambda s: s["scene"] == str(file))
 
 
+class ShowsInItsFolder(WithABus):
+    def prepare(self) -> None:
+        super().prepare()
+        self.environment["XDG_DATA_HOME"] = str(self.files / "100% of it")
+
+    def test_what_was_exported_in_the_desktops_file_manager(self) -> None:
+        self.portal(how="wait")
+        self.go_on(1)
+        self.key("ctrl+e")
+        self.wait("the dialog", lambda s: s["dialog"] == "export")
+        self.key("Return")
+        self.wait("it to be said", lambda s: any("Show in folder" in b["buttons"] for b in s["banners"]))
+        banners = self.settled()["banners"]
+        self.click(*next(b["buttons"]["Show in folder"] for b in banners if "Show in folder" in b["buttons"]))
+        self.wait_until("the file manager to be asked", lambda: self.said("ShowItems"))
+        (file,) = (self.files / "100% of it").glob("limpid/sessions/*.png")
+        self.assertEqual(self.said("ShowItems")[0]["items"], [f"file://{quote(str(file))}"])
+
+
 class DoesNotAnswer(WithABus):
     def test_limpids_own_opens_where_the_desktops_fails(self) -> None:
         self.key("ctrl+shift+o")  # a bus, and nobody on it

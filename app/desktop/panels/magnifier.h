@@ -22,6 +22,7 @@ struct LensPlace {
   ScreenRect view;         // the 3D view
   double pixel_scale = 1;  // pixels a point
   int pixel_height = 0;    // of the window [px]
+  float words = 0;         // that words take at the view's top over all of its width [points]
 };
 
 class Magnifier {
