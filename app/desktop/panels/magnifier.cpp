@@ -28,9 +28,9 @@ ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
   return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
 }
 
-// In the lower right corner, or in the upper one where it would hide the tips; where `words` leave
-// it no room there, in the lower left one.
-std::optional<ScreenRect> corner_for(ScreenRect view, float words, ImVec2 tips) {
+}  // namespace
+
+std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips) {
   const ImVec2 size = view.size();
   const float edge = std::floor(std::min(kShare * size.y, kMostWide * size.x));
   const float gap = 0.6f * ImGui::GetFontSize();
@@ -47,8 +47,6 @@ std::optional<ScreenRect> corner_for(ScreenRect view, float words, ImVec2 tips) 
   return ScreenRect{{low.x, top}, {low.x + edge, top + edge}};
 }
 
-}  // namespace
-
 bool worth_magnifying(const ViewState& state, const Camera& camera) {
   if (!seen(state)) return false;
   const double gap =
@@ -61,7 +59,7 @@ void Magnifier::draw(SceneView& picture, const ViewState& state, const Camera& c
   const double now = ImGui::GetTime();
   if (worth_magnifying(state, camera)) until_ = now + kMoment;
   const auto tips = seen(state) ? camera.project(middle(state)) : std::nullopt;
-  rect_ = tips && now <= until_ ? corner_for(place.view, place.words, at(place.view, *tips))
+  rect_ = tips && now <= until_ ? lens_corner(place.view, place.words, at(place.view, *tips))
                                 : std::nullopt;
   view_ = place.view;
   if (!rect_) return;
