@@ -559,7 +559,8 @@ void draw_box(const PlotFrame& frame, const std::string& title, const std::vecto
   const float tall = height * static_cast<float>(lines.size() + 1) + 10 * s;
   float left = line_x + 10 * s;
   if (left + width > frame.area.max.x) left = line_x - 10 * s - width;
-  left = std::max(left, frame.outer.min.x);
+  // In a narrow plot rather over its neighbour than cut off.
+  left = std::min(std::max(left, frame.outer.min.x), frame.list.GetClipRectMax().x - width);
   const float top = std::clamp(near_to.y - 0.5f * tall, frame.area.min.y,
                                std::max(frame.area.min.y, frame.area.max.y - tall));
   frame.list.AddRectFilled({left, top}, {left + width, top + tall},

@@ -16,10 +16,6 @@ namespace limpid {
 
 // What edges of a mesh say about it: where triangles meet, and how many.
 
-// Vertices at the same place have one name: the number of the first of them. One that is not
-// finite is alone.
-std::vector<std::uint32_t> names_of(const std::vector<Eigen::Vector3f>& places);
-
 struct EdgeCount {
   std::size_t open = 0;  // of one triangle only
   std::size_t odd = 0;   // of more than two triangles, or of two that disagree

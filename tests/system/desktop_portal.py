@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""A stand-in for the desktop's file dialogs (org.freedesktop.portal.FileChooser) on a session bus.
+"""A stand-in for the desktop's file dialogs (org.freedesktop.portal.FileChooser) on a session bus, and
+for its file manager (org.freedesktop.FileManager1).
 
     desktop_portal.py ORDER LOG
 
@@ -32,6 +33,9 @@ METHOD = """<method name="{}"><arg type="s" direction="in"/><arg type="s" direct
 <arg type="a{{sv}}" direction="in"/><arg type="o" direction="out"/></method>"""
 CHOOSER_XML = f"""<node><interface name="org.freedesktop.portal.FileChooser">{METHOD.format("OpenFile")}
 {METHOD.format("SaveFile")}<property name="version" type="u" access="read"/></interface></node>"""
+MANAGER = "org.freedesktop.FileManager1"
+MANAGER_XML = f"""<node><interface name="{MANAGER}"><method name="ShowItems">
+<arg type="as" direction="in"/><arg type="s" direction="in"/></method></interface></node>"""
 REQUEST_XML = f'<node><interface name="{REQUEST}"><method name="Close"/></interface></node>'
 
 
@@ -41,12 +45,19 @@ class Portal:
         self.bus = Gio.bus_get_sync(Gio.BusType.SESSION)
         chooser = Gio.DBusNodeInfo.new_for_xml(CHOOSER_XML).interfaces[0]
         self.bus.register_object(PATH, chooser, self.asked, lambda *_: GLib.Variant("u", 4), None)
+        manager = Gio.DBusNodeInfo.new_for_xml(MANAGER_XML).interfaces[0]
+        self.bus.register_object(f"/{MANAGER.replace('.', '/')}", manager, self.show, None, None)
+        Gio.bus_own_name_on_connection(self.bus, MANAGER, Gio.BusNameOwnerFlags.NONE, None, None)
         Gio.bus_own_name_on_connection(self.bus, NAME, Gio.BusNameOwnerFlags.NONE,
                                        lambda *_: self.note({"what": "there"}), None)
 
     def note(self, what: dict) -> None:
         with self.log.open("a") as log:
             log.write(json.dumps(what) + "\n")
+
+    def show(self, _bus, _sender, _path, _interface, _method, words, call) -> None:
+        self.note({"what": "ShowItems", "items": words.unpack()[0]})
+        call.return_value(None)
 
     def asked(self, _bus, sender, _path, _interface, method, words, call) -> None:
         parent, title, options = words.unpack()

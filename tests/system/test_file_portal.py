@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 from urllib.parse import quote
 
-from support import LIMPID
+from support import ASSETS, LIMPID
 from window import WindowTest
 
 PYTHON = "/usr/bin/python3"  # has the distribution's modules
@@ -22,6 +22,7 @@ BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration
  "http://www.freedesktop.org/standards/dbus/1.0/busconfig.dtd">
 <busconfig><type>session</type><listen>unix:path={}</listen><policy context="default">
 <allow send_destination="*"/><allow receive_sender="*"/><allow own="*"/></policy></busconfig>"""
+SESSION = ASSETS / "sessions/gears.h5"
 SCENE = """[[sphere]]
 name = "ball"
 center = [0.2, 0.0, 0.0]
@@ -98,6 +99,19 @@ class Answers(WithABus):
         tokens = {call["options"]["handle_token"] for call in self.said("OpenFile")}
         self.assertEqual(len(tokens), 3, "each time another one")
 
+    def test_a_session_is_found_elsewhere(self) -> None:
+        file = self.files / "gears 1.h5"
+        shutil.copy(SESSION, file)
+        self.portal(how="choose", uri=f"file://{quote(str(file))}")
+        self.key("ctrl+o")
+        self.wait("the sessions", lambda s: s["dialog"] == "open session" and s["closing"])
+        x, y = self.settled()["closing"]["button"]
+        self.click(x + 110, y)  # "Elsewhere..."
+        self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
+        (call,) = self.said("OpenFile")
+        self.assertEqual(call["options"]["filters"], [["*.h5", [[0, "*.[hH]5"]]]])
+        self.assertTrue(call["options"]["current_folder"].endswith("/limpid/sessions\0"))
+
     def test_a_portal_of_old_chooses_its_handle(self) -> None:
         file = self.files / "scene.toml"
         file.write_text(SCENE)
@@ -170,6 +184,25 @@ class Answers(WithABus):
         file.write_text(SCENE)
         self.key("Return")
         self.wait("the scene", lambda s: s["scene"] == str(file))
+
+
+class ShowsInItsFolder(WithABus):
+    def prepare(self) -> None:
+        super().prepare()
+        self.environment["XDG_DATA_HOME"] = str(self.files / "100% of it")
+
+    def test_what_was_exported_in_the_desktops_file_manager(self) -> None:
+        self.portal(how="wait")
+        self.go_on(1)
+        self.key("ctrl+e")
+        self.wait("the dialog", lambda s: s["dialog"] == "export")
+        self.key("Return")
+        self.wait("it to be said", lambda s: any("Show in folder" in b["buttons"] for b in s["banners"]))
+        banners = self.settled()["banners"]
+        self.click(*next(b["buttons"]["Show in folder"] for b in banners if "Show in folder" in b["buttons"]))
+        self.wait_until("the file manager to be asked", lambda: self.said("ShowItems"))
+        (file,) = (self.files / "100% of it").glob("limpid/sessions/*.png")
+        self.assertEqual(self.said("ShowItems")[0]["items"], [f"file://{quote(str(file))}"])
 
 
 class DoesNotAnswer(WithABus):

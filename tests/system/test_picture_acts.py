@@ -79,6 +79,7 @@ class Picture(WindowTest):
         self.settled()
         self.key("g")
         self.key("z")
+        self.settled()  # it begins where the mouse is then
         self.move(x, y - 60)
         self.settled()
         self.key("Return")
@@ -91,12 +92,14 @@ class Picture(WindowTest):
         self.move(x + 60, y)
         self.settled()
         self.key("s")
+        self.settled()  # it begins where the mouse is then
         self.move(x + 120, y)
         self.settled()
         self.click(x + 120, y)
         self.assertNotIn("size = [0.03, 0.03, 0.03]", self.text())
 
         self.key("r")
+        self.settled()  # it begins where the mouse is then
         self.move(x + 60, y + 80)
         self.settled()
         self.assertTrue(self.state()["dirty"])

@@ -7,6 +7,7 @@ namespace limpid {
 using SteadyClock = std::chrono::steady_clock;
 
 void Notices::say(std::string text, bool bad) {
+  std::erase_if(notices_, [&](const Notice& notice) { return notice.text == text; });
   const auto seconds = std::chrono::seconds(bad ? 10 : 5);
   notices_.push_back({std::move(text), bad, SteadyClock::now() + seconds});
 }

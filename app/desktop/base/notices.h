@@ -21,6 +21,7 @@ struct Notice {
 
 class Notices {
  public:
+  // What is said again stands there once.
   void say(std::string text, bool bad = false);
   // Not what is being said already.
   void say_once(const std::string& text, bool bad);

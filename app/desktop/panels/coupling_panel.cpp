@@ -222,8 +222,8 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
            "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
   const auto verdict = [](const std::string& broken, double margin) {
-    return broken.empty() ? fmt::format("ok  {:+.1e}", std::abs(margin) < 1e-12 ? 0.0 : margin)
-                          : fmt::format("broken  {:+.1e}", margin);
+    return broken.empty() ? fmt::format("ok  {:+.2g}", std::abs(margin) < 1e-12 ? 0.0 : margin)
+                          : fmt::format("broken  {:+.2g}", margin);
   };
   read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
            ("b_d less " + device_needs(p, a) + " [N m s/rad]: not negative").c_str());

@@ -28,8 +28,9 @@ ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
   return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
 }
 
-// In the lower right corner, or in the upper one where it would hide the tips.
-std::optional<ScreenRect> corner_for(ScreenRect view, ImVec2 tips) {
+}  // namespace
+
+std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips) {
   const ImVec2 size = view.size();
   const float edge = std::floor(std::min(kShare * size.y, kMostWide * size.x));
   const float gap = 0.6f * ImGui::GetFontSize();
@@ -39,11 +40,12 @@ std::optional<ScreenRect> corner_for(ScreenRect view, ImVec2 tips) {
   const float room = 0.25f * edge;
   const bool hides = tips.x > lower.min.x - room && tips.y > lower.min.y - room;
   if (!hides) return lower;
-  const float top = std::floor(view.min.y + gap);
+  const float top = std::floor(view.min.y + words + gap), left = std::floor(view.min.x + gap);
+  if (words > 0 && tips.y < top + edge + room) {
+    return ScreenRect{{left, low.y}, {left + edge, low.y + edge}};
+  }
   return ScreenRect{{low.x, top}, {low.x + edge, top + edge}};
 }
-
-}  // namespace
 
 bool worth_magnifying(const ViewState& state, const Camera& camera) {
   if (!seen(state)) return false;
@@ -57,7 +59,8 @@ void Magnifier::draw(SceneView& picture, const ViewState& state, const Camera& c
   const double now = ImGui::GetTime();
   if (worth_magnifying(state, camera)) until_ = now + kMoment;
   const auto tips = seen(state) ? camera.project(middle(state)) : std::nullopt;
-  rect_ = tips && now <= until_ ? corner_for(place.view, at(place.view, *tips)) : std::nullopt;
+  rect_ = tips && now <= until_ ? lens_corner(place.view, place.words, at(place.view, *tips))
+                                : std::nullopt;
   view_ = place.view;
   if (!rect_) return;
   const auto pixels = [&](float points) {

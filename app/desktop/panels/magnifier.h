@@ -22,7 +22,12 @@ struct LensPlace {
   ScreenRect view;         // the 3D view
   double pixel_scale = 1;  // pixels a point
   int pixel_height = 0;    // of the window [px]
+  float words = 0;         // that words take at the view's top over all of its width [points]
 };
+
+// In the lower right corner, or in the upper one where it would hide the tips; where `words`, as in
+// LensPlace, leave it no room there, in the lower left one. Nothing where the view is too small.
+std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips);
 
 class Magnifier {
  public:

@@ -19,8 +19,7 @@ PlotsRequest draw_no_plots() {
 
 }  // namespace
 
-PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect,
-                        RangePanel& figures) {
+PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect) {
   PlotsRequest wish;
   begin_panel("plots", rect);
   stage.group.begin_frame(stage.history,
@@ -54,7 +53,6 @@ PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, 
   }
   ImGui::EndChild();
   ImGui::End();
-  figures.draw(stage, player, saving, rect);
   return wish;
 }
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "app/desktop/base/stage.h"
-#include "app/desktop/panels/range_panel.h"
 #include "app/plot/plot_menu.h"
 #include "app/session/player.h"
 
@@ -16,8 +15,7 @@ struct PlotsRequest {
   std::size_t plot = 0;
 };
 
-// `player` of the recording that is shown; null: the loop is. `figures`: of what is selected.
-PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect,
-                        RangePanel& figures);
+// `player` of the recording that is shown; null: the loop is.
+PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
 
 }  // namespace limpid

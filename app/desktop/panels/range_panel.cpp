@@ -47,7 +47,7 @@ void RangePanel::reckon(const Plot& plot, const History& history, const PlotRang
   }
 }
 
-void RangePanel::draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect) {
+void RangePanel::draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect view) {
   PlotGroup& group = stage.group;
   if (!group.range() || group.range()->plot >= stage.plots.size()) return;
   const PlotRange range = *group.range();
@@ -55,7 +55,7 @@ void RangePanel::draw(Stage& stage, Player* player, const PlotSaving& saving, Sc
   const PlotSpec& spec = plot.spec();
   reckon(plot, stage.history, range);
   const float em = ImGui::GetFontSize();
-  ImGui::SetNextWindowPos({0.5f * (rect.min.x + rect.max.x), rect.min.y - 0.5f * em},
+  ImGui::SetNextWindowPos({0.5f * (view.min.x + view.max.x), view.max.y - 0.5f * em},
                           ImGuiCond_Always, {0.5f, 1});
   ImGui::Begin("range", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |

@@ -12,8 +12,9 @@ namespace limpid {
 
 class RangePanel {
  public:
-  // Above the plots at `rect`, while a stretch is selected. `player` as draw_plots() has it.
-  void draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
+  // At the bottom of the view above the plots, while a stretch is selected. `player` as
+  // draw_plots() has it.
+  void draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect view);
 
  private:
   struct Line {

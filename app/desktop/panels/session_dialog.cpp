@@ -44,7 +44,7 @@ fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   return chosen;
 }
 
-fs::path SessionDialog::draw(bool& open) {
+fs::path SessionDialog::draw(bool& open, bool& elsewhere) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   const float em = ImGui::GetFontSize();
   const bool shown = begin_modal("Open session", open, {std::min(34 * em, 0.94f * room.x), 0});
@@ -80,9 +80,12 @@ fs::path SessionDialog::draw(bool& open) {
   if (ImGui::Button("Open (Enter)")) chosen = expanded(typed_);
   ImGui::SameLine();
   close_button("Cancel (Esc)", open);
+  ImGui::SameLine();
+  elsewhere = noted_button("Elsewhere...");
+  if (elsewhere) open = false;
   ImGui::EndPopup();
   std::error_code none;
-  if (chosen.empty()) return {};
+  if (chosen.empty() || elsewhere) return {};
   if (!fs::is_regular_file(chosen, none) && !fs::is_regular_file(chosen / "table.h5", none)) {
     complaint_ = fs::is_directory(chosen, none) ? "There is no table.h5 of a sweep in that folder."
                                                 : "There is no such file.";

@@ -10,8 +10,9 @@ namespace limpid {
 
 class SessionDialog {
  public:
-  // While `open`. Returns the file once it is chosen, and clears `open`.
-  std::filesystem::path draw(bool& open);
+  // While `open`. Returns the file once it is chosen, and clears `open`; so does whoever wants to
+  // look in other folders: `elsewhere` is set then.
+  std::filesystem::path draw(bool& open, bool& elsewhere);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
  private:

@@ -215,7 +215,7 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   const ViewState view = state_of(scene, settings);
   paint(view, *drawn_, SceneView::Sheet::main);
   if (settings.show_lens && !scene.split()) {
-    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height});
+    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words});
   } else {
     magnifier_.hide();
   }

@@ -37,6 +37,7 @@ struct ViewScene {
   int quality = 0;         // a level of Quality
   double pixel_scale = 1;  // pixels a point
   int pixel_height = 0;    // of the window [px]
+  float words = 0;         // that words take at the top over all of its width [points]
 
   bool split() const { return !twin.empty() && !overlaid; }
 };

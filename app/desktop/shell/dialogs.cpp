@@ -142,7 +142,10 @@ DrawDialog plot_chooser(Desktop& d) {
 
 DrawDialog sessions(Desktop& d) {
   return [&d, dialog = std::make_shared<SessionDialog>()](bool& open, ScreenRect) {
-    if (const fs::path file = dialog->draw(open); !file.empty()) d.world.open_files({file});
+    bool elsewhere = false;
+    const fs::path file = dialog->draw(open, elsewhere);
+    if (elsewhere) d.dialog.open("find session");
+    if (!file.empty()) d.world.open_files({file});
   };
 }
 
@@ -189,6 +192,19 @@ DrawDialog open_scene(Desktop& d) {
   return ask_for_file(
       d, {.title = "Open scene", .action = "Open", .extensions = {".toml"}},
       [](Desktop& desktop, const fs::path& file) { desktop.world.open_scene(file); });
+}
+
+// A recording, or the table of a sweep.
+DrawDialog find_session(Desktop& d) {
+  return [&d,
+          question = std::make_shared<FileQuestion>(PathDialog::Options{
+              .title = "Find session", .action = "Open", .extensions = {".h5"}}),
+          folder = sessions_dir()](bool& open, ScreenRect) mutable {
+    const fs::path file = question->draw(open, [&] { return place_of(d, folder / ""); });
+    if (file.empty()) return;
+    folder = file.parent_path();
+    d.world.open_files({file});
+  };
 }
 
 DrawDialog open_arm(Desktop& d) {
@@ -307,6 +323,7 @@ constexpr std::array kDialogs{
     DialogKind{"sweep", kViews, sweep_map},
     DialogKind{"plot", DialogKind::Keys::typed, plot_chooser},
     DialogKind{"open session", kModal, sessions},
+    DialogKind{"find session", kModal, find_session},
     DialogKind{"gallery", kModal, gallery},
     DialogKind{"add model", kModal, add_model},
     DialogKind{"open scene", kModal, open_scene},

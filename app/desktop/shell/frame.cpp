@@ -45,7 +45,7 @@ void Frame::draw() {
       ImGui::End();
     });
   }
-  if (at.show_plots) part([&] { draw_plot_row(at.plots); });
+  if (at.show_plots) part([&] { draw_plot_row(at.plots, at.view); });
   part([&] {
     const auto mark = draw_transport(desktop_.playback, desktop_.live, settings.parameters.tick,
                                      settings.plot_length, act_, at.transport);
@@ -144,7 +144,8 @@ ViewScene Frame::view_scene() {
 void Frame::draw_view(ScreenRect rect) {
   if (story_taken_over(desktop_.playback, rect)) desktop_.playback.take_over();
   Camera& camera = desktop_.shown.camera;
-  const ViewScene scene = view_scene();
+  ViewScene scene = view_scene();
+  if (below_banners_.max.x >= rect.max.x) scene.words = below_banners_.max.y - rect.min.y;
   const float width = scene.split() ? rect.width() / 2 : rect.width();
   constexpr double kApart = 2;  // between the halves of a twin, and rounding [px]
   const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
@@ -256,8 +257,8 @@ void Frame::save_plot(const ScreenRect& box, const std::filesystem::path& file) 
   desktop_.exporter.carry_out(order, stage);
 }
 
-// The row of plots, and what is asked for there.
-void Frame::draw_plot_row(ScreenRect rect) {
+// The row of plots, and what is asked for there; over the view the figures of what is selected.
+void Frame::draw_plot_row(ScreenRect rect, ScreenRect view) {
   const PlotSaving saving{
       .folder = sessions_dir(),
       .save_png = [this](const ScreenRect& box,
@@ -266,9 +267,9 @@ void Frame::draw_plot_row(ScreenRect rect) {
           [this](std::function<PlotNotice()> work) { desktop_.live.save_beside(std::move(work)); },
       .arranged = true};
   PlayedSession* session = desktop_.playback.shown();
-  const PlotsRequest asked =
-      draw_plots(desktop_.shown.stage(), session != nullptr ? &session->player() : nullptr, saving,
-                 rect, figures_);
+  Player* player = session != nullptr ? &session->player() : nullptr;
+  const PlotsRequest asked = draw_plots(desktop_.shown.stage(), player, saving, rect);
+  figures_.draw(desktop_.shown.stage(), player, saving, view);
   if (asked.wish == PlotWish::add) desktop_.plots.add();
   if (asked.wish == PlotWish::choose) desktop_.plots.choose(asked.plot);
   if (asked.wish == PlotWish::export_as) desktop_.exporter.begin(asked.plot);

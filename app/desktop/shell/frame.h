@@ -47,7 +47,7 @@ class Frame {
   void draw_coupling(ScreenRect rect);
   void draw_played(PlayedSession& session, const CouplingReading& reading,
                    const CouplingSituation& now);
-  void draw_plot_row(ScreenRect rect);
+  void draw_plot_row(ScreenRect rect, ScreenRect view);
   void save_plot(const ScreenRect& box, const std::filesystem::path& file);
   void draw_splitters(const Layout& at);
   void draw_fold_tabs(const Layout& at);

@@ -17,6 +17,13 @@ TEST(Notices, AreSaidInTheirOrder) {
   EXPECT_GT(notices.all()[1].until, notices.all()[0].until) << "a bad one stays for longer";
 }
 
+TEST(Notices, AreThereOnceHoweverOftenTheyAreSaid) {
+  Notices notices;
+  for (const char* text : {"kept", "saved", "kept"}) notices.say(text);
+  ASSERT_EQ(notices.all().size(), 2u);
+  EXPECT_EQ(notices.all().back().text, "kept") << "the last one that was said";
+}
+
 // What fails in every frame would fill the window.
 TEST(Notices, AreNotRepeatedWhileTheyAreSaid) {
   Notices notices;

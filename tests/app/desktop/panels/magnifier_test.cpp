@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/desktop/base/picture_signs.h"
+#include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {
 namespace {
@@ -31,6 +32,33 @@ TEST(Magnifier, IsShownWhileGapOrContactIsSmallInThePicture) {
   touching.contacts.push_back({Vec3::Zero(), Vec3::UnitZ()});
   EXPECT_TRUE(worth_magnifying(touching, camera));
   EXPECT_FALSE(worth_magnifying(ViewState{}, camera));
+}
+
+using Lens = ImGuiFrames;
+
+bool overlap(ScreenRect a, ScreenRect b) {
+  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
+}
+
+// Wherever the tips are, and however much of the view's top words take.
+TEST_F(Lens, HidesNeitherTheTipsNorWordsAndStaysInTheView) {
+  frame([&] {
+    for (const ScreenRect view : {ScreenRect{{300, 24}, {990, 482}}, {{300, 24}, {900, 365}}}) {
+      for (const float words : {0.0f, 60.0f, 90.0f, 150.0f}) {
+        const ScreenRect said{view.min, {view.max.x, view.min.y + words}};
+        for (float x = view.min.x; x < view.max.x; x += 15) {
+          for (float y = view.min.y + words; y < view.max.y; y += 15) {
+            const auto lens = lens_corner(view, words, {x, y});
+            ASSERT_TRUE(lens);
+            EXPECT_FALSE(lens->contains({x, y})) << x << ", " << y << " below " << words;
+            EXPECT_FALSE(overlap(*lens, said));
+            EXPECT_TRUE(view.contains(lens->min) && view.contains(lens->max));
+          }
+        }
+      }
+    }
+    EXPECT_FALSE(lens_corner({{0, 0}, {120, 90}}, 0, {20, 20})) << "too small to show anything";
+  });
 }
 
 }  // namespace
