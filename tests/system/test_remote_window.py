@@ -21,11 +21,8 @@ import limpid  # noqa: E402
 
 class TestRemoteWindow(WindowTest):
     def prepare(self) -> None:
-        runtime = self.home / "run"
-        runtime.mkdir(mode=0o700)
-        self.environment["XDG_RUNTIME_DIR"] = str(runtime)
         self.words = ["--listen", "test"]
-        self.path = runtime / "limpid" / "test.control"
+        self.path = self.home / "run/limpid/test.control"
 
     def start(self) -> None:
         super().start()
