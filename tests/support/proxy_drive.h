@@ -1,3 +1,4 @@
+// A drive of the proxy that leaves it alone.
 #pragma once
 
 #include "core/touch/proxy.h"
