@@ -226,10 +226,9 @@ Answer WindowRemote::stop() {
   const bool began = std::exchange(records_, false);
   if (!d_.live.recording() && !began) throw RemoteError("stop: nothing is being recorded");
   // One that ended by itself, as on a disk that is full, says why.
-  return Answer::Later([this, asked = false]() mutable -> std::optional<json> {
+  return Answer::Later([this]() -> std::optional<json> {
     if (d_.live.recording()) {
       if (d_.live.loop().recording()) run("session.record");  // which stops it
-      asked = true;
       return std::nullopt;
     }
     if (d_.live.closing()) return std::nullopt;
