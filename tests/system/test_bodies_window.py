@@ -76,9 +76,9 @@ class Bodies(WindowTest):
     def test_the_stack_is_knocked_over(self) -> None:
         self.open("stack")
         before = self.places()
-        self.lead((0.2, 0.0, 0.03), 0.5)
+        self.lead((0.199, 0.005, 0.03), 0.5)
         self.assertLess(self.moved("block 5", before), 2, "it stands until it is touched")
-        self.lead((0.26, 0.0, 0.03), 0.6)
+        self.lead((0.251, 0.034, 0.03), 0.6)
         for name in ("block 4", "block 5"):
             self.wait(f"{name} to fall", lambda _: self.moved(name, before) > 40)
         self.let_go()
