@@ -32,7 +32,14 @@ class Plots(WindowTest):
 
     def wait_for_layout(self, name: str) -> dict:
         file = self.home / "config/limpid/layouts.toml"
-        self.wait_until(name, lambda: file.exists() and name in self.kept("layouts.toml"))
+
+        def is_there() -> bool:
+            try:
+                return file.exists() and name in self.kept("layouts.toml")
+            except tomllib.TOMLDecodeError:  # the broken one of before stands there still
+                return False
+
+        self.wait_until(name, is_there)
         return self.kept("layouts.toml")
 
     def use(self, key: str, dialog: str, name: str) -> None:
