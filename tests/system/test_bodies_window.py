@@ -95,6 +95,8 @@ class Bodies(WindowTest):
     def test_a_block_is_pulled_with_ctrl(self) -> None:
         self.open("stack")
         self.let_go()
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
         before = self.places()
         x, y = before["block 5"]
         self.xdotool("keydown", "ctrl")
@@ -110,6 +112,10 @@ class Bodies(WindowTest):
         self.let_go()
         self.xdotool("keyup", "ctrl")
         self.wait("it to fall", lambda _: self.places()["block 5"][1] > y - 60)
+        self.key("r")
+        folder = self.home / "data/limpid/sessions"
+        self.wait("the session", lambda s: not s["recording"] and list(folder.glob("*.h5")))
+        self.check_rerun_is_the_same(next(folder.glob("*.h5")))
 
     def test_dominoes_fall_without_the_hand(self) -> None:
         self.open("dominoes")

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
 #include "tests/devices/files/session/sample_session.h"
@@ -48,10 +49,36 @@ TEST(RowLayout, HasRoomForWhatMoves) {
     EXPECT_FALSE(none.has(c));
     EXPECT_TRUE(two.has(c));
   }
-  // A pose and a velocity each; and what all bodies share: three energies, awake, sweeps, points
-  // left out, held and the magnet of the hand.
-  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 8);
+  // A pose and a velocity each; and what all bodies share: four energies, awake, sweeps, points
+  // left out, held, and of the hand its magnet and what it pulls: which body, where, where to.
+  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 9 + 1 + 3 + 3);
   EXPECT_EQ(none.offset(Column::body_pose), two.offset(Column::body_pose));
+}
+
+TEST(SessionWithBodies, SaysWhatWasPulled) {
+  const test::TempDir dir;
+  const SessionInfo info = info_of({"die", "key"});
+  const RowLayout layout = info.layout();
+  const auto hand = [&](double number, double far) {
+    std::vector<double> rows = rows_of(info, 10);
+    const auto row = std::span(rows).subspan(7 * static_cast<std::size_t>(layout.stride()));
+    layout.in(row, Column::hand_pull)[0] = number;
+    layout.in(row, Column::pull_target)[2] = far;
+    SessionWriter writer(dir / "a.h5", info, true);
+    writer.append(rows);
+    writer.close();
+    const Session session = read_session(dir / "a.h5");
+    const HandPath path = hand_of(session, "a.h5");
+    const BodyPull pull = path.pull_sample(7, info.tick);
+    EXPECT_EQ(pull.target.z(), far);
+    EXPECT_EQ(pull.point.x(), session.at(7, Column::pull_point)[0]);
+    return pull.body;
+  };
+  EXPECT_EQ(hand(2, 0.3), 1);
+  EXPECT_THAT(refusal([&] { hand(65, 0.3); }),
+              AllOf(HasSubstr("a.h5: /hand/pull: row 7: 65"), HasSubstr("0 to 64")));
+  EXPECT_THAT(refusal([&] { hand(1, 11); }),
+              AllOf(HasSubstr("/hand/pull_target: row 7: 11"), HasSubstr("-10 to 10 m")));
 }
 
 TEST(SessionWithBodies, ComesBackBitForBit) {
