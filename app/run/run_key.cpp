@@ -24,7 +24,7 @@ void add_hand(Digest& digest, const HandPath& hand) {
   for (const bool picks_up : hand.magnet) digest.add(std::uint64_t{picks_up});
   digest.add(std::uint64_t{hand.pull.size()});
   for (const BodyPull& pull : hand.pull) {
-    digest.add(static_cast<std::uint64_t>(pull.body + 1));
+    digest.add(static_cast<std::uint64_t>(pull.body) + 1);
     for (const Vec3& at : {pull.point, pull.target}) {
       for (const double x : at) digest.add(x);
     }
