@@ -18,6 +18,9 @@ struct Near {
   double tolerance;
 
   bool operator()(const Vec3& a, const Vec3& b) const { return (a - b).norm() <= tolerance; }
+  bool operator()(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) const {
+    return (*this)(a[0], b[0]) && (*this)(a[1], b[1]);
+  }
   bool forces(const Vec3& a, const Vec3& b) const {
     return kMetersPerNewton * (a - b).norm() <= tolerance;
   }
@@ -64,14 +67,14 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
   const Near near{tolerance};
   const auto switches = [](const ViewState& s) {
     return std::tuple(s.show_hand, s.hand_grips, s.show_ghost, s.show_error, s.show_trail,
-                      s.show_forces, s.show_grid, s.show_joints, s.theme, s.magnet, s.magnet_holds,
-                      s.pull);
+                      s.show_forces, s.show_grid, s.show_joints, s.theme, s.magnet, s.magnet_holds);
   };
   const bool hands = !(a.show_hand && b.show_hand) || near(a.hand_target, b.hand_target);
   return switches(a) == switches(b) && near(a.device, b.device) && near(a.proxy, b.proxy) &&
          near(a.rerun, b.rerun) && near(a.twin, b.twin) && hands &&
          near.forces(a.hand_force, b.hand_force) && near(a.contacts, b.contacts) &&
-         near(a.shade, b.shade) && near(a.bodies, b.bodies) && near(a.other_bodies, b.other_bodies);
+         near(a.shade, b.shade) && near(a.pull, b.pull) && near(a.bodies, b.bodies) &&
+         near(a.other_bodies, b.other_bodies);
 }
 
 void Damage::begin(const glm::mat4& to_clip, int width, int height) {

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/run/simulate.h"
 #include "core/dynamics/inverse_kinematics.h"
 
 namespace limpid {
@@ -132,14 +133,8 @@ void LiveLoop::take_in() {
 }
 
 HandInput LiveLoop::follow_path() {
-  const HandPath& path = path_->hand;
   const std::size_t k = path_runs_ ? path_tick_++ : path_tick_;
-  const double T = parameters_.tick;
-  return {path.sample(k, T),
-          path.grip_sample(k, T),
-          {},
-          path.magnet_sample(k, T),
-          path.pull_sample(k, T)};
+  return input_at(path_->hand, k, parameters_.tick);
 }
 
 // A path that was given leads the hand, or else the mouse; a guide does while the mouse does not.

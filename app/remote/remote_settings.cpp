@@ -12,9 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-// What bounds what a person can be done by motors. Other bounds are the device's own settings,
-// which cannot be reached from here at all.
-
 ParameterValue parameter_value(const std::string& key, const json& value) {
   if (value.is_boolean()) return value.get<bool>();
   if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{1} << 53) {

@@ -11,7 +11,8 @@
 
 namespace limpid {
 
-// Limits of motors and of their energy, which a program may lower and never raise.
+// Limits of motors and of their energy, which a program may lower and never raise. Other bounds are
+// the device's own settings, which cannot be reached from here at all.
 inline constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy",
                                     "tank.most"};
 

@@ -13,6 +13,15 @@
 #include "devices/files/config_file.h"
 
 namespace limpid {
+
+HandInput input_at(const HandPath& path, std::size_t k, double T) {
+  return {path.sample(k, T),
+          path.grip_sample(k, T),
+          {},
+          path.magnet_sample(k, T),
+          path.pull_sample(k, T)};
+}
+
 namespace {
 
 void note(RunEnd& end, const DivergenceWatch& watch) {
@@ -103,16 +112,15 @@ class Run {
   std::size_t stride() const { return static_cast<std::size_t>(lanes_[0].rig.layout().stride()); }
 
   HandInput hand(std::size_t k) const {
-    const Vec3 target = plan_.hand.sample(k, T());
-    const bool magnet = plan_.hand.magnet_sample(k, T());
-    const BodyPull pull = plan_.hand.pull_sample(k, T());
-    if (plan_.hand_torque.empty())
-      return {target, plan_.hand.grip_sample(k, T()), {}, magnet, pull};
+    HandInput input = input_at(plan_.hand, k, T());
+    if (plan_.hand_torque.empty()) return input;
     const auto n = static_cast<std::size_t>(lanes_[0].rig.dof());
     const std::size_t last = plan_.hand_torque.size() / n - 1;
     const double recorded = static_cast<double>(k) * T() / plan_.hand.tick;
     const auto row = std::min(static_cast<std::size_t>(std::llround(recorded)), last);
-    return {target, 0, std::span(plan_.hand_torque).subspan(n * row, n), magnet, pull};
+    input.grip = 0;
+    input.torque = std::span(plan_.hand_torque).subspan(n * row, n);
+    return input;
   }
 
   ForceRequest wish(std::size_t k) {

@@ -45,6 +45,9 @@ struct RunPlan : Lane {
   RowLayout layout() const { return row_layout(arm.dof(), document.scene); }  // of each lane's rows
 };
 
+// What a hand that follows the path does over its k-th tick of length T [s].
+HandInput input_at(const HandPath& path, std::size_t k, double T);
+
 // Called with each tick's rows, lane behind lane, and with the parameters of each lane whose own
 // have just changed, else null. False ends the run.
 using LaneChanges = std::span<const Parameters* const>;

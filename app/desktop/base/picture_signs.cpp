@@ -17,6 +17,11 @@ constexpr float kBetween = 2;       // of the halves of a twin's picture [px]
 
 }  // namespace
 
+ImVec2 in_window(ScreenRect picture, const Eigen::Vector2d& pixel) {
+  return {picture.min.x + static_cast<float>(pixel.x()),
+          picture.min.y + static_cast<float>(pixel.y())};
+}
+
 std::string gap_text(double meters) {
   const double mm = 1000 * meters;
   if (!(meters >= kLeastGap)) return "";
@@ -40,8 +45,7 @@ void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool
   ImFont* face = font(Face::small);
   const float em = face->FontSize, pad = 0.35f * em;
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
-  const ImVec2 tips = ImVec2(picture.min.x + static_cast<float>(pixel->x()),
-                             picture.min.y + static_cast<float>(pixel->y()));
+  const ImVec2 tips = in_window(picture, *pixel);
   const float edge = picture.max.x - 1.6f * em;  // where a panel's tab may be
   const float top = tips.y + (below ? 1.2f : -2.2f) * em;
   const auto box_at = [&](float left) {
@@ -73,8 +77,7 @@ void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Ca
                ScreenRect picture, ImDrawList& list) {
   const auto pixel = camera.project(around);
   if (!pixel) return;
-  const ImVec2 middle(picture.min.x + static_cast<float>(pixel->x()),
-                      picture.min.y + static_cast<float>(pixel->y()));
+  const ImVec2 middle = in_window(picture, *pixel);
   list.AddCircle(middle, radius, colour(current_palette().backdrop, 0.75f), 0, thick + 2);
   list.AddCircle(middle, radius, colour(tint), 0, thick);
 }
@@ -85,20 +88,15 @@ void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, 
   if (!view.pull) return;
   const float em = font(Face::small)->FontSize;
   const Rgb hand = ink(current_palette(), Ink::hand);
-  const auto place = [&](const Vec3& point) -> std::optional<ImVec2> {
-    const auto pixel = camera.project(point);
-    if (!pixel) return std::nullopt;
-    return ImVec2(picture.min.x + static_cast<float>(pixel->x()),
-                  picture.min.y + static_cast<float>(pixel->y()));
-  };
-  const auto from = place((*view.pull)[0]), to = place((*view.pull)[1]);
+  const auto& [point, target] = *view.pull;
+  const auto from = camera.project(point), to = camera.project(target);
   if (from && to) {
-    const ImU32 rim = colour(current_palette().backdrop, 0.75f);
-    list.AddLine(*from, *to, rim, 0.15f * em + 2);
-    list.AddLine(*from, *to, colour(hand), 0.15f * em);
+    const ImVec2 a = in_window(picture, *from), b = in_window(picture, *to);
+    list.AddLine(a, b, colour(current_palette().backdrop, 0.75f), 0.15f * em + 2);
+    list.AddLine(a, b, colour(hand), 0.15f * em);
   }
-  draw_ring((*view.pull)[0], 0.3f * em, 0.3f * em, hand, camera, picture, list);
-  draw_ring((*view.pull)[1], 0.6f * em, 0.15f * em, hand, camera, picture, list);
+  draw_ring(point, 0.3f * em, 0.3f * em, hand, camera, picture, list);
+  draw_ring(target, 0.6f * em, 0.15f * em, hand, camera, picture, list);
 }
 
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture,

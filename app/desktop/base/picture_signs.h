@@ -13,6 +13,9 @@
 
 namespace limpid {
 
+// A place in the picture, in pixels from its upper left corner, as one in the window.
+ImVec2 in_window(ScreenRect picture, const Eigen::Vector2d& pixel);
+
 // "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
 std::string gap_text(double meters);
 // Where the camera's picture is, and in it a lens that is to stay free.

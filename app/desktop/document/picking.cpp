@@ -120,6 +120,31 @@ double way_to(const Ray& ray, const Shape& shape, const Pose& pose, const Model*
   return std::visit([&](const auto& each) { return way_to(local, each, model); }, shape);
 }
 
+// To the object or to what else it consists of.
+double way_to(const Ray& ray, const Object& object, const Model* model) {
+  double way = way_to(ray, object.shape, object.pose, model);
+  for (const BodyPart& part : object.parts) {
+    way = std::min(way, way_to(ray, part.shape, object.pose * part.pose, nullptr));
+  }
+  return way;
+}
+
+struct Met {
+  std::size_t object = 0;
+  double way = kNone;  // [m]
+};
+
+// The first one along the ray.
+Met first_met(const Ray& ray, const Scene& scene, const MeshModels& models,
+              std::span<const Pose> bodies) {
+  Met met;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const double way = way_to(ray, placed_now(scene, i, bodies), models.at(i).get());
+    if (way < met.way) met = {i, way};
+  }
+  return met;
+}
+
 // As the loop counts those that move.
 int number_of_body(const Scene& scene, std::size_t place) {
   int number = 0;
@@ -142,11 +167,7 @@ bool covered(const Ray& ray, double within, const Scene& scene, std::span<const 
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (std::holds_alternative<Plane>(scene.objects[i].shape)) continue;
     const Object object = placed_now(scene, i, bodies);
-    double way = way_to(ray, object.shape, object.pose, nullptr);
-    for (const BodyPart& part : object.parts) {
-      way = std::min(way, way_to(ray, part.shape, object.pose * part.pose, nullptr));
-    }
-    if (way < within) return true;
+    if (way_to(ray, object, nullptr) < within) return true;
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr || !mesh->triangles) continue;
     const Ray local = in_frame(ray, mesh->stood(object.pose), mesh->size());
@@ -156,30 +177,6 @@ bool covered(const Ray& ray, double within, const Scene& scene, std::span<const 
   }
   return false;
 }
-
-namespace {
-
-struct Met {
-  std::size_t object = 0;
-  double way = kNone;  // [m]
-};
-
-// The first one along the ray.
-Met first_met(const Ray& ray, const Scene& scene, const MeshModels& models,
-              std::span<const Pose> bodies) {
-  Met met;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const Object object = placed_now(scene, i, bodies);
-    double way = way_to(ray, object.shape, object.pose, models.at(i).get());
-    for (const BodyPart& part : object.parts) {
-      way = std::min(way, way_to(ray, part.shape, object.pose * part.pose, nullptr));
-    }
-    if (way < met.way) met = {i, way};
-  }
-  return met;
-}
-
-}  // namespace
 
 std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
                                         const MeshModels& models, std::span<const Pose> bodies) {

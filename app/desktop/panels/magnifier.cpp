@@ -24,10 +24,6 @@ bool seen(const ViewState& state) {
 
 Vec3 middle(const ViewState& state) { return 0.5 * (state.device.tip + state.proxy.tip); }
 
-ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
-  return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
-}
-
 }  // namespace
 
 std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips) {
@@ -59,7 +55,7 @@ void Magnifier::draw(SceneView& picture, const ViewState& state, const Camera& c
   const double now = ImGui::GetTime();
   if (worth_magnifying(state, camera)) until_ = now + kMoment;
   const auto tips = seen(state) ? camera.project(middle(state)) : std::nullopt;
-  rect_ = tips && now <= until_ ? lens_corner(place.view, place.words, at(place.view, *tips))
+  rect_ = tips && now <= until_ ? lens_corner(place.view, place.words, in_window(place.view, *tips))
                                 : std::nullopt;
   view_ = place.view;
   if (!rect_) return;
@@ -81,7 +77,7 @@ void Magnifier::draw_frame(const ViewState& state, const Camera& camera, ImDrawL
   const float scale = current_scale();
   list.AddRect(rect_->min, rect_->max, line, 0, 0, 1.2f * scale);
   if (const auto tips = camera.project(middle(state))) {
-    const ImVec2 m = at(view_, *tips);
+    const ImVec2 m = in_window(view_, *tips);
     const float half = 0.5f * rect_->size().x / static_cast<float>(kMagnified);
     list.AddRect({m.x - half, m.y - half}, {m.x + half, m.y + half}, colour(colours.text, 0.35f), 0,
                  0, scale);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "app/desktop/base/picture_signs.h"
 #include "app/desktop/document/picking.h"
 #include "app/style/theme.h"
 
@@ -16,10 +17,6 @@ constexpr double kHandleLength = 64;  // of a handle, at the scale 1 [px]
 constexpr float kHandleReach = 9;     // of the mouse around it [px]
 constexpr std::array kAxisInks{Ink::contact, Ink::hand, Ink::proxy};
 constexpr std::array kAxisNames{"x", "y", "z"};
-
-ImVec2 on_screen(const Eigen::Vector2d& pixel, ScreenRect view) {
-  return {view.min.x + static_cast<float>(pixel.x()), view.min.y + static_cast<float>(pixel.y())};
-}
 
 // Of a place from a line on the screen [px].
 float apart_from(ImVec2 place, ImVec2 a, ImVec2 b) {
@@ -117,7 +114,7 @@ TransformTool::Handle TransformTool::draw_handles(const Transform& shown, const 
   Handle nearest;
   const auto middle = camera.project(shown.pivot);
   if (!middle) return nearest;
-  const ImVec2 mouse = ImGui::GetIO().MousePos, centre = on_screen(*middle, view);
+  const ImVec2 mouse = ImGui::GetIO().MousePos, centre = in_window(view, *middle);
   const float scale = current_scale();
   const double length =
       kHandleLength * static_cast<double>(scale) * camera.meters_per_pixel(shown.pivot);
@@ -140,7 +137,7 @@ TransformTool::Handle TransformTool::draw_handles(const Transform& shown, const 
         const auto pixel =
             camera.project(shown.pivot + length * (std::cos(angle) * u + std::sin(angle) * v));
         if (!pixel) break;
-        const ImVec2 next = on_screen(*pixel, view);
+        const ImVec2 next = in_window(view, *pixel);
         if (last) {
           list.AddLine(*last, next, tint, thick(i));
           note(i, apart_from(mouse, *last, next));
@@ -151,7 +148,7 @@ TransformTool::Handle TransformTool::draw_handles(const Transform& shown, const 
     }
     const auto pixel = camera.project(shown.pivot + length * line);
     if (!pixel) continue;
-    const ImVec2 end = on_screen(*pixel, view);
+    const ImVec2 end = in_window(view, *pixel);
     const float r = 5 * scale;
     list.AddLine(centre, end, rim, thick(i) + 2);
     list.AddLine(centre, end, tint, thick(i));

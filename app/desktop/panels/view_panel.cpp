@@ -26,10 +26,6 @@ constexpr double kPullReach = 40;     // of the mouse around the tips, at the sc
 constexpr double kFarthestPull = 5;   // [m]
 constexpr double kClickReach = 4;     // that a click may move [px]
 
-ImVec2 at(ScreenRect rect, const Eigen::Vector2d& pixel) {
-  return {rect.min.x + static_cast<float>(pixel.x()), rect.min.y + static_cast<float>(pixel.y())};
-}
-
 // How far from the arm's links, drawn as lines from joint to joint, a place is at least [px].
 float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVec2 place) {
   float nearest = 1e9f;
@@ -37,7 +33,7 @@ float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVe
   const auto reach = [&](const Vec3& joint) {
     const auto pixel = camera.project(joint);
     if (!pixel) return;
-    const ImVec2 end = at(rect, *pixel), start = last.value_or(end);
+    const ImVec2 end = in_window(rect, *pixel), start = last.value_or(end);
     last = end;
     const float x = end.x - start.x, y = end.y - start.y;
     const float along = (place.x - start.x) * x + (place.y - start.y) * y;
@@ -65,7 +61,7 @@ void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState&
     if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
     const auto pixel = camera.project(point);
     if (!pixel) continue;
-    const ImVec2 place = at(rect, *pixel);
+    const ImVec2 place = in_window(rect, *pixel);
     const auto hidden = [&](float along) {
       return lens && lens->contains({place.x + along, place.y + 0.5f * em});
     };

@@ -121,7 +121,8 @@ ViewScene Frame::view_scene() {
     scene.twin = session->twin_row();
     if (const StoryStep* step = session->step()) scene.told = step->caption;
   } else if (const auto selected = desktop_.document.editor().selected()) {
-    scene.selected = placed_now(desktop_.document.scene(), *selected, bodies_of(scene));
+    scene.selected =
+        placed_now(desktop_.document.scene(), *selected, bodies_of(scene.stage, scene.row));
   }
   if (!scene.recorded) scene.twin = desktop_.live.twin_row();
   if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();
@@ -129,9 +130,8 @@ ViewScene Frame::view_scene() {
   if (!scene.recorded && !scene.blind) {
     scene.grasp = [this](const Ray& ray) {
       const SceneEditor& editor = desktop_.document.editor();
-      const Stage& stage = desktop_.shown.stage();
-      const auto bodies = stage.rows().bodies(stage.channels().layout(), desktop_.shown.row());
-      return body_under(ray, editor.scene(), editor.models(), bodies);
+      return body_under(ray, editor.scene(), editor.models(),
+                        bodies_of(desktop_.shown.stage(), desktop_.shown.row()));
     };
   }
   scene.asked = desktop_.dialog.name() == "ask";
@@ -171,17 +171,19 @@ void Frame::draw_view(ScreenRect rect) {
   draw_object_menu(desktop_);
 }
 
-std::vector<Pose> Frame::bodies_of(const ViewScene& scene) {
-  return scene.stage.rows().bodies(scene.stage.channels().layout(), scene.row);
+std::vector<Pose> Frame::bodies_of(const Stage& stage, std::span<const double> row) {
+  return stage.rows().bodies(stage.channels().layout(), row);
 }
 
 bool Frame::draw_handles(const ViewScene& scene, ScreenRect rect) {
-  return desktop_.transform.draw(desktop_.document, bodies_of(scene), desktop_.shown.camera, rect);
+  return desktop_.transform.draw(desktop_.document, bodies_of(scene.stage, scene.row),
+                                 desktop_.shown.camera, rect);
 }
 
 void Frame::select_under(const Ray& ray, const ViewScene& scene) {
   SceneEditor& editor = desktop_.document.editor();
-  editor.select(object_under(ray, editor.scene(), editor.models(), bodies_of(scene)));
+  editor.select(
+      object_under(ray, editor.scene(), editor.models(), bodies_of(scene.stage, scene.row)));
 }
 
 bool Frame::differs() {

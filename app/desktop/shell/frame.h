@@ -40,7 +40,7 @@ class Frame {
   ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
   // Where the scene's objects that move are.
-  static std::vector<Pose> bodies_of(const ViewScene& scene);
+  static std::vector<Pose> bodies_of(const Stage& stage, std::span<const double> row);
   // On the selected object; true while the mouse is theirs.
   bool draw_handles(const ViewScene& scene, ScreenRect rect);
   void select_under(const Ray& ray, const ViewScene& scene);

@@ -163,6 +163,18 @@ BodyPull HandPath::pull_sample(std::size_t k, double T) const {
 
 namespace {
 
+// Errors: FileError where it is further off than a hand may be.
+Vec3 place_of(const Session& session, std::size_t k, Column column, const std::string& where) {
+  const auto at = session.at(k, column);
+  for (const double x : at) {
+    if (std::abs(x) <= kFarthest) continue;
+    throw FileError(fmt::format("{}: {}: row {}: {} is not allowed; allowed: from -{} to {} m",
+                                where, kColumnInfo[static_cast<std::size_t>(column)].path, k, x,
+                                kFarthest, kFarthest));
+  }
+  return {at[0], at[1], at[2]};
+}
+
 // Empty where nothing was pulled on. Errors: FileError.
 std::vector<BodyPull> pulls_of(const Session& session, const std::string& where) {
   std::vector<BodyPull> pulls;
@@ -176,18 +188,8 @@ std::vector<BodyPull> pulls_of(const Session& session, const std::string& where)
     }
     if (number == 0) continue;
     if (pulls.empty()) pulls.resize(session.size());
-    const auto vector = [&](Column column) {
-      const auto at = session.at(k, column);
-      for (const double x : at) {
-        if (std::abs(x) <= kFarthest) continue;
-        throw FileError(fmt::format("{}: {}: row {}: {} is not allowed; allowed: from -{} to {} m",
-                                    where, kColumnInfo[static_cast<std::size_t>(column)].path, k, x,
-                                    kFarthest, kFarthest));
-      }
-      return Vec3(at[0], at[1], at[2]);
-    };
-    pulls[k] = {static_cast<int>(number) - 1, vector(Column::pull_point),
-                vector(Column::pull_target)};
+    pulls[k] = {static_cast<int>(number) - 1, place_of(session, k, Column::pull_point, where),
+                place_of(session, k, Column::pull_target, where)};
   }
   return pulls;
 }
@@ -202,15 +204,8 @@ HandPath hand_of(const Session& session, const std::string& where) {
   path.source = where;
   path.tick = session.info.tick;
   for (std::size_t k = 0; k < session.size(); ++k) {
-    const auto target = session.at(k, Column::hand_target);
+    const Vec3 target = place_of(session, k, Column::hand_target, where);
     const double grip = session.at(k, Column::hand_grip)[0];
-    for (const double x : target) {
-      if (std::abs(x) <= kFarthest) continue;
-      throw FileError(
-          fmt::format("{}: /hand/target: row {}: {} is not allowed; allowed: from "
-                      "-{} to {} m",
-                      where, k, x, kFarthest, kFarthest));
-    }
     if (!(grip >= 0 && grip <= 1)) {
       throw FileError(
           fmt::format("{}: /hand/grip: row {}: {} is not allowed; allowed: from 0 to "
@@ -218,7 +213,7 @@ HandPath hand_of(const Session& session, const std::string& where) {
                       where, k, grip));
     }
     path.time.push_back(session.at(k, Column::time)[0]);
-    path.position.emplace_back(target[0], target[1], target[2]);
+    path.position.push_back(target);
     path.grip.push_back(grip);
     if (session.layout.bodies() > 0) {
       path.magnet.push_back(session.at(k, Column::hand_magnet)[0] > 0);

@@ -441,6 +441,62 @@ TEST_F(RealRig, ObeysLowerLimits) {
   EXPECT_NEAR((square.transpose().inverse() * tau).norm(), 0.2, 1e-3);
 }
 
+// Whoever pulls a body against the tip with the mouse arms nothing, and its limits hold; a window
+// that hangs meanwhile leaves the pull as it is, and the force fades.
+TEST_F(RealRig, IsPushedByABodyThatIsPulledOnlyWhileItIsArmedAndWithinItsLimits) {
+  Scene scene;
+  scene.gravity.setZero();
+  scene.tip_radius = 0.004;
+  Object ball{.name = "ball", .shape = Sphere{0.02}};
+  ball.material = {600};
+  ball.body = Body{};
+  ball.body->mass = 1;
+  const Arm<3> model(arm);
+  const Vec3 tip = model.tip_at(x0);
+  ball.pose.translation() = tip + Vec3(0, 0.03, 0);
+  scene.add(ball);
+  rig = Rig(arm, scene, nullptr);
+  rows = test::Rows(rig.layout());
+  rig.start({}, {x0, x0 * 0, x0, x0 * 0, x0 * 0, tip, false});
+  rig.limit({.tip_force = 0.2});
+  rig.plug(&device);
+  Arm<3>::Frames frames;
+  model.frames(x0, frames);
+  Jacobian<3> J;
+  model.point_jacobian(frames, 2, model.tip(frames), J);
+  const Eigen::Matrix3d square = J;
+  const auto force = [&] {
+    const Eigen::Vector3d tau(device.told[0], device.told[1], device.told[2]);
+    return (square.transpose().inverse() * tau).norm();
+  };
+  const Vec3 target = tip + Vec3(0, 0.015, 0);
+  double most = 0;
+  const auto pull = [&](int ticks) {
+    for (int k = 0; k < ticks; ++k) {
+      ++device.reading.count;
+      device.reading.x[2] = x0[2] + (device.reading.count % 2 == 0 ? 1e-9 : 0);
+      input.hand = {tip, 1};
+      input.hand.pull = {0, Vec3::Zero(), target};
+      input.force = wisher.at(armed);
+      rig.step({}, input, rows.add());
+      most = std::max(most, force());
+    }
+  };
+  pull(500);
+  const auto contact = [&] { return rows.vec(rows.size() - 1, Column::contact_torque).norm(); };
+  EXPECT_GT(contact(), 0.1) << "the ball lies against the tip, and presses";
+  EXPECT_FALSE(pushes());
+  armed = true;
+  pull(1000);
+  EXPECT_NEAR(force(), 0.2, 1e-3);
+  EXPECT_LE(most, 0.2 + 1e-9);
+  input.silence = 1;
+  pull(1);
+  EXPECT_FALSE(pushes());
+  EXPECT_EQ(rig.force_state(), ForceState::unwatched);
+  EXPECT_GT(contact(), 0.1) << "it is pulled all the while";
+}
+
 // One joint with a stop at zero, pressed in by a radian: the spring and the limit of 10 N at the
 // tip store some joules.
 TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackAtOnce) {
