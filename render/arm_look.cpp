@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/base/model_kinds.h"
 #include "render/mesh_shapes.h"
 #include "render/model/model_file.h"
 #include "render/model/simplify.h"
@@ -157,9 +158,8 @@ std::optional<bool> alone(const std::pair<Extent, Extent>& boxes, const Extent& 
 }  // namespace
 
 bool is_gltf(const std::string& file) {
-  std::string suffix = fs::path(file).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return suffix == ".glb" || suffix == ".gltf";
+  const ModelKind* const kind = model_kind(file);
+  return kind != nullptr && kind->gltf;
 }
 
 std::set<std::string> with_z_up(const ArmDescription& arm,

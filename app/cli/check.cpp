@@ -13,12 +13,12 @@
 #include "app/run/body_report.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/model_report.h"
+#include "core/base/model_kinds.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/tick/safety_limits.h"
 #include "devices/files/scene/scene_document.h"
 #include "devices/files/text_file.h"
-#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -177,7 +177,7 @@ CheckReport on(const CheckOptions& options) {
   const std::string suffix = small_suffix(file);
   if (suffix == ".urdf" || suffix == ".xacro") return on_arm(options.file, options.input);
   if (suffix == ".toml") return on_scene(options.file, options.input);
-  if (is_model_file(file)) return on_model(options.file);
+  if (model_kind(file) != nullptr) return on_model(options.file);
   if (suffix == ".h5") {
     throw FileError(
         fmt::format("{0}: a recording or a table; `limpid info {0}` says what a recording holds",
@@ -185,7 +185,7 @@ CheckReport on(const CheckOptions& options) {
   }
   throw FileError(fmt::format(
       "{}: no file that is known; needed: an arm (.urdf, .xacro), a scene (.toml) or a model ({})",
-      options.file, kModelSuffixes));
+      options.file, model_suffixes()));
 }
 
 // Whatever cannot be opened is refused, whoever found that out.

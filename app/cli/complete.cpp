@@ -7,11 +7,10 @@
 
 #include "app/device/device_hub.h"
 #include "app/study/experiment.h"
+#include "core/base/model_kinds.h"
 
 namespace limpid {
 namespace {
-
-constexpr std::array kModels{".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"};
 
 std::vector<HelpWord> device_words() {
   std::vector<HelpWord> words{{"simulated", "one that is unlike its file"}};
@@ -47,7 +46,9 @@ void add_values(const std::string& name, Completions& into) {
     into.folders = true;
   }
   for (const std::string& part : CLI::detail::split(name, '|')) {
-    if (part == "MODEL") into.suffixes.insert(into.suffixes.end(), kModels.begin(), kModels.end());
+    if (part == "MODEL") {
+      for (const ModelKind& each : kModelKinds) into.suffixes.emplace_back(each.suffix);
+    }
     const auto dot = part.find('.');
     if (dot == std::string::npos || dot + 1 == part.size() || part[dot + 1] == '.') continue;
     if (std::isalpha(static_cast<unsigned char>(part[dot + 1])) == 0) continue;

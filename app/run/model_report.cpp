@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/model_kinds.h"
 #include "devices/files/scene/scene_document.h"
 #include "devices/files/text_file.h"
 #include "render/model/model_file.h"
@@ -13,8 +14,8 @@
 namespace limpid {
 
 ModelAxes axes_of(const Model& model, const std::filesystem::path& file) {
-  const std::string suffix = small_suffix(file);
-  ModelAxes axes{usual_unit(file), suffix == ".obj", false};
+  const ModelKind* const kind = model_kind(file);
+  ModelAxes axes{usual_unit(file), kind != nullptr && kind->y_up, false};
   if (model.unit > 0) {
     axes.unit = model.unit;
   } else {

@@ -1,10 +1,9 @@
 #include "render/model/model_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <stdexcept>
 
+#include "core/base/model_kinds.h"
 #include "core/base/utf8.h"
 #include "render/model/companions.h"
 #include "render/model/gltf_model.h"
@@ -17,28 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kGltf{"glb", "gltf"};
-constexpr std::array kOthers{"stl", "obj", "ply", "dae"};
-
-// The suffix in small letters, without its dot.
-std::string kind_of(const fs::path& file) {
-  std::string suffix = file.extension().string();
-  if (!suffix.empty()) suffix.erase(0, 1);
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return suffix;
-}
-
-template <class List>
-bool has(const List& list, const std::string& kind) {
-  return std::find(list.begin(), list.end(), kind) != list.end();
-}
-
 // Unit and axis, as far as the format knows any.
-void take_conventions(std::span<const unsigned char> bytes, const std::string& kind, Model& model) {
+void take_conventions(std::span<const unsigned char> bytes, const ModelKind& kind, Model& model) {
   model.unit = 0;
   model.up = Model::Up::unsaid;
-  if (kind != "dae") return;
+  if (kind.suffix != ".dae") return;
   const std::string text = utf8_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const auto at = text.find("<up_axis>");
   const std::string axis = at == text.npos ? "" : text.substr(at + 9, 8);
@@ -46,7 +28,7 @@ void take_conventions(std::span<const unsigned char> bytes, const std::string& k
   model.up = axis.find('Z') != axis.npos ? Model::Up::z : Model::Up::y;
 }
 
-Model parse_other(std::span<const unsigned char> bytes, const std::string& kind,
+Model parse_other(std::span<const unsigned char> bytes, const ModelKind& kind,
                   const std::string& name, const fs::path& folder, const LoadProgress& progress,
                   std::vector<unsigned char>* whole) {
   ConvertedModel converted = convert_model(bytes, kind, name, folder, progress);
@@ -60,11 +42,6 @@ Model parse_other(std::span<const unsigned char> bytes, const std::string& kind,
 
 }  // namespace
 
-bool is_model_file(const fs::path& file) {
-  const std::string kind = kind_of(file);
-  return has(kGltf, kind) || has(kOthers, kind);
-}
-
 Model parse_model(std::span<const unsigned char> bytes, const std::string& name,
                   const fs::path& folder, const LoadProgress& progress,
                   std::vector<unsigned char>* whole) {
@@ -72,17 +49,18 @@ Model parse_model(std::span<const unsigned char> bytes, const std::string& name,
   // In a recording any model that had files beside it is one of these, whatever its name.
   const bool binary =
       bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
-  const std::string kind = kind_of(name);
+  const ModelKind* const kind = model_kind(name);
   if (bytes.size() > kLargestModelFiles)
     throw std::runtime_error(name + ": is larger than the " +
                              std::to_string(kLargestModelFiles >> 20) + " MiB that are read");
-  if (binary || has(kGltf, kind)) {
+  if (binary || (kind != nullptr && kind->gltf)) {
     Model model = parse_gltf(bytes, name, folder, progress);
     if (whole) *whole = pack_gltf(bytes, name, folder);
     return model;
   }
-  if (has(kOthers, kind)) return parse_other(bytes, kind, name, folder, progress, whole);
-  throw std::runtime_error(name + ": is no model that can be read; allowed are " + kModelSuffixes);
+  if (kind != nullptr) return parse_other(bytes, *kind, name, folder, progress, whole);
+  throw std::runtime_error(name + ": is no model that can be read; allowed are " +
+                           model_suffixes());
 }
 
 Model load_model_file(const fs::path& path, const LoadProgress& progress) {

@@ -18,11 +18,6 @@
 
 namespace limpid {
 
-// The suffixes, for people: ".glb, .gltf, ...". In any case.
-inline constexpr const char* kModelSuffixes = ".glb, .gltf, .stl, .obj, .ply, .dae";
-
-bool is_model_file(const std::filesystem::path& file);  // by its suffix
-
 // All triangles with their nodes' transforms applied; polygons are cut into triangles. Left out
 // with a warning are points, lines, textures that cannot be read. `name` stands for the file in
 // messages; its suffix says the kind, but binary glTF is known by how it begins. Other files are

@@ -96,7 +96,7 @@ void follow(int lines, Following& following, const LoadProgress& progress) {
 
 }  // namespace
 
-ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::string& kind,
+ConvertedModel convert_model(std::span<const unsigned char> bytes, const ModelKind& kind,
                              const std::string& name, const fs::path& folder,
                              const LoadProgress& progress) {
   const Descriptor in(::memfd_create("model", MFD_CLOEXEC)),
@@ -107,12 +107,11 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::st
   const Descriptor lines(ends[0]);
   Descriptor other_end(ends[1]);
   if (!write_all(*in, bytes)) refuse(name, "is too large for the memory");
-  const bool alone = kind == "stl" || kind == "ply";  // refers to no other file
   const std::string at = beside_this_program(kProgram).string();
-  const std::string place = alone ? "" : folder.string();
+  const std::string place = kind.files == ModelFiles::one ? "" : folder.string();
   const std::array given{Given{*in, STDIN_FILENO}, Given{*out, STDOUT_FILENO},
                          Given{*other_end, kLines}};
-  Child child({at, kind, place, std::to_string(kLines)}, given);
+  Child child({at, std::string(kind.suffix.substr(1)), place, std::to_string(kLines)}, given);
   if (!child.started())
     refuse(name, "cannot be read: the program " + at + ", which reads it, cannot be started");
   other_end.close();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/model_kinds.h"
 #include "render/model/model.h"
 
 namespace limpid {
@@ -43,9 +44,8 @@ struct ConvertedModel {
   bool outside = false;  // files of the folder are in it
 };
 
-// `kind`: the suffix, as "stl". Throws std::runtime_error naming the file; LoadCancelled. `part`
-// gets up to 0.6.
-ConvertedModel convert_model(std::span<const unsigned char> bytes, const std::string& kind,
+// Throws std::runtime_error naming the file; LoadCancelled. `part` gets up to 0.6.
+ConvertedModel convert_model(std::span<const unsigned char> bytes, const ModelKind& kind,
                              const std::string& name, const std::filesystem::path& folder,
                              const LoadProgress& progress);
 

@@ -30,6 +30,7 @@
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
+#include "core/base/model_kinds.h"
 
 namespace limpid {
 
@@ -180,12 +181,11 @@ DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
 }
 
 DrawDialog add_model(Desktop& d) {
-  return ask_for_file(
-      d,
-      {.title = "Add model",
-       .action = "Add",
-       .extensions = {".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"}},
-      [](Desktop& desktop, const fs::path& file) { desktop.world.add_model(file); });
+  PathDialog::Options options{.title = "Add model", .action = "Add", .extensions = {}};
+  for (const ModelKind& each : kModelKinds) options.extensions.emplace_back(each.suffix);
+  return ask_for_file(d, std::move(options), [](Desktop& desktop, const fs::path& file) {
+    desktop.world.add_model(file);
+  });
 }
 
 DrawDialog open_scene(Desktop& d) {

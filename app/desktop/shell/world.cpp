@@ -13,6 +13,7 @@
 #include "app/desktop/shell/desktop.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
+#include "core/base/model_kinds.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/dynamics/inverse_kinematics.h"
@@ -20,7 +21,6 @@
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/urdf_file.h"
-#include "render/model/model_file.h"
 
 namespace limpid {
 namespace {
@@ -45,7 +45,7 @@ DropKind drop_kind(const fs::path& file) {
   if (fs::is_directory(file, none)) return DropKind::unknown;
   if (suffix == ".urdf" || suffix == ".xacro") return DropKind::arm;
   if (suffix == ".toml") return DropKind::scene;
-  if (is_model_file(file)) return DropKind::model;
+  if (model_kind(file) != nullptr) return DropKind::model;
   if (suffix == ".h5") return DropKind::session;
   if (suffix == ".csv") return DropKind::hand;
   return DropKind::unknown;
@@ -64,7 +64,7 @@ std::string why_not_opened(const std::vector<fs::path>& files) {
   return fmt::format(
       "{}: not opened. Drop models ({}), scenes (.toml), recordings (.h5), a sweep's folder or "
       "table, a hand's path (.csv) or an arm (.urdf) here.",
-      text, kModelSuffixes);
+      text, model_suffixes());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/model_kinds.h"
 #include "core/touch/scene.h"
 #include "devices/files/scene_files.h"
 #include "devices/files/toml_reader.h"
@@ -70,17 +71,10 @@ inline const ModelUnit* model_unit(double metres) {
   return nullptr;
 }
 
-// The suffix of a file in small letters, with its dot.
-inline std::string small_suffix(const std::filesystem::path& file) {
-  std::string suffix = file.extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return suffix;
-}
-
-// Where a scene does not say the unit [m]: STL knows none, but what makes such files thinks in
-// millimetres.
+// Where a scene does not say the unit [m].
 inline double usual_unit(const std::filesystem::path& file) {
-  return small_suffix(file) == ".stl" ? 0.001 : 1;
+  const ModelKind* const kind = model_kind(file);
+  return kind == nullptr ? 1 : kind->unit;
 }
 
 // Of any kind that is read.

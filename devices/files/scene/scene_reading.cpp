@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/model_kinds.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/material_keys.h"
 #include "devices/files/text_file.h"
@@ -36,9 +37,8 @@ Material material_of(const TomlTable& t, bool needed) {
 
 std::string model_of(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
-  constexpr std::array kKinds{".glb", ".gltf", ".stl", ".obj", ".ply", ".dae"};
-  if (std::ranges::find(kKinds, small_suffix(file)) == kKinds.end()) {
-    t.refuse("file", fmt::format("a model ({})", fmt::join(kKinds, ", ")));
+  if (model_kind(file) == nullptr) {
+    t.refuse("file", fmt::format("a model ({})", model_suffixes()));
   }
   return file;
 }

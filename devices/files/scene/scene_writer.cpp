@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/model_kinds.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/scene/scene_document.h"
 #include "devices/files/scene/scene_file.h"
@@ -100,10 +101,9 @@ Bytes read_bytes(const fs::path& file) {
   return {text.begin(), text.end()};
 }
 
-// Kinds of models that consist of several files, as a rule, which are not looked for here.
-bool stays(const fs::path& file) {
-  const std::string suffix = small_suffix(file);
-  return suffix == ".gltf" || suffix == ".dae";
+bool consists_of(ModelFiles files, const fs::path& file) {
+  const ModelKind* const kind = model_kind(file);
+  return kind != nullptr && kind->files == files;
 }
 
 bool holds(const fs::path& file, const Bytes& bytes) {
@@ -150,8 +150,8 @@ class Models {
     if (there) {
       const fs::path inside = path.lexically_relative(folder_);
       if (!inside.empty() && *inside.begin() != "..") return inside.string();
-      if (stays(path)) return path.string();
-      if (small_suffix(path) == ".obj") return copy_obj(path);
+      if (consists_of(ModelFiles::many, path)) return path.string();
+      if (consists_of(ModelFiles::named, path)) return copy_obj(path);
     }
     return bytes != nullptr ? copy(fs::path(name), *bytes) : copy(fs::path(name), read_bytes(path));
   }

@@ -21,10 +21,8 @@ namespace limpid {
 const AssimpMaterial& AssimpMaterials::at(unsigned index) {
   const auto found = known_.find(index);
   if (found != known_.end()) return found->second;
-  // STL and PLY have colours at most; what assimp gives them is its own invention.
-  const bool has_materials = kind_ == "obj" || kind_ == "dae";
   AssimpMaterial made;
-  if (has_materials && index < scene_.mNumMaterials) made = read(*scene_.mMaterials[index]);
+  if (kind_.materials && index < scene_.mNumMaterials) made = read(*scene_.mMaterials[index]);
   return known_.emplace(index, made).first->second;
 }
 
@@ -82,10 +80,10 @@ class Progress : public Assimp::ProgressHandler {
 };
 
 // Only the importer of this kind: assimp guesses at others by what a file contains.
-void keep_importer(Assimp::Importer& importer, const std::string& kind) {
+void keep_importer(Assimp::Importer& importer, const ModelKind& kind) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* const each = importer.GetImporter(i);
-    if (importer.GetImporter(("." + kind).c_str()) == each) continue;
+    if (importer.GetImporter(std::string(kind.suffix).c_str()) == each) continue;
     importer.UnregisterLoader(each);
     delete each;  // whose it is now
   }
@@ -111,11 +109,8 @@ Eigen::Vector3f vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 class Builder {
  public:
-  Builder(const aiScene& scene, const std::string& kind, AssimpFiles& files)
-      : scene_(scene),
-        // Those of STL say how each facet lies, not how a surface is meant to look.
-        use_normals_(kind != "stl"),
-        materials_(scene, kind, files) {}
+  Builder(const aiScene& scene, const ModelKind& kind, AssimpFiles& files)
+      : scene_(scene), use_normals_(kind.normals), materials_(scene, kind, files) {}
 
   AssimpModel build();
 
@@ -235,7 +230,7 @@ AssimpModel Builder::build() {
 
 }  // namespace
 
-AssimpModel read_with_assimp(AssimpFiles* files, const std::string& kind,
+AssimpModel read_with_assimp(AssimpFiles* files, const ModelKind& kind,
                              const std::function<void(double)>& progress) {
   Assimp::Importer importer;
   importer.SetIOHandler(files);  // owns it from now on, as the next

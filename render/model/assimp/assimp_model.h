@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/model_kinds.h"
 #include "render/model/assimp/assimp_files.h"
 #include "render/model/model.h"
 
@@ -26,7 +27,7 @@ struct AssimpMaterial {
 class AssimpMaterials {
  public:
   // All of these outlive this.
-  AssimpMaterials(const aiScene& scene, const std::string& kind, AssimpFiles& files)
+  AssimpMaterials(const aiScene& scene, const ModelKind& kind, AssimpFiles& files)
       : scene_(scene), kind_(kind), files_(files) {}
 
   const AssimpMaterial& at(unsigned index);
@@ -38,7 +39,7 @@ class AssimpMaterials {
   int picture(const std::string& file);
 
   const aiScene& scene_;
-  const std::string& kind_;
+  const ModelKind& kind_;
   AssimpFiles& files_;
   std::map<unsigned, AssimpMaterial> known_;
   std::map<std::string, int> numbers_;  // of pictures, by their files
@@ -53,10 +54,10 @@ struct AssimpModel {
   bool outside = false;                              // other files were read, too
 };
 
-// `kind`: the suffix that the format has, as "stl"; no other is tried. Coordinates are those of the
-// file; of Collada in metres, its up axis is not turned. `progress` is called with 0 to 1. `files`
-// has the model and goes to assimp. Throws std::runtime_error with one line.
-AssimpModel read_with_assimp(AssimpFiles* files, const std::string& kind,
+// No other kind is tried. Coordinates are those of the file; of Collada in metres, its up axis is
+// not turned. `progress` is called with 0 to 1. `files` has the model and goes to assimp. Throws
+// std::runtime_error with one line.
+AssimpModel read_with_assimp(AssimpFiles* files, const ModelKind& kind,
                              const std::function<void(double)>& progress);
 
 }  // namespace limpid

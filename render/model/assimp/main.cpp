@@ -20,6 +20,7 @@
 #include <stdexcept>
 
 #include "core/base/descriptor.h"
+#include "core/base/model_kinds.h"
 #include "core/base/sandbox.h"
 #include "render/model/assimp/assimp_files.h"
 #include "render/model/assimp/assimp_model.h"
@@ -60,6 +61,8 @@ int main(int count, char** words) {
   setlinebuf(lines);
   try {
     const std::string name = "model", kind = words[1];
+    const limpid::ModelKind* const known = limpid::model_kind(name + "." + kind);
+    if (known == nullptr) throw std::runtime_error("is of no kind that is known: " + kind);
     const auto bytes = standard_input();
     std::size_t size = bytes.size();
     limit_self(size);
@@ -75,7 +78,7 @@ int main(int count, char** words) {
     };
     auto* const files = new limpid::AssimpFiles(model, kind, companions, grow);
     const auto read = limpid::read_with_assimp(
-        files, kind, [&](double part) { std::fprintf(lines, "part %.3f\n", part); });
+        files, *known, [&](double part) { std::fprintf(lines, "part %.3f\n", part); });
     for (const std::string& warning : read.model.warnings)
       std::fprintf(lines, "warning %s\n", warning.c_str());
     if (read.outside) std::fputs("outside\n", lines);
