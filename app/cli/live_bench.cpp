@@ -79,7 +79,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   plan_.models = build_meshes(plan_.document);
   const DeviceNotes& notes = hub.notes(hub.in_use());
   Parameters usual = make_parameters(input, plan_.arm);
-  static_cast<CompensationSettings&>(usual) = notes.compensation;  // as the window has it
+  notes.compensation.give(usual);  // as the window has it
   plan_.parameters = make_parameters(input, usual);
   plan_.hand.source = "device";
   limits_ = notes.limits;

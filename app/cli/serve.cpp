@@ -106,7 +106,7 @@ struct RealDevice {
     plan.models = build_meshes(plan.document);
     const DeviceNotes& notes = hub.notes(hub.in_use());
     Parameters usual = make_parameters(input, plan.arm);
-    static_cast<CompensationSettings&>(usual) = notes.compensation;
+    notes.compensation.give(usual);
     plan.parameters = make_parameters(input, usual);
     limits = notes.limits;
   }

@@ -84,8 +84,8 @@ class Entry {
   std::string file_, path_;
 };
 
-CompensationSettings read_compensation(const Entry& entry) {
-  CompensationSettings c;
+OwnForces read_compensation(const Entry& entry) {
+  OwnForces c;
   auto down = static_cast<std::size_t>(c.down);
   entry.take("gravity", c.holds_weight);
   entry.take("springs", c.holds_springs);
@@ -95,7 +95,7 @@ CompensationSettings read_compensation(const Entry& entry) {
   return c;
 }
 
-toml::table write_compensation(const CompensationSettings& c) {
+toml::table write_compensation(const OwnForces& c) {
   return toml::table{{"gravity", c.holds_weight},
                      {"down", kDowns[static_cast<std::size_t>(c.down)]},
                      {"friction", c.friction_share},

@@ -17,6 +17,18 @@ namespace limpid {
 
 inline constexpr double kLeastTorqueScale = 0.1, kMostTorqueScale = 10;
 
+// What the motors take of a device's own forces, and where down is for it.
+struct OwnForces : CompensationSettings {
+  Down down = Down::as_file;
+
+  static OwnForces of(const Parameters& p) { return {p, p.down}; }
+  void give(Parameters& p) const {
+    static_cast<CompensationSettings&>(p) = *this;
+    p.down = down;
+  }
+  friend bool operator==(const OwnForces&, const OwnForces&) = default;
+};
+
 struct DeviceNotes {
   std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
   PidSettings pid;                   // of a joystick: its range and its effort
@@ -25,8 +37,8 @@ struct DeviceNotes {
   std::string arm;                   // URDF of what it was identified as; empty: it was not
   double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
                       // [s]; below 0: not known
-  double torque_scale = 1;            // what its motors give of what they are told
-  CompensationSettings compensation;  // of its own forces, while it is in the loop
+  double torque_scale = 1;  // what its motors give of what they are told
+  OwnForces compensation;   // while it is in the loop
   std::string refusal;  // why what the file says of it cannot be understood; it is not used then
 };
 

@@ -2,23 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string_view>
-
 namespace limpid {
 
-bool own_of_twin(const ParameterInfo& info) {
-  const std::string_view key = info.key;
-  return std::ranges::any_of(
-      std::array<std::string_view, 5>{"coupling.", "observer.", "predictor.", "ledger.", "model."},
-      [key](std::string_view group) { return key.starts_with(group); });
-}
-
 void share_world(const Parameters& first, Parameters& twin) {
-  for (const ParameterInfo& info : parameter_table()) {
-    if (!own_of_twin(info)) set_parameter_number(twin, info, parameter_number(first, info));
-  }
-  twin.tick = first.tick;
+  const ControllerSettings own = twin;
+  twin = first;
+  static_cast<ControllerSettings&>(twin) = own;
 }
 
 std::array<std::string, 2> twin_names(const Parameters& first, const Parameters& twin) {

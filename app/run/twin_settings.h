@@ -8,10 +8,7 @@
 
 namespace limpid {
 
-// Whether a twin has this setting of its own: the coupling's and its model's. Hand, device and tick
-// are one for both.
-bool own_of_twin(const ParameterInfo& info);
-// Gives the twin all that it has not of its own.
+// Gives the twin all that it has not of its own: it has ControllerSettings.
 void share_world(const Parameters& first, Parameters& twin);
 // What the two are called: by what they differ in.
 std::array<std::string, 2> twin_names(const Parameters& first, const Parameters& twin);

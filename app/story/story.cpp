@@ -94,7 +94,7 @@ const ParameterInfo* key_of(const std::string& setting) {
 void check(const std::string& setting, std::size_t lane, double time) {
   const ParameterInfo* info = key_of(setting);
   if (info == nullptr) return;  // apply_setting says it better
-  if (lane != kBoth && !own_of_twin(*info)) {
+  if (lane != kBoth && !of_controller(*info)) {
     throw ParameterError(fmt::format("{}: is one for both runs; it belongs under set", info->key));
   }
   if (!info->live && time > 0) {

@@ -32,12 +32,12 @@ Compensation<N>::Compensation(const ArmDescription& arm)
       torque_(v_) {}
 
 template <int N>
-Vec3 Compensation<N>::wanted_gravity(const CompensationSettings& p) const {
+Vec3 Compensation<N>::wanted_gravity(const Parameters& p) const {
   return p.holds_weight ? gravity_of(p.down, own_gravity_) : Vec3::Zero();
 }
 
 template <int N>
-void Compensation<N>::start(const CompensationSettings& p) {
+void Compensation<N>::start(const Parameters& p) {
   gravity_ = wanted_gravity(p);
   share_ = p.friction_share;
   springs_ = p.holds_springs ? 1 : 0;
@@ -46,7 +46,7 @@ void Compensation<N>::start(const CompensationSettings& p) {
 }
 
 template <int N>
-const Vec<N>& Compensation<N>::step(const CompensationSettings& p, const Arm<N>& arm,
+const Vec<N>& Compensation<N>::step(const Parameters& p, const Arm<N>& arm,
                                     const typename Arm<N>::Frames& frames, const Vec<N>& x,
                                     const Vec<N>& v, const Vec<N>& friction, double encoder_step,
                                     double dt) {

@@ -23,7 +23,7 @@ class Compensation {
   explicit Compensation(const ArmDescription& arm);
 
   // As it is set, at rest.
-  void start(const CompensationSettings& p);
+  void start(const Parameters& p);
   // The device was without torque for a while: it is taken to be at rest.
   void rest() { v_.setZero(); }
   // Nothing of it is on its way to another setting.
@@ -32,12 +32,12 @@ class Compensation {
   // Of the tick that begins [N m]: the arm at these frames and x, its velocity estimate v, friction
   // as it is believed to be [N m], `dt` since the tick before [s]. Another setting is gone over to
   // within half a second.
-  const Vec<N>& step(const CompensationSettings& p, const Arm<N>& arm,
-                     const typename Arm<N>::Frames& frames, const Vec<N>& x, const Vec<N>& v,
-                     const Vec<N>& friction, double encoder_step, double dt);
+  const Vec<N>& step(const Parameters& p, const Arm<N>& arm, const typename Arm<N>::Frames& frames,
+                     const Vec<N>& x, const Vec<N>& v, const Vec<N>& friction, double encoder_step,
+                     double dt);
 
  private:
-  Vec3 wanted_gravity(const CompensationSettings& p) const;
+  Vec3 wanted_gravity(const Parameters& p) const;
 
   Vec3 own_gravity_;        // as the arm's file has it [m/s^2]
   Vec<N> spring_, offset_;  // [N m/rad, N m]

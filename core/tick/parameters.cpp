@@ -11,52 +11,9 @@ namespace {
 
 using P = Parameters;
 
-constexpr std::array kFirst{
-    ParameterInfo{"coupling.kind", "coupling", choice<P, &P::kind>(kLawKeys), "-", 0, kLaws - 1, 0,
-                  kLaws - 1, false, true, kLawMeanings.data()},
-};
-constexpr std::array kOthers{
-    ParameterInfo{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-",
-                  1e-8, 100, 1e-5, 1, true, true,
-                  "Inertia of the proxy as a part of the device's (section 4.1: 1e-4)."},
-    ParameterInfo{"model.inertia_error", "inertia error", &P::inertia_error, "-", 0.01, 100, 0.1,
-                  10, true, true,
-                  "Factor on the device inertia that the controller believes (section 3.2)."},
-    ParameterInfo{"hand.stiffness", "grip stiffness", &P::hand_stiffness, "N/m", 0, 1e5, 10, 3000,
-                  true, true, "Spring between the hand's target and the tip of the device."},
-    ParameterInfo{"hand.damping", "grip damping", &P::hand_damping, "N s/m", 0, 1e3, 0, 20, false,
-                  true, "Damper between the hand's target and the tip of the device."},
-    ParameterInfo{"hand.mass", "hand mass", &P::hand_mass_at_tip, "kg", 0, 2, 0, 0.5, false, true,
-                  "Point mass of hand and handle at the tip of the virtual device."},
-    ParameterInfo{"loop.tick", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
-                  "Time between two ticks of the loop, T."},
-    ParameterInfo{"device.substeps", "substeps", &P::substeps, "-", 1, 1000, 1, 100, true, false,
-                  "Integration steps of the virtual device per tick, motor torque held."},
-    ParameterInfo{"device.delay", "delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5, false,
-                  true,
-                  "Ticks between a command and the torque of the virtual device's motors. The "
-                  "predictive coupling reckons with model.delay of them."},
-    ParameterInfo{"device.encoder_step", "encoder step", &P::encoder_step, "rad", 0, 0.1, 0, 2e-3,
-                  false, true, "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4."},
-    ParameterInfo{"device.friction", "friction", &P::friction, "N m", 0, 100, 0, 0.05, false, true,
-                  "Coulomb friction of every joint; default: the arm's file."},
-    ParameterInfo{"device.damping", "b_d", &P::damping, "N m s/rad", 0, 100, 1e-4, 0.1, true, true,
-                  "The device's own viscous damping, b_d of (1): not commanded by the motors. "
-                  "Condition (3) asks for at least 2 b_vc + k_vc T. Default: the arm's file."},
-    ParameterInfo{"device.torque_limit", "torque limit", &P::torque_limit, "N m", 1e-6, 1e4, 0.01,
-                  5, true, true,
-                  "Largest torque of every motor (section 3.1); default: the arm's file."},
-    ParameterInfo{"device.gravity", "weight", &P::weighs, "-", 0, 1, 0, 1, false, true,
-                  "The virtual arm has the weight of its file and would fall; off: as if a "
-                  "counterweight held it. model.gravity has the motors hold it."},
-    ParameterInfo{"device.springs", "springs", &P::springy, "-", 0, 1, 0, 1, false, true,
-                  "The virtual arm has the springs of its file, as one that was identified has; "
-                  "model.springs has the motors hold against them."},
-};
-
-constexpr auto kTable =
-    joined(kFirst, law_settings<P>(), ObserverSettings::settings<P>(), LinkSettings::settings<P>(),
-           kOthers, CompensationSettings::settings<P>());
+constexpr auto kController = ControllerSettings::settings<P>();
+constexpr auto kTable = joined(kController, LoopSettings::settings<P>(),
+                               HandSettings::settings<P>(), DeviceSettings::settings<P>());
 
 std::string number(double x) {
   std::array<char, 40> text{};
@@ -159,6 +116,11 @@ const ParameterInfo* find_parameter(std::string_view key) {
     if (key == info.key) return &info;
   }
   return nullptr;
+}
+
+bool of_controller(const ParameterInfo& info) {
+  const std::string_view key = info.key;
+  return std::ranges::any_of(kController, [key](const auto& own) { return key == own.key; });
 }
 
 void set_parameter(Parameters& p, std::string_view key, const ParameterValue& value) {

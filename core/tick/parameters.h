@@ -23,9 +23,9 @@ inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 enum class Down : std::uint8_t { as_file, minus_z, plus_z, minus_x, plus_x, minus_y, plus_y };
 inline constexpr std::array<const char*, 7> kDowns{"file", "-z", "+z", "-x", "+x", "-y", "+y"};
 
+// What the motors take of the device's own forces off the hand, see compensation.h.
 struct CompensationSettings {
   bool holds_weight = false;
-  Down down = Down::as_file;
   double friction_share = 0;  // s, of the Coulomb friction [-]
   bool holds_springs = false;
 
@@ -33,14 +33,11 @@ struct CompensationSettings {
   friend bool operator==(const CompensationSettings&, const CompensationSettings&) = default;
 
   template <class P>
-  static constexpr std::array<Setting<P>, 4> settings() {
+  static constexpr std::array<Setting<P>, 3> settings() {
     return {
         {{"model.gravity", "hold the weight", &P::holds_weight, "-", 0, 1, 0, 1, false, true,
           "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
           "device does it by itself, as by counterweights."},
-         {"device.down", "down", choice<P, &P::down>(kDowns), "-", 0, 6, 0, 6, false, true,
-          "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
-          "side; file: as its file says, else -z."},
          {"model.friction", "friction taken off", &P::friction_share, "-", 0, kMostShare, 0,
           kMostShare, false, true,
           "Share of the Coulomb friction that the motors take off the hand. Passive while that is "
@@ -50,14 +47,58 @@ struct CompensationSettings {
   }
 };
 
-struct Parameters : LawSettings, ObserverSettings, LinkSettings, CompensationSettings {
+// The coupling, and what it believes of the device. A second run on the same hand has its own.
+struct ControllerSettings : LawSettings, ObserverSettings, CompensationSettings {
   CouplingKind kind = CouplingKind::proposed;
+  double inertia_error = 1;  // factor on the M1, C1 the controller believes [-]
+
+  template <class P>
+  static constexpr auto settings() {
+    constexpr std::array<Setting<P>, 1> kKind{
+        {{"coupling.kind", "coupling", choice<P, &P::kind>(kLawKeys), "-", 0, kLaws - 1, 0,
+          kLaws - 1, false, true, kLawMeanings.data()}}};
+    constexpr std::array<Setting<P>, 1> kBelief{
+        {{"model.inertia_error", "inertia error", &P::inertia_error, "-", 0.01, 100, 0.1, 10, true,
+          true, "Factor on the device inertia that the controller believes (section 3.2)."}}};
+    return joined(kKind, law_settings<P>(), ObserverSettings::settings<P>(), kBelief,
+                  CompensationSettings::settings<P>());
+  }
+};
+
+// The loop, and the proxy that it moves.
+struct LoopSettings : LinkSettings {
   double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
-  double inertia_error = 1;     // factor on the M1, C1 the controller believes [-]
+  double tick = 0.001;          // T [s]
+
+  template <class P>
+  static constexpr auto settings() {
+    constexpr std::array<Setting<P>, 2> kOwn{
+        {{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-", 1e-8, 100,
+          1e-5, 1, true, true,
+          "Inertia of the proxy as a part of the device's (section 4.1: 1e-4)."},
+         {"loop.tick", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
+          "Time between two ticks of the loop, T."}}};
+    return joined(LinkSettings::settings<P>(), kOwn);
+  }
+};
+
+struct HandSettings {
   double hand_stiffness = 300;  // [N/m]
   double hand_damping = 2;      // [N s/m]
   double hand_mass_at_tip = 0;  // of hand and handle, at the tip [kg]
-  double tick = 0.001;          // T [s]
+
+  template <class P>
+  static constexpr std::array<Setting<P>, 3> settings() {
+    return {{{"hand.stiffness", "grip stiffness", &P::hand_stiffness, "N/m", 0, 1e5, 10, 3000, true,
+              true, "Spring between the hand's target and the tip of the device."},
+             {"hand.damping", "grip damping", &P::hand_damping, "N s/m", 0, 1e3, 0, 20, false, true,
+              "Damper between the hand's target and the tip of the device."},
+             {"hand.mass", "hand mass", &P::hand_mass_at_tip, "kg", 0, 2, 0, 0.5, false, true,
+              "Point mass of hand and handle at the tip of the virtual device."}}};
+  }
+};
+
+struct DeviceSettings {
   int substeps = 20;
   int device_delay = 0;            // between command and motor [ticks]
   double encoder_step = 0;         // [rad]
@@ -66,7 +107,38 @@ struct Parameters : LawSettings, ObserverSettings, LinkSettings, CompensationSet
   double torque_limit = kFromArm;  // every joint [N m]
   bool weighs = false;             // the virtual arm, as its file says; else it counts as held
   bool springy = false;            // it has the springs of its file
+  Down down = Down::as_file;
 
+  template <class P>
+  static constexpr std::array<Setting<P>, 9> settings() {
+    return {
+        {{"device.substeps", "substeps", &P::substeps, "-", 1, 1000, 1, 100, true, false,
+          "Integration steps of the virtual device per tick, motor torque held."},
+         {"device.delay", "delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5, false, true,
+          "Ticks between a command and the torque of the virtual device's motors. The predictive "
+          "coupling reckons with model.delay of them."},
+         {"device.encoder_step", "encoder step", &P::encoder_step, "rad", 0, 0.1, 0, 2e-3, false,
+          true, "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4."},
+         {"device.friction", "friction", &P::friction, "N m", 0, 100, 0, 0.05, false, true,
+          "Coulomb friction of every joint; default: the arm's file."},
+         {"device.damping", "b_d", &P::damping, "N m s/rad", 0, 100, 1e-4, 0.1, true, true,
+          "The device's own viscous damping, b_d of (1): not commanded by the motors. Condition "
+          "(3) asks for at least 2 b_vc + k_vc T. Default: the arm's file."},
+         {"device.torque_limit", "torque limit", &P::torque_limit, "N m", 1e-6, 1e4, 0.01, 5, true,
+          true, "Largest torque of every motor (section 3.1); default: the arm's file."},
+         {"device.gravity", "weight", &P::weighs, "-", 0, 1, 0, 1, false, true,
+          "The virtual arm has the weight of its file and would fall; off: as if a counterweight "
+          "held it. model.gravity has the motors hold it."},
+         {"device.springs", "springs", &P::springy, "-", 0, 1, 0, 1, false, true,
+          "The virtual arm has the springs of its file, as one that was identified has; "
+          "model.springs has the motors hold against them."},
+         {"device.down", "down", choice<P, &P::down>(kDowns), "-", 0, 6, 0, 6, false, true,
+          "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
+          "side; file: as its file says, else -z."}}};
+  }
+};
+
+struct Parameters : ControllerSettings, LoopSettings, HandSettings, DeviceSettings {
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
 
@@ -78,6 +150,7 @@ using ParameterInfo = Setting<Parameters>;
 
 std::span<const ParameterInfo> parameter_table();
 const ParameterInfo* find_parameter(std::string_view key);
+bool of_controller(const ParameterInfo& info);
 
 inline const char* name(CouplingKind kind) { return info(kind).key; }
 inline const char* name(VelocitySource source) {

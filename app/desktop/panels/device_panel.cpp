@@ -143,10 +143,8 @@ void compensation(const ArmDescription& arm, Parameters& p) {
   tooltip(
       "What the device itself pulls with, and the motors can take off the hand. It is armed, fades "
       "and stops with all other force.");
-  const CompensationSettings suggested = suggested_compensation(arm);
+  const CompensationSettings wanted = suggested_compensation(arm);
   CompensationSettings& now = p;
-  CompensationSettings wanted = suggested;
-  wanted.down = now.down;
   if (arm.delay && now != wanted) {
     if (ImGui::Button("Take off what was measured")) now = wanted;
     tooltip(fmt::format("Weight {}, springs {}, {:.0f} % of the friction.",

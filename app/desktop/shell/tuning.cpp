@@ -33,8 +33,7 @@ void Tuning::next_law() {
   if (passivity_broken(settings_)) return end_break();
   Parameters& p = edited();
   p.kind = next(p.kind);
-  // Tanks are for links: without one they only take something off the standard law.
-  if (p.kind == CouplingKind::tank && !p.linked()) p.kind = next(p.kind);
+  while (info(p.kind).for_links && !p.linked()) p.kind = next(p.kind);
 }
 
 void Tuning::toggle_twin() {
@@ -87,21 +86,21 @@ void Tuning::suit(const ArmDescription& arm, bool of_device) {
     refit(settings_.twin.parameters, before, &arm);
     fitted_for_ = arm;
   }
-  CompensationSettings& now = settings_.parameters;
-  const CompensationSettings of_virtual = compensated_ ? compensated_->second : now;
+  Parameters& now = settings_.parameters;
+  const OwnForces of_virtual = compensated_ ? compensated_->second : OwnForces::of(now);
   compensated_.reset();
-  now = of_virtual;
+  of_virtual.give(now);
   if (!of_device) return;
   const std::string& id = devices_.hub().in_use();
   compensated_ = {id, of_virtual};
-  now = devices_.hub().notes(id).compensation;
+  devices_.hub().notes(id).compensation.give(now);
 }
 
 void Tuning::note_compensation() {
   const bool sliding = ImGui::GetCurrentContext() != nullptr && ImGui::IsAnyItemActive();
   if (!compensated_ || sliding) return;
-  const CompensationSettings& now = settings_.parameters;
-  CompensationSettings& noted = devices_.hub().notes(compensated_->first).compensation;
+  const OwnForces now = OwnForces::of(settings_.parameters);
+  OwnForces& noted = devices_.hub().notes(compensated_->first).compensation;
   if (noted == now) return;
   noted = now;
   devices_.save();
@@ -147,7 +146,7 @@ void Tuning::mark_changes(const Parameters& now, const Parameters& before,
                           const std::string& whose) {
   for (const ParameterInfo& info : parameter_table()) {
     if (parameter_text(now, info) == parameter_text(before, info)) continue;
-    if (!whose.empty() && !own_of_twin(info)) continue;
+    if (!whose.empty() && !of_controller(info)) continue;
     live_.mark(whose + mark_text(info, now), whose + info.key);
   }
 }
@@ -167,7 +166,7 @@ void Tuning::follow_recorded(bool another) {
 Settings Tuning::settings_to_keep() const {
   Settings kept = settings_;
   end_passivity_break(kept);
-  if (compensated_) static_cast<CompensationSettings&>(kept.parameters) = compensated_->second;
+  if (compensated_) compensated_->second.give(kept.parameters);
   if (!fitted_for_) return kept;
   refit(kept.parameters, &*fitted_for_, nullptr);
   refit(kept.twin.parameters, &*fitted_for_, nullptr);

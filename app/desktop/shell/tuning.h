@@ -61,7 +61,7 @@ class Tuning {
   Playback& playback_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
   // While a device in the arm's place has its own compensation: its id, and the virtual arm's.
-  std::optional<std::pair<std::string, CompensationSettings>> compensated_;
+  std::optional<std::pair<std::string, OwnForces>> compensated_;
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

@@ -411,8 +411,8 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
   ArmDescription found = omni;
   found.links[1].mass = 0.123;
-  const CompensationSettings taken_off{
-      .holds_weight = true, .down = Down::plus_x, .friction_share = 0.6, .holds_springs = true};
+  const OwnForces taken_off{{.holds_weight = true, .friction_share = 0.6, .holds_springs = true},
+                            Down::plus_x};
   {
     DeviceHub hub(dir / "devices.toml", {});
     hub.use("1209:4c50:a/b c");

@@ -15,6 +15,13 @@ using Vector = Vec<kAnyDof>;
 
 constexpr double kTick = 0.001;
 
+Parameters with(const CompensationSettings& compensation, Down down = Down::as_file) {
+  Parameters p;
+  static_cast<CompensationSettings&>(p) = compensation;
+  p.down = down;
+  return p;
+}
+
 struct Bench {
   explicit Bench(int n, unsigned seed = 601)
       : description(test::random_arm(n, seed)), arm(description) {
@@ -29,8 +36,7 @@ struct Bench {
     friction = Vector::Constant(n, 0.02);
     arm.frames(x, frames);
   }
-  Vector at(Compensation<kAnyDof>& c, const CompensationSettings& p, const Vector& v,
-            double step = 0) const {
+  Vector at(Compensation<kAnyDof>& c, const Parameters& p, const Vector& v, double step = 0) const {
     return c.step(p, arm, frames, x, v, friction, step, kTick);
   }
 
@@ -50,7 +56,7 @@ TEST(Compensation, IsNothingUntilItIsAskedFor) {
 
 TEST(Compensation, HoldsWeightAndSpringsWhereTheArmIs) {
   const Bench bench(4);
-  const CompensationSettings both{.holds_weight = true, .holds_springs = true};
+  const Parameters both = with({.holds_weight = true, .holds_springs = true});
   Compensation<kAnyDof> c(bench.description);
   c.start(both);
   Vector wanted = bench.arm.weight(bench.frames, bench.description.gravity);
@@ -65,7 +71,7 @@ TEST(Compensation, GoesByWhereDownIsSaidToBe) {
   const Bench bench(3);
   const Vec3 downs[] = {{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
   for (int i = 0; i < 6; ++i) {
-    const CompensationSettings p{.holds_weight = true, .down = static_cast<Down>(i + 1)};
+    const Parameters p = with({.holds_weight = true}, static_cast<Down>(i + 1));
     Compensation<kAnyDof> c(bench.description);
     c.start(p);
     const Vector wanted = bench.arm.weight(bench.frames, 9.81 * downs[i]);
@@ -78,7 +84,7 @@ TEST(Compensation, GoesByWhereDownIsSaidToBe) {
 TEST(Compensation, NeverPutsOutMoreThanItsShareOfTheFriction) {
   const Bench bench(2);
   Random random(603);
-  const CompensationSettings p{.friction_share = 0.7};
+  const Parameters p = with({.friction_share = 0.7});
   Compensation<kAnyDof> c(bench.description);
   c.start(p);
   double put_out = 0, taken = 0;
@@ -94,7 +100,7 @@ TEST(Compensation, NeverPutsOutMoreThanItsShareOfTheFriction) {
 
 TEST(Compensation, TakesItsShareOffWhenTheDeviceMovesOn) {
   const Bench bench(2);
-  const CompensationSettings p{.friction_share = 0.7};
+  const Parameters p = with({.friction_share = 0.7});
   Compensation<kAnyDof> c(bench.description);
   c.start(p);
   Vector torque;
@@ -105,7 +111,7 @@ TEST(Compensation, TakesItsShareOffWhenTheDeviceMovesOn) {
 // An encoder of 10 bits at the edge of a cell: a step there and back at every tick, at random.
 TEST(Compensation, DoesNotChatterWhereAnEncoderFlickers) {
   const Bench bench(1);
-  const CompensationSettings p{.friction_share = 0.7};
+  const Parameters p = with({.friction_share = 0.7});
   Compensation<kAnyDof> c(bench.description);
   c.start(p);
   Random random(604);
@@ -123,8 +129,7 @@ TEST(Compensation, DoesNotChatterWhereAnEncoderFlickers) {
 
 TEST(Compensation, GoesOverToAnotherSettingWithinHalfASecondAndNoFaster) {
   const Bench bench(3);
-  const CompensationSettings all{
-      .holds_weight = true, .friction_share = 0.7, .holds_springs = true};
+  const Parameters all = with({.holds_weight = true, .friction_share = 0.7, .holds_springs = true});
   Compensation<kAnyDof> c(bench.description), there(bench.description);
   c.start({});
   there.start(all);
@@ -148,9 +153,8 @@ TEST(Compensation, GoesOverToAnotherSettingWithinHalfASecondAndNoFaster) {
 
 TEST(Compensation, IsNotSteadyWhileAnyOfItIsOnItsWay) {
   const Bench bench(3);
-  for (const CompensationSettings& one :
-       {CompensationSettings{.holds_weight = true}, CompensationSettings{.friction_share = 0.95},
-        CompensationSettings{.holds_springs = true}}) {
+  for (const Parameters& one : {with({.holds_weight = true}), with({.friction_share = 0.95}),
+                                with({.holds_springs = true})}) {
     Compensation<kAnyDof> c(bench.description);
     c.start({});
     const int ticks = one.friction_share > 0 ? 475 : 500;
