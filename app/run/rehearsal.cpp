@@ -1,10 +1,10 @@
 #include "app/run/rehearsal.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "core/math/eigen.h"
 #include "core/math/elementary.h"
 #include "devices/simulated/rig.h"
 
@@ -165,7 +165,7 @@ void explain_what_is_felt(const Truth& truth, const Stand& stand, const Paramete
       b[n * k + j] = truth.hand[i + 1][j];
     }
   }
-  const VectorXd found = A.colPivHouseholderQr().solve(b);
+  const VectorXd found = least_squares(A, b);
   result.off = std::sqrt(missed / whole);
   result.friction = found[2];
   result.weight = found.segment(3, n).norm() / std::sqrt(static_cast<double>(n));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "app/study/signals.h"
 #include "app/study/tap_bench.h"
 #include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
 #include "core/math/high_pass.h"
 
 namespace limpid {
@@ -96,7 +96,7 @@ Felt felt_of(const Session& s, const ArmDescription& arm) {
     normal += along.transpose() * along;
     right += along.transpose() * f1;
   }
-  const Eigen::VectorXd found = normal.completeOrthogonalDecomposition().solve(right);
+  const Eigen::VectorXd found = least_squares(normal, right);
   return {found[0], found.segment(1, n)};
 }
 

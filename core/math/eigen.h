@@ -1,4 +1,5 @@
-// Eigenvalues of matrices of any size, compiled once: Eigen's solvers take seconds to compile.
+// Eigenvalues and least squares of matrices of any size, compiled once: Eigen's solvers take
+// seconds to compile. Not for ticks: they allocate.
 #pragma once
 
 #include "core/math/sizes.h"
@@ -14,5 +15,8 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
+
+// The shortest z of those with the least |A z - b|.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace limpid
