@@ -39,7 +39,7 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
              a.condition3.device_margin, a.condition3.proxy_margin);
   if (!p.linked()) return;
   fmt::print("link                       up to {:.4g} ms old each way, as (3) has it; {}\n",
-             1e3 * a.link, link_text(p.kind));
+             1e3 * a.link, info(p.kind).through_link);
 }
 
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]

@@ -192,10 +192,12 @@ void say_about(const RunPlan& plan) {
   for (const std::string& warning : plan.arm.warnings) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
   }
-  if (plan.parameters.linked() && plan.parameters.kind == CouplingKind::predictive) {
-    fmt::print(stderr,
-               "limpid: note: link.* does nothing here: the predictive law solves device and proxy "
-               "at once, and knows no link\n");
+  if (plan.parameters.linked() && info(plan.parameters.kind).solves_together) {
+    fmt::print(
+        stderr,
+        "limpid: note: link.* does nothing here: the {} law solves device and proxy at once, "
+        "and knows no link\n",
+        info(plan.parameters.kind).key);
   }
   const bool again = plan.hand.tick > 0;  // a recording has its own settings
   const std::string fit = again ? "" : fit_text(fitted(plan.arm, plan.parameters));

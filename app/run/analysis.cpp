@@ -49,16 +49,6 @@ double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
   return high;
 }
 
-const char* link_text(CouplingKind kind) {
-  switch (kind) {
-    case CouplingKind::standard: return "passive where (3) holds";
-    case CouplingKind::proposed: return "of what is fed forward no bound is known";
-    case CouplingKind::predictive: return "the predictive law knows no link";
-    case CouplingKind::tank: return "passive whatever it does";
-  }
-  return "";
-}
-
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
   Eigen::VectorXd b_d(static_cast<Eigen::Index>(arm.joints.size()));
   for (Eigen::Index i = 0; i < b_d.size(); ++i) {

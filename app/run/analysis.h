@@ -36,9 +36,6 @@ struct Analysis {
   bool passive = false;  // eta >= eta_min
 };
 
-// What is known of a law where device and proxy are linked, in words.
-const char* link_text(CouplingKind kind);
-
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
 

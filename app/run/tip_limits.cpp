@@ -48,16 +48,21 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   l.tip = tip_along(arm.J, arm.M, b_d, n);
   const double lever2 = l.tip.lever2;
   const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip, l.delay};
-  const auto at = [&l](CouplingKind kind) -> TipLimits::Wall& {
-    return l.walls[static_cast<std::size_t>(kind)];
-  };
-  at(CouplingKind::standard) = {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};
-  at(CouplingKind::tank) = at(CouplingKind::standard);
   WallSetting through_link = s;
   through_link.delay += 2 * p.oldest() * p.tick;
-  at(CouplingKind::proposed) = {proposed_wall(l.tip, through_link),
-                                "the damping there is against the lag of the contact"};
-  at(CouplingKind::predictive) = predictive_wall(easiest(arm.J, arm.M), s, p);
+  const auto wall = [&](CouplingKind kind) -> TipLimits::Wall {
+    switch (kind) {
+      case CouplingKind::standard:
+      case CouplingKind::tank:
+        return {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};
+      case CouplingKind::proposed:
+        return {proposed_wall(l.tip, through_link),
+                "the damping there is against the lag of the contact"};
+      case CouplingKind::predictive: return predictive_wall(easiest(arm.J, arm.M), s, p);
+    }
+    return {};
+  };
+  for (std::size_t i = 0; i < kLaws; ++i) l.walls[i] = wall(static_cast<CouplingKind>(i));
   l.every_hand = every_hands_wall(l.tip, p.tick, l.delay);
   l.scene = stiffest_surface(scene);
   l.felt = {(1 + p.inertia_ratio) * l.tip.mass,

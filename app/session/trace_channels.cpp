@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include "core/coupling/laws.h"
+
 namespace limpid {
 
 void EnergyAccount::follow(const History& history, SampleIndex end) {
@@ -60,8 +62,7 @@ using enum Ink;
 std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
                                         const std::vector<std::string>& joint_units) {
   std::vector<ChannelInfo> infos{
-      {"coupling/kind", "Coupling", "law", "law", "-",
-       "0 standard, 1 proposed, 2 predictive, 3 tank", neutral},
+      {"coupling/kind", "Coupling", "law", "law", "-", kLawNumbers.data(), neutral},
       {"coordination/error", "Coordination error", "of all joints, |x_E|", "|x_E|", units.angle,
        "distance of device and proxy, over all joints", proxy},
       {"energy/controller_total", "Energy", "controller, E_c", "E_c", "J",

@@ -19,7 +19,7 @@ namespace limpid {
 // The first channels of one run, in this order; the joints' follow one by one, and after these all
 // columns of the row.
 enum class Channel : std::uint8_t {
-  kind,          // 0 standard, 1 proposed, 2 predictive
+  kind,          // its number
   error,         // |x_E| [rad]; [m] of an arm that only slides
   energy_total,  // [J]
   energy_commanded,

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tick/parameters.h"
+
 namespace limpid {
+
+static_assert(kLawColours.size() == kLaws, "each law has a colour");
 namespace {
 
 double luminance(Rgb c) {

@@ -72,6 +72,11 @@ struct LawInfo {
   bool observes;
   // It accounts for the energy that the human is given, and bounds it.
   bool keeps_ledger;
+  // It solves device, proxy and contacts together: so it renders friction and damping, and knows no
+  // link. The others have a spring or what is fed forward between device and proxy.
+  bool solves_together;
+  bool for_links;            // without a link it only takes something off the standard law
+  const char* through_link;  // what is known of it with a delay between device and proxy
   std::span<const char* const> sliders;  // keys, in the panel
 };
 
@@ -167,6 +172,9 @@ struct StandardLaw {
       .takes_eta = false,
       .observes = false,
       .keeps_ledger = false,
+      .solves_together = false,
+      .for_links = false,
+      .through_link = "passive where (3) holds",
       .sliders = kPaperSliders,
   };
 
@@ -185,6 +193,9 @@ struct ProposedLaw {
       .takes_eta = true,
       .observes = true,
       .keeps_ledger = false,
+      .solves_together = false,
+      .for_links = false,
+      .through_link = "of what is fed forward no bound is known",
       .sliders = kPaperSliders,
   };
 
@@ -301,6 +312,9 @@ struct PredictiveLaw {
       .takes_eta = true,
       .observes = false,
       .keeps_ledger = true,
+      .solves_together = true,
+      .for_links = false,
+      .through_link = "the predictive law knows no link",
       .sliders = kSliders,
   };
 
@@ -351,6 +365,9 @@ struct TankLaw {
       .takes_eta = false,
       .observes = false,
       .keeps_ledger = true,
+      .solves_together = false,
+      .for_links = true,
+      .through_link = "passive whatever it does",
       .sliders = kSliders,
   };
 
@@ -422,19 +439,18 @@ template <class... Law>
 Listed<Law...> listed(std::tuple<Law...>*);
 using AllLaws = decltype(listed(static_cast<Laws*>(nullptr)));
 
-// What all of them do, in one text: "standard: ... proposed: ...".
-consteval auto meanings() {
+// One text of what `put_law(put, law, number)` puts for each of them, between them `between`.
+template <class PutLaw>
+consteval auto text_of_all(std::string_view between, PutLaw put_law) {
   constexpr std::size_t kLongest = 1024;
   std::array<char, kLongest> text{};
   std::size_t at = 0;
   const auto put = [&](std::string_view part) {
     at = static_cast<std::size_t>(std::ranges::copy(part, text.begin() + at).out - text.begin());
   };
-  for (const LawInfo* law : AllLaws::kInfos) {
-    if (at > 0) put(" ");
-    put(law->key);
-    put(": ");
-    put(law->meaning);
+  for (std::size_t i = 0; i < AllLaws::kInfos.size(); ++i) {
+    if (i > 0) put(between);
+    put_law(put, *AllLaws::kInfos[i], i);
   }
   return text;
 }
@@ -462,6 +478,21 @@ inline CouplingKind next(CouplingKind kind) {
 }
 inline constexpr auto& kLawKeys = detail::AllLaws::kKeys;
 inline constexpr std::uint8_t kLaws = kLawKeys.size();
-inline constexpr auto kLawMeanings = detail::meanings();
+// "standard: what it does. proposed: ...".
+inline constexpr auto kLawMeanings =
+    detail::text_of_all(" ", [](auto put, const LawInfo& law, std::size_t) {
+      put(law.key);
+      put(": ");
+      put(law.meaning);
+    });
+// As recordings keep them: "0 standard, 1 proposed, ...".
+inline constexpr auto kLawNumbers =
+    detail::text_of_all(", ", [](auto put, const LawInfo& law, std::size_t number) {
+      const char digit = static_cast<char>('0' + number);
+      put({&digit, 1});
+      put(" ");
+      put(law.key);
+    });
+static_assert(kLaws <= 10);
 
 }  // namespace limpid

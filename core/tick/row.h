@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/coupling/laws.h"
 #include "core/math/sizes.h"
 #include "core/touch/scene.h"
 
@@ -132,8 +133,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "7 out of range, 8 energy, 9 diverged, 10 the window does not answer, 11 the loop stood "
      "still, 12 the readings stand still",
      true},
-    {Column::kind, "/coupling/kind", ColumnWidth::one, "-",
-     "0 standard, 1 proposed, 2 predictive, 3 tank", true},
+    {Column::kind, "/coupling/kind", ColumnWidth::one, "-", kLawNumbers.data(), true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},
     {Column::alpha, "/coupling/alpha", ColumnWidth::one, "N m s/rad", "observer gain"},
     {Column::governor, "/coupling/governor", ColumnWidth::one, "-",

@@ -123,7 +123,7 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());
   if (tip_.scene <= 0) return;
-  const bool soft = p.kind == CouplingKind::standard || p.kind == CouplingKind::tank;
+  const bool soft = !info(p.kind).solves_together && !info(p.kind).observes;
   const bool over = !soft && tip_.scene > mine.stiffness;
   read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
            over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
@@ -173,7 +173,7 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
                       "has to make felt for this inertia up to {:.3g} Hz.",
                       least, p.band)
               .c_str());
-  if (p.kind == CouplingKind::predictive) {
+  if (info(p.kind).solves_together) {
     if (const std::string late = late_text(tip_, p); !late.empty()) {
       read_out("\xCE\xB7", late, {},
                "An added mass that moves fast is a damper; where the torque may be late it would "

@@ -150,23 +150,23 @@ void draw_link(Parameters& p) {
       p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
                  : "Link###link";
   if (!section(set.c_str(), false)) return;
-  if (p.kind == CouplingKind::predictive) {
+  if (info(p.kind).solves_together) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("The predictive law solves device and proxy at once, and knows no link.");
+    ImGui::TextWrapped("This law solves device and proxy at once, and knows no link.");
     ImGui::PopStyleColor();
     return;
   }
   for (const std::string_view key : info(p.kind).sliders) {
     if (of_link(key)) slider(p, key.data());
   }
-  if (p.linked()) read_out("Through it", link_text(p.kind));
+  if (p.linked()) read_out("Through it", info(p.kind).through_link);
 }
 
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
-  // The tanks are passive without it, and the predictive law knows no link.
-  const bool asked =
-      !info(p.kind).keeps_ledger || (p.kind == CouplingKind::predictive && !p.linked());
+  // The tanks are passive without it, and what solves both together knows no link.
+  const LawInfo& law = info(p.kind);
+  const bool asked = !law.keeps_ledger || (law.solves_together && !p.linked());
   const std::string device = asked ? device_broken(p, a) : "";
   const std::string proxy = asked ? proxy_broken(p, a) : "";
   const auto draw = [&](bool which) {

@@ -62,7 +62,7 @@ void draw_tick(const Stage& stage, std::span<const double> row) {
            fmt::format("{:.3f} N", rows.tip_force(x1, at(Column::motor_torque)).norm()), {},
            "On the device's tip, as far as it can be had from the torques");
   const auto kind = static_cast<CouplingKind>(one(Column::kind));
-  if (kind == CouplingKind::predictive) {
+  if (info(kind).solves_together) {
     read_out("solved", solved_text(one(Column::solved)), {},
              "How contacts, friction and the motors' limits were found to agree");
     read_out("reserve", millijoules(one(Column::energy_ledger)), {},
