@@ -1,7 +1,6 @@
 #include "core/touch/contact_solve.h"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
@@ -18,6 +17,7 @@ constexpr int kFinest = 1 << 10;  // parts of a segment on which planes come or 
 struct Held {
   Vec3 pull;               // from there to the nearest free place [m]
   FreeSpace::Active by{};  // the planes
+  Vec3 weights;            // how each of them pulls
 };
 
 // Means over the segment, s from 0 to 1 along it.
@@ -44,7 +44,7 @@ class Segment {
     const Vec3 c = from_ + s * D_;
     Held h;
     Vec3 x;
-    space_.project(c, x, h.by);
+    space_.project(c, x, h.by, h.weights);
     h.pull = x - c;
     return h;
   }
@@ -59,21 +59,12 @@ class Segment {
   // way share that, by what each has of the depth beneath it. So the crease between two faces of a
   // valley drags no more than the faces do.
   Mat3 damper(const Held& h) const {
-    using Normals = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
     Mat3 D = Mat3::Zero();
-    if (h.by.count == 0) return D;
-    Normals n(3, h.by.count);
     for (int i = 0; i < h.by.count; ++i) {
-      n.col(i) = space_.normal(h.by.plane[static_cast<std::size_t>(i)]);
-    }
-    if (h.by.count == 1) return n * n.transpose();
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> weights =
-        n.colPivHouseholderQr().solve(h.pull);
-    for (int i = 0; i < h.by.count; ++i) {
-      const double depth = n.col(i).dot(h.pull);
-      if (depth > 0) {
-        D += std::clamp(weights[i] / depth, 0.0, 1.0) * n.col(i) * n.col(i).transpose();
-      }
+      const Vec3& n = space_.normal(h.by.plane[static_cast<std::size_t>(i)]);
+      if (h.by.count == 1) return n * n.transpose();
+      const double depth = n.dot(h.pull);
+      if (depth > 0) D += std::min(h.weights[i] / depth, 1.0) * n * n.transpose();
     }
     return D;
   }

@@ -84,11 +84,10 @@ bool FreeSpace::holds(const Vec3& c, const Vec3& x, const Active& except) const 
 
 // The one set of planes with which x is in the room and no plane pulls: at most 41 to try, and the
 // first few nearly always do.
-bool FreeSpace::project(const Vec3& c, Vec3& x, Active& active) const {
+bool FreeSpace::project(const Vec3& c, Vec3& x, Active& active, Vec3& weights) const {
   active = {};
   x = c;
   if (holds(c, c, active)) return true;
-  Vec3 weights;
   const auto fits = [&](const Active& a) {
     if (!solve(c, a, x, weights)) return false;
     for (int i = 0; i < a.count; ++i) {

@@ -33,9 +33,13 @@ class FreeSpace {
   const Vec3& normal(int i) const { return normals_[static_cast<std::size_t>(i)]; }
   double offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
 
-  // The nearest x to c and what holds it there; false if the planes leave no room near enough to
-  // tell.
-  bool project(const Vec3& c, Vec3& x, Active& active) const;
+  // The nearest x to c, what holds it there, and how each of these pulls: x = c + sum of w_i n_i,
+  // w_i >= 0. False if the planes leave no room near enough to tell.
+  bool project(const Vec3& c, Vec3& x, Active& active, Vec3& weights) const;
+  bool project(const Vec3& c, Vec3& x, Active& active) const {
+    Vec3 weights;
+    return project(c, x, active, weights);
+  }
   // The nearest x to c that lies on all of these planes, n_i . x = o_i, whatever the others say.
   Vec3 onto(const Vec3& c, const Active& active) const;
   // Columns e_j of `e`: an orthonormal basis of what the active normals span; returns how many. The

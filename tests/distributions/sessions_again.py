@@ -27,9 +27,11 @@ def differences(first: h5py.File, second: h5py.File) -> list[str]:
         if x.shape != y.shape:
             found.append(f"{name}: {x.shape} and {y.shape}")
         elif x.tobytes() != y.tobytes():
-            rows = np.flatnonzero((x != y).reshape(len(x), -1).any(axis=1))
-            most = np.nanmax(np.abs(x - y)) if x.dtype.kind == "f" else "other"
-            found.append(f"{name}: {len(rows)} of {len(x)} rows, by {most} at most")
+            numbers = x.dtype.kind == "f"
+            same = (x == y) | (np.isnan(x) & np.isnan(y)) if numbers else x == y
+            rows = np.flatnonzero(~same.reshape(len(x), -1).all(axis=1))
+            most = np.nanmax(np.abs(x - y)) if numbers else "other"
+            found.append(f"{name}: {len(rows)} of {len(x)} rows from {rows[0]} on, by {most} at most")
     return found
 
 
