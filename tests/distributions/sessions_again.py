@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Makes the shipped sessions again that have a hand of their own as a path, and compares the rows:
-    sessions_again.py COMMAND...    such as `qemu-aarch64 build/release/app/limpid`
+    sessions_again.py [--bodies-may-differ] COMMAND...   such as `qemu-aarch64 build/release/app/limpid`
+With --bodies-may-differ it does not fail where bodies meet: Bullet, which finds where, is not the same
+on each processor.
 Sessions themselves are not read by it: a sandbox lets nothing through that is not its own processor."""
 
 import subprocess
@@ -14,6 +16,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "assets/sessions"))
 import make_sessions  # noqa: E402
+
+
+BODIES_MEET = {"dominoes", "marbles", "stack", "cup", "pucks", "cradle"}
 
 
 def differences(first: h5py.File, second: h5py.File) -> list[str]:
@@ -36,14 +41,17 @@ def differences(first: h5py.File, second: h5py.File) -> list[str]:
 
 
 def main() -> int:
-    good = True
+    good, command = True, sys.argv[1:]
+    may_differ = BODIES_MEET if command[0] == "--bodies-may-differ" else set()
+    if may_differ:
+        command = command[1:]
     for scene, (_, seconds) in make_sessions.SCENES.items():
         if not seconds:
             continue
         world, _ = make_sessions.options(scene)
         with tempfile.TemporaryDirectory() as folder:
             again = Path(folder) / "again.h5"
-            subprocess.run([*sys.argv[1:], "run", *world, "--duration", str(seconds), "--record", again],
+            subprocess.run([*command, "run", *world, "--duration", str(seconds), "--record", again],
                            cwd=ROOT, check=True, stdout=subprocess.DEVNULL)  # fmt: skip
             with h5py.File(ROOT / f"assets/sessions/{scene}.h5") as a:
                 rounds = "rounded" in a.attrs
@@ -53,7 +61,7 @@ def main() -> int:
             with h5py.File(ROOT / f"assets/sessions/{scene}.h5") as a, h5py.File(again) as b:
                 found = differences(a, b)
         print(f"{scene}:", "the same bits" if not found else "\n  ".join(["differs", *found]), flush=True)
-        good = good and not found
+        good = good and (not found or scene in may_differ)
     return 0 if good else 1
 
 
