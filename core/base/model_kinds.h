@@ -15,7 +15,7 @@ namespace limpid {
 // What else a model may consist of.
 enum class ModelFiles : std::uint8_t {
   one,    // nothing
-  named,  // files that it names: they are few, and can be copied with it
+  named,  // files that it names as OBJ does: they are few, and can be copied with it
   many,   // files in folders of their own, as a rule: it stays where it is
 };
 

@@ -167,7 +167,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::contact_gain, "/energy/contact_gain", ColumnWidth::one, "J",
      "energy the contacts gave beyond what they had stored"},
     {Column::contact_point, "/contact/point", ColumnWidth::contacts, "m",
-     "where the proxy is touched: x, y, z of at most four contacts, the hardest; else zeros"},
+     "where the proxy is touched: x, y, z of at most four contacts, the hardest; else not a "
+     "number"},
     {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
      "force on the proxy there, over the tick"},
     {Column::compensation_torque, "/device/compensation_torque", ColumnWidth::dof, "N m",

@@ -35,6 +35,9 @@ def differences(first: h5py.File, second: h5py.File) -> list[str]:
             numbers = x.dtype.kind == "f"
             same = (x == y) | (np.isnan(x) & np.isnan(y)) if numbers else x == y
             rows = np.flatnonzero(~same.reshape(len(x), -1).all(axis=1))
+            if not len(rows):
+                found.append(f"{name}: signs of zeros, or kinds of what is not a number")
+                continue
             most = np.nanmax(np.abs(x - y)) if numbers else "other"
             found.append(f"{name}: {len(rows)} of {len(x)} rows from {rows[0]} on, by {most} at most")
     return found
@@ -42,7 +45,7 @@ def differences(first: h5py.File, second: h5py.File) -> list[str]:
 
 def main() -> int:
     good, command = True, sys.argv[1:]
-    may_differ = BODIES_MEET if command[0] == "--bodies-may-differ" else set()
+    may_differ = BODIES_MEET if command[:1] == ["--bodies-may-differ"] else set()
     if may_differ:
         command = command[1:]
     for scene, (_, seconds) in make_sessions.SCENES.items():

@@ -436,7 +436,7 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   }
   hub.forget_arm();
   EXPECT_LT(hub.notes("1209:4c50:a/b c").delay, 0);
-  EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, CompensationSettings{});
+  EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, OwnForces{});
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
 }
 

@@ -1,10 +1,14 @@
 // Two runs on one hand: each as if it ran alone, one file, and both again from it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <string_view>
 
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/run/twin_settings.h"
 #include "devices/files/session/session_csv.h"
 #include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
@@ -52,6 +56,24 @@ RunPlan alone(const RunPlan& plan) {
   one.changes = plan.beside[0].changes;
   one.beside.clear();
   return one;
+}
+
+TEST(Twin, HasTheCouplingsSettingsOfItsOwnAndNoOthers) {
+  constexpr std::array<std::string_view, 6> kOwn{"coupling.", "observer.", "predictor.",
+                                                 "ledger.",   "tank.",     "model."};
+  Parameters first, twin;
+  for (const ParameterInfo& info : parameter_table()) {
+    set_parameter_number(first, info, info.minimum);
+    set_parameter_number(twin, info, info.maximum);
+  }
+  share_world(first, twin);
+  for (const ParameterInfo& info : parameter_table()) {
+    const bool own = std::ranges::any_of(kOwn, [&info](std::string_view group) {
+      return std::string_view(info.key).starts_with(group);
+    });
+    EXPECT_EQ(of_controller(info), own) << info.key;
+    EXPECT_EQ(parameter_number(twin, info), own ? info.maximum : info.minimum) << info.key;
+  }
 }
 
 TEST(Twin, GivesEachRunWhatItGivesAlone) {
