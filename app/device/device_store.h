@@ -21,9 +21,13 @@ inline constexpr double kLeastTorqueScale = 0.1, kMostTorqueScale = 10;
 struct OwnForces : CompensationSettings {
   Down down = Down::as_file;
 
-  static OwnForces of(const Parameters& p) { return {p, p.down}; }
+  static OwnForces of(const Parameters& p) {
+    const CompensationSettings& compensation = p;
+    return {compensation, p.down};
+  }
   void give(Parameters& p) const {
-    static_cast<CompensationSettings&>(p) = *this;
+    const CompensationSettings& compensation = *this;
+    static_cast<CompensationSettings&>(p) = compensation;
     p.down = down;
   }
   friend bool operator==(const OwnForces&, const OwnForces&) = default;

@@ -5,7 +5,8 @@
 namespace limpid {
 
 void share_world(const Parameters& first, Parameters& twin) {
-  const ControllerSettings own = twin;
+  const Parameters before = twin;
+  const ControllerSettings& own = before;
   twin = first;
   static_cast<ControllerSettings&>(twin) = own;
 }
