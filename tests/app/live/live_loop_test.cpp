@@ -76,11 +76,12 @@ std::unique_ptr<LedPath> path_of(bool waits) {
 TEST(LiveLoop, LeadsTheHandAlongAPathTickByTick) {
   LiveLoop loop({});
   loop.open(test::omni(), test::omni_scene("table.toml"), {}, kHome);
+  let_live(loop, 5);  // without a path the hand is where the tip is, but for rounding
   loop.lead(path_of(false));
   let_live(loop, 150);
   const auto all = targets(loop);
   const HandPath path = path_of(false)->hand;
-  const auto moves = [](const auto& each) { return each.second != kHome; };
+  const auto moves = [](const auto& each) { return (each.second - kHome).norm() > 1e-12; };
   const auto first = std::ranges::find_if(all, moves);
   ASSERT_TRUE(first != all.end());
   for (std::size_t k = 1; first + static_cast<std::ptrdiff_t>(k) - 1 != all.end(); ++k) {
@@ -98,7 +99,7 @@ TEST(LiveLoop, HoldsTheHandAtAPathsBeginningUntilARecordingBegins) {
   loop.open(arm, table.scene, {}, kHome);
   loop.lead(path_of(true));
   let_live(loop, 150);
-  for (const auto& each : targets(loop)) ASSERT_EQ(each.second, kHome);
+  for (const auto& each : targets(loop)) ASSERT_LT((each.second - kHome).norm(), 1e-12);
   loop.record(recorder(dir / "a.h5", arm, table, {}));
   let_live(loop, 200);
   loop.finish_recording();
