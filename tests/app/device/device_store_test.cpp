@@ -426,6 +426,10 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).delay, 0.0021)
       << "its file lacks it, the store does not";
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, taken_off);
+  Parameters given;
+  hub.notes("1209:4c50:a/b c").compensation.give(given);
+  EXPECT_EQ(given.down, Down::plus_x);
+  EXPECT_EQ(OwnForces::of(given), taken_off);
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").delay, 0.0021);
   std::filesystem::remove_all(dir / "data");
   try {
