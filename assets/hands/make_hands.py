@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the hand paths beside it (100 Hz, metres, seconds): touch, free, proximal and circle for
 the table, and one for each scene of the same name: those of models, and those with things that
 move. Where something is picked up, the column `magnet` says from when to when.

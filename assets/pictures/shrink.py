@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A figure of an experiment as the READMEs have it: smaller, in 256 colours, and with no more than Python's own library.
 
     limpid experiment zwidth --out out

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes ball_1.glb to ball_5.glb, from felt to brass: the number of rings carved into a ball says
 how hard it is. Each stands on z = 0 over the origin. Run: python3 assets/scenes/make_balls.py"""
 

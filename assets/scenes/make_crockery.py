@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes cup.glb and bowl.glb. Each stands on z = 0 over the origin.
 Run: python3 assets/scenes/make_crockery.py"""
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes gear.glb and pinion.glb: a helical pair with involute teeth. Each stands on z = 0 with its
 axis through the origin; they mesh where the pinion is at (0, -DISTANCE).
 Run: python3 assets/scenes/make_gears.py"""

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes island.glb: a map of an island that never was, carved and painted, in a walnut frame. Its
 middle is the origin, it stands on z = 0, north is y. Run: python3 assets/scenes/make_island.py"""
 

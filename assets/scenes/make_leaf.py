@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes leaf.glb, a leaf's blade: an open sheet without thickness, and leaf_stand.glb, its stem in
 a pebble. Both in one frame: the pebble stands on z = 0 over the origin, the blade's upper side
 looks to -y. Run: python3 assets/scenes/make_leaf.py"""

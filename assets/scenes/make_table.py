@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes table.glb: a desk top with rounded corners whose surface is at z = -0.04 m, in the device
 base frame. Run: python3 assets/scenes/make_table.py"""
 

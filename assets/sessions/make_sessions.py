@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Records a session of every scene in the gallery beside this file, and draws each scene's
 thumbnail (../scenes/thumbnails). Those that were led by the mouse are run again with their own hand
 and settings. Run after the scenes, the hands or the program have changed, for a session fed back in

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Compares two tables of `limpid bench --json`: what became slower or faster, line by line.
 
 usage: compare.py BEFORE.json AFTER.json [--within PERCENT]

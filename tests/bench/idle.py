@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Says what the window takes of the processor while nobody touches it, a line a thread.
 
 usage: idle.py LIMPID [SECONDS]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Counts the instructions of a tick with valgrind, which counts the same on every machine that
 runs the same binary, and compares them with what they were.
 

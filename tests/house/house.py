@@ -170,6 +170,26 @@ def inexact_functions(root: Path) -> list[str]:
     ]
 
 
+def programs_that_do_not_start(root: Path) -> list[str]:
+    """A file that names its interpreter is a program: people start it by its name."""
+    return [
+        f"{path.relative_to(root)}: it starts with #!, and may not be executed (chmod +x)"
+        for path in _scripts(root)
+        if path.is_file() and _starts_as_program(path) and not path.stat().st_mode & 0o100
+    ]
+
+
+def _scripts(root: Path) -> Iterator[Path]:
+    yield from root.glob("*")
+    for folder in (*ROOMS, "assets", "tests", ".ci"):
+        yield from sorted((root / folder).rglob("*"))
+
+
+def _starts_as_program(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(2) == b"#!"
+
+
 def pages(root: Path) -> list[str]:
     """Texts for people, those of rooms as well."""
     own = [page for room in (*ROOMS, "assets") for page in (root / room).rglob("README.md")]
@@ -179,7 +199,7 @@ def pages(root: Path) -> list[str]:
 def named_files_that_are_missing(root: Path, page: str) -> list[str]:
     """Of a page of text: what it quotes as a path of the tree; NAME stands for any name."""
     text = (root / page).read_text()
-    named = re.findall(rf"`((?:{'|'.join(ROOMS)}|assets|tests|\.ci)/[^`\s]*)`", text)
+    named = re.findall(rf"`((?:{'|'.join(ROOMS)}|assets|tests|\.ci)/[^`\s]*)", text)
     return [
         f"{page}: {name} is no file of the tree"
         for name in named

@@ -40,6 +40,9 @@ class TheHouse(unittest.TestCase):
     def test_rows_come_from_functions_that_are_the_same_everywhere(self) -> None:
         self.assert_kept(house.inexact_functions(ROOT))
 
+    def test_programs_start_by_their_name(self) -> None:
+        self.assert_kept(house.programs_that_do_not_start(ROOT))
+
     def test_pages_name_files_that_are_there(self) -> None:
         for page in house.pages(ROOT):
             self.assert_kept(house.named_files_that_are_missing(ROOT, page))
@@ -121,7 +124,7 @@ class ARuleIsSeenBroken(unittest.TestCase):
         self.assert_broken_once("801")
 
     def test_a_page_that_names_what_is_gone(self) -> None:
-        self.write("page.md", "`core/tick.h`, `core/NAME.h`, `core/gone.h`, `NAME.h5`")
+        self.write("page.md", "`core/tick.h`, `core/NAME.h`, `core/gone.h --fast`, `NAME.h5`")
         broken = house.named_files_that_are_missing(self.root, "page.md")
         self.assertEqual(broken, ["page.md: core/gone.h is no file of the tree"])
 
@@ -130,6 +133,15 @@ class ARuleIsSeenBroken(unittest.TestCase):
         self.write("page.md", "`core/gone` and `core/`")
         broken = house.named_files_that_are_missing(self.root, "page.md")
         self.assertEqual(broken, ["page.md: core/gone is no file of the tree"])
+
+    def test_a_program_that_may_not_be_executed(self) -> None:
+        self.write("core/make.py", "#!/usr/bin/env python3\n")
+        self.write("core/words.py", "WORDS = ()\n")
+        broken = house.programs_that_do_not_start(self.root)
+        self.assertEqual(len(broken), 1, broken)
+        self.assertIn("core/make.py", broken[0])
+        (self.root / "core/make.py").chmod(0o755)
+        self.assertEqual(house.programs_that_do_not_start(self.root), [])
 
     def test_a_header_without_guard(self) -> None:
         self.write("core/none.h", "// #pragma twice\n")

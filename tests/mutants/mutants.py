@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plants small errors in the sources and says which of them no test notices.
 
     cmake --build --preset release

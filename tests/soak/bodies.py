@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Stirs a scene in which things move for long, without a window, and watches that they make no
 energy, that every tick is solved and that memory stays as it is.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Uses the window at random for as long as told, and watches that nothing grows and nothing is lost.
 
 usage: soak.py LIMPID [--minutes M] [--seed S] [--memory MB]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plays the Haply Inverse Service: its simulation channel, as docs.haply.co describes that of 3.1 to 3.5.
 
 A WebSocket on a port of 127.0.0.1. On connecting it lists all devices; then it answers each message with

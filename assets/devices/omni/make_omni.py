@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the four models of the desktop arm (base, turret, upper_arm, forearm) beside this file.
 
 Metres, x forward along the link, y left, z up; every model sits in the frame of its link, and is
