@@ -9,10 +9,10 @@
 #include <functional>
 #include <stdexcept>
 
+#include "app/base/file_portal.h"
+#include "app/base/session_bus.h"
 #include "app/base/window_system.h"
 #include "app/doctor/doctor.h"
-#include "app/portal/file_portal.h"
-#include "app/portal/session_bus.h"
 #include "render/gl/offscreen.h"
 #include "render/quality.h"
 

@@ -115,7 +115,7 @@ std::string csv_text(const PlotTable& table) {
 namespace {
 
 using Point = PlotCanvas::Point;
-using Box = PlotCanvas::Box;
+using Area = PlotCanvas::Box;
 using Anchor = PlotCanvas::Anchor;
 
 constexpr double kLine = 2;  // [px]
@@ -129,7 +129,7 @@ Rgb paper_of(const Palette& palette) { return palette.dark ? palette.panel : kPa
 
 class SvgCanvas : public PlotCanvas {
  public:
-  SvgCanvas(const PlotPicture& picture, const Palette& palette, const Box& area) {
+  SvgCanvas(const PlotPicture& picture, const Palette& palette, const Area& area) {
     const std::string unit = picture.millimetres > 0 ? "mm" : "";
     const double size = picture.millimetres > 0 ? picture.millimetres / picture.width : 1;
     add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -149,15 +149,15 @@ class SvgCanvas : public PlotCanvas {
 
   std::string end() { return text_ + "</svg>\n"; }
 
-  void rect(const Box& box, Rgb fill, double alpha) override {
+  void rect(const Area& box, Rgb fill, double alpha) override {
     at(box);
     add("fill=\"{}\" fill-opacity=\"{:.3f}\"/>\n", hex(fill), alpha);
   }
-  void outline(const Box& box, Rgb rgb) override {
+  void outline(const Area& box, Rgb rgb) override {
     at(box);
     add("fill=\"none\" stroke=\"{}\"/>\n", hex(rgb));
   }
-  void stripes(const Box& box, Rgb) override {
+  void stripes(const Area& box, Rgb) override {
     at(box);
     add("fill=\"url(#stripes)\"/>\n");
   }
@@ -191,7 +191,7 @@ class SvgCanvas : public PlotCanvas {
         at.x, at.y, kAnchors[static_cast<std::size_t>(anchor)], hex(rgb), bold ? 600 : 400,
         escaped(what));
   }
-  void clip(const Box* box) override {
+  void clip(const Area* box) override {
     add("{}", box != nullptr ? "<g clip-path=\"url(#area)\">\n" : "</g>\n");
   }
 
@@ -200,7 +200,7 @@ class SvgCanvas : public PlotCanvas {
   void add(fmt::format_string<Args...> format, Args&&... args) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
   }
-  void at(const Box& box) {
+  void at(const Area& box) {
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" ", box.left, box.top,
         box.width, box.height);
   }
@@ -224,7 +224,7 @@ class PlotDrawing {
         right_(picture.width - 14.0),
         bottom_(picture.height - 42.0) {}
 
-  Box area() const { return {left_, top_, right_ - left_, bottom_ - top_}; }
+  Area area() const { return {left_, top_, right_ - left_, bottom_ - top_}; }
   const Palette& colours() const { return palette_; }
 
   void draw(PlotCanvas& canvas) {
@@ -233,7 +233,7 @@ class PlotDrawing {
           spec_.title + "  [" + unit_text(spec_.y, picture_.y) + "]", true);
     spec_.kind == PlotKind::time ? time_axis() : across_axis();
     value_axis();
-    const Box inside = area();
+    const Area inside = area();
     canvas.clip(&inside);
     see_columns();
     if (spec_.kind == PlotKind::time) {
@@ -354,7 +354,7 @@ class PlotDrawing {
         const bool named = std::exchange(before, stretch.said) != stretch.said;
         if (stretch.said == 0 && !each.laws) continue;
         const double left = column(static_cast<double>(stretch.from));
-        const Box box{left, top_, column(static_cast<double>(stretch.to)) - left, bottom_ - top_};
+        const Area box{left, top_, column(static_cast<double>(stretch.to)) - left, bottom_ - top_};
         const auto tint = static_cast<double>(each.tint);
         if (each.laws) {
           const Rgb law = law_ink(palette_, stretch.said);

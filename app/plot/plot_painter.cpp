@@ -164,17 +164,17 @@ void simplify(std::vector<ScreenPoint>& points) {
 }
 
 // Four rows of vertices, one column for each point, and the quads between them.
-class Mesh {
+class Ribbon {
  public:
   // `quads`: at most so many will be added.
-  Mesh(ImDrawList& list, int points, int quads)
+  Ribbon(ImDrawList& list, int points, int quads)
       : list_(list), white_(ImGui::GetFontTexUvWhitePixel()), unused_(6 * quads) {
     list.PrimReserve(unused_, 4 * points);
     base_ = list._VtxCurrentIdx;
   }
-  Mesh(const Mesh&) = delete;
-  Mesh& operator=(const Mesh&) = delete;
-  ~Mesh() { list_.PrimUnreserve(unused_, 0); }
+  Ribbon(const Ribbon&) = delete;
+  Ribbon& operator=(const Ribbon&) = delete;
+  ~Ribbon() { list_.PrimUnreserve(unused_, 0); }
 
   void column(float x, std::array<float, 4> y, ImU32 outer, ImU32 inner) {
     list_.PrimWriteVtx({x, y[0]}, white_, outer);
@@ -205,17 +205,17 @@ class Mesh {
 void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
   const ImU32 clear = solid & ~IM_COL32_A_MASK;
   const auto count = static_cast<int>(points.size());
-  Mesh mesh(list, count, 3 * (count - 1));
+  Ribbon ribbon(list, count, 3 * (count - 1));
   for (const ScreenPoint& p : points) {
-    mesh.column(p.x, {p.top - 1, p.top, p.bottom, p.bottom + 1}, clear, solid);
+    ribbon.column(p.x, {p.top - 1, p.top, p.bottom, p.bottom + 1}, clear, solid);
   }
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    mesh.quad(i, i + 1, 1);
+    ribbon.quad(i, i + 1, 1);
     const ScreenPoint& a = points[i];
     const ScreenPoint& b = points[i + 1];
     if (std::min(a.bottom - a.top, b.bottom - b.top) > kSoftUpTo) continue;
-    mesh.quad(i, i + 1, 0);
-    mesh.quad(i, i + 1, 2);
+    ribbon.quad(i, i + 1, 0);
+    ribbon.quad(i, i + 1, 2);
   }
 }
 
@@ -224,15 +224,15 @@ void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 soli
 void draw_tall(ImDrawList& list, std::span<const ScreenPoint> points, float core_top,
                float core_bottom, ImU32 solid) {
   const auto count = static_cast<int>(points.size());
-  Mesh mesh(list, count, 2 * (count - 1) + 1);
+  Ribbon ribbon(list, count, 2 * (count - 1) + 1);
   for (const ScreenPoint& p : points) {
-    mesh.column(p.x, {p.top, core_top, core_bottom, p.bottom}, solid, solid);
+    ribbon.column(p.x, {p.top, core_top, core_bottom, p.bottom}, solid, solid);
   }
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    mesh.quad(i, i + 1, 0);
-    mesh.quad(i, i + 1, 2);
+    ribbon.quad(i, i + 1, 0);
+    ribbon.quad(i, i + 1, 2);
   }
-  mesh.quad(0, points.size() - 1, 1);
+  ribbon.quad(0, points.size() - 1, 1);
 }
 
 void draw_band(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "app/live/live_loop.h"
+#include "app/plot/trace_channels.h"
 #include "app/remote/line_server.h"
 #include "app/remote/protocol.h"
-#include "app/session/trace_channels.h"
 #include "core/tick/parameters.h"
 
 namespace limpid {

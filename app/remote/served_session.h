@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "app/base/tasks.h"
 #include "app/live/live_loop.h"
 #include "app/remote/remote.h"
 #include "app/run/simulate.h"
-#include "app/session/tasks.h"
 #include "devices/device.h"
 
 namespace limpid {

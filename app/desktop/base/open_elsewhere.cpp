@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-#include "app/portal/session_bus.h"
+#include "app/base/session_bus.h"
 
 namespace limpid {
 namespace {

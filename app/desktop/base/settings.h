@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session/plot_choice.h"
+#include "app/desktop/base/plot_choice.h"
 #include "core/tick/parameters.h"
 #include "render/theme.h"
 

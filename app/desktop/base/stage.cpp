@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/base/folders.h"
-#include "app/view/row_view.h"
+#include "app/desktop/base/row_view.h"
 #include "render/arm_look.h"
 
 namespace limpid {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
+#include "app/desktop/base/plot_choice.h"
+#include "app/desktop/base/row_view.h"
 #include "app/plot/history.h"
 #include "app/plot/plot.h"
+#include "app/plot/trace_channels.h"
 #include "app/run/scene_meshes.h"
-#include "app/session/plot_choice.h"
-#include "app/session/trace_channels.h"
-#include "app/view/row_view.h"
 #include "render/camera.h"
 #include "render/scene_view.h"
 

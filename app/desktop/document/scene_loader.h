@@ -7,9 +7,9 @@
 #include <string>
 #include <variant>
 
+#include "app/base/tasks.h"
 #include "app/run/model_report.h"
 #include "app/run/scene_meshes.h"
-#include "app/session/tasks.h"
 #include "core/dynamics/arm_description.h"
 #include "devices/files/urdf_file.h"
 

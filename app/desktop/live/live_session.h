@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
 #include "app/desktop/base/stage.h"
 #include "app/live/live_loop.h"
 #include "app/plot/plot_menu.h"
 #include "app/run/simulate.h"
-#include "app/session/tasks.h"
 
 namespace limpid {
 

@@ -5,8 +5,8 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/plot/plot_frame.h"
+#include "app/plot/trace_channels.h"
 #include "app/run/analysis.h"
-#include "app/session/trace_channels.h"
 
 namespace limpid {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
 #include "app/desktop/widgets/picture_shelf.h"
 #include "app/plot/plot_frame.h"
-#include "app/session/tasks.h"
 #include "app/study/experiment.h"
 
 namespace limpid {

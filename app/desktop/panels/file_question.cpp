@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "app/base/session_bus.h"
 #include "app/desktop/widgets/modal.h"
-#include "app/portal/session_bus.h"
 
 namespace limpid {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/base/file_portal.h"
 #include "app/desktop/widgets/path_dialog.h"
-#include "app/portal/file_portal.h"
 
 namespace limpid {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "app/desktop/base/stage.h"
+#include "app/desktop/playback/player.h"
 #include "app/plot/plot_menu.h"
-#include "app/session/player.h"
 
 namespace limpid {
 

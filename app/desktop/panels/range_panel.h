@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "app/desktop/base/stage.h"
+#include "app/desktop/playback/player.h"
 #include "app/plot/plot_menu.h"
 #include "app/plot/range_figures.h"
-#include "app/session/player.h"
 
 namespace limpid {
 

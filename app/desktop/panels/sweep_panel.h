@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "app/desktop/sweep/sweep_controller.h"
+#include "app/desktop/live/sweep_controller.h"
 
 namespace limpid {
 

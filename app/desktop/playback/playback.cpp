@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/desktop/base/settings.h"
-#include "app/session/film_process.h"
+#include "app/desktop/playback/film_process.h"
 #include "devices/files/session/session_csv.h"
 
 namespace limpid {

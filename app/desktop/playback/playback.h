@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "app/desktop/base/notices.h"
+#include "app/desktop/playback/film_process.h"
 #include "app/desktop/playback/played_session.h"
-#include "app/session/film_process.h"
 
 namespace limpid {
 

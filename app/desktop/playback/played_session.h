@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "app/base/tasks.h"
 #include "app/desktop/base/stage.h"
+#include "app/desktop/playback/player.h"
 #include "app/run/simulate.h"
-#include "app/session/player.h"
-#include "app/session/tasks.h"
 #include "app/story/story.h"
 
 namespace limpid {

@@ -14,6 +14,7 @@
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/live/identify_controller.h"
 #include "app/desktop/live/live_session.h"
+#include "app/desktop/live/sweep_controller.h"
 #include "app/desktop/panels/over_view.h"
 #include "app/desktop/panels/person_question.h"
 #include "app/desktop/panels/transform_tool.h"
@@ -25,7 +26,6 @@
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/tuning.h"
 #include "app/desktop/shell/world.h"
-#include "app/desktop/sweep/sweep_controller.h"
 #include "render/camera.h"
 #include "render/quality.h"
 

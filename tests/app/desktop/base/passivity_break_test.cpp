@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/plot/trace_channels.h"
 #include "app/run/analysis.h"
-#include "app/session/trace_channels.h"
 #include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
 #include "tests/support/test_session.h"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "app/plot/trace_channels.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "app/session/trace_channels.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
 

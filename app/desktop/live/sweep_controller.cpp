@@ -1,4 +1,4 @@
-#include "app/desktop/sweep/sweep_controller.h"
+#include "app/desktop/live/sweep_controller.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

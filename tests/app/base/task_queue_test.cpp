@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "app/session/tasks.h"
+#include "app/base/tasks.h"
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hid_transport.h"
 #include "devices/hid/raw_protocol.h"

@@ -1,4 +1,4 @@
-#include "app/session/trace_channels.h"
+#include "app/plot/trace_channels.h"
 
 #include <algorithm>
 #include <array>

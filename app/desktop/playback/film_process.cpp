@@ -1,4 +1,4 @@
-#include "app/session/film_process.h"
+#include "app/desktop/playback/film_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

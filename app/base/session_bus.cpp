@@ -1,4 +1,4 @@
-#include "app/portal/session_bus.h"
+#include "app/base/session_bus.h"
 
 #include <dbus/dbus.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "app/session/film_process.h"
+#include "app/desktop/playback/film_process.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/plot/plot_spec.h"
-#include "app/session/trace_channels.h"
+#include "app/plot/trace_channels.h"
 #include "devices/files/session/session.h"
 
 namespace limpid {

@@ -3,7 +3,7 @@
 #include <future>
 #include <stdexcept>
 
-#include "app/session/tasks.h"
+#include "app/base/tasks.h"
 
 namespace limpid {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/portal/file_portal.h"
+#include "app/base/file_portal.h"
 
 #include <dbus/dbus.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/portal/session_bus.h"
+#include "app/base/session_bus.h"
 
 namespace limpid {
 

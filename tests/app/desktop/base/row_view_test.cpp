@@ -1,5 +1,5 @@
 // What the 3D view shows of a row, live or recorded.
-#include "app/view/row_view.h"
+#include "app/desktop/base/row_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/session/player.h"
+#include "app/desktop/playback/player.h"
 
 #include <gtest/gtest.h>
 

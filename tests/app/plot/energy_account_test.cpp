@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "app/session/trace_channels.h"
+#include "app/plot/trace_channels.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {

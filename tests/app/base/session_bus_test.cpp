@@ -1,4 +1,4 @@
-#include "app/portal/session_bus.h"
+#include "app/base/session_bus.h"
 
 #include <gtest/gtest.h>
 

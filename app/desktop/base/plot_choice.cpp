@@ -1,4 +1,4 @@
-#include "app/session/plot_choice.h"
+#include "app/desktop/base/plot_choice.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "app/view/row_view.h"
+#include "app/desktop/base/row_view.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
