@@ -1,6 +1,7 @@
 // A haptic device as the loop sees it: joint positions out, joint torques in.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -39,6 +40,13 @@ struct DeviceTraits {
   std::vector<double> effort;        // torque limit of each joint [N m]; empty if it cannot push
   double rate = 0;                   // reports a second [Hz]
 };
+
+// The step of its coarsest encoder, as far as device.encoder_step goes; 0: it tells of none [rad].
+inline double encoder_step_of(const DeviceTraits& traits) {
+  double step = 0;
+  for (const double each : traits.resolution) step = std::max(step, each);
+  return std::min(step, kMostEncoderStep);
+}
 
 struct DeviceReading {
   std::array<double, kMaxDof> x{};  // joint positions [rad]

@@ -63,6 +63,13 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
   }
 }
 
+void say_of_arm(const DeviceTraits& traits, const ArmDescription& asked,
+                const ArmDescription& taken) {
+  if (const std::string why = arm_not_taken(traits, asked, taken); !why.empty()) {
+    fmt::print(stderr, "limpid: --device: {}\n", why);
+  }
+}
+
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
   if (!yes_ && isatty(STDIN_FILENO) == 0) {
     throw UsageError("nobody can be asked whether it may push; needed: --yes, or a terminal");
@@ -72,7 +79,9 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   const DeviceTraits& traits = device->traits();
   name_ = traits.name;
   if (!traits.pushes) throw UsageError(name_ + ": has no motors");
-  plan_.arm = hub.arm_for(traits, arm_of(input));
+  const ArmDescription asked = arm_of(input);
+  plan_.arm = hub.arm_for(traits, asked);
+  if (!input.device.empty()) say_of_arm(traits, asked, plan_.arm);
   const std::filesystem::path scene =
       input.scene.empty() ? scene_of_device(plan_.arm) : std::filesystem::path(input.scene);
   plan_.document = read_scene(scene, plan_.arm);

@@ -26,6 +26,10 @@ struct LiveOptions {
 std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
                                     const std::string& otherwise);
 
+// Says on stderr where a device is taken for another arm than --device names.
+void say_of_arm(const DeviceTraits& traits, const ArmDescription& asked,
+                const ArmDescription& taken);
+
 // What a hand is asked to do, and what is recorded of it.
 struct LiveTask {
   std::string instruction;

@@ -61,6 +61,9 @@ class Worlds {
 
   ServedSession::World first() const { return world_of(input_); }
 
+  // From now on a device is in the arm's place, and scenes are read for its arm.
+  void read_for(const ArmDescription& arm) { of_device_ = arm; }
+
   ServedSession::World operator()(const OpenRequest& asked, const Parameters& now) {
     InputOptions next = input_;
     if (!asked.session.empty()) {
@@ -76,6 +79,13 @@ class Worlds {
     }
     if (!asked.scene.empty()) next.scene = file_of(asked.scene, "scene", "scenes");
     if (!asked.hand.empty()) next.hand = file_of(asked.hand, "hand", "hands");
+    if (of_device_) {
+      ServedSession::World world;
+      world.plan.arm = *of_device_;
+      world.plan.document = read_scene(next.scene, world.plan.arm);
+      world.plan.models = build_meshes(world.plan.document);
+      return world;
+    }
     ServedSession::World world = world_of(next);
     const bool same_arm = asked.arm.empty() && asked.session.empty();
     if (same_arm) world.plan.parameters = now;
@@ -89,6 +99,7 @@ class Worlds {
   }
 
   InputOptions input_;
+  std::optional<ArmDescription> of_device_;
 };
 
 // A device in the arm's place, with its arm, its world and its limits.
@@ -100,7 +111,9 @@ struct RealDevice {
     const DeviceTraits& traits = device->traits();
     if (!traits.pushes) throw UsageError(traits.name + ": has no motors");
     RunPlan& plan = world.plan;
-    plan.arm = hub.arm_for(traits, arm_of(input));
+    const ArmDescription asked = arm_of(input);
+    plan.arm = hub.arm_for(traits, asked);
+    if (!input.device.empty()) say_of_arm(traits, asked, plan.arm);
     const fs::path scene = input.scene.empty() ? scene_of_device(plan.arm) : fs::path(input.scene);
     plan.document = read_scene(scene, plan.arm);
     plan.models = build_meshes(plan.document);
@@ -129,6 +142,7 @@ int serve(const ServeOptions& options) {
   std::optional<RealDevice> real;
   if (options.device) {
     real.emplace(*options.device, options.input, world);
+    worlds->read_for(world.plan.arm);
   } else {
     world = worlds->first();
   }

@@ -75,6 +75,17 @@ ArmDescription fitting_arm(const DeviceNotes& notes, const FoundDevice* device,
 
 }  // namespace
 
+std::string arm_not_taken(const DeviceTraits& traits, const ArmDescription& asked,
+                          const ArmDescription& taken) {
+  if (asked.urdf == taken.urdf) return {};
+  const auto joints = [](int n) { return fmt::format("{} joint{}", n, n == 1 ? "" : "s"); };
+  return fmt::format(
+      "{} is taken for the arm {}, not for {}: {}.", traits.name, taken.name, asked.name,
+      asked.dof() == traits.dof ? "it was identified as such, or says so itself"
+                                : fmt::format("it has {}, and {} has {}", joints(traits.dof),
+                                              asked.name, joints(asked.dof())));
+}
+
 ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
   return fitting_arm(known(), DeviceHub::present(), traits, present);
 }
@@ -204,9 +215,18 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   return [opening = opening_now()] {
     std::unique_ptr<Device> opened = opening.open();
     const DeviceTraits& traits = opened->traits();
-    if (traits.pushes && traits.guarded && !opening.notes.checked) {
+    if (!traits.pushes || !traits.guarded) return opened;
+    const DeviceNotes& notes = opening.notes;
+    if (!notes.checked) {
       throw UncheckedError(
           fmt::format("{}: its axes must be checked before it may push", traits.name));
+    }
+    const std::string now = what_it_is(traits.name, traits.dof);
+    if (!notes.checked_as.empty() && notes.checked_as != now) {
+      throw UncheckedError(
+          fmt::format("{}: its axes must be checked before it may push; those that were checked "
+                      "under its id are of another device: {}",
+                      now, notes.checked_as));
     }
     return opened;
   };

@@ -15,6 +15,11 @@
 
 namespace limpid {
 
+// Where a device is taken for another arm than the one that was asked for, for people: why; else
+// empty.
+std::string arm_not_taken(const DeviceTraits& traits, const ArmDescription& asked,
+                          const ArmDescription& taken);
+
 // It pushes, and nobody has seen yet that its motors move its axes as they are told.
 struct UncheckedError : HidError {
   using HidError::HidError;

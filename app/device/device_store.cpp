@@ -74,6 +74,7 @@ class Entry {
       }
     }
   }
+  void only(const std::vector<const char*>& known) const { reader_.allow_only(known); }
   Entry element(const char* key, std::size_t i, const toml::table& table) const {
     return {table, file_, fmt::format("{}.{}[{}]", path_, key, i)};
   }
@@ -125,21 +126,22 @@ void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
 // Errors: FileError.
 DeviceNotes read_notes(const Entry& entry) {
   DeviceNotes notes;
-  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "arm", "delay", "torque_scale",
-                  "compensation", "axis"});
+  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "checked_as", "arm", "delay",
+                  "torque_scale", "compensation", "axis"});
   entry.take("range", 0.01, 3.2, notes.pid.range);
   entry.take("effort", 0.01, 50, notes.pid.effort);
   if (const std::optional<Entry> limits = entry.below("limits")) {
-    std::vector<std::string> keys;
+    std::vector<const char*> keys;
     keys.reserve(kSafetyLimitInfo.size());
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) keys.emplace_back(info.key);
-    limits->no_slips(keys);
+    limits->only(keys);  // a limit that is not understood would be the widest
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
       double& value = notes.limits.*info.field;
       limits->take(info.key, info.least, value, value);
     }
   }
   entry.take("checked", notes.checked);
+  entry.take("checked_as", notes.checked_as);
   entry.take("arm", notes.arm);
   entry.take("delay", 0, 1, notes.delay);
   entry.take("torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
@@ -170,6 +172,7 @@ toml::table write_notes(const DeviceNotes& notes) {
                     {"reverse", reverse},
                     {"limits", write_limits(notes.limits)},
                     {"checked", notes.checked},
+                    {"checked_as", notes.checked_as},
                     {"arm", notes.arm},
                     {"torque_scale", notes.torque_scale},
                     {"compensation", write_compensation(notes.compensation)},
@@ -225,6 +228,10 @@ DeviceNotes notes_in(const toml::table& devices, const std::string& id, const fs
 
 }  // namespace
 
+std::string what_it_is(const std::string& name, int dof) {
+  return fmt::format("{}, {} joint{}", name, dof, dof == 1 ? "" : "s");
+}
+
 bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
   if (!check.passed()) return false;
   notes.axes.resize(std::max(notes.axes.size(), static_cast<std::size_t>(check.dof())));
@@ -233,6 +240,7 @@ bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
     if (check.finding(i).verdict == AxisVerdict::reversed) reversed = !reversed;
   }
   notes.checked = true;
+  notes.checked_as = what_it_is(check.device(), check.dof());
   return true;
 }
 
@@ -257,6 +265,7 @@ DeviceStore load_device_store(const fs::path& file) {
   try {
     const toml::table table = parse_store(file);
     store.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
+    Entry(table, file.string(), "").no_slips({"in_use", "device"});
     const toml::table* devices = devices_in(table, file);
     if (devices == nullptr) return store;
     for (const auto& [key, node] : *devices) {

@@ -38,6 +38,7 @@ struct DeviceNotes {
   PidSettings pid;                   // of a joystick: its range and its effort
   SafetyLimits limits;               // of its force; lower than usual
   bool checked = false;              // its motors were seen to move its axes as they are told
+  std::string checked_as;            // what_it_is() then; empty: nobody has noted it
   std::string arm;                   // URDF of what it was identified as; empty: it was not
   double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
                       // [s]; below 0: not known
@@ -45,6 +46,10 @@ struct DeviceNotes {
   OwnForces compensation;   // while it is in the loop
   std::string refusal;  // why what the file says of it cannot be understood; it is not used then
 };
+
+// What a device without a serial number says of itself, so that another one in its place is no
+// device that was checked.
+std::string what_it_is(const std::string& name, int dof);
 
 // Takes in what a check that is done has found of the device with the adjustments noted here; the
 // torques of its reversed joints are turned round. False, and nothing is changed, if it has not

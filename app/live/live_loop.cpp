@@ -211,22 +211,29 @@ bool LiveLoop::due(const Controls& controls) {
   return true;
 }
 
+// A real device has the encoders that it has, whatever is set to try the virtual arm with.
+Parameters LiveLoop::for_device(Parameters p) const noexcept {
+  if (in_place_ && slot_ != nullptr) p.encoder_step = std::max(p.encoder_step, slot_->encoder_step);
+  return p;
+}
+
 void LiveLoop::tick(const TickTiming& timing) {
   const auto began = std::chrono::steady_clock::now();
   controls_.update();
   const Controls& controls = controls_.front();
   take_in();
   if (!due(controls)) return;
+  const Parameters wanted = for_device(controls.parameters);
   if (controls.resets != resets_) {
     resets_ = controls.resets;
-    start_over(controls.parameters);
+    start_over(wanted);
   }
   if (!(controls.limits == limits_)) {
     limits_ = controls.limits;
     rig_->limit(limits_);
   }
-  if (!(controls.parameters == parameters_)) {
-    parameters_ = controls.parameters;
+  if (!(wanted == parameters_)) {
+    parameters_ = wanted;
     if (recording_to_ != nullptr) recording_to_->changed(parameters_);
   }
   HandInput hand = hand_input(controls);

@@ -72,11 +72,14 @@ using Dispose = std::function<void(std::unique_ptr<Device>)>;
 struct DeviceSlot {
   std::unique_ptr<Device> device;
   const Dispose* dispose = nullptr;
-  int* held = nullptr;  // how many of them have a device
+  int* held = nullptr;      // how many of them have a device
+  double encoder_step = 0;  // of a real one [rad]
 
   DeviceSlot(std::unique_ptr<Device> d, const Dispose& by, int& all)
       : device(std::move(d)), dispose(&by), held(&all) {
-    if (device) ++*held;
+    if (!device) return;
+    ++*held;
+    if (device->traits().guarded) encoder_step = encoder_step_of(device->traits());
   }
   DeviceSlot(const DeviceSlot&) = delete;
   DeviceSlot& operator=(const DeviceSlot&) = delete;
@@ -174,6 +177,7 @@ class LiveLoop {
 
  private:
   void tick(const TickTiming& timing);                                  // the loop's
+  Parameters for_device(Parameters p) const noexcept;                   // the loop's
   void start_over(const Parameters& p);                                 // the loop's
   void follow_recorder(const Vec3& target);                             // the loop's
   RigInput rig_input(const TickTiming& timing, const HandInput& hand);  // the loop's

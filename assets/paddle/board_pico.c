@@ -6,6 +6,7 @@
 #include "paddle.h"
 #include "pico/multicore.h"
 #include "pico/stdlib.h"
+#include "pico/unique_id.h"
 #include "tusb.h"
 
 enum {
@@ -100,6 +101,7 @@ uint8_t const* tud_descriptor_device_cb(void) {
                                             .bcdDevice = 0x0100,
                                             .iManufacturer = 1,
                                             .iProduct = 2,
+                                            .iSerialNumber = 3,
                                             .bNumConfigurations = 1};
   return (uint8_t const*)&device;
 }
@@ -120,13 +122,16 @@ uint8_t const* tud_descriptor_configuration_cb(uint8_t index) {
 
 uint16_t const* tud_descriptor_string_cb(uint8_t index, uint16_t language) {
   (void)language;
-  static const char* const texts[] = {"", "Limpid", "Limpid paddle"};
+  // The number of its flash: what Limpid remembers of a paddle is no other's.
+  static char serial[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
+  const char* const texts[] = {"", "Limpid", "Limpid paddle", serial};
+  if (serial[0] == '\0') pico_get_unique_board_id_string(serial, sizeof serial);
   static uint16_t out[32];
   uint16_t length = 1;
   if (index == 0) {
     out[1] = 0x0409;  // English
   } else {
-    if (index >= 3) return NULL;
+    if (index >= 4) return NULL;
     length = (uint16_t)strlen(texts[index]);
     for (uint16_t i = 0; i < length; ++i) out[1 + i] = (uint16_t)texts[index][i];
   }

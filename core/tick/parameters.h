@@ -98,6 +98,8 @@ struct HandSettings {
   }
 };
 
+inline constexpr double kMostEncoderStep = 0.1;  // [rad]
+
 struct DeviceSettings {
   int substeps = 20;
   int device_delay = 0;            // between command and motor [ticks]
@@ -117,8 +119,10 @@ struct DeviceSettings {
          {"device.delay", "delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5, false, true,
           "Ticks between a command and the torque of the virtual device's motors. The predictive "
           "coupling reckons with model.delay of them."},
-         {"device.encoder_step", "encoder step", &P::encoder_step, "rad", 0, 0.1, 0, 2e-3, false,
-          true, "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4."},
+         {"device.encoder_step", "encoder step", &P::encoder_step, "rad", 0, kMostEncoderStep, 0,
+          2e-3, false, true,
+          "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4. Of a real device no "
+          "less than what that says of itself."},
          {"device.friction", "friction", &P::friction, "N m", 0, 100, 0, 0.05, false, true,
           "Coulomb friction of every joint; default: the arm's file."},
          {"device.damping", "b_d", &P::damping, "N m s/rad", 0, 100, 1e-4, 0.1, true, true,

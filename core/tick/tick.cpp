@@ -37,6 +37,7 @@ template <int N>
 void Tick<N>::start(const Parameters& p, const Start<N>& start) {
   restart_here(p, start);
   motors_.start();
+  restarted_ = false;
   safety_.start();
   gate_.start(start.armed);
 }
@@ -61,6 +62,7 @@ void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   start_law({start.x1, start.v1, start.f1_hat, start.reserve});
   k_ = period_ = 0;
   diverged_ = false;
+  restarted_ = true;
 }
 
 template <int N>
@@ -82,8 +84,12 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceReque
   proxy_.set_ratio(p.inertia_ratio);
   b_d_ = resolve<N>(p.damping, arm_damping_);
   limit_ = resolve<N>(p.torque_limit, arm_limit_);
-  // What the virtual arm is given to try is no more torque for a real one.
-  if (in.health.guarded) limit_ = limit_.cwiseMin(arm_limit_);
+  // What the virtual arm is given to try is no more torque for a real one; nor has that one more
+  // damping, which the observer would take for a hand's force and a law would feed forward.
+  if (in.health.guarded) {
+    limit_ = limit_.cwiseMin(arm_limit_);
+    b_d_ = b_d_.cwiseMin(arm_damping_);
+  }
 
   // The device, (5), as the controller believes it to be.
   const bool goes_on = k_ > 0 && !in.health.gap;
@@ -190,6 +196,9 @@ void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wi
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool limited = in.health.guarded && !diverged_;
+  // A law, an observer and contacts that begin anew ask for another torque than a tick ago; rows of
+  // a virtual arm follow from where they begin, and what the motors gave before is not there.
+  if (std::exchange(restarted_, false) && limited) motors_.begin_slew();
   const Vec<N> all = command_ + loads_;
   const TorqueLimits<N> most =
       limited ? TorqueLimits<N>(limit_, J_, safety_.tip_force()) : TorqueLimits<N>(limit_);

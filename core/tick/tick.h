@@ -154,6 +154,7 @@ class Tick {
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;
   bool fresh_law_ = false;    // it took over at this tick
+  bool restarted_ = false;    // a recording begins with this tick
   std::uint64_t k_ = 0;       // ticks run
   std::uint64_t period_ = 0;  // of the present tick; the same unless ticks were given up
   bool diverged_ = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace limpid {
 namespace {
@@ -26,6 +28,14 @@ double deepest(const FreeSpace& space, const Vec3& x) {
   return depth;
 }
 
+// The scene may have been read for another arm.
+void check_index(int index, const ArmDescription& arm, const char* what) {
+  if (index >= 0 && index < arm.dof()) return;
+  throw std::invalid_argument(std::string(what) + " of the scene is at joint " +
+                              std::to_string(index + 1) + ", and the arm has " +
+                              std::to_string(arm.dof()));
+}
+
 }  // namespace
 
 template <int N>
@@ -33,13 +43,17 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
     : stiffest_(stiffest_surface(scene)) {
   const Vec3 tip = arm.tip.translation();
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
-  probes_.insert(probes_.end(), scene.probes.begin(), scene.probes.end());
+  for (const Probe& probe : scene.probes) {
+    check_index(probe.link, arm, "a probe");
+    probes_.push_back(probe);
+  }
   if (count_bodies(scene) > 0) world_ = std::make_unique<BodyWorld>(scene);
   magnet_.J = Jacobian<N>::Zero(3, arm.dof());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     const int body = world_ ? world_->body_of(i) : BodyContact::kStill;
     if (const auto* stop = std::get_if<JointStop>(&object.shape)) {
+      check_index(stop->joint, arm, "a stop");
       stops_.push_back({*stop, {.stiffness = object.material.stiffness}});
       continue;
     }

@@ -57,7 +57,7 @@ const char* what_to_do(AxisStage stage) {
   return "";
 }
 
-AxisCheck::AxisCheck(const DeviceTraits& traits) : dof_(traits.dof) {
+AxisCheck::AxisCheck(const DeviceTraits& traits) : device_(traits.name), dof_(traits.dof) {
   const auto joints = static_cast<std::size_t>(traits.dof);
   const auto all = {traits.lower.size(), traits.upper.size(), traits.effort.size()};
   if (!traits.pushes || joints < 1 || joints > kMaxDof || std::min(all) < joints) {

@@ -67,7 +67,8 @@ class AxisCheck {
   void exceed() noexcept { end(AxisVerdict::beyond_limit); }
 
   int dof() const { return dof_; }
-  int axis() const { return axis_; }  // being pushed, or the last that was
+  const std::string& device() const { return device_; }  // the name that it gives
+  int axis() const { return axis_; }                     // being pushed, or the last that was
   AxisStage stage() const;
   bool done() const { return done_; }
   bool passed() const;  // all axes are right or reversed
@@ -85,6 +86,7 @@ class AxisCheck {
   double gone(int axis, const Joints& from, const Joints& limits) const noexcept;
   double furthest(const Joints& from, const Joints& limits) const noexcept;
 
+  std::string device_;
   int dof_ = 0;
   Joints most_{};     // torque that it gets [N m]
   Joints enough_{};   // after so much it has moved beyond doubt [rad]

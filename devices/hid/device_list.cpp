@@ -103,10 +103,13 @@ std::unique_ptr<Device> open_hid_device_on(const FoundDevice& found, const OpenT
                                            DeviceClaim claim) {
   try {
     auto transport = open(found.place.path);
+    const std::string id = transport->id();
     const auto descriptor = parse_report_descriptor(transport->report_descriptor());
     const HidProtocolEntry* entry = find_protocol(descriptor, transport->vendor());
     // Another device may have come to this path since the list was made.
-    if (entry == nullptr || &entry->kind != found.kind) throw HidError("it has been unplugged");
+    if (entry == nullptr || &entry->kind != found.kind || (!id.empty() && id != found.place.id)) {
+      throw HidError("it has been unplugged");
+    }
     auto protocol = entry->make(descriptor, settings);
     return std::make_unique<HidDevice>(std::move(transport), std::move(protocol), found.place, ask,
                                        std::move(claim));
@@ -360,6 +363,16 @@ DeviceClaim claim(const FoundDevice& found) {
 
 }  // namespace
 
+void refuse_doubles(std::vector<FoundDevice>& all) {
+  for (FoundDevice& each : all) {
+    const auto same =
+        std::ranges::count(all, each.place.id, [](const FoundDevice& one) { return one.place.id; });
+    if (same < 2 || each.kind->leads_hand || !each.missing.empty()) continue;
+    each.missing =
+        fmt::format("{} devices have the id {}: unplug all but one", same, each.place.id);
+  }
+}
+
 std::vector<FoundDevice> list_devices(const DeviceSearch& search) {
   std::vector<FoundDevice> all;
   for (const ListDevices list : kWaysIn) {
@@ -367,6 +380,7 @@ std::vector<FoundDevice> list_devices(const DeviceSearch& search) {
     all.insert(all.end(), std::make_move_iterator(found.begin()),
                std::make_move_iterator(found.end()));
   }
+  refuse_doubles(all);
   for (FoundDevice& each : all) {
     if (each.missing.empty()) each.in_use_by = user_of(each);
   }

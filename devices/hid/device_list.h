@@ -35,6 +35,10 @@ struct DeviceSearch {
   bool services = true;                  // also asks programs; not for every second
 };
 
+// Of devices that push, two with one id cannot be told apart, nor what is remembered of them: says
+// so of each.
+void refuse_doubles(std::vector<FoundDevice>& all);
+
 // All that there are now.
 std::vector<FoundDevice> list_devices(const DeviceSearch& search);
 

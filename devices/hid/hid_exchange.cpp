@@ -93,7 +93,7 @@ void HidExchange::send() noexcept {
   if (!news && sent_any_ && now - sent_ < kSendPeriod) return;
   const Torque torque = torque_now(now);
   protocol_.encode(std::span(torque).first(dof_), now, deliver_);
-  if (failures_ == 0) heard_ = now;
+  if (failures_ == 0) heard_ = clock_();  // a slow endpoint keeps it waiting, not the loop
   sent_ = now;
   sent_any_ = true;
 }

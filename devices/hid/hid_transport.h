@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace limpid {
@@ -55,6 +56,8 @@ class HidTransport {
   virtual const std::vector<std::uint8_t>& report_descriptor() const = 0;
   // USB's number for the maker; 0 where there is none.
   virtual std::uint16_t vendor() const { return 0; }
+  // "vendor:product[:serial]", as the list of devices has it; empty: not known.
+  virtual std::string id() const { return {}; }
 };
 
 }  // namespace limpid

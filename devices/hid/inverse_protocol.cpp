@@ -178,7 +178,11 @@ Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
   const json& device = device_in(message, id_);
   follow_frame(at(device, "config"), at(at(device, "state"), "transform"));
   const auto cursor = vector_in(at(at(device, "state"), "cursor_position"));
-  if (!cursor || !follows(*cursor)) return Decoded::unusable;
+  if (!cursor || !follows(*cursor)) {
+    if (!other_frame_.any()) return Decoded::unusable;
+    reading.fault = true;  // it may be elsewhere for that
+    return Decoded::status;
+  }
   cursor_ = *cursor;
   seen_ = now_;
   seen_any_ = true;

@@ -97,6 +97,8 @@ void PidJoystick::open(HidTransport& transport) {
     axis.block = create_effect(transport);
     axis.force = reports_.constant_force(axis.block);
     axis.start = reports_.start(axis.block);
+    axis.level = 0;
+    axis.news = false;
     send_or_throw(transport, reports_.set_effect(axis.block, axis.number, settings_.duration));
     send_or_throw(transport, axis.force);
   }
@@ -139,33 +141,39 @@ void PidJoystick::make_stop_reports() {
 Decoded PidJoystick::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
   if (report.empty()) return Decoded::unusable;
   DeviceReading read = reading;
-  const Decoded positions = decode_positions(report, read);
-  if (positions == Decoded::unusable) return Decoded::unusable;
+  const auto positions = decode_positions(report, read);
+  if (!positions) return Decoded::unusable;
+  const bool any = std::ranges::count(*positions, true) > 0;
   const bool buttons = decode_buttons(report, buttons_, read.buttons);
   const bool state = decode_state(report, read);
-  if (positions == Decoded::status && !buttons && !state) return Decoded::unusable;
+  if (!any && !buttons && !state) return Decoded::unusable;
   reading = read;
-  return positions;
+  if (!any) return Decoded::status;
+  // Where each axis comes in a report of its own, a reading is done with the last of them.
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].news = axes_[i].news || (*positions)[i];
+  if (!std::ranges::all_of(axes_, &Axis::news)) return Decoded::status;
+  for (Axis& axis : axes_) axis.news = false;
+  return Decoded::reading;
 }
 
-// Status: the axes are not in this report. A number outside of its range says that the device does
-// not know where the axis is (USB HID 1.11, null values); then none of its numbers is used.
-Decoded PidJoystick::decode_positions(std::span<const std::uint8_t> report,
-                                      DeviceReading& reading) const noexcept {
-  Decoded decoded = Decoded::status;
+// A number outside of its range says that the device does not know where the axis is (USB HID 1.11,
+// null values); then none of its numbers is used.
+std::optional<std::array<bool, 2>> PidJoystick::decode_positions(
+    std::span<const std::uint8_t> report, DeviceReading& reading) const noexcept {
+  std::array<bool, 2> here{};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const ReportField& field = axes_[i].position;
     if (report[0] != field.report_id) continue;
     const auto value = get_field(report, field);
     if (!value || *value < field.logical_min || *value > field.logical_max) {
-      return Decoded::unusable;
+      return std::nullopt;
     }
     const auto span = static_cast<double>(field.logical_max - field.logical_min);
     const double part = static_cast<double>(*value - field.logical_min) / span;
     reading.x[i] = settings_.range * (2 * part - 1);
-    decoded = Decoded::reading;
+    here[i] = true;
   }
-  return decoded;
+  return here;
 }
 
 // Firmwares leave bits out which they do not know: OpenFFBoard never closes its safety switch, and
@@ -194,6 +202,12 @@ bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
     }
   }
   return true;
+}
+
+// Which of them it was is not told: the next forces are sent whatever they are, above all a zero,
+// which would else be lost for as long as the other axis pushes.
+void PidJoystick::undelivered() noexcept {
+  for (Axis& axis : axes_) axis.level = kUnknown;
 }
 
 // A force that changes is sent at once; the effects are started again long before they end, and

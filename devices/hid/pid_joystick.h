@@ -6,7 +6,9 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "devices/hid/hid_protocol.h"
@@ -46,17 +48,20 @@ class PidJoystick final : public HidProtocol {
   Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept override;
   void encode(std::span<const double> torque, nanoseconds now,
               const SendReport& send) noexcept override;
+  void undelivered() noexcept override;
   const std::vector<Report>& stop_reports() const override { return stop_reports_; }
 
  private:
+  static constexpr std::int64_t kUnknown = std::numeric_limits<std::int64_t>::min();
   struct Axis {
     int number = 0;  // 0 for X, 1 for Y
     ReportField position;
-    double sign = 1;  // of the force
-    int block = 0;    // index of its effect
-    std::int64_t level = 0;
+    double sign = 1;         // of the force
+    int block = 0;           // index of its effect
+    std::int64_t level = 0;  // of the last force that got through
     Report force;
     Report start;
+    bool news = false;  // its position has come since the last reading
   };
 
   // What a device says of itself by one bit.
@@ -69,8 +74,9 @@ class PidJoystick final : public HidProtocol {
 
   int create_effect(HidTransport& transport) const;
   void make_stop_reports();
-  Decoded decode_positions(std::span<const std::uint8_t> report,
-                           DeviceReading& reading) const noexcept;
+  // Which of the axes this report holds; nothing if it makes no sense.
+  std::optional<std::array<bool, 2>> decode_positions(std::span<const std::uint8_t> report,
+                                                      DeviceReading& reading) const noexcept;
   bool decode_state(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept;
 
   PidSettings settings_;

@@ -48,6 +48,8 @@ bool chosen(std::span<const std::uint8_t> report, const ReportField& field, Usag
   return *value == field.logical_min + (place - field.usages.begin());
 }
 
+constexpr double kMostTimes = 2;  // times as long as asked for an effect may last
+
 // The number in a duration field that means so many seconds; at least 1, as 0 may mean for ever.
 std::int64_t to_ticks(const ReportField& field, double seconds) {
   const bool in_seconds = (field.unit >> 12 & 0xF) == 1 && std::abs(field.unit_exponent) <= 9;
@@ -61,7 +63,18 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
   const double ticks = static_cast<double>(field.logical_min) +
                        (physical - static_cast<double>(field.physical_min)) * steps / span;
   const auto lowest = static_cast<double>(std::max<std::int64_t>(1, field.logical_min));
-  return std::llround(std::clamp(ticks, lowest, static_cast<double>(field.logical_max)));
+  const double taken =
+      std::round(std::clamp(ticks, lowest, static_cast<double>(field.logical_max)));
+  const double lasts = (static_cast<double>(field.physical_min) +
+                        (taken - static_cast<double>(field.logical_min)) * span / steps) *
+                       std::pow(10, exponent);
+  if (lasts > kMostTimes * seconds) {
+    throw HidError(fmt::format(
+        "the PID device's shortest effect lasts {:.3g} ms; needed: at most {:.3g} ms, so that a "
+        "force that nobody renews ends by itself",
+        1e3 * lasts, 1e3 * kMostTimes * seconds));
+  }
+  return static_cast<std::int64_t>(taken);
 }
 
 // How many degrees one of the field's physical numbers is; 0 if it does not say. Most firmwares

@@ -254,6 +254,19 @@ class HidapiTransport final : public HidTransport {
     return info != nullptr ? info->vendor_id : std::uint16_t{0};
   }
 
+  std::string id() const override {
+    const hid_device_info* info = hid_get_device_info(device_.get());
+    if (info == nullptr) return {};
+    const std::wstring serial = info->serial_number != nullptr ? info->serial_number : L"";
+    std::string id = fmt::format("{:04x}:{:04x}{}", info->vendor_id, info->product_id,
+                                 serial.empty() ? "" : ":");
+    for (const wchar_t c : serial) {
+      if (c < 0 || c > 127) return {};  // as the locale has it
+      id.push_back(static_cast<char>(c));
+    }
+    return id;
+  }
+
  private:
   std::vector<std::uint8_t> descriptor_;
   bool numbered_;

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "devices/hid/hid_protocol.h"
@@ -56,6 +57,8 @@ class FakeHid {
   int questions = 0;  // by ask
   std::vector<Report> features_set;
   std::vector<std::uint8_t> descriptor;  // empty unless the test sets it
+  std::string id;                        // likewise
+  std::function<void()> while_writing = [] {};
 
  private:
   friend class FakeTransport;
@@ -87,7 +90,10 @@ class FakeTransport final : public HidTransport {
     return copy(next, report);
   }
 
+  std::string id() const override { return device_->id; }
+
   bool write(std::span<const std::uint8_t> report) noexcept override {
+    device_->while_writing();
     const std::lock_guard lock(device_->mutex_);
     if (device_->gone_ || device_->refuse_writes_) return false;
     device_->output_.emplace_back(report.begin(), report.end());

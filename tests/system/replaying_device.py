@@ -16,7 +16,8 @@ def main(name: str, session: str) -> None:
     with h5py.File(session) as file:
         path = file["device/position"][...].tolist()
     path += path[::-1]  # without a jump, for ever
-    device = LimpidDevice(name, [-1, -1.735, 0.15], [1, 0.165, 2.9916], [0.64, 0.64, 0.45])
+    n = len(path[0])  # the first joints of the built-in arm
+    device = LimpidDevice(name, [-1, -1.735, 0.15][:n], [1, 0.165, 2.9916][:n], [0.64, 0.64, 0.45][:n])
     begun = time.monotonic()
     while True:
         k = int(1e3 * (time.monotonic() - begun))

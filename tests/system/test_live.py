@@ -25,13 +25,13 @@ class Live(unittest.TestCase):
         self.enterContext(mock.patch.dict("os.environ", XDG_RUNTIME_DIR=str(self.folder),
                                           XDG_CONFIG_HOME=str(self.folder / "config")))
 
-    def plug(self) -> subprocess.Popen:
-        """Moves as a hand moved one that pressed onto the table."""
+    def plug(self, *words: str | Path) -> subprocess.Popen:
+        """Moves as a run with these words did; without any, as one that pressed onto the table."""
         book = self.folder / "config/limpid/devices.toml"
         book.parent.mkdir(parents=True, exist_ok=True)
         book.write_text('[device."socket:replay"]\nchecked = true\n')
         session = self.folder / "pressing.h5"
-        limpid("run", "--hand", ASSETS / "hands/touch.csv", "--record", session, "--force")
+        limpid("run", *(words or ("--hand", ASSETS / "hands/touch.csv")), "--record", session, "--force")
         device = subprocess.Popen([sys.executable, DEVICE, "replay", session])
         self.addCleanup(device.wait)
         self.addCleanup(device.kill)
@@ -217,6 +217,17 @@ class Live(unittest.TestCase):
         self.assertGreater(len(session), 100)
         self.assertEqual(set(session["device/force_wanted"]), {0})
         self.assertEqual(abs(session["device/motor_torque"]).max(), 0)
+
+    def test_serve_reads_scenes_for_the_device_that_is_there(self) -> None:
+        sys.path.insert(0, str(ASSETS / "python"))
+        import limpid as package
+
+        self.plug("--device", ASSETS / "devices/joystick.urdf")
+        with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="socket:replay") as loop:
+            # Its stop is at the shoulder of the built-in arm; a joystick has none, but a second joint.
+            with self.assertRaisesRegex(package.RequestError, "proximal.toml:.*shoulder"):
+                loop.open(scene="proximal.toml")
+            loop.open(scene="free.toml")
 
     def test_serve_leaves_the_hand_to_a_person(self) -> None:
         result = limpid("serve", "x", "--live", "socket:replay", "--hand", ASSETS / "hands/touch.csv")

@@ -31,7 +31,7 @@ LoadProgress progress_of(TaskProgress& progress) {
 
 LoadedScene load_scene(const fs::path& file, const ArmDescription& arm,
                        const LoadProgress& progress) {
-  LoadedScene loaded{file, read_scene(file, arm), {}, {}};
+  LoadedScene loaded{file, read_scene(file, arm), {}, {}, arm.urdf};
   loaded.models = build_meshes(loaded.document, progress);
   loaded.warnings = mesh_warnings(loaded.document.scene, loaded.models);
   return loaded;
@@ -62,44 +62,51 @@ LoadedArm load_arm(const fs::path& file, const std::string& tip, Xacro xacro,
   return loaded;
 }
 
-void SceneLoader::open_scene(fs::path file, const ArmDescription& arm) {
+void SceneLoader::open_scene(fs::path file, std::function<ArmDescription()> arm) {
   const std::string what = fmt::format("opening {}", file.filename().string());
-  waiting_.push_back({what, true, [file = std::move(file), arm](TaskProgress& progress) -> Loaded {
-                        step_back();
-                        return load_scene(file, arm, progress_of(progress));
+  waiting_.push_back({what, Kind::scene, [file = std::move(file), arm = std::move(arm)] {
+                        return [file, arm = arm()](TaskProgress& progress) -> Loaded {
+                          step_back();
+                          return load_scene(file, arm, progress_of(progress));
+                        };
                       }});
   start_next();
 }
 
 void SceneLoader::add_model(fs::path file) {
   const std::string what = fmt::format("loading {}", file.filename().string());
-  waiting_.push_back({what, false, [file = std::move(file)](TaskProgress& progress) -> Loaded {
-                        step_back();
-                        return load_model(file, progress_of(progress));
+  waiting_.push_back({what, Kind::model, [file = std::move(file)] {
+                        return [file](TaskProgress& progress) -> Loaded {
+                          step_back();
+                          return load_model(file, progress_of(progress));
+                        };
                       }});
   start_next();
 }
 
 void SceneLoader::open_arm(fs::path file, const std::string& tip, Xacro xacro) {
   const std::string what = fmt::format("opening {}", file.filename().string());
-  waiting_.push_back(
-      {what, true, [file = std::move(file), tip, xacro](TaskProgress& progress) -> Loaded {
-         step_back();
-         return load_arm(file, tip, xacro, progress_of(progress));
-       }});
+  waiting_.push_back({what, Kind::arm, [file = std::move(file), tip, xacro] {
+                        return [file, tip, xacro](TaskProgress& progress) -> Loaded {
+                          step_back();
+                          return load_arm(file, tip, xacro, progress_of(progress));
+                        };
+                      }});
   start_next();
 }
 
-bool SceneLoader::opening_scene() const {
-  return (work_.busy() && scene_) || std::ranges::any_of(waiting_, &Request::scene);
+bool SceneLoader::opening(Kind kind) const {
+  return (work_.busy() && !unwanted_ && kind_ == kind) ||
+         std::ranges::count(waiting_, kind, &Request::kind) > 0;
 }
 
 void SceneLoader::start_next() {
   if (work_.busy() || waiting_.empty()) return;
   unwanted_ = false;
-  scene_ = waiting_.front().scene;
-  work_.start(std::move(waiting_.front().what), std::move(waiting_.front().work));
+  const Request next = std::move(waiting_.front());
   waiting_.pop_front();
+  kind_ = next.kind;
+  work_.start(next.what, next.work());
 }
 
 void SceneLoader::cancel() {

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -21,6 +22,7 @@ struct LoadedScene {
   SceneDocument document;
   MeshModels models;
   std::vector<std::string> warnings;
+  std::string urdf;  // of the arm that it was read for
 };
 struct LoadedModel {
   Object mesh;  // named for its file; without a place
@@ -46,12 +48,14 @@ LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip, Xa
 
 class SceneLoader {
  public:
-  void open_scene(std::filesystem::path file, const ArmDescription& arm);
+  // `arm` is asked when its turn comes, by start or take(): what comes before it may be an arm.
+  void open_scene(std::filesystem::path file, std::function<ArmDescription()> arm);
   void add_model(std::filesystem::path file);
   void open_arm(std::filesystem::path file, const std::string& tip, Xacro xacro);
 
   bool busy() const { return work_.busy() || !waiting_.empty(); }
-  bool opening_scene() const;
+  bool opening_scene() const { return opening(Kind::scene) || opening_arm(); }  // or an arm
+  bool opening_arm() const { return opening(Kind::arm); }
   // For people: "loading gear.glb", and how far it has come, 0 to 1.
   const std::string& what() const { return work_.what(); }
   double part() const { return work_.part(); }
@@ -64,17 +68,19 @@ class SceneLoader {
   std::optional<Loaded> take();
 
  private:
+  enum class Kind : std::uint8_t { scene, model, arm };
   struct Request {
     std::string what;
-    bool scene;
-    Task<Loaded>::Work work;
+    Kind kind;
+    std::function<Task<Loaded>::Work()> work;  // on the caller's thread, when its turn comes
   };
   void start_next();
+  bool opening(Kind kind) const;
 
   std::deque<Request> waiting_;
   Task<Loaded> work_;
-  bool scene_ = false;     // what is under way is one
-  bool unwanted_ = false;  // what is under way
+  Kind kind_ = Kind::model;  // of what is under way
+  bool unwanted_ = false;    // it
 };
 
 }  // namespace limpid

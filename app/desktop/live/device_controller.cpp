@@ -209,19 +209,23 @@ void DeviceController::use(const std::string& id) {
     notices_.say("Stop the recording before changing the device.", true);
     return;
   }
-  if (id.empty()) {
-    hub_.give_way();
-  } else {
-    choose();
-  }
-  if (id == hub_.in_use()) return;
-  hub_.use(id);
-  cancel_check();
-  problem_.clear();
-  unchecked_.clear();
-  retry_at_ = services_at_ = {};
-  requests_.close();
-  save();
+  if (id == hub_.in_use()) return take_turn(id);
+  if (live_.loop().device_in_place()) live_.loop().cut();
+  requests_.close([this, id] {
+    take_turn(id);
+    hub_.use(id);
+    cancel_check();
+    problem_.clear();
+    unchecked_.clear();
+    retry_at_ = services_at_ = {};
+    save();
+  });
+}
+
+// Of the windows that would connect to a device by themselves.
+void DeviceController::take_turn(const std::string& id) {
+  if (id.empty()) return hub_.give_way();
+  choose();
 }
 
 void DeviceController::connect_anew() {

@@ -20,7 +20,9 @@ namespace limpid {
 // What it asks for that changes more than the loop.
 struct DeviceRequests {
   std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
-  std::function<void()> close;                        // the virtual arm by the mouse
+  // The virtual arm by the mouse; `then` just before, once nothing that is not saved keeps the
+  // device in the loop.
+  std::function<void(std::function<void()> then)> close;
   std::function<void()> first_button;
 };
 
@@ -36,7 +38,8 @@ class DeviceController {
   void update();
   // A device has just been given to the loop.
   void plugged();
-  // Another device; empty: the virtual arm.
+  // Another device; empty: the virtual arm. The one in the loop loses its force at once, and its
+  // place when the user has said what becomes of changes that are not saved.
   void use(const std::string& id);
   // From now on it connects to what the user chooses only; `why`, for people: a sentence.
   void wait_for_choice(std::string why) { waits_ = std::move(why); }
@@ -79,6 +82,7 @@ class DeviceController {
   // The first window that has a device connects to it by itself.
   void decide_who_chooses();
   void choose();
+  void take_turn(const std::string& id);
   // A recording goes on with the device that it began with only.
   bool must_wait() const;
 

@@ -79,7 +79,7 @@ void Tuning::use_preset(const std::string& name) {
 // Gains that suited the arm before may be far too stiff for this one. What a device's motors give
 // for its own weight is the device's, remembered with it: nothing of it is left to an arm that
 // comes after it.
-void Tuning::suit(const ArmDescription& arm, bool of_device) {
+void Tuning::suit(const ArmDescription& arm, const DeviceTraits* device) {
   if (!fitted_for_ || fitted_for_->urdf != arm.urdf) {
     const ArmDescription* before = fitted_for_ ? &*fitted_for_ : nullptr;
     refit(settings_.parameters, before, &arm);
@@ -87,20 +87,21 @@ void Tuning::suit(const ArmDescription& arm, bool of_device) {
     fitted_for_ = arm;
   }
   Parameters& now = settings_.parameters;
-  const OwnForces of_virtual = compensated_ ? compensated_->second : OwnForces::of(now);
-  compensated_.reset();
+  const OfVirtualArm of_virtual = of_virtual_ ? *of_virtual_ : OfVirtualArm::of(now);
+  of_virtual_.reset();
   of_virtual.give(now);
-  if (!of_device) return;
-  const std::string& id = devices_.hub().in_use();
-  compensated_ = {id, of_virtual};
-  devices_.hub().notes(id).compensation.give(now);
+  if (device == nullptr) return;
+  of_virtual_ = of_virtual;
+  device_ = devices_.hub().in_use();
+  devices_.hub().notes(device_).compensation.give(now);
+  now.encoder_step = encoder_step_of(*device);
 }
 
 void Tuning::note_compensation() {
   const bool sliding = ImGui::GetCurrentContext() != nullptr && ImGui::IsAnyItemActive();
-  if (!compensated_ || sliding) return;
+  if (!of_virtual_ || sliding) return;
   const OwnForces now = OwnForces::of(settings_.parameters);
-  OwnForces& noted = devices_.hub().notes(compensated_->first).compensation;
+  OwnForces& noted = devices_.hub().notes(device_).compensation;
   if (noted == now) return;
   noted = now;
   devices_.save();
@@ -166,7 +167,7 @@ void Tuning::follow_recorded(bool another) {
 Settings Tuning::settings_to_keep() const {
   Settings kept = settings_;
   end_passivity_break(kept);
-  if (compensated_) compensated_->second.give(kept.parameters);
+  if (of_virtual_) of_virtual_->give(kept.parameters);
   if (!fitted_for_) return kept;
   refit(kept.parameters, &*fitted_for_, nullptr);
   refit(kept.twin.parameters, &*fitted_for_, nullptr);

@@ -36,8 +36,8 @@ class Tuning {
   void use_preset(const std::string& name);
 
   // An arm comes into the loop, perhaps a real device in its place: gains that suit it, and what
-  // its motors give for its own weight.
-  void suit(const ArmDescription& arm, bool of_device);
+  // its motors give for its own weight; with the encoders that it has. Null: the virtual arm.
+  void suit(const ArmDescription& arm, const DeviceTraits* device);
   void keep_as_they_are_for(const ArmDescription& arm) { fitted_for_ = arm; }
   // The arm that is there now is the one that analysis() is of.
   void analyze_anew();
@@ -60,8 +60,19 @@ class Tuning {
   DeviceController& devices_;
   Playback& playback_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
-  // While a device in the arm's place has its own compensation: its id, and the virtual arm's.
-  std::optional<std::pair<std::string, OwnForces>> compensated_;
+  // While a device is in the arm's place, what is the virtual arm's.
+  struct OfVirtualArm {
+    OwnForces forces;
+    double encoder_step;  // [rad]
+
+    static OfVirtualArm of(const Parameters& p) { return {OwnForces::of(p), p.encoder_step}; }
+    void give(Parameters& p) const {
+      forces.give(p);
+      p.encoder_step = encoder_step;
+    }
+  };
+  std::optional<OfVirtualArm> of_virtual_;
+  std::string device_;  // then: its id
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

@@ -88,7 +88,12 @@ void World::open_given(const std::string& device, const std::string& tip,
   d_.document.set_file(default_scene(arm).string());
   open(std::move(arm), std::move(whole), {});
   first_scene_ = file.string();
-  d_.document.loader().open_scene(file, d_.live.stage().arm());
+  load_scene(file);
+}
+
+// For the arm that is there when its turn comes.
+void World::load_scene(const fs::path& file) {
+  d_.document.loader().open_scene(file, [this] { return d_.live.stage().arm(); });
 }
 
 void World::open_last(const std::string& device, const std::string& tip, const std::string& scene,
@@ -113,7 +118,7 @@ void World::open_last(const std::string& device, const std::string& tip, const s
 void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
                  std::unique_ptr<Device> device, bool saved) {
   d_.tuning.end_break();
-  d_.tuning.suit(arm, device != nullptr);
+  d_.tuning.suit(arm, device ? &device->traits() : nullptr);
   d_.live.open(std::move(arm), std::move(document), models, d_.settings.parameters,
                d_.settings.plot_length, std::move(device));
   take_stage(std::move(models), saved);
@@ -248,6 +253,10 @@ void World::open_device(std::unique_ptr<Device> device) {
   DeviceTraits without_limits = traits;
   without_limits.effort.clear();
   arm_of_file_ = d_.devices.hub().arm_for(without_limits, before);
+  if (const std::string why = arm_not_taken(traits, before, arm);
+      !why.empty() && !in_place && !built_in_arm()) {
+    d_.notices.say(why);
+  }
   const bool same_arm = in_place && arm.urdf == present.urdf;
   if (same_arm && same_limits(arm, present)) return d_.live.loop().plug(std::move(device));
   d_.playback.close();
@@ -256,10 +265,27 @@ void World::open_device(std::unique_ptr<Device> device) {
   open(arm, editor.document(), editor.models(), std::move(device), !editor.dirty());
 }
 
-void World::close_device() {
-  if (!d_.live.loop().device_in_place()) return d_.live.loop().plug(nullptr);
+void World::close_device(const std::function<void()>& then) {
+  if (!d_.live.loop().device_in_place()) {
+    d_.live.loop().plug(nullptr);
+    return then();
+  }
+  ArmDescription arm;
   try {
-    change_arm(read_urdf(device_file_, device_tip_, consent(device_file_)), nullptr);
+    arm = read_urdf(device_file_, device_tip_, consent(device_file_));
+  } catch (const std::exception& e) {
+    d_.notices.say(e.what(), true);
+    arm = read_urdf(default_device());
+  }
+  if (d_.document.has_set_aside()) {
+    return d_.document.leave([this, arm, then] {
+      then();
+      take_up_set_aside(arm);
+    });
+  }
+  then();
+  try {
+    change_arm(arm, nullptr);
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
     change_arm(read_urdf(default_device()), nullptr);
@@ -267,9 +293,6 @@ void World::close_device() {
 }
 
 void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
-  if (!device && d_.document.has_set_aside()) {
-    return d_.document.leave([this, arm] { take_up_set_aside(arm); });
-  }
   if (auto scene = d_.document.scene_for(arm)) {
     return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
                 !d_.document.editor().dirty());
@@ -304,16 +327,14 @@ void World::leave_for_scene(std::function<void()> then) {
   }
   d_.document.leave([this, then = std::move(then)] {
     d_.playback.close();
-    d_.document.loader().cancel();
+    if (!d_.document.loader().opening_arm()) d_.document.loader().cancel();
     first_scene_.clear();
     then();
   });
 }
 
 void World::open_scene(const fs::path& file) {
-  leave_for_scene([this, file = fs::absolute(file).lexically_normal()] {
-    d_.document.loader().open_scene(file, d_.live.stage().arm());
-  });
+  leave_for_scene([this, file = fs::absolute(file).lexically_normal()] { load_scene(file); });
 }
 
 void World::new_scene() {
@@ -327,6 +348,7 @@ void World::new_scene() {
     fresh.document.scene.add(
         {.name = "table top", .pose = pose_at({0.2, 0, -0.04}), .shape = Plane{}});
     fresh.models.resize(1);
+    fresh.urdf = d_.live.stage().arm().urdf;
     first_scene_ = fresh.file.string();  // not one to open at the next start, as long as it is none
     accept(fresh);
   });
@@ -353,6 +375,8 @@ void World::take_loaded() {
 }
 
 void World::accept(LoadedScene& loaded) {
+  // A device has brought its arm meanwhile: joints and links are that one's from now on.
+  if (loaded.urdf != d_.live.stage().arm().urdf) return load_scene(loaded.file);
   d_.tuning.end_break();
   if (d_.live.loop().device_in_place()) {
     d_.cut_force();

@@ -49,7 +49,7 @@ class World {
   // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
   // along with all its changes, or, if it cannot, the user is asked first.
   void open_device(std::unique_ptr<Device> device);
-  void close_device();
+  void close_device(const std::function<void()>& then = [] {});
 
   void toggle_recording();  // of all that is there now, in a new file of the user's sessions
   void record(const std::filesystem::path& file);  // the same in this one; empty: a new one
@@ -78,6 +78,7 @@ class World {
   void run_hand(const std::filesystem::path& file);
   void start_recording(std::filesystem::path file);
   Workplace workplace() const;
+  void load_scene(const std::filesystem::path& file);
   void leave_for_scene(std::function<void()> then);
   void show_scene();
   void hand_scene_over(bool at_once);

@@ -93,7 +93,10 @@ TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
                 {"compensation = {friction = 1.5}", "compensation.friction", "1.5", "a number"},
                 {"compensation = {down = 'up'}", "compensation.down", "\"up\"", "file, -z, +z"},
                 {"compensation = {springs = 3}", "compensation.springs", "3", "true or false"},
-                {"limits = {tip_forse = 1}", "limits.tip_forse", "1", "the key \"tip_force\""},
+                {"limits = {tip_forse = 1}", "limits.tip_forse", "did you mean tip_force?",
+                 "tip_force, energy"},
+                {"limits = {force = 1}", "limits.force", "no such key", "tip_force, energy"},
+                {"limits = {speed = 0.5}", "limits.speed", "no such key", "joint_speed, tip_speed"},
                 {"limit = {tip_force = 1}", "limit", "a table", "the key \"limits\""},
                 {"reversed = [true]", "reversed", "[true]", "the key \"reverse\""},
                 {"axis = [{invertd = true}]", "axis[0].invertd", "true", "the key \"inverted\""}};
@@ -115,8 +118,9 @@ TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
 TEST(DeviceStore, RefusesEverythingWhereTheFileItselfCannotBeUnderstood) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
-  for (const char* text : {"in_use = \n", "in_use = 7\n", "device = 3\n",
-                           "[device.a]\nchecked = true\n[device.a]\n", "\xff\xfe"}) {
+  for (const char* text :
+       {"in_use = \n", "in_use = 7\n", "device = 3\n", "[device.a]\nchecked = true\n[device.a]\n",
+        "[device.a]\n[devices.a.limits]\ntip_force = 1\n", "\xff\xfe"}) {
     std::ofstream(file) << text;
     const DeviceStore store = load_device_store(file);
     EXPECT_THAT(store.refusal, testing::StartsWith(file.string() + ":")) << text;
@@ -241,6 +245,8 @@ TEST(DeviceStore, RemembersWhatACheckHasFoundOfAnyNumberOfJoints) {
   EXPECT_EQ(notes.axes[0].zero, 0.25);
   const DeviceNotes again = written_and_read(store, dir / "devices.toml").notes.at("a");
   EXPECT_TRUE(again.checked);
+  EXPECT_EQ(again.checked_as, notes.checked_as);
+  EXPECT_NE(again.checked_as, "");
   EXPECT_EQ(reversed(again), (std::vector{true, false, true}));
 }
 
@@ -318,6 +324,12 @@ TEST_F(AHub, LetsNoDeviceIntoTheLoopThatPushesAndWasNotChecked) {
   EXPECT_EQ(opened, 1);
   hub_->notes("a").checked = true;
   EXPECT_NO_THROW(hub_->opening()());
+  hub_->notes("a").checked_as = what_it_is("another", 3);
+  EXPECT_THROW(hub_->opening()(), UncheckedError) << "under the id of one that was checked";
+  hub_->notes("a").checked_as = what_it_is(test::pushing(3).name, 3);
+  EXPECT_NO_THROW(hub_->opening()());
+  hub_->notes("a").checked_as = what_it_is(test::pushing(2).name, 2);
+  EXPECT_THROW(hub_->opening()(), UncheckedError);
   hub_->notes("a").checked = false;
   pushes = false;
   EXPECT_NO_THROW(hub_->opening()()) << "what has no motors needs no check";

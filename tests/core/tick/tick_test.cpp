@@ -310,6 +310,61 @@ TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
   }
 }
 
+// A damping that it does not have would be taken for the hand's force: f1_hat = f1 + (b_set - b) v.
+TEST(Tick, BelievesNoMoreDampingOfARealArmThanItsFileHas) {
+  const ArmDescription arm = random_arm(3, 131);
+  const auto estimates = [&](double damping, bool guarded) {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    p.damping = damping;
+    Tick<3> tick(arm, stop());
+    tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+    Rows rows(tick.layout());
+    for (std::size_t k = 0; k < 400; ++k) {
+      const Vec<3> x = led(3, k, p.tick);
+      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceRequest::cut, rows.add());
+    }
+    return Eigen::VectorXd(rows.vec(399, Column::hand_torque_estimate));
+  };
+  ASSERT_GT(arm.joints.front().damping, 0);
+  EXPECT_NE(estimates(5, false), estimates(kFromArm, false));
+  EXPECT_EQ(estimates(5, true), estimates(kFromArm, true));
+  EXPECT_NE(estimates(0, true), estimates(kFromArm, true)) << "less may be tried";
+}
+
+// There law, observer and contacts begin anew from where things are.
+TEST(Tick, LeadsTheTorqueOfARealArmOnWhereARecordingBegins) {
+  const ArmDescription arm = random_arm(3, 132);
+  constexpr std::size_t kBefore = 600;
+  const auto jump = [&](bool guarded) {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    p.k_vc = 1;
+    Tick<3> tick(arm, Scene{});
+    tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+    Rows rows(tick.layout());
+    for (std::size_t k = 0; k <= kBefore; ++k) {
+      const Vec<3> x = led(3, k, p.tick);
+      if (k == kBefore) {
+        Start<3> here = Start<3>::at_rest(x);
+        here.x2 = x - Vec<3>::Constant(0.05);  // the spring asks for more at once
+        tick.restart_here(p, here);
+      }
+      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceRequest::as_it_is, rows.add());
+    }
+    const Eigen::VectorXd change =
+        rows.vec(kBefore, Column::motor_torque) - rows.vec(kBefore - 1, Column::motor_torque);
+    double largest = 0;
+    for (int i = 0; i < 3; ++i) {
+      largest =
+          std::max(largest, std::abs(change[i]) / arm.joints[static_cast<std::size_t>(i)].effort);
+    }
+    return largest / Parameters{}.tick;
+  };
+  EXPECT_LE(jump(true), 1 / 0.1 * (1 + 1e-9));
+  EXPECT_GT(jump(false), 4 / 0.1) << "rows of a virtual arm follow from where they begin";
+}
+
 // Whatever is set to try the virtual arm with.
 TEST(Tick, GivesARealArmNoMoreThanItsOwnLimitNorFaster) {
   const ArmDescription arm = random_arm(3, 130);

@@ -252,6 +252,19 @@ TEST_P(ContactsOfJoints, OfAJointAreAsDeepAsItIsBeyond) {
   w.expect_gradient();
 }
 
+TEST(Contacts, OfASceneThatWasReadForAnotherArmAreRefused) {
+  World w(3);
+  w.scene.probes.clear();
+  for (const int joint : {-1, 3, 7}) {
+    Scene scene = w.scene;
+    scene.add({.shape = JointStop{joint, 0, 1}});
+    EXPECT_THROW(Contacts<kAnyDof>(w.description, scene), std::invalid_argument) << joint;
+    scene = w.scene;
+    scene.probes.push_back({"elbow", joint, Vec3::Zero(), Vec3::Zero(), 0.01});
+    EXPECT_THROW(Contacts<kAnyDof>(w.description, scene), std::invalid_argument) << joint;
+  }
+}
+
 // Balls that the tip is 1 mm deep in, the hardest neither first nor last, and a stop, which is
 // nowhere.
 TEST(Contacts, AreListedByTheHardestIfThereIsNoRoomForAll) {

@@ -133,5 +133,40 @@ TEST_F(FakeSystem, OpensNothingButTheKindThatItFound) {
   EXPECT_EQ(opened(found[1], mouse), "Stick: it has been unplugged");
 }
 
+// One of the same kind, too: what is remembered is the other one's.
+TEST_F(FakeSystem, OpensNothingButTheDeviceThatItFound) {
+  plug_in("hidraw0", test::space_navigator(), "HID_ID=0003:0000046D:0000C626\nHID_UNIQ=A7\n");
+  const auto found = list();
+  ASSERT_EQ(found.size(), 1u);
+  const auto there = std::make_shared<test::FakeHid>();
+  there->descriptor = test::space_navigator();
+  const auto open = [&](const std::string&) {
+    return std::make_unique<test::FakeTransport>(there);
+  };
+  for (const char* other : {"046d:c626", "046d:c626:A8", "046d:c627:A7"}) {
+    there->id = other;
+    EXPECT_THROW(open_hid_device_on(found[0], open, {}, {}, {}), HidError) << other;
+  }
+  there->id = found[0].place.id;
+  EXPECT_NO_THROW(open_hid_device_on(found[0], open, {}, {}, {}));
+}
+
+TEST_F(FakeSystem, UsesNoDeviceThatPushesWhoseIdAnotherHasToo) {
+  for (const char* node : {"hidraw0", "hidraw1"}) {
+    plug_in(node, test::raw_device(), "HID_ID=0003:00001209:00004C50\n");
+  }
+  plug_in("hidraw2", test::raw_device(), "HID_ID=0003:00001209:00004C50\nHID_UNIQ=7\n");
+  for (const char* node : {"hidraw3", "hidraw4"}) {
+    plug_in(node, test::space_navigator(), "HID_ID=0003:0000046D:0000C626\n");
+  }
+  auto found = list();
+  ASSERT_EQ(found.size(), 5u);
+  refuse_doubles(found);
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(found[i].missing, "2 devices have the id 1209:4c50: unplug all but one");
+  }
+  for (const std::size_t i : {2u, 3u, 4u}) EXPECT_EQ(found[i].missing, "") << i;
+}
+
 }  // namespace
 }  // namespace limpid

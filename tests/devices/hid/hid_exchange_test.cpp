@@ -287,6 +287,16 @@ TEST_F(RawExchange, GivesNoTorqueAfterItHasStoodStillItself) {
   }
 }
 
+// Whose endpoint is asked for a report only every few milliseconds.
+TEST_F(RawExchange, PushesADeviceThatTakesItsReportsSlowly) {
+  push();
+  device->while_writing = [this] { now += microseconds(4500); };
+  const std::uint32_t before = newest.lapses;
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(healthy_turn().pushes()) << i;
+  exchange->read(newest);
+  EXPECT_EQ(newest.lapses, before);
+}
+
 TEST_F(RawExchange, TellsTheLoopWheneverItKeptATorqueBack) {
   push();
   const std::uint32_t before = newest.lapses;

@@ -285,6 +285,18 @@ TEST_F(AnInverse3, IsAtFaultWhileAMessageSaysAnotherFrame) {
   }
 }
 
+// In another frame the cursor may be too far from where it was for a position that is believed.
+TEST_F(AnInverse3, IsAtFaultAtOnceWhereTheOtherFrameMovesIt) {
+  open();
+  EXPECT_EQ(decode(message({device("049D", 0, -0.12, 0.16)})), Decoded::reading);
+  json moved = device("049D", 0, 0.12, 0.16);
+  EXPECT_EQ(decode(message({moved})), Decoded::unusable);
+  EXPECT_FALSE(reading.fault);
+  moved["config"]["preset"] = "led_front";
+  EXPECT_EQ(decode(message({moved})), Decoded::status);
+  EXPECT_TRUE(reading.fault);
+}
+
 TEST_F(AnInverse3, RepeatsAZeroThatDidNotLeaveAtTheNextChance) {
   open();
   EXPECT_EQ(encode({0.1, 0, 0}, 0ms).size(), 1u);

@@ -180,6 +180,15 @@ TEST_F(OpenPidJoystick, SendsOnlyWhatChanges) {
   EXPECT_THAT(encode({0, 0}, milliseconds(100)), ElementsAre());
 }
 
+// The zero of an axis while the other one pushes, whose effects start both anew.
+TEST_F(OpenPidJoystick, SendsAForceThatGotLostAgain) {
+  encode({0.5, 0.25}, milliseconds(0));
+  EXPECT_THAT(encode({0, 0.25}, milliseconds(1)), ElementsAre(kForce1Zero));
+  joystick.undelivered();
+  EXPECT_THAT(encode({0, 0.25}, milliseconds(2)), ElementsAre(kForce1Zero, Report{5, 2, 0x80, 0}));
+  EXPECT_THAT(encode({0, 0.25}, milliseconds(3)), ElementsAre());
+}
+
 // Else the device would drop the force; and if we die, it does.
 TEST_F(OpenPidJoystick, StartsItsEffectsAgainBeforeTheyEnd) {
   encode({0.5, 0}, milliseconds(0));

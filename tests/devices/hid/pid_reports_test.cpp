@@ -61,11 +61,22 @@ TEST(PidDuration, IsInTheUnitsOfTheDevice) {
 
 // The smallest number that is not "for ever", which 0 means.
 TEST(PidDuration, IsNeverForEver) {
-  const Bytes seconds{0x66, 0x03, 0x10, 0x55, 0x00};
-  for (const double asked : {0.001, 0.01, 0.1}) {
-    EXPECT_EQ(duration(with_effect(kMilliseconds, seconds), asked), 1) << asked;
+  EXPECT_EQ(duration(with_effect(kMilliseconds, kMilliseconds), 6e-4), 1);
+  EXPECT_EQ(duration(with_effect(kMilliseconds, {0x66, 0x03, 0x10, 0x55, 0xFE}), 0.006), 1);
+}
+
+// A force that nobody renews would stay for so long.
+TEST(PidDuration, ThatADeviceCannotHaveShortEnoughIsRefused) {
+  const Bytes seconds{0x66, 0x03, 0x10, 0x55, 0x00}, tenths{0x66, 0x03, 0x10, 0x55, 0xFF},
+      hundredths{0x66, 0x03, 0x10, 0x55, 0xFE};
+  for (const auto& [unit, asked] : {std::pair(seconds, 0.01),
+                                    {seconds, 0.1},
+                                    {tenths, 0.01},
+                                    {tenths, 0.04},
+                                    {hundredths, 0.004}}) {
+    EXPECT_THROW(duration(with_effect(kMilliseconds, unit), asked), HidError) << asked;
   }
-  EXPECT_EQ(duration(with_effect(kMilliseconds, kMilliseconds), 1e-5), 1);
+  EXPECT_EQ(duration(with_effect(kMilliseconds, tenths), 0.1), 1);
 }
 
 // Logical 0..127 for physical 0..32767 ms, as from a device that counts 258 ms at a time.

@@ -122,11 +122,28 @@ TEST(SceneLoader, GoesOnAfterAFileThatCannotBeRead) {
 TEST(SceneLoader, OpensScenes) {
   const ArmDescription arm = read_urdf((test::assets() / "devices/omni.urdf").string());
   SceneLoader loader;
-  loader.open_scene(test::assets() / "scenes/obstacles.toml", arm);
+  loader.open_scene(test::assets() / "scenes/obstacles.toml", [&] { return arm; });
   EXPECT_TRUE(loader.opening_scene());
   const auto loaded = wait_for(loader);
   ASSERT_TRUE(loaded);
   EXPECT_EQ(std::get<LoadedScene>(*loaded).document.title, "Obstacles");
+  EXPECT_EQ(std::get<LoadedScene>(*loaded).urdf, arm.urdf);
+}
+
+// Behind an arm, as when both are dropped on the window at once.
+TEST(SceneLoader, ReadsASceneForTheArmThatIsThereWhenItsTurnComes) {
+  ArmDescription there = read_urdf((test::assets() / "devices/joystick.urdf").string());
+  SceneLoader loader;
+  loader.open_arm(test::assets() / "devices/omni.urdf", "", Xacro::refuse);
+  loader.open_scene(test::assets() / "scenes/proximal.toml", [&] { return there; });
+  EXPECT_TRUE(loader.opening_arm());
+  const auto first = wait_for(loader);
+  ASSERT_TRUE(first && std::holds_alternative<LoadedArm>(*first));
+  there = std::get<LoadedArm>(*first).arm;
+  const auto second = wait_for(loader);
+  ASSERT_TRUE(second && std::holds_alternative<LoadedScene>(*second));
+  EXPECT_EQ(std::get<LoadedScene>(*second).urdf, there.urdf);
+  EXPECT_FALSE(loader.opening_arm());
 }
 
 TEST(SceneLoader, GivesNothingOnceItWasCancelled) {

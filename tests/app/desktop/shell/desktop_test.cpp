@@ -385,6 +385,54 @@ TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
   EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
 }
 
+// The law goes by them: what was set to try the virtual arm with is its own again afterwards.
+TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
+  Parameters& p = desktop->settings.parameters;
+  p.encoder_step = 2e-3;
+  plug_in(3);
+  const double step = test::pushing(3).resolution.front();
+  EXPECT_EQ(p.encoder_step, step);
+  p.encoder_step = 0;
+  record_something();
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  const Session session = read_session(recordings().at(0));
+  Parameters recorded = session_parameters(session, "");
+  for (const SettingChange& change : session.changes) {
+    if (change.row == 0) apply_change(recorded, change);
+  }
+  EXPECT_EQ(recorded.encoder_step, step) << "however little is set";
+  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.encoder_step, 2e-3);
+  desktop->world.close_device();
+  EXPECT_EQ(p.encoder_step, 2e-3);
+}
+
+// Another device is chosen while what the first one brought is changed and not saved.
+TEST_F(ADesktop, KeepsADevicesLimitsWhileItAsksWhatBecomesOfChanges) {
+  desktop->devices.hub().use("device");
+  desktop->devices.hub().notes("device").limits.tip_force = 1.25;
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
+  const auto wire = plug_in(2);  // sets that scene aside
+  desktop->world.add_object({"here", Pose::Identity(), Sphere{0.01}, {500}});
+  ASSERT_TRUE(armed());
+  desktop->devices.use("");
+  EXPECT_TRUE(document().asking());
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  EXPECT_EQ(desktop->devices.hub().in_use(), "device");
+  document().stay();
+  ASSERT_TRUE(armed());
+  frames(3);
+  EXPECT_TRUE(loop().device_in_place());
+  EXPECT_EQ(desktop->live.controls().limits.tip_force, 1.25);
+  desktop->devices.use("");
+  document().discard_and_leave();
+  frames(3);
+  EXPECT_FALSE(loop().device_in_place());
+  EXPECT_EQ(desktop->devices.hub().in_use(), "");
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(until([&] { return wire->closed == 1; }));
+}
+
 // Plugged in again with another full force, as its settings have it by then.
 TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
   const auto efforts = [&] {
