@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
 #include <map>
 #include <span>
 
@@ -26,6 +30,12 @@ void check_order(const CLI::App& app, const CLI::App& command) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
     const std::string name = option->get_name();
+    if (name == "FILE") {
+      throw UsageError(
+          fmt::format("\"{0}\": not expected before {1}; `limpid {1} --help` says what "
+                      "that takes, `limpid {0}` would open a file of this name",
+                      option->results().front(), command.get_name()));
+    }
     if (command.get_option_no_throw(name) == nullptr) {
       throw UsageError(
           fmt::format("{}: is of the window, and limpid {} opens none", name, command.get_name()));
@@ -33,6 +43,15 @@ void check_order(const CLI::App& app, const CLI::App& command) {
     throw UsageError(fmt::format("{0}: stands before the command; write limpid {1} {0} ...", name,
                                  command.get_name()));
   }
+}
+
+// What a command has printed may be all that it is for.
+int if_written(int status) {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return status;
+  fmt::print(stderr, "limpid: standard output: {}\n", std::strerror(errno != 0 ? errno : EIO));
+  return status == 0 ? 1 : status;
 }
 
 UsageError unexpected(const CLI::App& app) {
@@ -97,9 +116,9 @@ int main(int argc, char** argv) {
     const CLI::App& command = *app.get_subcommands().front();
     if (command.get_name() == "play") return window.play();
     check_order(app, command);
-    return commands.at(command.get_name())();
+    return if_written(commands.at(command.get_name())());
   } catch (const CLI::Success& e) {
-    return app.exit(e);  // --help, --version
+    return if_written(app.exit(e));  // --help, --version
   } catch (const CLI::ExtrasError&) {
     return refuse(unexpected(app));
   } catch (const CLI::ParseError& e) {

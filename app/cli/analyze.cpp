@@ -32,14 +32,18 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   if (a.eta_min_band) fmt::print("eta_min, the band alone    {:.4f}\n", *a.eta_min_band);
   fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the loop is unstable)\n",
              a.eta_min_grip);
-  fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
-             a.condition3.holds   ? "holds"
-             : a.condition3.known ? "BROKEN"
-                                  : "no bound is known, as packets are lost (link.loss);",
-             a.condition3.device_margin, a.condition3.proxy_margin);
+  if (a.condition3.known) {
+    fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
+               a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
+               a.condition3.proxy_margin);
+  } else {
+    fmt::print("condition (3)              no bound is known, as packets are lost (link.loss)\n");
+  }
   if (!p.linked()) return;
-  fmt::print("link                       up to {:.4g} ms old each way, as (3) has it; {}\n",
-             1e3 * a.link, info(p.kind).through_link);
+  const std::string old =
+      a.condition3.known ? fmt::format("up to {:.4g} ms old each way, as (3) has it", 1e3 * a.link)
+                         : "packets are lost, and what is known is of any age";
+  fmt::print("link                       {}; {}\n", old, info(p.kind).through_link);
 }
 
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]

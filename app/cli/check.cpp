@@ -144,9 +144,8 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
   CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
   report.facts.push_back(
-      fmt::format("to touch     {} planes, {} spheres, {} boxes, {} cylinders, {} capsules, {} "
-                  "models, {} stops "
-                  "of joints",
+      fmt::format("to touch     planes {}, spheres {}, boxes {}, cylinders {}, capsules {}, "
+                  "models {}, stops of joints {}",
                   std::ranges::count_if(objects, has_shape<Plane>),
                   std::ranges::count_if(objects, has_shape<Sphere>),
                   std::ranges::count_if(objects, has_shape<Box>),

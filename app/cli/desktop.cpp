@@ -9,6 +9,7 @@
 #include "app/cli/video_options.h"
 #include "app/desktop/shell/run_desktop.h"
 #include "app/remote/line_server.h"
+#include "app/run/fitted_gains.h"
 #include "app/study/sweep_table.h"
 #include "devices/files/toml_reader.h"
 
@@ -58,14 +59,21 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
 
 // What is wrong with the input is said before a window opens, which reads it again: nothing of it
 // is kept. Models, which may be large, are the window's to read. None: the window's own.
-std::optional<Parameters> checked_parameters(const InputOptions& input) {
+std::function<Parameters(const Parameters&)> checked_parameters(const InputOptions& input) {
   ArmDescription arm;
   SceneDocument document;
   read_world(input, arm, document);
   const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
                    input.eta || input.alpha;
-  if (!own) return std::nullopt;
-  return make_parameters(input, arm);
+  if (!own) return nullptr;
+  make_parameters(input, arm);
+  return [input, arm](const Parameters& last) {
+    // A file has all of them; single ones change what was there.
+    if (!input.configs.empty()) return make_parameters(input, arm);
+    Parameters base = last;
+    refit(base, nullptr, &arm);
+    return make_parameters(input, base);
+  };
 }
 
 std::filesystem::path socket_called(const std::string& name) {

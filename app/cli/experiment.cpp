@@ -83,7 +83,26 @@ int finish(const ExperimentOptions& options, const std::vector<std::string>& fai
   return failed.empty() ? 0 : 1;
 }
 
+// An experiment has its own arms, worlds and settings, which its verdict is about.
+void refuse_what_has_no_effect(const InputOptions& input) {
+  for (const auto& [given, option] : {std::pair(!input.device.empty(), "--device"),
+                                      {!input.tip.empty(), "--tip"},
+                                      {!input.scene.empty(), "--scene"},
+                                      {!input.configs.empty(), "--config"},
+                                      {!input.settings.empty(), "--set"},
+                                      {input.coupling.has_value(), "--coupling"},
+                                      {input.eta.has_value(), "--eta"},
+                                      {input.alpha.has_value(), "--alpha"}}) {
+    if (!given) continue;
+    throw UsageError(
+        fmt::format("{}: only beside --live; this experiment has its own arm, scene and settings "
+                    "(`limpid run` and `limpid sweep` take yours)",
+                    option));
+  }
+}
+
 int run(const ExperimentOptions& options) {
+  refuse_what_has_no_effect(options.input);
   const auto wanted = chosen(experiments(), options.name, " is not an experiment");
   prepare_out(options.out);
   catch_interrupts();
@@ -155,6 +174,7 @@ std::string experiment_help() {
          "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
          "the trials. Called again with the same DIR it goes on where it was stopped; trials of\n"
          "another version of the program, or of other inputs, are run again.\n"
+         "Arm, scene and settings are the experiment's own; options for them go with --live.\n"
          "Exit status 1: a check failed, or it was stopped.";
 }
 

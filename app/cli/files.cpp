@@ -4,9 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <span>
 
 #include "app/cli/commands.h"
+#include "app/cli/options.h"
+#include "app/run/replay.h"
 #include "app/run/summary.h"
 #include "app/story/run_story.h"
 #include "devices/files/session/derived_columns.h"
@@ -28,7 +32,21 @@ std::string contacts(const Session& session) {
   return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
 }
 
+// Those of the first row. What another version wrote and this one does not know is left out.
+void print_settings(const Session& session, const std::string& file) {
+  try {
+    const Parameters p = session_parameters(session, file);
+    fmt::print("coupling at first        {}, eta {:.3g}\n", name(p.kind), p.eta);
+    if (!p.linked()) return;
+    fmt::print("link at first            {} ticks each way, jitter {}, loss {:.3g}\n", p.link_delay,
+               p.link_jitter, p.link_loss);
+  } catch (const std::exception&) {
+    return;
+  }
+}
+
 int info(const InfoOptions& options) {
+  keep_apart("--csv", options.csv, std::span(&options.session, 1));
   const Session session = read_session(options.session);
   const SessionInfo& i = session.info;
   const auto arm = recorded_arm(i);
@@ -39,6 +57,7 @@ int info(const InfoOptions& options) {
   fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
   if (!i.build.empty()) fmt::print("build                    {}\n", i.build);
   fmt::print("hand                     {}\n", i.source);
+  print_settings(session, options.session);
   if (!i.safety.empty()) {
     std::string limits = i.safety;
     std::ranges::replace(limits, '\n', ' ');

@@ -129,17 +129,35 @@ void InputOptions::add_parameters(CLI::App& command) {
   command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");
 }
 
+namespace {
+
+// A file that is not there, and came along with the program under this name: that one.
+std::function<std::string(std::string)> or_shipped(const char* folder) {
+  return [folder](std::string named) {
+    std::error_code none;
+    const std::filesystem::path own = data_dir() / "assets" / folder / named;
+    const bool shipped = !named.empty() && named.find('/') == std::string::npos &&
+                         !std::filesystem::exists(named, none) &&
+                         std::filesystem::is_regular_file(own, none);
+    return shipped ? own.string() : named;
+  };
+}
+
+}  // namespace
+
 void InputOptions::add_world(CLI::App& command) {
   command
       .add_option("--device", device,
                   "the arm; default: the built-in Omni-like one. inverse3[:ID][@HOST[:PORT]]: the "
                   "Inverse3 of a Haply Inverse Service in the window, elsewhere an arm like it")
+      ->transform(or_shipped("devices"), "", "")
       ->type_name("FILE.urdf");
   command
       .add_option("--tip", tip,
                   "the link of the arm that the hand holds; default: the end of the longest chain")
       ->type_name("LINK");
   command.add_option("--scene", scene, "what can be touched; default: a table")
+      ->transform(or_shipped("scenes"), "", "")
       ->type_name("FILE.toml");
 }
 
@@ -147,6 +165,7 @@ void InputOptions::add_hand(CLI::App& command) {
   command
       .add_option("--hand", hand,
                   "the hand's path, or a recorded session; default: touching the table")
+      ->transform(or_shipped("hands"), "", "")
       ->type_name("FILE.csv|FILE.h5");
   auto* length =
       command.add_option("--duration", duration, "default: the length of the hand's path")
@@ -232,6 +251,22 @@ RunPlan make_plan(const InputOptions& options) {
   plan.rows = ticks_in(duration, plan.parameters.tick);
   if (options.seed) plan.seed = *options.seed;
   return plan;
+}
+
+void keep_apart(const char* option, const std::filesystem::path& out,
+                std::span<const std::string> read) {
+  for (const std::string& file : read) {
+    std::error_code none;
+    if (out.empty() || file.empty() || !std::filesystem::equivalent(out, file, none)) continue;
+    throw UsageError(
+        fmt::format("{} {}: is what the command reads; name another file", option, out.string()));
+  }
+}
+
+void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input) {
+  std::vector<std::string> read = input.configs;
+  read.insert(read.end(), {input.device, input.scene, input.hand});
+  keep_apart(option, out, read);
 }
 
 std::string parameter_help() {

@@ -57,6 +57,13 @@ ArmDescription arm_of(const InputOptions& options);
 // reach.
 void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
 
+// That a command does not write over what it reads. `option`: that names the output, "--record".
+// Errors: UsageError.
+void keep_apart(const char* option, const std::filesystem::path& out,
+                std::span<const std::string> read);
+// The same of all that these options name.
+void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input);
+
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
 // A word of the command line and what it is.

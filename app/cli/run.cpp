@@ -81,13 +81,20 @@ void finish(Recorder& recorder) {
 }
 
 // Before the run, so that it is not made for nothing.
-void check_picture(const std::filesystem::path& png) {
+void check_picture(const RunOptions& options) {
+  const std::filesystem::path png = options.picture;
+  if (png.empty()) return;
+  keep_apart("--picture", png, options.input);
   const auto refuse = [&](int code) {
     throw UsageError(fmt::format("--picture {}: {}", png.string(), std::strerror(code)));
   };
   const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
   if (std::filesystem::is_directory(png)) refuse(EISDIR);
   if (access((folder / ".").c_str(), W_OK | X_OK) != 0) refuse(errno);
+  if (!options.force && std::filesystem::exists(png)) {
+    throw UsageError(
+        fmt::format("--picture {}: exists already; --force replaces it", png.string()));
+  }
 }
 
 // What tells two runs on one hand apart, in a word or two.
@@ -211,7 +218,8 @@ int live(const RunOptions& options) {
                                     std::pair(options.twin.has_value(), "--twin")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
-  if (!options.picture.empty()) check_picture(options.picture);
+  check_picture(options);
+  keep_apart("--record", options.record, options.input);
   return run_live({options.live, options.input, options.record, options.picture, options.force});
 }
 
@@ -220,7 +228,8 @@ int run(const RunOptions& options) {
   RunPlan plan = make_plan(options.input);
   say_about(plan);
   if (options.twin) plan.beside = {make_twin(plan.parameters, *options.twin)};
-  if (!options.picture.empty()) check_picture(options.picture);
+  check_picture(options);
+  keep_apart("--record", options.record, options.input);
   catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
@@ -253,7 +262,7 @@ Command declare_run(CLI::App& app) {
       ->add_option("--picture", options->picture,
                    "draw the moment of the strongest contact into this file")
       ->type_name("OUT.png");
-  command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
+  command->add_flag("--force", options->force, "replace OUT.h5 and OUT.png if they exist");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
   command
       ->add_option_function<std::vector<std::string>>(

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
@@ -53,16 +56,25 @@ StoryRun tell_with_progress(const Story& story) {
 
 int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
   const std::string script = options.script.empty() ? default_story().string() : options.script;
+  keep_apart("--record", options.record, std::span(&script, 1));
+  keep_apart("--video", options.video.out, std::span(&script, 1));
   if (!options.video.out.empty()) return make_video(script, options.video, 0);
   const Story story = read_story(script);
   if (options.check) {
     print_steps(story);
     return 0;
   }
+  if (!options.record.empty() && !options.video.force && std::filesystem::exists(options.record)) {
+    throw FileError(options.record + ": exists already; --force replaces it");
+  }
   const StoryRun run = tell_with_progress(story);
   print_numbers(story, run.session);
   if (!options.record.empty()) {
-    write_session(run.session, {story.title, story.steps}, options.record, options.video.force);
+    try {
+      write_session(run.session, {story.title, story.steps}, options.record, options.video.force);
+    } catch (const FileError& e) {  // of this run's own making, no bad input
+      throw std::runtime_error(e.what());
+    }
     fmt::print("recorded {} ticks of both runs in {}\n", run.session.size(), options.record);
   }
   if (run.end.diverged) {

@@ -190,13 +190,14 @@ std::vector<Summary::Number> Summary::numbers() const {
 
 std::string Summary::beside(const Summary& first, const std::string& name, const Summary& second,
                             const std::string& other) {
-  std::string text = fmt::format("{:<24} {:>16} {:>16} {:>10}\n", "", name, other, "ratio");
+  std::string text =
+      fmt::format("{:<24} {:>16} {:>16} {:<5} {:>10}\n", "", name, other, "", "ratio");
   const std::vector<Number> a = first.numbers(), b = second.numbers();
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool comparable = std::abs(a[i].value) > 1e-9;
     text +=
-        fmt::format("{:<24} {:>16.4f} {:>16.4f} {:>10} {}\n", a[i].what, a[i].value, b[i].value,
-                    comparable ? fmt::format("{:.3g}", b[i].value / a[i].value) : "-", a[i].unit);
+        fmt::format("{:<24} {:>16.4f} {:>16.4f} {:<5} {:>10}\n", a[i].what, a[i].value, b[i].value,
+                    a[i].unit, comparable ? fmt::format("{:.3g}", b[i].value / a[i].value) : "-");
   }
   for (const auto* run : {&first, &second}) {
     if (!run->watch_.lost()) continue;

@@ -17,7 +17,9 @@ TipLimits::Wall predictive_wall(const TipMoved& tip, const WallSetting& s, const
       tip, {s, q, p.gains(q), p.coarse(q), p.hand_mass, p.delay * p.tick, p.inertia_ratio});
   const auto why = [&]() -> std::string {
     switch (wall.by) {
-      case WallBound::tried: return "the stiffest wall that was tried";
+      case WallBound::tried:
+        return p.tick > 1.001e-3 ? "the stiffest wall that was tried at so long a tick"
+                                 : "the stiffest wall that was tried";
       case WallBound::quick:
         return fmt::format("the tip's {:.2g} g move far in a tick, and the hand is not known",
                            1000 * tip.mass);
@@ -50,9 +52,14 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip, l.delay};
   WallSetting through_link = s;
   through_link.delay += 2 * p.oldest() * p.tick;
+  const bool holds =
+      condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())), l.delay, p)
+          .holds;
   const auto wall = [&](CouplingKind kind) -> TipLimits::Wall {
     switch (kind) {
       case CouplingKind::standard:
+        if (!holds) return {0, "condition (3) is broken: it is not passive in free motion either"};
+        [[fallthrough]];
       case CouplingKind::tank:
         return {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};
       case CouplingKind::proposed:

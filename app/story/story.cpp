@@ -245,7 +245,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestScript = 1 << 20;  // [bytes]
 constexpr double kLongestStory = 3600;           // [s]
 constexpr double kShortestStep = 0.1;            // [s]
-constexpr std::size_t kLongestCaption = 140;     // two lines of a small picture [bytes]
+constexpr std::ptrdiff_t kLongestCaption = 140;  // two lines of a small picture [letters]
 
 std::array<std::string, 2> names_in(const TomlTable& step, const StorySettings& settings) {
   const auto said = names_said(step);
@@ -253,8 +253,10 @@ std::array<std::string, 2> names_in(const TomlTable& step, const StorySettings& 
 }
 
 std::string short_text(const TomlTable& table, const char* key, std::string text) {
-  if (text.size() > kLongestCaption) {
-    table.refuse(key, fmt::format("at most {} bytes of text", kLongestCaption));
+  // Of UTF-8, bytes that begin one.
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
+  if (std::ranges::count_if(text, begins) > kLongestCaption) {
+    table.refuse(key, fmt::format("at most {} letters", kLongestCaption));
   }
   return text;
 }

@@ -38,7 +38,8 @@ extern template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
 extern template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);
 
 // At rest it only clamps; where motors are guarded it bounds the rate as well. While a coupling is
-// being switched the torque moves at a bounded rate until it meets the new command.
+// being switched the torque moves at a bounded rate until it meets the new command, for 0.2 s at
+// most.
 template <int N>
 class MotorStage {
  public:
@@ -48,7 +49,10 @@ class MotorStage {
     tau_.setZero();
     slewing_ = false;
   }
-  void begin_slew() { slewing_ = true; }
+  void begin_slew() {
+    slewing_ = true;
+    slewed_ = 0;
+  }
   bool steady() const { return !slewing_; }
 
   // The torque the motors get for this command [N m]. `gain`: the part of what is within the limits
@@ -68,7 +72,8 @@ class MotorStage {
       const Vec<N> way = target - from;
       const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
       const double steps = way.cwiseAbs().cwiseQuotient(step).maxCoeff();  // for the slowest joint
-      slewing_ = slewing_ && steps > 1;
+      slewed_ += dt;
+      slewing_ = slewing_ && steps > 1 && slewed_ < kLongestSlew;
       if (steps > 1) target = from + way / steps;
     }
     tau_ = target;
@@ -77,9 +82,12 @@ class MotorStage {
 
  private:
   static constexpr double kSlew = 0.1;  // from no torque to the limit [s]
+  // As long as from one limit to the other: a command that swings faster is never met.
+  static constexpr double kLongestSlew = 2 * kSlew;
 
   Vec<N> tau_;
   bool slewing_ = false;
+  double slewed_ = 0;  // for how long [s]
 };
 
 }  // namespace limpid

@@ -8,6 +8,7 @@ import fcntl
 import os
 import pty
 import struct
+import subprocess
 import termios
 import unittest
 from pathlib import Path
@@ -16,7 +17,7 @@ import h5py
 import numpy as np
 
 from limpid_check.session import ATTRIBUTES, DATASETS, read_session
-from support import Started, SystemTest, WithAnArm, Words, limpid
+from support import ASSETS, LIMPID, Started, SystemTest, WithAnArm, Words, limpid
 
 COMMANDS = ("play", "run", "story", "experiment", "sweep", "analyze", "devices", "info", "recover")
 
@@ -119,6 +120,47 @@ class Run(WithAnArm):
         self.record(*self.arm, "--duration", "0.1", "--force", out=out)
         self.assertEqual(len(read_session(out)), 100)
 
+    def test_an_existing_picture_is_kept_unless_forced(self) -> None:
+        picture = self.out(".png")
+        picture.write_text("mine")
+        result = limpid("run", "--duration", "0.05", "--picture", picture)
+        self.assertEqual((result.status, picture.read_text()), (2, "mine"), result.err)
+        self.assertIn(str(picture), result.err)
+
+    def test_nothing_is_written_over_what_is_read(self) -> None:
+        hand, scene, story = self.out(".csv"), self.out("-scene.toml"), self.out("-story.toml")
+        hand.write_bytes((ASSETS / "hands/touch.csv").read_bytes())
+        scene.write_bytes((ASSETS / "scenes/free.toml").read_bytes())
+        story.write_bytes((ASSETS / "stories/first.toml").read_bytes())
+        recorded = self.record("--duration", "0.05")
+        for words, file in ((["run", "--hand", hand, "--record", hand], hand),
+                            (["run", "--scene", scene, "--record", scene], scene),
+                            (["run", "--hand", recorded, "--picture", recorded], recorded),
+                            (["story", story, "--record", story], story),
+                            (["info", recorded, "--csv", recorded], recorded)):  # fmt: skip
+            with self.subTest(words=words):
+                before = file.read_bytes()
+                result = limpid(*words, "--force")
+                self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+                self.assertIn("is what the command reads", result.err)
+                self.assertEqual(file.read_bytes(), before)
+
+    def test_a_scene_that_came_along_is_found_by_its_name(self) -> None:
+        for words in (["--scene", "cup.toml"], ["--hand", "touch.csv"], ["--device", "joystick.urdf"]):
+            with self.subTest(words=words):
+                result = limpid("run", *words, "--duration", "0.05", cwd=self.directory)
+                self.assertEqual(result.status, 0, result.err)
+        result = limpid("run", "--scene", "nothing.toml", cwd=self.directory)
+        self.assertEqual(result.status, 2)
+        self.assertIn("nothing.toml", result.err)
+
+    def test_what_cannot_be_printed_is_no_success(self) -> None:
+        for words in (["--help"], ["analyze", "--json"], ["run", "--duration", "0.05"]):
+            with self.subTest(words=words), open("/dev/full", "w") as full:
+                result = subprocess.run([LIMPID, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn("No space left", result.stderr)
+
     def test_without_record_it_sums_up_and_writes_nothing(self) -> None:
         folder = self.out("")
         folder.mkdir()
@@ -199,6 +241,13 @@ class Info(WithAnArm):
         table.write_text("mine")
         self.assertEqual(limpid("info", out, "--csv", table).status, 2)
         self.assertEqual(table.read_text(), "mine")
+
+    def test_a_table_that_cannot_be_written_is_said(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.05")
+        result = limpid("info", out, "--csv", "/dev/full", "--force")
+        self.assertEqual((result.status, len(result.error_lines)), (1, 1), result.err)
+        self.assertIn("/dev/full", result.err)
+        self.assertIn("No space left", result.err)
 
 
 if __name__ == "__main__":

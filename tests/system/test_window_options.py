@@ -1,6 +1,8 @@
 """The window's options before a command and behind it."""
 
+import signal
 import subprocess
+import tomllib
 import unittest
 
 from support import ASSETS, SystemTest, limpid
@@ -24,6 +26,31 @@ class BeforeTheCommand(WindowTest):
         state = self.wait("the session", lambda s: s.get("playing") or s.get("rerun"), 60)
         self.assertEqual(state["eta"], 0.66, "said behind the command")
         self.assertEqual(self.app.poll(), None)
+
+
+class OneSetting(WindowTest):
+    """Over those of the last time."""
+
+    LAW = None
+
+    def prepare(self) -> None:
+        settings = self.home / "config/limpid/settings.toml"
+        settings.write_text(settings.read_text() + '[parameters]\ncoupling.kind = "proposed"\n'
+                            'coupling.eta = 0.75\ncoupling.k_vc = 7.0\n')
+
+    def start(self) -> None:
+        self.app = subprocess.Popen([LIMPID, "--print-state", "--set", "hand.damping=3"],
+                                    env=self.environment, stdout=self.states)
+        self.addCleanup(self.stop, self.app)
+
+    def test_changes_that_one_alone(self) -> None:
+        state = self.wait("the loop", lambda s: s.get("ticks", 0) > 10, 60)
+        self.assertEqual((state["kind"], state["eta"]), (1, 0.75))
+        self.app.send_signal(signal.SIGTERM)
+        self.app.wait(60)
+        kept = tomllib.loads((self.home / "config/limpid/settings.toml").read_text())["parameters"]
+        self.assertEqual((kept["coupling"]["kind"], kept["coupling"]["eta"], kept["coupling"]["k_vc"],
+                          kept["hand"]["damping"]), ("proposed", 0.75, 7, 3))  # fmt: skip
 
 
 class Refusals(SystemTest):

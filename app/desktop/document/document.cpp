@@ -2,15 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/run/twin_settings.h"
 #include "core/touch/triangle_mesh.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/scene/body_file.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/scene/scene_writer.h"
+#include "devices/files/text_file.h"
 
 namespace limpid {
 
@@ -200,14 +205,73 @@ fs::path Document::own_file() const {
   return shipped ? fs::path() : file;
 }
 
+namespace {
+
+std::string text_there(const fs::path& file) {
+  std::error_code none;
+  return fs::is_regular_file(file, none) ? read_text(file, scene_limits::kLargestModel)
+                                         : std::string();
+}
+
+// The comments of a TOML text.
+std::vector<std::string> comments_in(const std::string& text) {
+  std::vector<std::string> all;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') quote = 0;  // good enough: a text of several lines may count as a comment
+    if (quote != 0) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      const std::size_t end = std::min(text.find('\n', i), text.size());
+      all.push_back(text.substr(i, end - i));
+      i = end - 1;
+    }
+  }
+  return all;
+}
+
+// Does `save`, which writes a file without the comments that somebody wrote there. Where some get
+// lost the file as it was stays beside it; returns its name then. Errors: those of `save`;
+// std::runtime_error where it cannot be kept: nothing is saved then.
+template <class Save>
+fs::path keeping_comments(const fs::path& file, const Save& save) {
+  const std::string before = text_there(file);
+  const std::vector<std::string> comments = comments_in(before);
+  const fs::path kept = file.string() + "~";
+  if (!comments.empty()) {
+    if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
+      throw std::runtime_error(wrong);
+    }
+  }
+  save();
+  if (comments.empty()) return {};
+  const std::string now = text_there(file);
+  const auto stays = [&](const std::string& each) { return now.find(each) != std::string::npos; };
+  if (!std::ranges::all_of(comments, stays)) return kept;
+  std::error_code none;
+  fs::remove(kept, none);
+  return {};
+}
+
+}  // namespace
+
 bool Document::save_as(const fs::path& file) {
   if (!may_edit()) return false;
   try {
-    editor_.saved(save_scene(editor_.document(), arm_, file));
+    const fs::path kept =
+        keeping_comments(file, [&] { editor_.saved(save_scene(editor_.document(), arm_, file)); });
     // The names of files are other ones, what can be touched is not.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());
-    notices_.say(fmt::format("Saved {}", file_));
+    notices_.say(kept.empty()
+                     ? fmt::format("Saved {}", file_)
+                     : fmt::format("Saved {}. Comments are not written: the file as it was "
+                                   "is {}",
+                                   file_, kept.string()));
     return true;
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);

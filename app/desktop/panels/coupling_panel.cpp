@@ -285,6 +285,14 @@ void draw_ledger(const CouplingReading& now) {
   }
 }
 
+// Out of a coupling that gives energy.
+const char* way_out(const Parameters& p) {
+  if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
+  return info(p.kind).observes
+             ? "Raise \xCE\xB7, lower the observer's gain, or take the predictive law."
+             : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
+}
+
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.
 void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
   const bool at_fault = info(p.kind).observes && (!a.passive || p.eta < a.eta_min_grip);
@@ -294,9 +302,8 @@ void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysi
   const std::string broken =
       judged && own > kGiven
           ? fmt::format(
-                "The coupling has given {} more than it took: it is not passive in this "
-                "grip.\nRaise \xCE\xB7, lower the observer's gain, or take the predictive law.",
-                energy_text(own))
+                "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
+                energy_text(own), way_out(p))
           : "";
   read_out("Energy given E_c", energy_text(own), broken,
            "What the coupling gave, with the device's own damping: stays below zero while it is "

@@ -44,6 +44,10 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   std::vector<StatusPart> parts;
   const auto& [played, pace] = going;
   if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
+  // Its button is in the bar below only where the loop is shown.
+  if (!played.empty() && loop.recording()) {
+    parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});
+  }
   if (!pace.empty()) {
     parts.push_back({pace, colours.accent, "The simulation; the loop itself goes on as usual"});
   }

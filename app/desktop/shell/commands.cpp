@@ -164,6 +164,10 @@ void begin_transform(Desktop& d) {
 template <TransformKind kKind>
 std::string cannot(const Desktop& d) {
   std::string why = selection_fixed(d);
+  if (why.empty() && d.settings.twin.on && !d.settings.twin_overlaid) {
+    return "Two runs are shown side by side. Show them in one picture (menu View), or end the twin "
+           "(B), to change objects in the picture.";
+  }
   if (!why.empty() || can(kKind, *d.document.editor().selected_object())) return why;
   return "This object cannot be changed in that way.";
 }

@@ -43,8 +43,8 @@ void keep_changes(const SceneDocument& document, const ArmDescription& arm,
   }
 }
 
-Settings with(Settings settings, const std::optional<Parameters>& by_hand) {
-  if (by_hand) settings.parameters = *by_hand;
+Settings with(Settings settings, const DesktopOptions& options) {
+  if (options.parameters) settings.parameters = options.parameters(settings.parameters);
   return settings;
 }
 
@@ -55,7 +55,7 @@ class Application {
   Application(const DesktopOptions& options, const Settings& settings)
       : options_(options),
         began_(settings),
-        desktop_(with(settings, options.parameters),
+        desktop_(with(settings, options),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
         frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {}
@@ -108,7 +108,7 @@ Window::Options Application::prepare_window() {
 void Application::open() {
   desktop_.shown.automatic_quality = AutoQuality(Quality::automatic_level(window_.renderer()));
   desktop_.world.open_last(options_.device, options_.tip, options_.scene,
-                           options_.parameters.has_value());
+                           options_.parameters != nullptr);
   // A double click on a file asks for the file and for nothing else.
   if (!options_.session.empty() || !options_.files.empty()) {
     desktop_.devices.wait_for_choice(

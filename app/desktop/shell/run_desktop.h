@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +12,11 @@
 namespace limpid {
 
 struct DesktopOptions {
-  std::string device, scene;                 // files; empty: as last time
-  std::string in_use;                        // id of a real device; empty: as last time
-  std::string tip;                           // a link of the device; empty: as its file has it
-  std::optional<Parameters> parameters;      // default: as last time
+  std::string device, scene;  // files; empty: as last time
+  std::string in_use;         // id of a real device; empty: as last time
+  std::string tip;            // a link of the device; empty: as its file has it
+  // From those of the last time; none: as they are.
+  std::function<Parameters(const Parameters&)> parameters;
   std::filesystem::path session;             // to play at once
   std::vector<std::filesystem::path> files;  // to open at once, as if dropped
   bool print_state = false;                  // one line of JSON ten times a second

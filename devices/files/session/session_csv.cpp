@@ -1,16 +1,21 @@
 #include "devices/files/session/session_csv.h"
 
 #include <fmt/format.h>
-#include <fmt/os.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
+#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
+#include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_source.h"
 #include "devices/files/session/session_units.h"
@@ -143,19 +148,35 @@ void write_csv(const Session& session, const std::filesystem::path& out, bool fo
   if (session.twin) runs.emplace_back(*session.twin, arm.get());
   std::vector<std::string> names;
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name(i == 0 ? "" : "twin_", names);
-  try {
-    auto file = fmt::output_file(out.string());
-    file.print("{}\n", fmt::join(names, ","));
-    std::vector<double> numbers;
-    for (std::size_t k = 0; k < session.size(); ++k) {
-      numbers.clear();
-      for (Table& run : runs) run.add(k, numbers);
-      file.print("{}\n", fmt::join(numbers, ","));
-    }
-    file.close();
-  } catch (const std::system_error& e) {
-    throw FileError(fmt::format("{}: {}", out.string(), e.what()));
+  // What is replaced stays until all is written.
+  const bool device =
+      std::filesystem::exists(out, none) && !std::filesystem::is_regular_file(out, none);
+  const std::filesystem::path written = device ? out : part_of(out);
+  errno = 0;
+  std::ofstream file(written, std::ios::binary);
+  fmt::memory_buffer line;
+  const auto write_line = [&](const auto& values) {
+    line.clear();
+    fmt::format_to(std::back_inserter(line), "{}\n", fmt::join(values, ","));
+    file.write(line.data(), static_cast<std::streamsize>(line.size()));
+  };
+  write_line(names);
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < session.size() && file; ++k) {
+    numbers.clear();
+    for (Table& run : runs) run.add(k, numbers);
+    write_line(numbers);
   }
+  file.close();
+  std::string why = file ? "" : std::strerror(errno != 0 ? errno : EIO);
+  if (why.empty() && !device) {
+    std::error_code wrong;
+    std::filesystem::rename(written, out, wrong);
+    if (wrong) why = wrong.message();
+  }
+  if (why.empty()) return;
+  if (!device) std::filesystem::remove(written, none);
+  throw std::runtime_error(fmt::format("{}: not written: {}", out.string(), why));
 }
 
 }  // namespace limpid

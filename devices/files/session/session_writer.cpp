@@ -88,6 +88,7 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
   file_->part = part_of(file_->out);
   file_->force = force;
   check_place(file_->out, force);
+  if (fs::exists(file_->part)) WriteLock(file_->part, WriteLock::Make::no);  // nobody records there
   if (!force && fs::exists(file_->part)) {
     throw FileError(fmt::format(
         "{0}: left by a recording that was not closed; `limpid recover {0}` saves it, --force "

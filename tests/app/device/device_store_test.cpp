@@ -150,7 +150,8 @@ TEST(DeviceStore, KeepsWhatOthersHaveWrittenMeanwhileAndKeysThatNobodyKnows) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
   std::ofstream(file) << "future = 1\nin_use = \"a\"\n[device.a]\neffort = 1.0\nwarmth = 3\n"
-                         "[device.a.limits]\ntip_force = 5.0\nsmell = 2\n[device.b]\nrange = 0.5\n";
+                         "[device.a.limits]\ntip_force = 5.0\n[device.a.compensation]\nsmell = "
+                         "2\n[device.b]\nrange = 0.5\n";
   const DeviceStore start = load_device_store(file);
   EXPECT_EQ(start.complaint(), "");
   DeviceStore window = start, identify = start, other = start;

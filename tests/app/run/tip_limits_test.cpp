@@ -24,6 +24,18 @@ void expect_named(const Parameters& p, double found) {
   EXPECT_GE(named, found / 5);
 }
 
+TEST(TipLimits, OfTheStandardLawAreNoneWhereItGivesEnergyAlready) {
+  using enum CouplingKind;
+  Parameters p;
+  EXPECT_GT(wall(limits(p), standard), 100);
+  p.link_delay = 20;
+  EXPECT_EQ(wall(limits(p), standard), 0);
+  EXPECT_GT(wall(limits(p), tank), 100) << "which is passive through a link";
+  p.link_delay = 0;
+  p.tick = 0.1;
+  EXPECT_EQ(wall(limits(p), standard), 0);
+}
+
 TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   using enum CouplingKind;
   const Parameters exact;

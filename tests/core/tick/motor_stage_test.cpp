@@ -56,6 +56,22 @@ TEST(MotorStage, ArrivesAtTheNewCommandAndFollowsItFromThenOn) {
   EXPECT_EQ(motors.pass(Vector::Constant(1, 0.5), limit, 1, T)[0], 0.5);
 }
 
+// A loop that oscillates swings its command faster than the motors follow at that rate.
+TEST(MotorStage, EndsItsSlewWhereTheCommandIsNeverMet) {
+  MotorStage<kAnyDof> motors(1);
+  const Vector limit = Vector::Constant(1, 0.5);
+  motors.pass(Vector::Zero(1), limit, 1, T);
+  motors.begin_slew();
+  int ticks = 0;
+  for (; !motors.steady() && ticks < 1000; ++ticks) {
+    motors.pass(Vector::Constant(1, ticks % 20 < 10 ? 0.5 : -0.5), limit, 1, T);
+  }
+  EXPECT_NEAR(ticks * T, 2 * kSlew, 2 * T) << "as long as from limit to limit";
+  EXPECT_EQ(motors.pass(Vector::Constant(1, 0.5), limit, 1, T)[0], 0.5);
+  motors.begin_slew();
+  EXPECT_GT(motors.pass(Vector::Constant(1, -0.5), limit, 1, T)[0], 0.4) << "and begins anew";
+}
+
 // 0.1 s from no torque to the limit: the joint with the longer way takes 90 ms, and no joint jumps.
 TEST(MotorStage, SlewsUntilTheLastJointHasArrived) {
   MotorStage<kAnyDof> motors(3);

@@ -14,7 +14,7 @@ from .session import Session
 from .urdf import Array
 
 # A coupling that is switched, or a force that is armed or cut, slews the motors for a while.
-_SWITCHING_SECONDS = 2.0
+_SWITCHING_SECONDS = 1.0  # 0.2 s of slewing, or 0.5 s of fading, and a fade may start anew
 
 
 @dataclass(frozen=True)

@@ -239,6 +239,23 @@ TEST_F(ADesktop, MakesNewScenesThatHaveFilesOfTheirOwnOnceTheyAreSaved) {
   EXPECT_EQ(document().own_file().filename(), "untitled-2.toml");
 }
 
+// The writer knows objects, not what somebody noted beside them.
+TEST_F(ADesktop, KeepsAFileWhoseCommentsItDoesNotWrite) {
+  const fs::path file = dir / "mine.toml", kept = dir / "mine.toml~";
+  ASSERT_TRUE(document().save_as(file));
+  EXPECT_FALSE(fs::exists(kept)) << "there was nothing";
+  ASSERT_TRUE(document().save_as(file));
+  EXPECT_FALSE(fs::exists(kept)) << "there were no comments";
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string mine = "# measured on Monday\n" + text + "# \"end\"\n";
+  std::ofstream(file) << mine;
+  ASSERT_TRUE(document().save_as(file));
+  std::ifstream again(kept);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(again), {}), mine);
+  EXPECT_TRUE(said("mine.toml~"));
+}
+
 // The tip rests in the box: it touches it.
 TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   EXPECT_NE(run_command("hand.magnet", *desktop), "") << "a table cannot be picked up";
