@@ -129,9 +129,6 @@ void InputOptions::add_parameters(CLI::App& command) {
   command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");
 }
 
-namespace {
-
-// A file that is not there, and came along with the program under this name: that one.
 std::function<std::string(std::string)> or_shipped(const char* folder) {
   return [folder](std::string named) {
     std::error_code none;
@@ -142,8 +139,6 @@ std::function<std::string(std::string)> or_shipped(const char* folder) {
     return shipped ? own.string() : named;
   };
 }
-
-}  // namespace
 
 void InputOptions::add_world(CLI::App& command) {
   command

@@ -1,7 +1,10 @@
 // The options that several commands share, and what they amount to.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -63,6 +66,10 @@ void keep_apart(const char* option, const std::filesystem::path& out,
                 std::span<const std::string> read);
 // The same of all that these options name.
 void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input);
+
+// A transform of options: a file that is not there, and came along with the program under this name
+// in a folder of assets, is that one.
+std::function<std::string(std::string)> or_shipped(const char* folder);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();

@@ -184,6 +184,7 @@ Command declare_serve(CLI::App& app) {
       ->add_option("--hand", options->input.hand,
                    "the virtual arm's hand: its path, or a recorded session; default: nobody holds "
                    "the arm")
+      ->transform(or_shipped("hands"), "", "")
       ->type_name("FILE.csv|FILE.h5");
   command
       ->add_option_function<std::string>(

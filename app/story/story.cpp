@@ -207,7 +207,12 @@ void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
 
 void StoryHand::read_file(const TomlTable& step, const std::string& file, double begins,
                           double ends) {
-  const HandPath path = read_hand(beside_or_own(folder_, "hands", file));
+  const std::filesystem::path found = beside_or_own(folder_, "hands", file);
+  if (!std::filesystem::exists(found)) {
+    step.refuse("hand",
+                "a file beside the script, or one of " + (data_dir() / "assets/hands").string());
+  }
+  const HandPath path = read_hand(found);
   const std::uint32_t line = step.find("hand")->source().begin.line;
   for (std::size_t i = 0; i < path.time.size() && begins + path.time[i] < ends; ++i) {
     add(begins + path.time[i], path.position[i], line);
@@ -292,7 +297,13 @@ class Reader {
   void read_world() {
     const auto file = [&](const char* key, const char* kind, const fs::path& otherwise) {
       const auto name = file_.text(key);
-      return name ? beside_or_own(folder_, kind, *name) : otherwise;
+      if (!name) return otherwise;
+      const fs::path found = beside_or_own(folder_, kind, *name);
+      if (!fs::exists(found)) {
+        file_.refuse(
+            key, "a file beside the script, or one of " + (data_dir() / "assets" / kind).string());
+      }
+      return found;
     };
     RunPlan& plan = story_.plan;
     plan.arm = read_urdf(file("device", "devices", default_device()));

@@ -99,6 +99,21 @@ class Keys(WindowTest):
         for key in ("force", "recording", "playing", "kind", "eta", "alpha", "objects"):
             self.assertEqual(after[key], before[key], key)
 
+    def test_lists_are_chosen_from_by_arrows_and_enter(self) -> None:
+        before = self.settled()["scene"]
+        self.key("ctrl+g")
+        self.wait("the gallery", lambda s: s["dialog"] == "gallery")
+        for key in ("Right", "Right", "Right", "Left", "Return"):
+            self.key(key)
+        state = self.wait("another scene", lambda s: s["dialog"] == "" and s["scene"] != before)
+        self.assertIn("scenes/", state["scene"])
+        self.key("ctrl+o")
+        self.wait("the field", lambda s: s["dialog"] == "open session" and s["typing"])
+        self.key("Down")
+        self.key("Down")
+        self.key("Return")
+        self.wait("a recording", lambda s: s["playing"] and s["dialog"] == "")
+
     def test_enter_and_escape_belong_to_the_dialog(self) -> None:
         self.key("F1")
         self.wait("the help", lambda s: s["dialog"] == "help")

@@ -234,27 +234,20 @@ std::vector<std::string> comments_in(const std::string& text) {
   return all;
 }
 
-// Does `save`, which writes a file without the comments that somebody wrote there. Where some get
-// lost the file as it was stays beside it; returns its name then. Errors: those of `save`;
-// std::runtime_error where it cannot be kept: nothing is saved then.
-template <class Save>
-fs::path keeping_comments(const fs::path& file, const Save& save) {
-  const std::string before = text_there(file);
+// After a file was written anew: where the text lies that was in it, if comments of it are no
+// longer there; else nothing. Errors: std::runtime_error where it cannot be kept; it is in the file
+// again then.
+fs::path keep_comments(const std::string& before, const fs::path& file) {
   const std::vector<std::string> comments = comments_in(before);
-  const fs::path kept = file.string() + "~";
-  if (!comments.empty()) {
-    if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
-      throw std::runtime_error(wrong);
-    }
-  }
-  save();
-  if (comments.empty()) return {};
   const std::string now = text_there(file);
   const auto stays = [&](const std::string& each) { return now.find(each) != std::string::npos; };
-  if (!std::ranges::all_of(comments, stays)) return kept;
-  std::error_code none;
-  fs::remove(kept, none);
-  return {};
+  if (std::ranges::all_of(comments, stays)) return {};
+  const fs::path kept = file.string() + "~";
+  if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
+    try_write_atomically(file, before);
+    throw std::runtime_error(wrong);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -262,8 +255,10 @@ fs::path keeping_comments(const fs::path& file, const Save& save) {
 bool Document::save_as(const fs::path& file) {
   if (!may_edit()) return false;
   try {
-    const fs::path kept =
-        keeping_comments(file, [&] { editor_.saved(save_scene(editor_.document(), arm_, file)); });
+    const std::string before = text_there(file);
+    const SceneDocument saved = save_scene(editor_.document(), arm_, file);
+    const fs::path kept = keep_comments(before, file);
+    editor_.saved(saved);
     // The names of files are other ones, what can be touched is not.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());

@@ -73,7 +73,10 @@ fs::path Gallery::draw(bool& open) {
   const bool shown = begin_modal("Gallery", open,
                                  {std::min(64 * em, 0.94f * screen->WorkSize.x),
                                   std::min(44 * em, 0.9f * screen->WorkSize.y)});
-  if (shown && !was_shown_) read();
+  if (shown && !was_shown_) {
+    read();
+    keys_.forget();
+  }
   was_shown_ = shown;
   fs::path chosen;
   if (!shown) return chosen;
@@ -81,13 +84,15 @@ fs::path Gallery::draw(bool& open) {
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns = std::max(1, static_cast<int>((room + gap) / (18 * em)));
   const float width = (room - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+  keys_.move(static_cast<int>(own_.size() + shipped_.size()), columns);
+  int number = 0;
   const auto cards = [&](const char* name, const std::vector<GalleryCard>& list) {
     if (list.empty()) return;
     heading(name);
     int column = 0;
     for (const GalleryCard& card : list) {
       if (column++ % columns != 0) ImGui::SameLine();
-      const fs::path file = draw_card(card, &list == &own_, width);
+      const fs::path file = draw_card(card, &list == &own_, width, number++);
       if (!file.empty()) chosen = file;
     }
   };
@@ -96,25 +101,28 @@ fs::path Gallery::draw(bool& open) {
   cards("Shipped with Limpid", shipped_);
   ImGui::EndChild();
   close_button("Close (Esc)", open);
+  ImGui::SameLine();
+  ImGui::TextDisabled("arrows and Enter choose a scene");
   ImGui::EndPopup();
   if (!chosen.empty()) open = false;
   return chosen;
 }
 
-fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width) {
+fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width, int number) {
   const float em = ImGui::GetFontSize();
   const float pad = 0.5f * em;
+  const bool at = keys_.at(number);
   const ImVec2 shot(width - 2 * pad, 0.5625f * (width - 2 * pad));
   const ImVec2 size(width, shot.y + 6.6f * em + ImGui::GetFrameHeight());
   ImGui::PushID(card.scene.c_str());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad, pad});
   ImGui::BeginChild("card", size, true,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 corner = ImGui::GetWindowPos(), start = ImGui::GetCursorScreenPos();
   if (const PictureTexture* texture = pictures_.get(card.picture)) {
     ImGui::Image(texture->id(), shot);
   } else {
-    draw_placeholder(at, shot);
+    draw_placeholder(start, shot);
     ImGui::Dummy(shot);
   }
   ImGui::PushFont(font(Face::semibold));
@@ -139,13 +147,15 @@ fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width) {
     if (ImGui::Button("Play its recorded session")) chosen = card.session;
     on_button = ImGui::IsItemHovered();
   }
-  // All the rest of the card opens the scene.
+  // All the rest of the card opens the scene, and so does Enter.
   const bool over = ImGui::IsWindowHovered() && !on_button;
-  if (over) {
-    const ImVec2 corner = ImGui::GetWindowPos();
+  if (keys_.taken(number)) chosen = card.scene;
+  if (over || at) {
     ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y},
                                         colour(current_palette().accent), 3, 0,
                                         1.5f * current_scale());
+  }
+  if (over) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ImGui::IsMouseReleased(ImGuiMouseButton_Left)) chosen = card.scene;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/desktop/widgets/picture_shelf.h"
+#include "app/desktop/widgets/widgets.h"
 
 namespace limpid {
 
@@ -28,8 +29,9 @@ class Gallery {
 
  private:
   void read();
-  std::filesystem::path draw_card(const GalleryCard& card, bool own, float width);
+  std::filesystem::path draw_card(const GalleryCard& card, bool own, float width, int number);
 
+  ListKeys keys_;
   bool was_shown_ = false;
   std::vector<GalleryCard> shipped_, own_;
   PictureShelf pictures_;

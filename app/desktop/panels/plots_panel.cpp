@@ -23,7 +23,7 @@ PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, 
   PlotsRequest wish;
   begin_panel("plots", rect);
   stage.group.begin_frame(stage.history,
-                          player != nullptr ? std::optional(player->time()) : std::nullopt);
+                          player != nullptr ? std::optional(player->row_time()) : std::nullopt);
   if (stage.plots.empty()) wish = draw_no_plots();
   std::vector<PlotKind> kinds;
   for (const Plot& plot : stage.plots) kinds.push_back(plot.spec().kind);

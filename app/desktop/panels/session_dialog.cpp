@@ -35,9 +35,12 @@ fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   fs::path chosen;
   for (const fs::path& file : files) {
     const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
+    const int item = listed_++;
     if (picture_item({.picture = pictures_.get(picture_of(file)),
                       .name = file.filename().string(),
-                      .about = fmt::format("{:.1f} MiB", mib)})) {
+                      .about = fmt::format("{:.1f} MiB", mib)},
+                     0, keys_.at(item)) ||
+        keys_.taken(item)) {
       chosen = file;
     }
   }
@@ -55,6 +58,7 @@ fs::path SessionDialog::draw(bool& open, bool& elsewhere) {
   if (!was_shown_) {
     typed_ = complaint_ = "";
     pictures_.clear();
+    keys_.forget();
   }
   ImGui::SetNextItemWidth(-1);
   if (!was_shown_) ImGui::SetKeyboardFocusHere();
@@ -67,10 +71,14 @@ fs::path SessionDialog::draw(bool& open, bool& elsewhere) {
       accepted()) {
     chosen = expanded(typed_);
   }
-  if (typed_ != before) complaint_.clear();
+  if (typed_ != before) {
+    complaint_.clear();
+    keys_.forget();
+  }
   if (!complaint_.empty()) {
     ImGui::TextColored(colour_vector(current_palette().broken), "%s", complaint_.c_str());
   }
+  keys_.move(std::exchange(listed_, 0));
   ImGui::BeginChild("sessions", {0, std::min(20 * em, 0.55f * room.y)});
   for (const auto& [name, dir] : {std::pair{"Yours", sessions_dir()},
                                   {"Shipped with Limpid", data_dir() / "assets/sessions"}}) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/desktop/widgets/picture_shelf.h"
+#include "app/desktop/widgets/widgets.h"
 
 namespace limpid {
 
@@ -19,6 +20,8 @@ class SessionDialog {
   std::filesystem::path list(const char* name, const std::filesystem::path& folder);
 
   PictureShelf pictures_;
+  ListKeys keys_;
+  int listed_ = 0;  // in the frame
   bool was_shown_ = false;
   std::string typed_, complaint_;
 };

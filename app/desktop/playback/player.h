@@ -25,6 +25,7 @@ class Player {
     return std::min(k, session_->size() - 1);
   }
   std::span<const double> row() const { return session_->row(index()); }
+  double row_time() const { return static_cast<double>(index()) * session_->info.tick; }  // [s]
 
   bool playing() const { return playing_; }
   void play() {

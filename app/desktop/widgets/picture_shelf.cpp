@@ -74,14 +74,14 @@ float picture_item_width(const PictureItem& item) {
   return picture_width() + text + 2 * ImGui::GetStyle().ItemSpacing.x;
 }
 
-bool picture_item(const PictureItem& item, float width) {
+bool picture_item(const PictureItem& item, float width, bool marked) {
   const float em = ImGui::GetFontSize(), gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = std::round(kHeight * em), across = picture_width();
   ImGui::PushID(item.name.c_str());
   ImGui::PushID(item.about.c_str());
   ImGui::BeginDisabled(!item.there);
-  const bool chosen = ImGui::Selectable("##item", false, 0, {width, height});
+  const bool chosen = ImGui::Selectable("##item", marked, 0, {width, height});
   ImGui::EndDisabled();
   ImGui::PopID();
   ImGui::PopID();

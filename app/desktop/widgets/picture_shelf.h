@@ -55,8 +55,8 @@ struct PictureItem {
 };
 
 // A line of a list with its picture at the left; true when it is chosen. `width` [px]; 0: all there
-// is.
-bool picture_item(const PictureItem& item, float width = 0);
+// is. `marked`: the keys are at it.
+bool picture_item(const PictureItem& item, float width = 0, bool marked = false);
 // What it takes [px].
 float picture_item_width(const PictureItem& item);
 

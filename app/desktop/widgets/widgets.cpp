@@ -1,12 +1,15 @@
 #include "app/desktop/widgets/widgets.h"
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/desktop/widgets/modal.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -117,6 +120,29 @@ void underline_button(Rgb rgb) {
   ImGui::GetWindowDrawList()->AddRectFilled({from.x, to.y - high}, to, colour(rgb),
                                             ImGui::GetStyle().FrameRounding,
                                             ImDrawFlags_RoundCornersBottom);
+}
+
+void ListKeys::move(int count, int columns) {
+  int step = 0;
+  if (key_pressed(GLFW_KEY_DOWN)) step += columns;
+  if (key_pressed(GLFW_KEY_UP)) step -= columns;
+  if (columns > 1 && key_pressed(GLFW_KEY_RIGHT)) ++step;
+  if (columns > 1 && key_pressed(GLFW_KEY_LEFT)) --step;
+  if (count <= 0) return forget();
+  if (step == 0) return;
+  at_ = at_ == kNone ? 0 : std::clamp(at_ + step, 0, count - 1);
+  moved_ = true;
+}
+
+bool ListKeys::at(int item) {
+  if (item != at_) return false;
+  if (std::exchange(moved_, false)) ImGui::SetScrollHereY();
+  return true;
+}
+
+bool ListKeys::taken(int item) const {
+  return item == at_ && at_ != kNone &&
+         (key_pressed(GLFW_KEY_ENTER, false) || key_pressed(GLFW_KEY_KP_ENTER, false));
 }
 
 void progress_bar(double part, float width, std::string text) {

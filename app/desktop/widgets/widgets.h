@@ -34,4 +34,22 @@ void underline_button(Rgb rgb);
 // it says the part.
 void progress_bar(double part, float width, std::string text = {});
 
+// Where the arrow keys have gone in a list that is drawn item by item; Enter takes that item. A
+// text field beside the list keeps left, right, Home and End.
+class ListKeys {
+ public:
+  void forget() { at_ = kNone; }
+  // Before the items: there were so many in the last frame, in rows of `columns`.
+  void move(int count, int columns = 1);
+  // Of the item about to be drawn, counted from 0: whether the keys are at it. Scrolls there.
+  bool at(int item);
+  // Of that item: Enter was pressed.
+  bool taken(int item) const;
+
+ private:
+  static constexpr int kNone = -1;
+  int at_ = kNone;
+  bool moved_ = false;  // not scrolled there yet
+};
+
 }  // namespace limpid

@@ -98,6 +98,9 @@ TEST(StoryScripts, KnowTheStepOfEveryMoment) {
 TEST(StoryScripts, RefuseKeysAndWordsThatDoNotExistAndSayWhere) {
   expect_refused(with("caption = \"Two.\"", "captoin = \"Two.\""), "s.toml:10: step.captoin");
   expect_refused(with("title", "titel"), "s.toml:1: titel: no such key");
+  expect_refused("scene = \"nope.toml\"\n" + kWhole, "s.toml:1: scene: ");
+  expect_refused("device = \"nope.urdf\"\n" + kWhole, "a file beside the script, or one of ");
+  expect_refused(with("hand = [[1, 0.19, 0, -0.01]]", "hand = \"nope.csv\""), "step.hand: ");
   expect_refused(with("kind = standard", "kind = magic"), "standard, proposed, predictive");
   expect_refused(with("coupling.eta", "coupling.etta"), "s.toml:12: step.twin: coupling.etta");
   expect_refused(with("coupling.eta = 0.4", "coupling.eta = -1"), "coupling.eta: -1");

@@ -46,6 +46,17 @@ axis = [ { key = "coupling.eta", values = [0.5, 1] },
   EXPECT_EQ(run_of(plan, 1).hand.position, run_of(plan, 3).hand.position);
 }
 
+TEST_F(SweepPlans, SayWhichOfTheirFilesIsNotThere) {
+  for (const char* key : {"device", "scene", "hand"}) {
+    const std::string said = refusal(std::string(key) +
+                                     " = \"nope.file\"\nmeasure = [\"energy\"]\n"
+                                     "axis = [ { key = \"coupling.eta\", values = [1] } ]\n");
+    EXPECT_THAT(said, AllOf(HasSubstr((dir_ / "x").parent_path().string()),
+                            HasSubstr("\"nope.file\" is not there")))
+        << key;
+  }
+}
+
 const std::string kTaps = R"(hand = { tap = 2 }
 measure = ["wall_felt"]
 set = ["coupling.kind = predictive"]

@@ -20,6 +20,10 @@ TEST(Player, ShowsTheRowOfItsTime) {
   for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{537}, std::size_t{999}}) {
     p.seek(static_cast<double>(k) * 1e-3);
     EXPECT_EQ(p.index(), k);
+    EXPECT_EQ(p.row_time(), static_cast<double>(k) * 1e-3);
+    p.seek(static_cast<double>(k) * 1e-3 + 0.9e-3);  // while it plays, between two rows
+    EXPECT_EQ(p.index(), std::min<std::size_t>(k, 999));
+    EXPECT_EQ(p.row_time(), static_cast<double>(k) * 1e-3);
     EXPECT_EQ(p.session().layout.in(p.row(), Column::time)[0], p.session().at(k, Column::time)[0]);
   }
 }
